@@ -1,0 +1,114 @@
+"""Replay buffer for tasks of one step, which draws good episodes more often than bad ones."""
+
+from typing import Any
+
+import numpy as np
+import torch as th
+from gymnasium import spaces
+from stable_baselines3.common.buffers import ReplayBuffer
+from stable_baselines3.common.type_aliases import ReplayBufferSamples
+from stable_baselines3.common.vec_env import VecNormalize
+
+
+def average_ranks(values: np.ndarray) -> np.ndarray:
+    """
+    Ranks scaled to [0, 1], 0 for the lowest value and 1 for the highest; equal values share their mean rank.
+
+    :param values: Values to rank, of shape (n,)
+    :return: Ranks of shape (n,)
+    """
+    _, inverse, counts = np.unique(values, return_inverse=True, return_counts=True)
+    mean_positions = np.cumsum(counts) - (counts + 1) / 2
+    return mean_positions[inverse] / max(len(values) - 1, 1)
+
+
+class RankReplayBuffer(ReplayBuffer):
+    """
+    Replay buffer that draws a transition with a probability proportional to ``exp(temperature * rank)``,
+    where ``rank`` is that of its reward in the buffer, from 0 (lowest) to 1 (highest), mean rank for ties.
+    Transitions of all environments are ranked together.
+
+    It is meant for episodes of one step, where the reward is the return. In longer episodes it would
+    favour transitions of high reward whatever they lead to. The probabilities are computed at the first
+    draw after an addition, in O(n log n).
+
+    :param buffer_size: Max number of element in the buffer
+    :param observation_space: Observation space
+    :param action_space: Action space
+    :param device: PyTorch device
+    :param n_envs: Number of parallel environments
+    :param optimize_memory_usage: Not supported
+    :param handle_timeout_termination: Handle timeout termination (due to timelimit)
+        separately and treat the task as infinite horizon task.
+    :param temperature: Logarithm of how much more often the best transition is drawn than the worst;
+        0 draws uniformly
+    """
+
+    def __init__(
+        self,
+        buffer_size: int,
+        observation_space: spaces.Space,
+        action_space: spaces.Space,
+        device: th.device | str = "auto",
+        n_envs: int = 1,
+        optimize_memory_usage: bool = False,
+        handle_timeout_termination: bool = True,
+        temperature: float = 4.0,
+    ) -> None:
+        if optimize_memory_usage:
+            raise NotImplementedError("RankReplayBuffer doesn't support optimize_memory_usage=True")
+        # One row a transition, whichever environment it comes from: ranks know no environments
+        super().__init__(
+            buffer_size,
+            observation_space,
+            action_space,
+            device,
+            n_envs=1,
+            handle_timeout_termination=handle_timeout_termination,
+        )
+        self.temperature = temperature
+        self._probabilities: np.ndarray | None = None
+
+    def add(
+        self,
+        obs: np.ndarray,
+        next_obs: np.ndarray,
+        action: np.ndarray,
+        reward: np.ndarray,
+        done: np.ndarray,
+        infos: list[dict[str, Any]],
+    ) -> None:
+        """
+        Add one transition of each environment.
+
+        :param obs: Observations
+        :param next_obs: Next observations
+        :param action: Actions
+        :param reward: Rewards
+        :param done: Whether the episodes ended
+        :param infos: Additional information, which says whether a time limit ended an episode
+        """
+        for i, info in enumerate(infos):
+            row = slice(i, i + 1)
+            super().add(obs[row], next_obs[row], action[row], reward[row], done[row], [info])
+        self._probabilities = None
+
+    def reset(self) -> None:
+        """Reset the buffer."""
+        super().reset()
+        self._probabilities = None
+
+    def sample(self, batch_size: int, env: VecNormalize | None = None) -> ReplayBufferSamples:
+        """
+        Sample transitions, with replacement.
+
+        :param batch_size: Number of element to sample
+        :param env: associated gym VecEnv
+            to normalize the observations/rewards when sampling
+        :return: The transitions
+        """
+        if self._probabilities is None:
+            weights = np.exp(self.temperature * average_ranks(self.rewards[: self.size(), 0]))
+            self._probabilities = weights / weights.sum()
+        batch_inds = np.random.choice(self.size(), size=batch_size, p=self._probabilities)
+        return self._get_samples(batch_inds, env=env)

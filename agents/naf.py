@@ -1,0 +1,313 @@
+"""Normalized advantage functions (NAF): Q-learning for continuous actions, for stable-baselines3."""
+
+from typing import Any, ClassVar, TypeVar
+
+import numpy as np
+import torch as th
+from gymnasium import spaces
+from stable_baselines3.common.buffers import ReplayBuffer
+from stable_baselines3.common.noise import ActionNoise, NormalActionNoise
+from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
+from stable_baselines3.common.policies import BasePolicy
+from stable_baselines3.common.type_aliases import GymEnv, MaybeCallback, Schedule
+from stable_baselines3.common.utils import FloatSchedule, LinearSchedule, get_parameters_by_name, polyak_update
+from torch import nn
+
+from sarah.agents.buffers import RankReplayBuffer
+from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy, NAFPolicy, QuadraticCritic
+
+SelfNAF = TypeVar("SelfNAF", bound="NAF")
+
+LOCALITY_FLOOR = 0.02
+
+PRESETS: dict[str, dict[str, Any]] = {
+    # Local NAF, for episodes of one step with a few hundred of them to spend. With several
+    # environments, ``gradient_steps`` is per step of all of them: multiply it by their number.
+    "one-step": dict(
+        learning_rate=1e-3,
+        buffer_size=10_000,
+        learning_starts=40,
+        batch_size=64,
+        gamma=0.0,  # The reward is the return, also where a time limit ends the episode
+        gradient_steps=5,
+        replay_buffer_class=RankReplayBuffer,
+        replay_buffer_kwargs=dict(temperature=4.0),
+        exploration_std=LinearSchedule(0.3, 0.05, end_fraction=0.8),
+        warmup_std=0.4,
+        locality=0.4,
+        policy_kwargs=dict(net_arch=[32, 32], activation_fn=nn.Tanh, lower_sees_action=True),
+    ),
+    # The networks of Kouppas et al., literally. Their bias of 1 at the output of mu is the centre
+    # of Box(0, 2), which in scaled actions is 0. On episodes of one step they hardly learn.
+    "paper": dict(
+        policy_kwargs=dict(
+            net_arch=dict(V=[256] * 3, mu=[16] * 4, L=[80] * 4),
+            activation_fn=nn.Sigmoid,
+            squash_mu=False,
+        ),
+    ),
+}
+"""Arguments for known kinds of task: ``NAF("MlpPolicy", env, **PRESETS["one-step"])``."""
+
+
+def locality_weights(actions: th.Tensor, mu: th.Tensor, locality: float) -> th.Tensor:
+    """
+    Weights of transitions in the loss: high where the action is near ``mu``, where Q has to be right.
+
+    :param actions: Scaled actions of shape (batch, action dim)
+    :param mu: Best actions of the same shape, as constants
+    :param locality: Distance over which the weight falls, in scaled actions
+    :return: Weights of shape (batch, 1), of mean 1
+    """
+    squared_distance = (actions - mu).square().sum(dim=1, keepdim=True)
+    weights = th.exp(-squared_distance / (2 * locality**2)) + LOCALITY_FLOOR
+    return weights / weights.mean()
+
+
+class NAF(OffPolicyAlgorithm):
+    """
+    Q-learning with normalized advantage functions (NAF)
+
+    Paper: https://arxiv.org/abs/1603.00748 (Gu et al. 2016, Continuous Deep Q-Learning with Model-based Acceleration)
+    Q is quadratic in the action, so its maximum and the action that reaches it are outputs of networks:
+    there is no actor to train, and the target network is asked for V only.
+
+    :param policy: The policy model to use (MlpPolicy, CnnPolicy, ...)
+    :param env: The environment to learn from (if registered in Gym, can be str)
+    :param learning_rate: The learning rate, it can be a function
+        of the current progress remaining (from 1 to 0)
+    :param buffer_size: size of the replay buffer
+    :param learning_starts: how many steps of the model to collect transitions for before learning starts
+    :param batch_size: Minibatch size for each gradient update
+    :param tau: the soft update coefficient ("Polyak update", between 0 and 1)
+    :param gamma: the discount factor
+    :param train_freq: Update the model every ``train_freq`` steps. Alternatively pass a tuple of frequency and unit
+        like ``(5, "step")`` or ``(2, "episode")``.
+    :param gradient_steps: How many gradient steps to do after each rollout (see ``train_freq``)
+        Set to ``-1`` means to do as many gradient steps as steps done in the environment
+        during the rollout.
+    :param action_noise: the action noise type. If ``None`` (default), Gaussian noise
+        of ``exploration_std`` is used.
+    :param replay_buffer_class: Replay buffer class to use (for instance ``HerReplayBuffer``).
+        If ``None``, it will be automatically selected.
+    :param replay_buffer_kwargs: Keyword arguments to pass to the replay buffer on creation.
+    :param optimize_memory_usage: Enable a memory efficient variant of the replay buffer
+        at a cost of more complexity.
+    :param n_steps: When n_step > 1, uses n-step return (with the NStepReplayBuffer) when updating the Q-value network.
+        Note: it is only used when ``replay_buffer_class`` is ``None``, and is not supported for Dict
+        observation spaces yet.
+    :param max_grad_norm: The maximum value for the gradient clipping
+    :param exploration_std: Standard deviation of the Gaussian exploration noise, in actions scaled to [-1, 1].
+        It can be a function of the current progress remaining (from 1 to 0), such as ``LinearSchedule``;
+        0 switches the noise off. Without effect if ``action_noise`` is given.
+    :param warmup_std: Standard deviation of the actions before ``learning_starts``, in scaled actions, around the
+        centre of the action space and clipped to it. If ``None`` (default), they are uniform.
+        Choose it where good actions lie away from the bounds.
+    :param locality: Distance from ``mu``, in scaled actions, over which a transition's weight in the loss falls:
+        ``exp(-|u - mu|^2 / (2 * locality^2)) + 0.02``. If ``None`` (default), all weigh the same.
+        Choose it where the return is far from quadratic, and only what is near ``mu`` can be fitted.
+    :param stats_window_size: Window size for the rollout logging, specifying the number of episodes to average
+        the reported success rate, mean episode length, and mean reward over
+    :param tensorboard_log: the log location for tensorboard (if None, no logging)
+    :param policy_kwargs: additional arguments to be passed to the policy on creation.
+        See :class:`sarah.agents.policies.NAFPolicy`
+    :param verbose: Verbosity level: 0 for no output, 1 for info messages (such as device or wrappers used), 2 for
+        debug messages
+    :param seed: Seed for the pseudo random generators
+    :param device: Device (cpu, cuda, ...) on which the code should be run.
+        Setting it to auto, the code will be run on the GPU if possible.
+    :param _init_setup_model: Whether or not to build the network at the creation of the instance
+    """
+
+    policy_aliases: ClassVar[dict[str, type[BasePolicy]]] = {
+        "MlpPolicy": MlpPolicy,
+        "CnnPolicy": CnnPolicy,
+        "MultiInputPolicy": MultiInputPolicy,
+    }
+    action_space: spaces.Box
+    exploration_schedule: Schedule
+    q_net: QuadraticCritic
+    q_net_target: QuadraticCritic
+    policy: NAFPolicy
+
+    def __init__(
+        self,
+        policy: str | type[NAFPolicy],
+        env: GymEnv | str,
+        learning_rate: float | Schedule = 1e-3,
+        buffer_size: int = 1_000_000,  # 1e6
+        learning_starts: int = 100,
+        batch_size: int = 256,
+        tau: float = 0.005,
+        gamma: float = 0.99,
+        train_freq: int | tuple[int, str] = 1,
+        gradient_steps: int = 1,
+        action_noise: ActionNoise | None = None,
+        replay_buffer_class: type[ReplayBuffer] | None = None,
+        replay_buffer_kwargs: dict[str, Any] | None = None,
+        optimize_memory_usage: bool = False,
+        n_steps: int = 1,
+        max_grad_norm: float = 10.0,
+        exploration_std: float | Schedule = 0.1,
+        warmup_std: float | None = None,
+        locality: float | None = None,
+        stats_window_size: int = 100,
+        tensorboard_log: str | None = None,
+        policy_kwargs: dict[str, Any] | None = None,
+        verbose: int = 0,
+        seed: int | None = None,
+        device: th.device | str = "auto",
+        _init_setup_model: bool = True,
+    ) -> None:
+        super().__init__(
+            policy,
+            env,
+            learning_rate,
+            buffer_size,
+            learning_starts,
+            batch_size,
+            tau,
+            gamma,
+            train_freq,
+            gradient_steps,
+            action_noise=action_noise,
+            replay_buffer_class=replay_buffer_class,
+            replay_buffer_kwargs=replay_buffer_kwargs,
+            optimize_memory_usage=optimize_memory_usage,
+            n_steps=n_steps,
+            policy_kwargs=policy_kwargs,
+            stats_window_size=stats_window_size,
+            tensorboard_log=tensorboard_log,
+            verbose=verbose,
+            device=device,
+            seed=seed,
+            sde_support=False,
+            supported_action_spaces=(spaces.Box,),
+            support_multi_env=True,
+        )
+
+        self.max_grad_norm = max_grad_norm
+        self.exploration_std = exploration_std
+        self.warmup_std = warmup_std
+        self.locality = locality
+
+        if _init_setup_model:
+            self._setup_model()
+
+    def _setup_model(self) -> None:
+        super()._setup_model()
+        self._create_aliases()
+        # Running mean and running var, which the target network copies
+        self.batch_norm_stats = get_parameters_by_name(self.q_net, ["running_"])
+        self.batch_norm_stats_target = get_parameters_by_name(self.q_net_target, ["running_"])
+        self.exploration_schedule = FloatSchedule(self.exploration_std)
+
+    def _create_aliases(self) -> None:
+        self.q_net = self.policy.q_net
+        self.q_net_target = self.policy.q_net_target
+
+    def _sample_action(
+        self,
+        learning_starts: int,
+        action_noise: ActionNoise | None = None,
+        n_envs: int = 1,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        shape = (n_envs, *self.action_space.shape)
+        if self.warmup_std is not None and self.num_timesteps < learning_starts:
+            scaled_action = np.random.normal(0.0, self.warmup_std, shape).clip(-1, 1).astype(np.float32)
+            return self.policy.unscale_action(scaled_action), scaled_action
+        if action_noise is None:
+            std = self.exploration_schedule(self._current_progress_remaining)
+            action_noise = NormalActionNoise(np.zeros(shape), np.full(shape, std))
+            self.logger.record("train/exploration_std", std)
+        return super()._sample_action(learning_starts, action_noise, n_envs)
+
+    def train(self, gradient_steps: int, batch_size: int = 100) -> None:
+        """
+        Sample the replay buffer and do the updates (gradient descent and update target network).
+
+        :param gradient_steps: Number of updates
+        :param batch_size: Minibatch size for each update
+        """
+        # Switch to train mode (this affects batch norm / dropout)
+        self.policy.set_training_mode(True)
+        # Update learning rate according to schedule
+        self._update_learning_rate(self.policy.optimizer)
+
+        losses, mean_q_values = [], []
+        for _ in range(gradient_steps):
+            # Sample replay buffer
+            replay_data = self.replay_buffer.sample(batch_size, env=self._vec_normalize_env)  # type: ignore[union-attr]
+            # For n-step replay, discount factor is gamma**n_steps (when no early termination)
+            discounts = replay_data.discounts if replay_data.discounts is not None else self.gamma
+
+            with th.no_grad():
+                # The maximum of Q over the actions is V: no action is needed for the target
+                next_values = self.q_net_target.value(replay_data.next_observations)
+                # 1-step TD target
+                target_q_values = replay_data.rewards + (1 - replay_data.dones) * discounts * next_values
+
+            # Get current Q-values estimates
+            current_q_values, mu = self.q_net(replay_data.observations, replay_data.actions)
+            mean_q_values.append(current_q_values.mean().item())
+
+            squared_errors = (current_q_values - target_q_values).square()
+            if self.locality is not None:
+                squared_errors *= locality_weights(replay_data.actions, mu.detach(), self.locality)
+            loss = squared_errors.mean()
+            losses.append(loss.item())
+
+            # Optimize the policy
+            self.policy.optimizer.zero_grad()
+            loss.backward()
+            # Clip gradient norm
+            nn.utils.clip_grad_norm_(self.q_net.parameters(), self.max_grad_norm)
+            self.policy.optimizer.step()
+
+            polyak_update(self.q_net.parameters(), self.q_net_target.parameters(), self.tau)
+            # Copy running stats, as all algorithms of stable-baselines3 do
+            polyak_update(self.batch_norm_stats, self.batch_norm_stats_target, 1.0)
+
+        # Increase update counter
+        self._n_updates += gradient_steps
+
+        self.logger.record("train/n_updates", self._n_updates, exclude="tensorboard")
+        self.logger.record("train/loss", np.mean(losses))
+        self.logger.record("train/q", np.mean(mean_q_values))
+
+    def learn(
+        self: SelfNAF,
+        total_timesteps: int,
+        callback: MaybeCallback = None,
+        log_interval: int = 4,
+        tb_log_name: str = "NAF",
+        reset_num_timesteps: bool = True,
+        progress_bar: bool = False,
+    ) -> SelfNAF:
+        """
+        Return a trained model.
+
+        :param total_timesteps: The total number of samples (env steps) to train on
+        :param callback: callback(s) called at every step with state of the algorithm.
+        :param log_interval: The number of episodes before logging.
+        :param tb_log_name: the name of the run for TensorBoard logging
+        :param reset_num_timesteps: whether or not to reset the current timestep number (used in logging)
+        :param progress_bar: Display a progress bar using tqdm and rich.
+        :return: the trained model
+        """
+        return super().learn(
+            total_timesteps=total_timesteps,
+            callback=callback,
+            log_interval=log_interval,
+            tb_log_name=tb_log_name,
+            reset_num_timesteps=reset_num_timesteps,
+            progress_bar=progress_bar,
+        )
+
+    def _excluded_save_params(self) -> list[str]:
+        return [*super()._excluded_save_params(), "q_net", "q_net_target"]
+
+    def _get_torch_save_params(self) -> tuple[list[str], list[str]]:
+        state_dicts = ["policy", "policy.optimizer"]
+
+        return state_dicts, []

@@ -1,0 +1,255 @@
+"""The sensor-driven central pattern generator: sensor readings in, joint targets out.
+
+A reconstruction of the paper's Figure 3, which is not public. The robot rocks from foot to foot about the torso's
+y axis, and the sensors, not a clock, decide when each phase of a step ends:
+
+    STAND   for the first second                                                             -> SHIFT
+    SHIFT   the swing leg pushes the robot over the support leg                              -> LIFT
+            until tilt > P2, rate > 0.2 P3 and the support foot is loaded, or 0.3 (1 + P5) s
+    LIFT    the swing leg retracts                                                           -> LAND
+            until rate < -P1 (the robot rocks back), or 0.3 (1 + P4) s
+    LAND    both legs straight                                                               -> SHIFT, legs swapped
+            until the swing foot is loaded, or 0.3 (1 + P5) s
+
+Tilt is the low-passed lateral acceleration and rate the low-passed angular rate about y, both positive towards
+the support leg. The time-outs are slow on purpose: with faster ones a learner uses them as an open-loop clock and
+ignores the sensors. Plain floats only: it runs once per control tick, and on a robot.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+from sarah.errors import ConfigurationError
+from sarah.sensors import SensorReading
+
+PARAMETER_NAMES = ("P1", "P2", "P3", "P4", "P5")
+PARAMETER_RANGE = (0.0, 2.0)
+"""Box of P1-P5; the paper observed that they must be positive."""
+PAPER_PARAMETERS = (0.4, 1.3, 0.1, 1.0, 1.0)
+"""Where the paper's P1-P3 settled; its P4 and P5 did not matter and are set to 1 here."""
+
+STAND_SECONDS = 1.0
+MINIMUM_PHASE_SECONDS = 0.04
+TIME_OUT_SECONDS = 0.3
+RATE_SCALE = 0.2
+"""Of P3 in the condition that ends SHIFT."""
+PUSH_LENGTH = 0.004
+"""How far the swing leg extends in SHIFT, in m."""
+LIFT_LENGTH = 0.020
+"""How far the swing leg retracts in LIFT, in m."""
+LEG_SPEED = 1.0
+"""Of the ramp that leg length targets follow, in m/s."""
+TILT_TIME_CONSTANT = 0.10
+RATE_TIME_CONSTANT = 0.01
+ACCELERATION_LIMIT = 20.0
+"""Accelerations are clipped to this, in m/s^2, before the low-pass."""
+
+
+class Phase(Enum):
+    """Of the state machine."""
+
+    STAND = "stand"
+    SHIFT = "shift"
+    LIFT = "lift"
+    LAND = "land"
+
+
+class Side(Enum):
+    """A leg; the value is its sign along the torso's x axis."""
+
+    LEFT = -1
+    RIGHT = 1
+
+    @property
+    def other(self) -> Side:
+        """The opposite leg."""
+        return Side.LEFT if self is Side.RIGHT else Side.RIGHT
+
+
+@dataclass(frozen=True)
+class SteppingParameters:
+    """The five parameters of the first training, each within 0 and 2.
+
+    :param P1: rate of rocking back at which the swing foot is put down, in rad/s
+    :param P2: tilt (lateral acceleration) over the support leg at which the swing foot may leave, in m/s^2
+    :param P3: five times the rate towards the support leg at which it may leave, in rad/s
+    :param P4: stretches the time-out of LIFT
+    :param P5: stretches the time-outs of SHIFT and LAND
+    """
+
+    P1: float
+    P2: float
+    P3: float
+    P4: float
+    P5: float
+
+    @classmethod
+    def checked(cls, values: Sequence[float]) -> SteppingParameters:
+        """Make them from five numbers.
+
+        :param values: P1 to P5
+        :raises ConfigurationError: naming the first one that is not a number within the box
+        """
+        if len(values) != len(PARAMETER_NAMES):
+            raise ConfigurationError(f"parameters must be {len(PARAMETER_NAMES)} numbers (P1 to P5), not {len(values)}")
+        low, high = PARAMETER_RANGE
+        for name, value in zip(PARAMETER_NAMES, values, strict=True):
+            if not (math.isfinite(value) and low <= value <= high):
+                raise ConfigurationError(f"parameter {name} must be between {low:g} and {high:g}, not {value!r}")
+        return cls(*(float(value) for value in values))
+
+
+class LowPass:
+    """First-order low-pass filter, starting at zero.
+
+    :param time_constant: in s
+    :param dt: control period in s
+    """
+
+    def __init__(self, time_constant: float, dt: float) -> None:
+        self.value = 0.0
+        self._gain = 1.0 - math.exp(-dt / time_constant)
+
+    def __call__(self, sample: float) -> float:
+        """Take one sample and return the filtered value."""
+        self.value += self._gain * (sample - self.value)
+        return self.value
+
+
+@dataclass(frozen=True)
+class PhaseChange:
+    """What ended a phase.
+
+    :param ended: the phase that ended
+    :param by_sensors: whether its sensor condition ended it, and not its time-out
+    :param is_step: whether a step was completed: a swing foot that was off the floor has landed
+    """
+
+    ended: Phase
+    by_sensors: bool
+    is_step: bool = False
+
+
+class PatternGenerator:
+    """The state machine. Call :meth:`tick` once per control tick with a fresh reading.
+
+    :param parameters: P1 to P5
+    :param pad_threshold: load above which a foot counts as carrying, in N
+    :param dt: control period in s
+    """
+
+    def __init__(self, parameters: SteppingParameters, pad_threshold: float = 30.0, dt: float = 0.01) -> None:
+        self.parameters = parameters
+        self.phase = Phase.STAND
+        self.support = Side.RIGHT
+        self._pad_threshold = pad_threshold
+        self._dt = dt
+        self._ticks_in_phase = 0
+        self._swing_foot_was_off = False
+        self._stable_x = LowPass(TILT_TIME_CONSTANT, dt)
+        self._rate_y = LowPass(RATE_TIME_CONSTANT, dt)
+        self._lengths = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
+        self._loads = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
+
+    @property
+    def swing(self) -> Side:
+        """The leg that is not the support leg."""
+        return self.support.other
+
+    @property
+    def stable_x(self) -> float:
+        """Low-passed lateral acceleration, in m/s^2 (the paper's stable_X)."""
+        return self._stable_x.value
+
+    @property
+    def tilt(self) -> float:
+        """Lateral acceleration towards the support leg, in m/s^2: leaning over it is positive."""
+        return -self.support.value * self._stable_x.value
+
+    @property
+    def rate(self) -> float:
+        """Angular rate about y towards the support leg, in rad/s."""
+        return self.support.value * self._rate_y.value
+
+    def sense(self, reading: SensorReading) -> None:
+        """Filter one reading without acting on it, as while standing."""
+        lateral = max(-ACCELERATION_LIMIT, min(ACCELERATION_LIMIT, reading.acceleration[0]))
+        self._stable_x(lateral)
+        self._rate_y(reading.angular_rate[1])
+        left_fore, left_hind, right_fore, right_hind = reading.pressures
+        self._loads[Side.LEFT] = left_fore + left_hind
+        self._loads[Side.RIGHT] = right_fore + right_hind
+
+    def tick(self, reading: SensorReading) -> PhaseChange | None:
+        """Advance by one control tick.
+
+        :param reading: what the sensors say now
+        :return: the phase change that this tick made, if it made one; :attr:`targets` follow the new phase
+        """
+        self.sense(reading)
+        self._ticks_in_phase += 1
+        if self.phase in (Phase.LIFT, Phase.LAND) and not self._is_loaded(self.swing):
+            self._swing_foot_was_off = True
+        change = self._phase_change()
+        if change is not None:
+            self._enter_next_phase()
+        self._ramp_legs()
+        return change
+
+    @property
+    def targets(self) -> tuple[float, float, float, float, float, float]:
+        """Joint targets in the order of ``ACTUATED_JOINTS``; the hips are locked in the first training."""
+        return (0.0, 0.0, 0.0, 0.0, self._lengths[Side.LEFT], self._lengths[Side.RIGHT])
+
+    def _phase_change(self) -> PhaseChange | None:
+        elapsed = self._ticks_in_phase * self._dt
+        if self.phase is Phase.STAND:
+            return PhaseChange(Phase.STAND, by_sensors=False)
+        if elapsed < MINIMUM_PHASE_SECONDS - self._dt / 2:
+            return None
+        by_sensors = self._condition_holds()
+        if not by_sensors and elapsed < self.time_out(self.phase) - self._dt / 2:
+            return None
+        is_step = self.phase is Phase.LAND and self._swing_foot_was_off
+        return PhaseChange(self.phase, by_sensors, is_step)
+
+    def _condition_holds(self) -> bool:
+        """Whether the sensors end the present phase."""
+        parameters = self.parameters
+        if self.phase is Phase.SHIFT:
+            is_over_support = self.tilt > parameters.P2 and self.rate > RATE_SCALE * parameters.P3
+            return is_over_support and self._is_loaded(self.support)
+        if self.phase is Phase.LIFT:
+            return self.rate < -parameters.P1
+        return self._is_loaded(self.swing)
+
+    def time_out(self, phase: Phase) -> float:
+        """Longest duration of a phase, in s.
+
+        :param phase: SHIFT, LIFT or LAND
+        """
+        stretch = self.parameters.P4 if phase is Phase.LIFT else self.parameters.P5
+        return TIME_OUT_SECONDS * (1.0 + stretch)
+
+    def _enter_next_phase(self) -> None:
+        if self.phase is Phase.LAND:
+            self.support = self.support.other
+        self.phase = {Phase.SHIFT: Phase.LIFT, Phase.LIFT: Phase.LAND}.get(self.phase, Phase.SHIFT)
+        self._ticks_in_phase = 0
+        if self.phase is Phase.SHIFT:
+            self._swing_foot_was_off = False
+
+    def _is_loaded(self, side: Side) -> bool:
+        return self._loads[side] > self._pad_threshold
+
+    def _ramp_legs(self) -> None:
+        """Move both leg targets towards where the phase wants them; positive lengths retract."""
+        swing_length = {Phase.SHIFT: -PUSH_LENGTH, Phase.LIFT: LIFT_LENGTH}.get(self.phase, 0.0)
+        largest = LEG_SPEED * self._dt
+        for side, goal in ((self.swing, swing_length), (self.support, 0.0)):
+            change = goal - self._lengths[side]
+            self._lengths[side] += max(-largest, min(largest, change))

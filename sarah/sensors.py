@@ -1,0 +1,58 @@
+"""What the robot senses: one reading per control tick, and the noise and delay of real sensors."""
+
+from __future__ import annotations
+
+import random
+from collections import deque
+from typing import NamedTuple
+
+Vector = tuple[float, float, float]
+
+
+class SensorReading(NamedTuple):
+    """One control tick's 16 signals.
+
+    :param acceleration: specific force in the torso's frame (x right, y forward, z up), in m/s^2; (0, 0, 9.81) at rest
+    :param angular_rate: of the torso in its own frame, in rad/s
+    :param pressures: load on the four ankle pads in N: left forefoot, left hindfoot, right forefoot, right hindfoot
+        (the paper's LFP, LBP, RFP, RBP)
+    :param joints: actuator positions in the order of :data:`sarah.description.ACTUATED_JOINTS`: left and right
+        abduction and flexion in rad, left and right leg length in m, positive = retracted
+    """
+
+    acceleration: Vector
+    angular_rate: Vector
+    pressures: tuple[float, float, float, float]
+    joints: tuple[float, float, float, float, float, float]
+
+
+class ImperfectSensors:
+    """White noise on the inertial measurement unit, and a whole number of control ticks of delay on everything.
+
+    :param acceleration_noise: standard deviation in m/s^2
+    :param angular_rate_noise: standard deviation in rad/s
+    :param delay_ticks: control ticks by which every signal comes late
+    :param seed: of the noise
+    """
+
+    def __init__(self, acceleration_noise: float, angular_rate_noise: float, delay_ticks: int, seed: int) -> None:
+        self._acceleration_noise = acceleration_noise
+        self._angular_rate_noise = angular_rate_noise
+        self._gauss = random.Random(seed).gauss
+        self._pending: deque[SensorReading] = deque(maxlen=delay_ticks + 1)
+
+    def __call__(self, truth: SensorReading) -> SensorReading:
+        """Take the true reading of this tick and return what the controller gets to see."""
+        self._pending.append(truth)
+        late = self._pending[0]
+        return late._replace(
+            acceleration=self._noisy(late.acceleration, self._acceleration_noise),
+            angular_rate=self._noisy(late.angular_rate, self._angular_rate_noise),
+        )
+
+    def _noisy(self, vector: Vector, deviation: float) -> Vector:
+        if deviation == 0.0:
+            return vector
+        x, y, z = vector
+        gauss = self._gauss
+        return (x + gauss(0.0, deviation), y + gauss(0.0, deviation), z + gauss(0.0, deviation))

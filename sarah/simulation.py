@@ -1,0 +1,302 @@
+"""One PyBullet world with one robot: build, act, sense, push. The only file that imports pybullet.
+
+A world is built for one episode and closed after it: poses reset in place, or a restored state, do not repeat
+bit for bit, a fresh world does.
+"""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+import pybullet
+
+from sarah.description import ACTUATED_JOINTS, PASSIVE_JOINTS, SIDES, RobotDescription
+from sarah.errors import ConfigurationError
+from sarah.randomisation import NOMINAL, Conditions
+from sarah.sensors import SensorReading, Vector
+
+GRAVITY = 9.81
+CONTROL_RATE = 100
+"""Control ticks per second; the paper's."""
+CONTROL_DT = 1.0 / CONTROL_RATE
+
+
+@dataclass(frozen=True)
+class Physics:
+    """How finely PyBullet integrates.
+
+    :param rate: physics steps per second, a multiple of the control rate
+    :param solver_iterations: of the constraint solver, per physics step
+    """
+
+    rate: int = 500
+    solver_iterations: int = 30
+
+    def __post_init__(self) -> None:
+        """Refuse rates that do not divide into control ticks."""
+        if self.rate < CONTROL_RATE or self.rate % CONTROL_RATE:
+            raise ConfigurationError(f"physics.rate must be a multiple of {CONTROL_RATE} Hz, not {self.rate!r}")
+        if self.solver_iterations < 1:
+            raise ConfigurationError(f"physics.solver_iterations must be at least 1, not {self.solver_iterations!r}")
+
+
+PHYSICS = {"standard": Physics(), "reference": Physics(rate=1000, solver_iterations=100)}
+"""Named settings: what training uses, and the finer one that published results are checked with."""
+
+
+class TorsoState(NamedTuple):
+    """Where the torso really is, in the world's frame.
+
+    :param position: of its centre, in m
+    :param orientation: unit quaternion (x, y, z, w)
+    :param velocity: in m/s
+    :param angular_velocity: in rad/s
+    """
+
+    position: Vector
+    orientation: tuple[float, float, float, float]
+    velocity: Vector
+    angular_velocity: Vector
+
+    @property
+    def tilt(self) -> float:
+        """Angle between the torso's axis and the vertical, in rad."""
+        x, y, _, _ = self.orientation
+        return math.acos(max(-1.0, min(1.0, 1.0 - 2.0 * (x * x + y * y))))
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether the physics engine still returns numbers."""
+        return all(math.isfinite(value) for part in self for value in part)
+
+
+class Simulation:
+    """The robot standing on a plane, its soles just touching, all joints at zero.
+
+    Implements what an episode needs of a physics engine: :meth:`set_targets`, :meth:`push`, :meth:`advance`,
+    :meth:`read`, :meth:`torso_state`, :meth:`sole_height` and :meth:`close`.
+
+    :param robot: the checked robot
+    :param physics: how finely to integrate
+    :param conditions: friction, masses, servo bandwidth and start velocity of this episode
+    """
+
+    def __init__(
+        self, robot: RobotDescription, physics: Physics = PHYSICS["standard"], conditions: Conditions = NOMINAL
+    ) -> None:
+        self.robot = robot
+        self.time = 0.0
+        self._substeps = physics.rate // CONTROL_RATE
+        self._client = pybullet.connect(pybullet.DIRECT)
+        if self._client < 0:
+            raise RuntimeError("PyBullet has no free client: close simulations that are done")
+        pybullet.setPhysicsEngineParameter(
+            fixedTimeStep=CONTROL_DT,
+            numSubSteps=self._substeps,
+            numSolverIterations=physics.solver_iterations,
+            enableFileCaching=0,
+            physicsClientId=self._client,
+        )
+        pybullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self._client)
+        self._floor = self._build_floor()
+        self._body = self._load_robot()
+        self._links = self._link_indices()
+        self._joints = [self._links[name] for name in ACTUATED_JOINTS]
+        self._pads = {
+            (self._links[f"{side}_shank"], self._links[f"{side}_{plate}"]): index
+            for index, (side, plate) in enumerate((side, plate) for side in SIDES for plate in ("forefoot", "hindfoot"))
+        }
+        self._keep_only_pad_contacts()
+        self._apply_conditions(conditions)
+        self._gains = [conditions.actuator_bandwidth * CONTROL_DT / self._substeps] * len(self._joints)
+        self._efforts = [robot.efforts[name] for name in ACTUATED_JOINTS]
+        self._velocity_before = self.torso_state().velocity
+        self.set_targets((0.0,) * len(self._joints))
+
+    def _build_floor(self) -> int:
+        shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self._client)
+        floor = pybullet.createMultiBody(0.0, shape, physicsClientId=self._client)
+        pybullet.changeDynamics(floor, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=self._client)
+        return int(floor)
+
+    def _load_robot(self) -> int:
+        with tempfile.NamedTemporaryFile("w", prefix="sarah-", suffix=".urdf", encoding="utf-8") as file:
+            file.write(self.robot.urdf)
+            file.flush()
+            body = pybullet.loadURDF(
+                file.name,
+                basePosition=(0.0, 0.0, self.robot.standing_height),
+                flags=pybullet.URDF_USE_INERTIA_FROM_FILE
+                # PyBullet gives parent-child contact (pad and plate) only with both of these.
+                | pybullet.URDF_USE_SELF_COLLISION
+                | pybullet.URDF_USE_SELF_COLLISION_INCLUDE_PARENT,
+                physicsClientId=self._client,
+            )
+        return int(body)
+
+    def _link_indices(self) -> dict[str, int]:
+        """PyBullet's index of each link and of the joint that carries it, by either name."""
+        indices = {"torso": -1}
+        for joint in range(pybullet.getNumJoints(self._body, physicsClientId=self._client)):
+            info = pybullet.getJointInfo(self._body, joint, physicsClientId=self._client)
+            indices[info[1].decode()] = indices[info[12].decode()] = joint
+        return indices
+
+    def _keep_only_pad_contacts(self) -> None:
+        links = sorted(set(self._links.values()))
+        for first in links:
+            for second in links:
+                if first < second and (first, second) not in self._pads:
+                    pybullet.setCollisionFilterPair(self._body, self._body, first, second, 0, self._client)
+
+    def _apply_conditions(self, conditions: Conditions) -> None:
+        client = self._client
+        for link, factor in conditions.mass_factors.items():
+            index = self._links[link]
+            dynamics = pybullet.getDynamicsInfo(self._body, index, physicsClientId=client)
+            pybullet.changeDynamics(
+                self._body,
+                index,
+                mass=dynamics[0] * factor,
+                localInertiaDiagonal=[inertia * factor for inertia in dynamics[2]],
+                lateralFriction=conditions.friction,
+                restitution=0.0,
+                linearDamping=0.0,
+                angularDamping=0.0,
+                activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING,
+                physicsClientId=client,
+            )
+        for name in PASSIVE_JOINTS:  # otherwise PyBullet's default motor holds them
+            pybullet.setJointMotorControl2(
+                self._body, self._links[name], pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client
+            )
+        pybullet.resetBaseVelocity(self._body, (*conditions.start_velocity, 0.0), physicsClientId=client)
+
+    def set_targets(self, targets: tuple[float, ...]) -> None:
+        """Set where the servos move the joints from now on.
+
+        :param targets: positions in the order of ``ACTUATED_JOINTS``, in rad and m
+        """
+        pybullet.setJointMotorControlArray(
+            self._body,
+            self._joints,
+            pybullet.POSITION_CONTROL,
+            targetPositions=targets,
+            forces=self._efforts,
+            positionGains=self._gains,
+            physicsClientId=self._client,
+        )
+
+    def push(self, force: Vector) -> None:
+        """Push the torso at its centre during the next control tick.
+
+        :param force: in the world's frame, in N
+        """
+        position = self.torso_state().position
+        pybullet.applyExternalForce(
+            self._body, -1, force, position, pybullet.WORLD_FRAME, physicsClientId=self._client
+        )
+
+    def advance(self) -> None:
+        """Simulate one control tick."""
+        self._velocity_before = pybullet.getBaseVelocity(self._body, physicsClientId=self._client)[0]
+        pybullet.stepSimulation(physicsClientId=self._client)
+        self.time += CONTROL_DT
+
+    def torso_state(self) -> TorsoState:
+        """Where the torso really is; no sensor of the robot knows it."""
+        position, orientation = pybullet.getBasePositionAndOrientation(self._body, physicsClientId=self._client)
+        return TorsoState(position, orientation, *pybullet.getBaseVelocity(self._body, physicsClientId=self._client))
+
+    def read(self) -> SensorReading:
+        """The true sensor signals of the last control tick, without noise or delay."""
+        torso = self.torso_state()
+        now, before = torso.velocity, self._velocity_before
+        specific_force = (
+            (now[0] - before[0]) * CONTROL_RATE,
+            (now[1] - before[1]) * CONTROL_RATE,
+            (now[2] - before[2]) * CONTROL_RATE + GRAVITY,
+        )
+        return SensorReading(
+            rotate_to_body(torso.orientation, specific_force),
+            rotate_to_body(torso.orientation, torso.angular_velocity),
+            self._pressures(),
+            self.joint_positions(ACTUATED_JOINTS),
+        )
+
+    def joint_positions(self, names: tuple[str, ...]) -> Any:
+        """Positions of some joints, in rad and m.
+
+        :param names: of the joints
+        :return: a tuple in the same order
+        """
+        indices = [self._links[name] for name in names]
+        return tuple(state[0] for state in pybullet.getJointStates(self._body, indices, self._client))
+
+    def _pressures(self) -> tuple[float, float, float, float]:
+        loads = [0.0, 0.0, 0.0, 0.0]
+        for contact in pybullet.getContactPoints(self._body, self._body, physicsClientId=self._client):
+            pad = self._pads.get((contact[3], contact[4]), self._pads.get((contact[4], contact[3])))
+            if pad is not None:
+                # PyBullet reports the impulse of the last substep over the whole tick.
+                loads[pad] += contact[9] * self._substeps
+        return (loads[0], loads[1], loads[2], loads[3])
+
+    def sole_height(self, side: str) -> float:
+        """Height of a foot's lowest sole contact over the floor, in m.
+
+        :param side: ``"left"`` or ``"right"``
+        """
+        lowest = math.inf
+        for plate in (f"{side}_forefoot", f"{side}_hindfoot"):
+            state = pybullet.getLinkState(
+                self._body, self._links[plate], computeForwardKinematics=1, physicsClientId=self._client
+            )
+            frame_height, (x, y, z, w) = state[4][2], state[5]
+            for sole_x, sole_y, sole_z in self.robot.soles[plate]:
+                height = frame_height + (
+                    2.0 * (x * z - w * y) * sole_x + 2.0 * (y * z + w * x) * sole_y + (1.0 - 2.0 * (x * x + y * y)) * sole_z
+                )
+                lowest = min(lowest, height)
+        return lowest - self.robot.contact_radius
+
+    def render(self, width: int = 640, height: int = 480) -> np.ndarray:
+        """Draw the robot as it stands, by PyBullet's software renderer.
+
+        :return: uint8 array of shape (height, width, 3)
+        """
+        target = self.torso_state().position
+        view = pybullet.computeViewMatrixFromYawPitchRoll(
+            (target[0], target[1], 0.5), distance=1.7, yaw=155.0, pitch=-12.0, roll=0.0, upAxisIndex=2
+        )
+        projection = pybullet.computeProjectionMatrixFOV(fov=45.0, aspect=width / height, nearVal=0.1, farVal=10.0)
+        image = pybullet.getCameraImage(
+            width, height, view, projection, renderer=pybullet.ER_TINY_RENDERER, physicsClientId=self._client
+        )
+        return np.reshape(np.asarray(image[2], dtype=np.uint8), (height, width, 4))[:, :, :3]
+
+    def close(self) -> None:
+        """Give PyBullet's client back; the simulation cannot be used any more."""
+        if self._client >= 0:
+            pybullet.disconnect(self._client)
+            self._client = -1
+
+
+def rotate_to_body(orientation: tuple[float, float, float, float], vector: Vector) -> Vector:
+    """Turn a vector from the world's frame into a body's.
+
+    :param orientation: the body's unit quaternion (x, y, z, w)
+    :param vector: in the world's frame
+    :return: the same vector in the body's frame
+    """
+    x, y, z, w = orientation
+    a, b, c = vector
+    return (
+        (1.0 - 2.0 * (y * y + z * z)) * a + 2.0 * (x * y + w * z) * b + 2.0 * (x * z - w * y) * c,
+        2.0 * (x * y - w * z) * a + (1.0 - 2.0 * (x * x + z * z)) * b + 2.0 * (y * z + w * x) * c,
+        2.0 * (x * z + w * y) * a + 2.0 * (y * z - w * x) * b + (1.0 - 2.0 * (x * x + y * y)) * c,
+    )
