@@ -1,0 +1,1 @@
+"""SARAH: a biped balanced by a pattern generator whose parameters are learned."""

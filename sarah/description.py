@@ -16,8 +16,6 @@ from functools import lru_cache
 from importlib import resources
 from typing import Any
 
-import numpy as np
-
 from sarah.errors import DescriptionError, unknown_name
 
 SIDES = ("left", "right")
@@ -26,7 +24,9 @@ ACTUATED_JOINTS = tuple(f"{side}_{joint}" for joint in ("hip_abduction", "hip_fl
 """The six actuators, in the order of every list of joint values: left before right."""
 PASSIVE_JOINTS = tuple(f"{side}_{plate}" for side in SIDES for plate in PLATES)
 """The four ankle joints, each named like the plate it carries."""
-JOINT_TYPES = {joint: "prismatic" if joint.endswith("leg_length") else "revolute" for joint in (*ACTUATED_JOINTS, *PASSIVE_JOINTS)}
+JOINT_TYPES = {
+    joint: "prismatic" if joint.endswith("leg_length") else "revolute" for joint in (*ACTUATED_JOINTS, *PASSIVE_JOINTS)
+}
 GROUPS = {
     "top": ("torso", "left_hip", "right_hip"),
     "left leg": ("left_thigh", "left_shank", "left_forefoot", "left_hindfoot"),
@@ -91,7 +91,9 @@ def check_dimensions(dimensions: Mapping[str, Any]) -> None:
         if name not in allowed:
             raise DescriptionError(unknown_name("robot dimension", str(name), allowed))
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 < value < math.inf:
-            raise DescriptionError(f"robot dimension {name!r} must be a finite positive number, not {value!r} (default: {allowed[name]})")
+            raise DescriptionError(
+                f"robot dimension {name!r} must be a finite positive number, not {value!r} (default: {allowed[name]})"
+            )
 
 
 @lru_cache(maxsize=16)
@@ -135,7 +137,9 @@ def check_urdf(urdf: str) -> RobotDescription:
     except Exception as error:  # yourdfpy raises whatever its XML handling meets
         raise DescriptionError(f"yourdfpy cannot read the URDF: {error}") from error
     if not valid:
-        raise DescriptionError(f"yourdfpy finds the URDF invalid: {'; '.join(str(problem) for problem in model.errors)}")
+        raise DescriptionError(
+            f"yourdfpy finds the URDF invalid: {'; '.join(str(problem) for problem in model.errors)}"
+        )
     _check_joints(model)
     _check_inertials(model)
     return _read_off(urdf, model)
@@ -151,7 +155,9 @@ def _check_tree(root: ElementTree.Element) -> None:
                 raise DescriptionError(f"URDF has more than one {kind} named {name!r}")
     parent_of: dict[str, str] = {}
     for joint in root.findall("joint"):
-        ends = [element.get("link", "") if (element := joint.find(end)) is not None else "" for end in ("parent", "child")]
+        ends = [
+            element.get("link", "") if (element := joint.find(end)) is not None else "" for end in ("parent", "child")
+        ]
         for link in ends:
             if link not in links:
                 raise DescriptionError(f"URDF joint {joint.get('name')!r} names a link {link!r} that does not exist")
@@ -191,6 +197,8 @@ def _check_joints(model: Any) -> None:
 
 def _check_inertials(model: Any) -> None:
     """Positive masses, positive definite inertias, and three groups of 10 kg."""
+    import numpy as np
+
     links = model.link_map
     expected = {name for group in GROUPS.values() for name in group}
     if set(links) != expected:
@@ -206,7 +214,9 @@ def _check_inertials(model: Any) -> None:
     for group, names in GROUPS.items():
         mass = sum(links[name].inertial.mass for name in names)
         if abs(mass - GROUP_MASS) > 1e-6:
-            raise DescriptionError(f"URDF group {group!r} ({', '.join(names)}) must weigh {GROUP_MASS:g} kg, not {mass:g}")
+            raise DescriptionError(
+                f"URDF group {group!r} ({', '.join(names)}) must weigh {GROUP_MASS:g} kg, not {mass:g}"
+            )
 
 
 def _read_off(urdf: str, model: Any) -> RobotDescription:

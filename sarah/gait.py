@@ -1,41 +1,68 @@
-"""Steps per second, from the moments at which steps were completed."""
+"""Step detection: steps per second, sole clearance, and how much of the gait the sensors drive."""
 
 from __future__ import annotations
 
 from collections import deque
+from statistics import median
+
+from sarah.pattern_generator import Phase, PhaseChange
 
 WINDOW_SECONDS = 2.0
 SHORTEST_WINDOW_SECONDS = 0.5
-OSCILLATION_DEADLINE = 5.0
-"""Simulation time by which the robot must have stepped, in s: the paper's third stop criterion."""
-OSCILLATION_STEPS = 2
-"""Steps that count as an oscillation: one with each leg."""
 
 
-class GaitCounter:
-    """Counts steps since the pattern generator started.
-
-    Steps per second are the steps of the last 2 s; at the start, those of the time that has passed, which counts
-    as at least 0.5 s.
-    """
+class GaitRecord:
+    """Follows one episode's gait from the pattern generator's start. Times are since then, in s."""
 
     def __init__(self) -> None:
         self.steps = 0
         self._recent: deque[float] = deque()
+        self._swing_height = 0.0
+        self._clearances: list[float] = []
+        self._ends = {Phase.SHIFT: 0, Phase.LIFT: 0, Phase.LAND: 0}
+        self._ends_by_sensors = {Phase.SHIFT: 0, Phase.LIFT: 0, Phase.LAND: 0}
 
-    def step(self, time: float) -> None:
-        """Count a step.
+    def swing(self, sole_height: float) -> None:
+        """Note how high the swing foot's lowest sole contact is, while a foot swings.
 
-        :param time: since the pattern generator's start, in s
+        :param sole_height: over the floor, in m
         """
-        self.steps += 1
-        self._recent.append(time)
+        self._swing_height = max(self._swing_height, sole_height)
+
+    def phase_change(self, time: float, change: PhaseChange) -> None:
+        """Note the end of a phase, and the step that it may complete.
+
+        :param time: of the change
+        :param change: what the pattern generator reported
+        """
+        if change.ended is Phase.STAND:
+            return
+        self._ends[change.ended] += 1
+        self._ends_by_sensors[change.ended] += change.by_sensors
+        if change.is_step:
+            self.steps += 1
+            self._recent.append(time)
+            self._clearances.append(self._swing_height)
+        if change.ended is Phase.LAND:
+            self._swing_height = 0.0
 
     def steps_per_second(self, time: float) -> float:
-        """The f of equation 2.
+        """The f of equation 2: steps of the last 2 s; at first, of the time that has passed, at least 0.5 s.
 
-        :param time: since the pattern generator's start, in s; must not run backwards
+        :param time: now; must not run backwards
         """
         while self._recent and self._recent[0] <= time - WINDOW_SECONDS:
             self._recent.popleft()
         return len(self._recent) / max(SHORTEST_WINDOW_SECONDS, min(WINDOW_SECONDS, time))
+
+    def event_driven(self, phase: Phase) -> float:
+        """Share of a phase's ends that its sensor condition made, and not its time-out; 0 if it never ended.
+
+        :param phase: SHIFT, LIFT or LAND
+        """
+        return self._ends_by_sensors[phase] / self._ends[phase] if self._ends[phase] else 0.0
+
+    @property
+    def sole_clearance(self) -> float:
+        """Median over the steps of the largest height of the swing foot's lowest sole contact, in m."""
+        return median(self._clearances) if self._clearances else 0.0

@@ -32,7 +32,6 @@ PARAMETER_RANGE = (0.0, 2.0)
 PAPER_PARAMETERS = (0.4, 1.3, 0.1, 1.0, 1.0)
 """Where the paper's P1-P3 settled; its P4 and P5 did not matter and are set to 1 here."""
 
-STAND_SECONDS = 1.0
 MINIMUM_PHASE_SECONDS = 0.04
 TIME_OUT_SECONDS = 0.3
 RATE_SCALE = 0.2
@@ -214,7 +213,7 @@ class PatternGenerator:
         by_sensors = self._condition_holds()
         if not by_sensors and elapsed < self.time_out(self.phase) - self._dt / 2:
             return None
-        is_step = self.phase is Phase.LAND and self._swing_foot_was_off
+        is_step = self.phase is Phase.LAND and by_sensors and self._swing_foot_was_off
         return PhaseChange(self.phase, by_sensors, is_step)
 
     def _condition_holds(self) -> bool:

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from sarah.config import RewardForm
 
-RewardForm = Literal["symmetric", "printed"]
-REWARD_FORMS: tuple[RewardForm, ...] = ("symmetric", "printed")
 HALF_WIDTH = 0.5
 TARGET_STEPS_PER_SECOND = 3.0
 
 
-def reward_rate(
-    x: float, y: float, height: float, steps_per_second: float, form: RewardForm = "symmetric"
-) -> float:
+def reward_rate(x: float, y: float, height: float, steps_per_second: float, form: RewardForm = "symmetric") -> float:
     """R of equation 2: (0.5 - c_x) (0.5 - c_y) 2^(-(f - 3)^4) c_z.
 
     The printed equation has no absolute values and so rewards drifting towards negative x and y. The symmetric

@@ -8,44 +8,17 @@ from __future__ import annotations
 
 import math
 import tempfile
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 import pybullet
 
+from sarah.config import CONTROL_DT, CONTROL_RATE, PHYSICS, Physics
 from sarah.description import ACTUATED_JOINTS, PASSIVE_JOINTS, SIDES, RobotDescription
-from sarah.errors import ConfigurationError
-from sarah.randomisation import NOMINAL, Conditions
+from sarah.randomisation import Conditions
 from sarah.sensors import SensorReading, Vector
 
 GRAVITY = 9.81
-CONTROL_RATE = 100
-"""Control ticks per second; the paper's."""
-CONTROL_DT = 1.0 / CONTROL_RATE
-
-
-@dataclass(frozen=True)
-class Physics:
-    """How finely PyBullet integrates.
-
-    :param rate: physics steps per second, a multiple of the control rate
-    :param solver_iterations: of the constraint solver, per physics step
-    """
-
-    rate: int = 500
-    solver_iterations: int = 30
-
-    def __post_init__(self) -> None:
-        """Refuse rates that do not divide into control ticks."""
-        if self.rate < CONTROL_RATE or self.rate % CONTROL_RATE:
-            raise ConfigurationError(f"physics.rate must be a multiple of {CONTROL_RATE} Hz, not {self.rate!r}")
-        if self.solver_iterations < 1:
-            raise ConfigurationError(f"physics.solver_iterations must be at least 1, not {self.solver_iterations!r}")
-
-
-PHYSICS = {"standard": Physics(), "reference": Physics(rate=1000, solver_iterations=100)}
-"""Named settings: what training uses, and the finer one that published results are checked with."""
 
 
 class TorsoState(NamedTuple):
@@ -86,7 +59,10 @@ class Simulation:
     """
 
     def __init__(
-        self, robot: RobotDescription, physics: Physics = PHYSICS["standard"], conditions: Conditions = NOMINAL
+        self,
+        robot: RobotDescription,
+        physics: Physics = PHYSICS["standard"],
+        conditions: Conditions = Conditions(),
     ) -> None:
         self.robot = robot
         self.time = 0.0
@@ -197,9 +173,7 @@ class Simulation:
         :param force: in the world's frame, in N
         """
         position = self.torso_state().position
-        pybullet.applyExternalForce(
-            self._body, -1, force, position, pybullet.WORLD_FRAME, physicsClientId=self._client
-        )
+        pybullet.applyExternalForce(self._body, -1, force, position, pybullet.WORLD_FRAME, physicsClientId=self._client)
 
     def advance(self) -> None:
         """Simulate one control tick."""
@@ -259,7 +233,9 @@ class Simulation:
             frame_height, (x, y, z, w) = state[4][2], state[5]
             for sole_x, sole_y, sole_z in self.robot.soles[plate]:
                 height = frame_height + (
-                    2.0 * (x * z - w * y) * sole_x + 2.0 * (y * z + w * x) * sole_y + (1.0 - 2.0 * (x * x + y * y)) * sole_z
+                    2.0 * (x * z - w * y) * sole_x
+                    + 2.0 * (y * z + w * x) * sole_y
+                    + (1.0 - 2.0 * (x * x + y * y)) * sole_z
                 )
                 lowest = min(lowest, height)
         return lowest - self.robot.contact_radius

@@ -1,0 +1,219 @@
+"""What an experiment's settings are: plain dataclasses, read from files, written beside every run.
+
+Light on purpose: commands import it before anything slow.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+
+from sarah.errors import ConfigurationError, unknown_name
+
+CONTROL_RATE = 100
+"""Control ticks per second; the paper's."""
+CONTROL_DT = 1.0 / CONTROL_RATE
+STAND_SECONDS = 1.0
+"""How long the robot stands before the pattern generator starts; the paper's."""
+
+TASKS = ("stepping",)
+ALGORITHMS = ("naf", "td3", "sac", "ddpg")
+RewardForm = Literal["symmetric", "printed"]
+ConfigType = TypeVar("ConfigType")
+
+
+@dataclass(frozen=True)
+class Physics:
+    """How finely the physics engine integrates.
+
+    :param rate: physics steps per second, a multiple of the control rate of 100
+    :param solver_iterations: of the constraint solver, per physics step
+    """
+
+    rate: int = 500
+    solver_iterations: int = 30
+
+    def __post_init__(self) -> None:
+        """Refuse rates that do not divide into control ticks."""
+        if self.rate < CONTROL_RATE or self.rate % CONTROL_RATE:
+            raise ConfigurationError(f"physics.rate must be a multiple of {CONTROL_RATE} Hz, not {self.rate!r}")
+        if self.solver_iterations < 1:
+            raise ConfigurationError(f"physics.solver_iterations must be at least 1, not {self.solver_iterations!r}")
+
+
+PHYSICS = {"standard": Physics(), "reference": Physics(rate=1000, solver_iterations=100)}
+"""Named settings: what training uses, and the finer one that published results are checked with."""
+
+
+@dataclass(frozen=True)
+class Randomisation:
+    """What nobody knows exactly about a robot, drawn for each episode from its seed.
+
+    Parameters learned on one exact robot exploit it, so they must hold under a little of everything. The ranges
+    are reconstructed, the paper gives none. A pair is a uniform range; equal ends fix the value.
+
+    :param enabled: whether to randomise; off leaves the robot as designed, with a random start velocity only
+    :param friction: Coulomb friction coefficient between sole and floor
+    :param mass_deviation: largest relative deviation of each link's mass and inertia
+    :param actuator_bandwidth: of the position servos, per second
+    :param pad_threshold: pad load above which a foot counts as carrying, in N
+    :param acceleration_noise: standard deviation of the accelerometer's white noise, in m/s^2
+    :param angular_rate_noise: standard deviation of the gyroscope's white noise, in rad/s
+    :param delay_ticks: control ticks of delay between sensing and acting
+    :param start_speed: standard deviation of the torso's velocity along x and y at the start, in m/s
+    """
+
+    enabled: bool = True
+    friction: tuple[float, float] = (0.7, 1.0)
+    mass_deviation: float = 0.05
+    actuator_bandwidth: tuple[float, float] = (40.0, 50.0)
+    pad_threshold: tuple[float, float] = (20.0, 40.0)
+    acceleration_noise: float = 0.2
+    angular_rate_noise: float = 0.02
+    delay_ticks: int = 1
+    start_speed: float = 0.01
+
+    def __post_init__(self) -> None:
+        """Refuse ranges that no robot has."""
+        for item in fields(self):
+            value = getattr(self, item.name)
+            low, high = value if isinstance(value, tuple) else (value, value)
+            if not 0.0 <= low <= high < math.inf:
+                raise ConfigurationError(
+                    f"randomisation.{item.name} must be finite, not negative and in rising order, not {value!r}"
+                )
+        if self.mass_deviation >= 1.0:
+            raise ConfigurationError(f"randomisation.mass_deviation must be below 1, not {self.mass_deviation!r}")
+        if self.actuator_bandwidth[0] == 0.0:
+            raise ConfigurationError("randomisation.actuator_bandwidth must be above 0")
+
+
+@dataclass(frozen=True)
+class EpisodeConfig:
+    """What all episodes of an experiment share.
+
+    :param physics: how finely to integrate
+    :param randomisation: what to draw from each episode's seed
+    :param dimensions: of the robot, where they differ from the xacro's defaults
+    :param time_limit: of an episode, in s; the paper's first criterion
+    :param reward_form: ``"symmetric"``, or ``"printed"`` for equation 2 to the letter
+    """
+
+    physics: Physics = PHYSICS["standard"]
+    randomisation: Randomisation = Randomisation()
+    dimensions: Mapping[str, float] = field(default_factory=dict)
+    time_limit: float = 30.0
+    reward_form: RewardForm = "symmetric"
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be simulated."""
+        if not STAND_SECONDS < self.time_limit < math.inf:
+            raise ConfigurationError(
+                f"time_limit must be finite and above {STAND_SECONDS:g} s, not {self.time_limit!r}"
+            )
+        if self.reward_form not in get_args(RewardForm):
+            raise ConfigurationError(unknown_name("reward_form", self.reward_form, get_args(RewardForm)))
+
+
+@dataclass(frozen=True)
+class TrainingConfig:
+    """A training: what ``sarah-train`` does.
+
+    :param task: what to learn: ``stepping`` is the paper's first training, P1 to P5
+    :param algo: what learns: ``naf``, or stable-baselines3's ``td3``, ``sac`` or ``ddpg``
+    :param simulations: budget; every simulation is one action of the agent and up to 30 s of the robot
+    :param seed: of the training and of all its episodes
+    :param episode: settings of the episodes
+    """
+
+    task: str = "stepping"
+    algo: str = "naf"
+    simulations: int = 200
+    seed: int = 0
+    episode: EpisodeConfig = EpisodeConfig()
+
+    def __post_init__(self) -> None:
+        """Refuse unknown names and impossible budgets."""
+        if self.task not in TASKS:
+            raise ConfigurationError(unknown_name("task", self.task, TASKS))
+        if self.algo not in ALGORITHMS:
+            raise ConfigurationError(unknown_name("algo", self.algo, ALGORITHMS))
+        if self.simulations < 1:
+            raise ConfigurationError(f"simulations must be at least 1, not {self.simulations!r}")
+        if not 0 <= self.seed < 2**31:
+            raise ConfigurationError(f"seed must be between 0 and {2**31 - 1}, not {self.seed!r}")
+
+
+def read_config(config_type: type[ConfigType], path: Path) -> ConfigType:
+    """Read a configuration from a YAML file. What the file does not name keeps its default.
+
+    :param config_type: the dataclass to make
+    :param path: of the file
+    :raises ConfigurationError: naming file, key and value, if something in it is not allowed
+    """
+    import yaml
+
+    try:
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConfigurationError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from error
+    except yaml.YAMLError as error:
+        raise ConfigurationError(f"{path} is not YAML: {' '.join(str(error).split())}") from error
+    try:
+        return _from_mapping(config_type, {} if content is None else content, "")
+    except ConfigurationError as error:
+        raise ConfigurationError(f"{path}: {error}") from error
+
+
+def write_config(config: Any, path: Path) -> None:
+    """Write a configuration as YAML, every value spelled out, so that :func:`read_config` gives it back.
+
+    :param config: a dataclass of this module
+    :param path: of the file
+    """
+    import yaml
+
+    path.write_text(yaml.safe_dump(_to_plain(dataclasses.asdict(config)), sort_keys=False), encoding="utf-8")
+
+
+def _to_plain(value: Any) -> Any:
+    """YAML's own types only: safe loaders refuse tuples."""
+    if isinstance(value, Mapping):
+        return {key: _to_plain(item) for key, item in value.items()}
+    return [_to_plain(item) for item in value] if isinstance(value, tuple) else value
+
+
+def _from_mapping(config_type: type[ConfigType], content: Any, key: str) -> ConfigType:
+    if not isinstance(content, Mapping):
+        raise ConfigurationError(f"{key or 'the file'} must hold keys and values, not {content!r}")
+    types = get_type_hints(config_type)
+    values = {}
+    for name, value in content.items():
+        if name not in types:
+            raise ConfigurationError(unknown_name("key", f"{key}{name}", (key + allowed for allowed in types)))
+        values[name] = _converted(types[name], value, key + name)
+    return config_type(**values)
+
+
+def _converted(expected: Any, value: Any, key: str) -> Any:
+    """A value of the expected type, or an error that names the key."""
+    if dataclasses.is_dataclass(expected):
+        return _from_mapping(expected, value, f"{key}.")  # type: ignore[arg-type]
+    if get_origin(expected) is tuple:
+        parts = get_args(expected)
+        if not isinstance(value, (list, tuple)) or len(value) != len(parts):
+            raise ConfigurationError(f"{key} must be a list of {len(parts)} values, not {value!r}")
+        return tuple(_converted(part, item, key) for part, item in zip(parts, value, strict=True))
+    if get_origin(expected) is not None and issubclass(get_origin(expected), Mapping):
+        if not isinstance(value, Mapping):
+            raise ConfigurationError(f"{key} must hold names and values, not {value!r}")
+        return {name: _converted(get_args(expected)[1], item, f"{key}.{name}") for name, item in value.items()}
+    allowed = {float: (float, int), int: (int,), bool: (bool,)}.get(expected, (str,))
+    if not isinstance(value, allowed) or (isinstance(value, bool) and expected is not bool):
+        kind = {float: "a number", int: "a whole number", bool: "true or false"}.get(expected, "a text")
+        raise ConfigurationError(f"{key} must be {kind}, not {value!r}")
+    return float(value) if expected is float else value

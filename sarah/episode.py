@@ -1,0 +1,248 @@
+"""One simulation: an episode's specification in, its result out, the same bytes every time."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from sarah.config import CONTROL_DT, CONTROL_RATE, STAND_SECONDS, TASKS, EpisodeConfig
+from sarah.description import PASSIVE_JOINTS, describe_robot
+from sarah.errors import ConfigurationError, unknown_name
+from sarah.gait import GaitRecord
+from sarah.pattern_generator import PatternGenerator, Phase, Side, SteppingParameters
+from sarah.randomisation import draw_conditions
+from sarah.reward import highest_return, reward_rate
+from sarah.sensors import ImperfectSensors, SensorReading
+from sarah.simulation import Simulation, TorsoState
+
+BOX_HALF_WIDTH = 0.25
+"""Displacement of the torso along any axis at which an episode ends, in m; the paper's second criterion."""
+OSCILLATION_SECONDS = 5.0
+"""Simulated time by which the robot must oscillate, in s; the paper's third criterion."""
+OSCILLATION_STEPS = 2
+"""Steps that count as an oscillation: one with each leg."""
+LARGEST_TILT = math.radians(45.0)
+TERMINATIONS = ("time_limit", "left_box", "no_oscillation", "fell", "diverged")
+"""How an episode can end: the paper's three criteria, a tilt beyond 45 degrees, and a state that is not finite."""
+
+
+@dataclass(frozen=True)
+class EpisodeSpec:
+    """Everything that an episode's result depends on.
+
+    :param parameters: of the pattern generator: P1 to P5
+    :param seed: of the conditions that are drawn and of the sensor noise
+    :param task: what is trained: ``"stepping"``
+    :param config: what all episodes of an experiment share
+    :raises ConfigurationError: for an unknown task, or parameters out of their box
+    """
+
+    parameters: tuple[float, ...]
+    seed: int
+    task: str = "stepping"
+    config: EpisodeConfig = EpisodeConfig()
+
+    def __post_init__(self) -> None:
+        """Refuse unknown tasks, and parameters out of their box."""
+        if self.task not in TASKS:
+            raise ConfigurationError(unknown_name("task", self.task, TASKS))
+        SteppingParameters.checked(self.parameters)
+
+
+@dataclass(frozen=True)
+class EpisodeResult:
+    """What came out of an episode.
+
+    :param score: the return over its ceiling: 1 is standing height, start position, three steps per second all along
+    :param episode_return: equation 2 integrated over the time that the pattern generator ran
+    :param steps_per_second: mean over that time
+    :param steps: completed ones
+    :param duration: simulated time, the first second of standing included, in s
+    :param termination: one of :data:`TERMINATIONS`
+    :param final_position: of the torso's centre, x and y relative to the start, z over the floor, in m
+    :param sole_clearance: median over the steps of the swing foot's largest height over the floor, in m
+    :param event_driven_shift: share of the SHIFT phases ended by sensors, and not by the time-out
+    :param event_driven_lift: the same of the LIFT phases
+    :param trace: per control tick, on request: see :func:`simulate`
+    """
+
+    score: float
+    episode_return: float
+    steps_per_second: float
+    steps: int
+    duration: float
+    termination: str
+    final_position: tuple[float, float, float]
+    sole_clearance: float
+    event_driven_shift: float
+    event_driven_lift: float
+    trace: dict[str, np.ndarray] | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def survived(self) -> bool:
+        """Whether the episode ran to its time limit."""
+        return self.termination == "time_limit"
+
+    @property
+    def drift(self) -> float:
+        """Horizontal distance of the torso from its start at the end, in m."""
+        return math.hypot(*self.final_position[:2])
+
+
+class Episode:
+    """A robot in its world, from standing to the end: :meth:`stand`, then :meth:`run`, then :meth:`close`.
+
+    :param config: what all episodes of an experiment share
+    :param seed: of this episode
+    :param record_trace: whether to keep a trace of every control tick
+    """
+
+    def __init__(self, config: EpisodeConfig, seed: int, record_trace: bool = False) -> None:
+        self.config = config
+        conditions = draw_conditions(config.randomisation, seed)
+        self.robot = describe_robot(config.dimensions)
+        self.simulation = Simulation(self.robot, config.physics, conditions)
+        self._sensors = ImperfectSensors(
+            conditions.acceleration_noise,
+            conditions.angular_rate_noise,
+            conditions.delay_ticks,
+            conditions.sensor_seed,
+        )
+        self._pad_threshold = conditions.pad_threshold
+        self._start = self.simulation.torso_state()
+        self._readings: list[SensorReading] = []
+        self._return = 0.0
+        self._trace: dict[str, list[Any]] | None = {} if record_trace else None
+
+    def stand(self) -> SensorReading:
+        """Stand for the first second.
+
+        :return: what the sensors say at its end: the observation that the agent acts on
+        """
+        for _ in range(round(STAND_SECONDS * CONTROL_RATE)):
+            self._readings.append(self._sensors(self.simulation.read()))
+            self.simulation.advance()
+        return self._readings[-1]
+
+    def run(self, parameters: tuple[float, ...]) -> EpisodeResult:
+        """Let the pattern generator run until the episode ends.
+
+        :param parameters: P1 to P5
+        :return: the result
+        """
+        generator = PatternGenerator(SteppingParameters.checked(parameters), self._pad_threshold, CONTROL_DT)
+        for reading in self._readings:
+            generator.sense(reading)
+        gait = GaitRecord()
+        ticks = 0
+        termination = None
+        while termination is None:
+            self._tick(generator, gait, ticks * CONTROL_DT)
+            ticks += 1
+            torso = self.simulation.torso_state()
+            elapsed = ticks * CONTROL_DT
+            termination = self._termination(torso, gait.steps, STAND_SECONDS + elapsed)
+            if termination != "diverged":
+                frequency = gait.steps_per_second(elapsed)
+                x, y, z = self._displacement(torso)
+                self._return += reward_rate(x, y, z, frequency, self.config.reward_form) * CONTROL_DT
+        return self._result(termination, torso, gait, ticks * CONTROL_DT)
+
+    def close(self) -> None:
+        """Give the physics engine's resources back."""
+        self.simulation.close()
+
+    def _tick(self, generator: PatternGenerator, gait: GaitRecord, time: float) -> None:
+        """Sense, decide, act and simulate one control tick."""
+        simulation = self.simulation
+        reading = self._sensors(simulation.read())
+        if generator.phase in (Phase.LIFT, Phase.LAND):
+            gait.swing(simulation.sole_height("right" if generator.swing is Side.RIGHT else "left"))
+        change = generator.tick(reading)
+        if change is not None:
+            gait.phase_change(time, change)
+        simulation.set_targets(generator.targets)
+        if self._trace is not None:
+            self._record(reading, generator, gait, time)
+        simulation.advance()
+
+    def _displacement(self, torso: TorsoState) -> tuple[float, float, float]:
+        """Torso position as equation 2 wants it: x and y from the start, z over the floor."""
+        x, y, z = torso.position
+        return (x - self._start.position[0], y - self._start.position[1], z)
+
+    def _termination(self, torso: TorsoState, steps: int, time: float) -> str | None:
+        if not torso.is_finite:
+            return "diverged"
+        moved = (now - start for now, start in zip(torso.position, self._start.position, strict=True))
+        if max(map(abs, moved)) > BOX_HALF_WIDTH:
+            return "left_box"
+        if torso.tilt > LARGEST_TILT:
+            return "fell"
+        half_tick = CONTROL_DT / 2
+        if steps < OSCILLATION_STEPS and time > OSCILLATION_SECONDS - half_tick:
+            return "no_oscillation"
+        return "time_limit" if time > self.config.time_limit - half_tick else None
+
+    def _result(self, termination: str, torso: TorsoState, gait: GaitRecord, elapsed: float) -> EpisodeResult:
+        ceiling = highest_return(self.robot.standing_height, self.config.time_limit - STAND_SECONDS)
+        trace = None
+        if self._trace is not None:
+            trace = {name: np.array(values) for name, values in self._trace.items()}
+        return EpisodeResult(
+            score=self._return / ceiling,
+            episode_return=self._return,
+            steps_per_second=gait.steps / elapsed,
+            steps=gait.steps,
+            duration=round(STAND_SECONDS + elapsed, 9),
+            termination=termination,
+            final_position=self._displacement(torso),
+            sole_clearance=gait.sole_clearance,
+            event_driven_shift=gait.event_driven(Phase.SHIFT),
+            event_driven_lift=gait.event_driven(Phase.LIFT),
+            trace=trace,
+        )
+
+    def _record(self, reading: SensorReading, generator: PatternGenerator, gait: GaitRecord, time: float) -> None:
+        assert self._trace is not None
+        torso = self.simulation.torso_state()
+        row = {
+            "time": STAND_SECONDS + time,
+            "position": torso.position,
+            "orientation": torso.orientation,
+            "acceleration": reading.acceleration,
+            "angular_rate": reading.angular_rate,
+            "pressures": reading.pressures,
+            "joints": reading.joints,
+            "ankles": self.simulation.joint_positions(PASSIVE_JOINTS),
+            "targets": generator.targets,
+            "phase": generator.phase.value,
+            "support": generator.support.value,
+            "stable_x": generator.stable_x,
+            "tilt": generator.tilt,
+            "rate": generator.rate,
+            "steps_per_second": gait.steps_per_second(time),
+        }
+        for name, value in row.items():
+            self._trace.setdefault(name, []).append(value)
+
+
+def simulate(spec: EpisodeSpec, record_trace: bool = False) -> EpisodeResult:
+    """Simulate one episode, from a fresh world to its end.
+
+    :param spec: everything that the result depends on; the same spec gives the same bytes in any process
+    :param record_trace: whether to return a trace of every control tick in which the pattern generator ran: a
+        dictionary of arrays whose first axis is time. ``time``, ``position``, ``orientation`` (the torso's, true),
+        ``acceleration``, ``angular_rate``, ``pressures``, ``joints`` (as sensed), ``ankles`` (true), ``targets``,
+        ``phase``, ``support`` (+1 right, -1 left), ``stable_x``, ``tilt``, ``rate`` and ``steps_per_second``
+    :return: the result
+    """
+    episode = Episode(spec.config, spec.seed, record_trace)
+    try:
+        episode.stand()
+        return episode.run(spec.parameters)
+    finally:
+        episode.close()
