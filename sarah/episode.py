@@ -113,7 +113,9 @@ class Episode:
         )
         self._pad_threshold = conditions.pad_threshold
         self._start = self.simulation.torso_state()
-        self._readings: list[SensorReading] = []
+        self.is_over = False
+        self.last_reading = self.simulation.read()
+        self._standing: list[SensorReading] = []
         self._return = 0.0
         self._trace: dict[str, list[Any]] | None = {} if record_trace else None
 
@@ -123,9 +125,9 @@ class Episode:
         :return: what the sensors say at its end: the observation that the agent acts on
         """
         for _ in range(round(STAND_SECONDS * CONTROL_RATE)):
-            self._readings.append(self._sensors(self.simulation.read()))
+            self._standing.append(self._sense())
             self.simulation.advance()
-        return self._readings[-1]
+        return self.last_reading
 
     def run(self, parameters: tuple[float, ...]) -> EpisodeResult:
         """Let the pattern generator run until the episode ends.
@@ -134,11 +136,12 @@ class Episode:
         :return: the result
         """
         generator = PatternGenerator(SteppingParameters.checked(parameters), self._pad_threshold, CONTROL_DT)
-        for reading in self._readings:
+        for reading in self._standing:
             generator.sense(reading)
         gait = GaitRecord()
         ticks = 0
         termination = None
+        self.is_over = True
         while termination is None:
             self._tick(generator, gait, ticks * CONTROL_DT)
             ticks += 1
@@ -155,10 +158,14 @@ class Episode:
         """Give the physics engine's resources back."""
         self.simulation.close()
 
+    def _sense(self) -> SensorReading:
+        self.last_reading = self._sensors(self.simulation.read())
+        return self.last_reading
+
     def _tick(self, generator: PatternGenerator, gait: GaitRecord, time: float) -> None:
         """Sense, decide, act and simulate one control tick."""
         simulation = self.simulation
-        reading = self._sensors(simulation.read())
+        reading = self._sense()
         if generator.phase in (Phase.LIFT, Phase.LAND):
             gait.swing(simulation.sole_height("right" if generator.swing is Side.RIGHT else "left"))
         change = generator.tick(reading)

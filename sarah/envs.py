@@ -1,0 +1,112 @@
+"""The gymnasium environment of the first training: one episode of the robot is one step of the agent."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, ClassVar
+
+import gymnasium
+import numpy as np
+
+from sarah.config import EpisodeConfig
+from sarah.episode import Episode
+from sarah.errors import ConfigurationError
+from sarah.pattern_generator import PARAMETER_NAMES, PARAMETER_RANGE
+from sarah.sensors import SensorReading
+from sarah.simulation import GRAVITY
+
+FIRST_TRAINING_SEED = 2**31
+"""Episode seeds that the environment draws start here, so that smaller ones stay unseen by every training."""
+OBSERVATION_BOUND = 5.0
+OBSERVATION_SCALES = (*(GRAVITY,) * 3, *(1.0,) * 3, *(100.0,) * 4, *(1.0,) * 4, *(0.1,) * 2)
+"""What each signal is divided by to be of order 1, in SI units."""
+
+
+class SteppingEnv(gymnasium.Env[np.ndarray, np.ndarray]):
+    """Choose P1 to P5 once, and see what comes of it.
+
+    ``reset`` lets the robot stand for one second, ``step`` runs the pattern generator to the episode's end and
+    always terminates. The observation is the 16 sensor signals after standing, each divided by its
+    ``OBSERVATION_SCALES`` and clipped; the action is P1 to P5 with the box of the parameters scaled to [-1, 1];
+    the reward is the episode's return. ``info`` holds the episode's seed, and after the step every field of
+    :class:`~sarah.episode.EpisodeResult` and the parameters.
+
+    :param config: settings of the episodes; the defaults if ``None``
+    :param render_mode: ``"rgb_array"``, or ``None``
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 1}
+    observation_space = gymnasium.spaces.Box(-OBSERVATION_BOUND, OBSERVATION_BOUND, (16,), np.float32)
+    action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(PARAMETER_NAMES),), np.float32)
+
+    def __init__(self, config: EpisodeConfig | None = None, render_mode: str | None = None) -> None:
+        self.config = config or EpisodeConfig()
+        self.render_mode = render_mode
+        self._episode: Episode | None = None
+        self._seed = 0
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        """Build a new world and stand for one second.
+
+        :param seed: of the generator that draws the episodes' seeds; ``info["seed"]`` is the one drawn, with which
+            :func:`sarah.simulate` repeats the episode
+        :param options: none are known
+        """
+        super().reset(seed=seed)
+        self.close()
+        self._seed = int(self.np_random.integers(FIRST_TRAINING_SEED, 2**32))
+        self._episode = Episode(self.config, self._seed)
+        return observation_from(self._episode.stand()), {"seed": self._seed}
+
+    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        """Run the pattern generator to the episode's end.
+
+        :param action: P1 to P5, scaled to [-1, 1]
+        :raises ConfigurationError: if the action is not finite or out of its box, or the episode is over
+        """
+        if self._episode is None or self._episode.is_over:
+            raise ConfigurationError("the episode is over: call reset before step")
+        parameters = parameters_from(action)
+        result = self._episode.run(parameters)
+        fields = {field.name: getattr(result, field.name) for field in dataclasses.fields(result) if field.compare}
+        info = {"seed": self._seed, "parameters": parameters, **fields}
+        return observation_from(self._episode.last_reading), result.episode_return, True, False, info
+
+    def render(self) -> np.ndarray | None:  # type: ignore[override]
+        """Draw the robot as it stands now: uint8 of shape (480, 640, 3)."""
+        if self.render_mode is None or self._episode is None:
+            return None
+        return self._episode.simulation.render()
+
+    def close(self) -> None:
+        """Give the physics engine's resources back."""
+        if self._episode is not None:
+            self._episode.close()
+            self._episode = None
+
+
+def observation_from(reading: SensorReading) -> np.ndarray:
+    """Turn 16 sensor signals into an observation.
+
+    :param reading: in SI units
+    :return: float32 of shape (16,), of order 1
+    """
+    signals = (*reading.acceleration, *reading.angular_rate, *reading.pressures, *reading.joints)
+    scaled = np.array(signals) / OBSERVATION_SCALES
+    return np.clip(scaled, -OBSERVATION_BOUND, OBSERVATION_BOUND).astype(np.float32)
+
+
+def parameters_from(action: np.ndarray) -> tuple[float, ...]:
+    """Turn an action into the pattern generator's parameters.
+
+    :param action: of shape (5,), within [-1, 1]
+    :return: P1 to P5
+    :raises ConfigurationError: if the action is not finite or out of its box
+    """
+    values = np.asarray(action, dtype=float)
+    if values.shape != (len(PARAMETER_NAMES),) or not (np.abs(values) <= 1.0).all():
+        raise ConfigurationError(f"an action must be {len(PARAMETER_NAMES)} numbers within -1 and 1, not {action!r}")
+    low, high = PARAMETER_RANGE
+    return tuple(float(low + (high - low) * (value + 1.0) / 2.0) for value in values)

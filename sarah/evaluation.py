@@ -1,0 +1,92 @@
+"""How good a parameter set is: many episodes on fixed seeds, and what they have in common."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from multiprocessing import get_context
+from statistics import mean, median, pstdev
+
+from sarah.episode import EpisodeResult, EpisodeSpec, simulate
+
+CLOCK_SHARE = 0.9
+SMALLEST_CLEARANCE = 0.010
+
+
+def simulate_all(specs: Sequence[EpisodeSpec], processes: int | None = None) -> list[EpisodeResult]:
+    """Simulate many episodes on this machine's cores.
+
+    :param specs: of the episodes
+    :param processes: to use; as many as there are cores by default
+    :return: their results, in the same order
+    """
+    processes = min(processes or os.cpu_count() or 1, len(specs))
+    if processes <= 1:
+        return [simulate(spec) for spec in specs]
+    with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
+        return list(pool.map(simulate, specs))
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """What a number of episodes have in common.
+
+    :param episodes: how many
+    :param score_mean: of :attr:`~sarah.episode.EpisodeResult.score`; ``_median``, ``_std``, ``_min`` likewise
+    :param steps_per_second_mean: in 1/s
+    :param steps_per_second_std: in 1/s
+    :param drift_mean: of the torso's horizontal distance from its start at the end, in m
+    :param drift_max: the largest, in m
+    :param survival_rate: share of the episodes that ran to their time limit
+    :param event_driven_shift_mean: share of the SHIFT phases that sensors ended
+    :param event_driven_lift_mean: the same of the LIFT phases
+    :param sole_clearance_mean: in m
+    """
+
+    episodes: int
+    score_mean: float
+    score_median: float
+    score_std: float
+    score_min: float
+    steps_per_second_mean: float
+    steps_per_second_std: float
+    drift_mean: float
+    drift_max: float
+    survival_rate: float
+    event_driven_shift_mean: float
+    event_driven_lift_mean: float
+    sole_clearance_mean: float
+
+    @property
+    def is_gait(self) -> bool:
+        """Whether the robot steps by its sensors and lifts its feet, and does not shuffle to a clock."""
+        shares = (self.event_driven_shift_mean, self.event_driven_lift_mean)
+        return min(shares) >= CLOCK_SHARE and self.sole_clearance_mean >= SMALLEST_CLEARANCE
+
+
+def summarise(results: Iterable[EpisodeResult]) -> Evaluation:
+    """Summarise episodes.
+
+    :param results: of at least one episode
+    """
+    episodes = list(results)
+    scores = [result.score for result in episodes]
+    frequencies = [result.steps_per_second for result in episodes]
+    drifts = [result.drift for result in episodes]
+    return Evaluation(
+        episodes=len(episodes),
+        score_mean=mean(scores),
+        score_median=median(scores),
+        score_std=pstdev(scores),
+        score_min=min(scores),
+        steps_per_second_mean=mean(frequencies),
+        steps_per_second_std=pstdev(frequencies),
+        drift_mean=mean(drifts),
+        drift_max=max(drifts),
+        survival_rate=mean(result.survived for result in episodes),
+        event_driven_shift_mean=mean(result.event_driven_shift for result in episodes),
+        event_driven_lift_mean=mean(result.event_driven_lift for result in episodes),
+        sole_clearance_mean=mean(result.sole_clearance for result in episodes),
+    )

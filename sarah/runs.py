@@ -1,0 +1,166 @@
+"""The run folder: the only file that knows its layout.
+
+    config.yaml  command.txt  versions.txt     what was run, how, and with which versions
+    episodes.csv                               one row per simulation; any row can be simulated again
+    progress.csv  events.out.tfevents.*        the learning curves, for tables and for TensorBoard
+    model.zip                                  the agent, in stable-baselines3's format
+    parameters.json                            the learned parameters: what a robot would be sent
+
+Everything but the model is read without unpickling: opening somebody's run executes none of its code.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import platform
+import shlex
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from sarah.config import TrainingConfig, read_config, write_config
+from sarah.errors import RunFolderError
+
+PACKAGES = ("sarah", "pybullet", "stable-baselines3", "gymnasium", "torch", "numpy")
+EPISODE_FIELDS = (
+    "return",
+    "score",
+    "steps_per_second",
+    "x",
+    "y",
+    "duration",
+    "termination",
+    "event_driven_shift",
+    "event_driven_lift",
+    "sole_clearance",
+)
+
+
+def new_run_path(task: str, algo: str, seed: int) -> Path:
+    """A run folder's default place, ``runs/<task>/<algo>-s<seed>``, with a number behind it if that is taken.
+
+    :param task: what is learned
+    :param algo: what learns
+    :param seed: of the training
+    """
+    base = Path("runs") / task / f"{algo}-s{seed}"
+    path, number = base, 2
+    while path.exists():
+        path, number = base.with_name(f"{base.name}-{number}"), number + 1
+    return path
+
+
+class RunFolder:
+    """A run's files.
+
+    :param path: of the folder; :meth:`create` makes a new one, :meth:`open` checks one that is there
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.model_path = path / "model.zip"
+        self._config_path = path / "config.yaml"
+        self._episodes_path = path / "episodes.csv"
+        self._parameters_path = path / "parameters.json"
+
+    @classmethod
+    def create(cls, path: Path, config: TrainingConfig) -> RunFolder:
+        """Make a new run folder and note what will be run.
+
+        :param path: of the folder, which must be new or empty
+        :param config: of the training
+        :raises RunFolderError: if the folder is not empty or cannot be written
+        """
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+            if any(path.iterdir()):
+                raise RunFolderError(f"run folder {path} is not empty: name another with --run-dir")
+            run = cls(path)
+            write_config(config, run._config_path)
+            (path / "command.txt").write_text(shlex.join(sys.argv) + "\n", encoding="utf-8")
+            (path / "versions.txt").write_text(_versions(), encoding="utf-8")
+        except RunFolderError:
+            raise
+        except OSError as error:
+            raise RunFolderError(f"cannot write run folder {path}: {error.strerror or error}") from error
+        return run
+
+    @classmethod
+    def open(cls, path: Path) -> RunFolder:
+        """Open the folder of a finished training.
+
+        :param path: of the folder
+        :raises RunFolderError: if it is not there, or has no learned parameters
+        """
+        run = cls(path)
+        if not path.is_dir():
+            raise RunFolderError(f"run folder {path} does not exist")
+        for file in (run._config_path, run._parameters_path):
+            if not file.is_file():
+                raise RunFolderError(f"{path} is not the folder of a finished training: it has no {file.name}")
+        return run
+
+    def config(self) -> TrainingConfig:
+        """Read the training's configuration."""
+        return read_config(TrainingConfig, self._config_path)
+
+    def append_episode(self, index: int, parameter_names: Sequence[str], info: Mapping[str, Any]) -> None:
+        """Add one simulation to ``episodes.csv``.
+
+        :param index: of the simulation, from 0
+        :param parameter_names: column names of the parameters
+        :param info: what the environment's step returned
+        """
+        fields = ("index", "seed", *parameter_names, *EPISODE_FIELDS)
+        x, y, _ = info["final_position"]
+        row = {
+            **{name: info[name] for name in EPISODE_FIELDS if name in info},
+            "index": index,
+            "seed": info["seed"],
+            "return": info["episode_return"],
+            "x": x,
+            "y": y,
+            **dict(zip(parameter_names, info["parameters"], strict=True)),
+        }
+        is_new = not self._episodes_path.exists()
+        with self._episodes_path.open("a", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, fields)
+            if is_new:
+                writer.writeheader()
+            writer.writerow(row)
+
+    def episodes(self) -> Iterator[dict[str, str]]:
+        """Read ``episodes.csv``, row by row, as text."""
+        with self._episodes_path.open(newline="", encoding="utf-8") as file:
+            yield from csv.DictReader(file)
+
+    def write_parameters(self, content: Mapping[str, Any]) -> None:
+        """Write ``parameters.json``.
+
+        :param content: with at least the learned ``parameters`` by name
+        """
+        self._parameters_path.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+
+    def parameters(self) -> tuple[float, ...]:
+        """Read the learned parameters.
+
+        :raises RunFolderError: if the file does not hold them
+        """
+        try:
+            content = json.loads(self._parameters_path.read_text(encoding="utf-8"))
+            return tuple(float(value) for value in content["parameters"].values())
+        except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
+            raise RunFolderError(f"{self._parameters_path} does not hold learned parameters: {error}") from error
+
+
+def _versions() -> str:
+    lines = [f"python {platform.python_version()}"]
+    for package in PACKAGES:
+        try:
+            lines.append(f"{package} {version(package)}")
+        except PackageNotFoundError:
+            lines.append(f"{package} not installed as a distribution")
+    return "\n".join(lines) + "\n"
