@@ -93,11 +93,6 @@ class RankReplayBuffer(ReplayBuffer):
             super().add(obs[row], next_obs[row], action[row], reward[row], done[row], [info])
         self._probabilities = None
 
-    def reset(self) -> None:
-        """Reset the buffer."""
-        super().reset()
-        self._probabilities = None
-
     def sample(self, batch_size: int, env: VecNormalize | None = None) -> ReplayBufferSamples:
         """
         Sample transitions, with replacement.

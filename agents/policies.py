@@ -2,9 +2,10 @@
 
 from typing import Any
 
+import numpy as np
 import torch as th
 from gymnasium import spaces
-from stable_baselines3.common.policies import BasePolicy
+from stable_baselines3.common.policies import BaseModel, BasePolicy
 from stable_baselines3.common.preprocessing import get_action_dim
 from stable_baselines3.common.torch_layers import (
     BaseFeaturesExtractor,
@@ -20,16 +21,16 @@ LOG_DIAGONAL_MIN = -5.0
 LOG_DIAGONAL_MAX = 5.0
 
 
-class QuadraticCritic(BasePolicy):
+class QuadraticCritic(BaseModel):
     r"""
-    Action value that is quadratic in the action (Gu et al. 2016, https://arxiv.org/abs/1603.00748, equations 5 to 7):
+    Action value that is quadratic in the action (Gu et al. 2016, https://arxiv.org/abs/1603.00748):
 
     .. math:: Q(s, u) = V(s) - \frac{1}{2} (u - \mu(s))^T L(s) L(s)^T (u - \mu(s))
 
     ``L`` is lower triangular with a positive diagonal, so ``L L^T`` is positive definite: ``mu`` is the best
-    action and ``V`` its value, without a search. The three heads are separate networks on one features extractor.
-    Actions are scaled to [-1, 1]. The output layer of ``mu`` starts at zero: an untrained critic proposes the
-    centre of the action space whatever it observes.
+    action and ``V`` its value, without a search. The three heads are separate networks on one features
+    extractor. Actions are scaled to [-1, 1]. The output layer of ``mu`` starts at zero: an untrained critic
+    proposes the centre of the action space whatever it observes.
 
     :param observation_space: Observation space
     :param action_space: Action space
@@ -45,8 +46,9 @@ class QuadraticCritic(BasePolicy):
     """
 
     action_space: spaces.Box
-    is_diagonal: th.Tensor
+    features_extractor: BaseFeaturesExtractor
     triangle: th.Tensor
+    is_diagonal: th.Tensor
 
     def __init__(
         self,
@@ -55,7 +57,7 @@ class QuadraticCritic(BasePolicy):
         features_extractor: BaseFeaturesExtractor,
         features_dim: int,
         net_arch: dict[str, list[int]],
-        activation_fn: type[nn.Module] = nn.Tanh,
+        activation_fn: type[nn.Module] = nn.ReLU,
         normalize_images: bool = True,
         squash_mu: bool = True,
         lower_sees_action: bool = False,
@@ -65,12 +67,7 @@ class QuadraticCritic(BasePolicy):
             action_space,
             features_extractor=features_extractor,
             normalize_images=normalize_images,
-            squash_output=True,
         )
-        self.features_dim = features_dim
-        self.net_arch = net_arch
-        self.activation_fn = activation_fn
-        self.squash_mu = squash_mu
         self.lower_sees_action = lower_sees_action
 
         action_dim = get_action_dim(action_space)
@@ -101,7 +98,8 @@ class QuadraticCritic(BasePolicy):
         difference = (actions - mu).unsqueeze(1)
         # (u - mu)^T L L^T (u - mu) is the squared length of the row (u - mu)^T L
         projected = th.bmm(difference, self._lower(features, actions)).squeeze(1)
-        return self.value_net(features) - 0.5 * projected.square().sum(dim=1, keepdim=True), mu
+        advantage = -0.5 * projected.square().sum(dim=1, keepdim=True)
+        return self.value_net(features) + advantage, mu
 
     def value(self, obs: PyTorchObs) -> th.Tensor:
         """
@@ -111,6 +109,15 @@ class QuadraticCritic(BasePolicy):
         :return: ``V`` of shape (batch, 1)
         """
         return self.value_net(self.extract_features(obs, self.features_extractor))
+
+    def mu(self, obs: PyTorchObs) -> th.Tensor:
+        """
+        Best actions, where ``Q`` has its maximum.
+
+        :param obs: Observations
+        :return: ``mu`` of shape (batch, action dim), scaled so that the action space is [-1, 1]
+        """
+        return self.mu_net(self.extract_features(obs, self.features_extractor))
 
     def lower(self, obs: PyTorchObs, actions: th.Tensor) -> th.Tensor:
         """
@@ -130,25 +137,6 @@ class QuadraticCritic(BasePolicy):
         flat = entries.new_zeros(len(entries), action_dim * action_dim).index_copy(1, self.triangle, entries)
         return flat.view(-1, action_dim, action_dim)
 
-    def _predict(self, observation: PyTorchObs, deterministic: bool = True) -> th.Tensor:
-        # A linear mu may leave the scaled action space
-        return self.mu_net(self.extract_features(observation, self.features_extractor)).clamp(-1.0, 1.0)
-
-    def _get_constructor_parameters(self) -> dict[str, Any]:
-        data = super()._get_constructor_parameters()
-
-        data.update(
-            dict(
-                features_extractor=self.features_extractor,
-                features_dim=self.features_dim,
-                net_arch=self.net_arch,
-                activation_fn=self.activation_fn,
-                squash_mu=self.squash_mu,
-                lower_sees_action=self.lower_sees_action,
-            )
-        )
-        return data
-
 
 class NAFPolicy(BasePolicy):
     """
@@ -159,7 +147,8 @@ class NAFPolicy(BasePolicy):
     :param lr_schedule: Learning rate schedule (could be constant)
     :param net_arch: Hidden layers, one list for all three heads (``[64, 64]`` by default)
         or one list each, ``dict(V=[...], mu=[...], L=[...])``
-    :param activation_fn: Activation function. With sigmoid, deeper networks hardly learn.
+    :param activation_fn: Activation function (ReLU by default). Tanh suits smooth tasks of one step,
+        but fails where values are large; with sigmoid, deeper networks hardly learn.
     :param features_extractor_class: Features extractor to use.
     :param features_extractor_kwargs: Keyword arguments
         to pass to the features extractor.
@@ -186,7 +175,7 @@ class NAFPolicy(BasePolicy):
         action_space: spaces.Box,
         lr_schedule: Schedule,
         net_arch: list[int] | dict[str, list[int]] | None = None,
-        activation_fn: type[nn.Module] = nn.Tanh,
+        activation_fn: type[nn.Module] = nn.ReLU,
         features_extractor_class: type[BaseFeaturesExtractor] = FlattenExtractor,
         features_extractor_kwargs: dict[str, Any] | None = None,
         normalize_images: bool = True,
@@ -195,6 +184,9 @@ class NAFPolicy(BasePolicy):
         squash_mu: bool = True,
         lower_sees_action: bool = False,
     ) -> None:
+        if optimizer_kwargs is None and optimizer_class is th.optim.Adam:
+            optimizer_kwargs = dict(fused=True)  # Several times faster on networks as small as these
+
         super().__init__(
             observation_space,
             action_space,
@@ -264,7 +256,17 @@ class NAFPolicy(BasePolicy):
         return self._predict(obs, deterministic=deterministic)
 
     def _predict(self, observation: PyTorchObs, deterministic: bool = True) -> th.Tensor:
-        return self.q_net._predict(observation, deterministic=deterministic)
+        # A linear mu may leave the scaled action space
+        return self.q_net.mu(observation).clamp(-1.0, 1.0)
+
+    def unscale_action(self, scaled_action: np.ndarray) -> np.ndarray:
+        """
+        Rescale the action from [-1, 1] to [low, high], and never beyond them, not even by rounding.
+
+        :param scaled_action: Action to un-scale
+        :return: Action in the action space
+        """
+        return np.clip(super().unscale_action(scaled_action), self.action_space.low, self.action_space.high)
 
     def _get_constructor_parameters(self) -> dict[str, Any]:
         data = super()._get_constructor_parameters()
@@ -304,27 +306,53 @@ class CnnPolicy(NAFPolicy):
     """
     Policy class for NAF when using images as input.
 
-    :param args: Positional arguments of :class:`NAFPolicy`
+    :param observation_space: Observation space
+    :param action_space: Action space
+    :param lr_schedule: Learning rate schedule (could be constant)
     :param features_extractor_class: Features extractor to use.
-    :param kwargs: Keyword arguments of :class:`NAFPolicy`
+    :param kwargs: Other arguments of :class:`NAFPolicy`
     """
 
     def __init__(
-        self, *args: Any, features_extractor_class: type[BaseFeaturesExtractor] = NatureCNN, **kwargs: Any
+        self,
+        observation_space: spaces.Space,
+        action_space: spaces.Box,
+        lr_schedule: Schedule,
+        features_extractor_class: type[BaseFeaturesExtractor] = NatureCNN,
+        **kwargs: Any,
     ) -> None:
-        super().__init__(*args, features_extractor_class=features_extractor_class, **kwargs)
+        super().__init__(
+            observation_space,
+            action_space,
+            lr_schedule,
+            features_extractor_class=features_extractor_class,
+            **kwargs,
+        )
 
 
 class MultiInputPolicy(NAFPolicy):
     """
     Policy class for NAF when using dict observations as input.
 
-    :param args: Positional arguments of :class:`NAFPolicy`
+    :param observation_space: Observation space
+    :param action_space: Action space
+    :param lr_schedule: Learning rate schedule (could be constant)
     :param features_extractor_class: Features extractor to use.
-    :param kwargs: Keyword arguments of :class:`NAFPolicy`
+    :param kwargs: Other arguments of :class:`NAFPolicy`
     """
 
     def __init__(
-        self, *args: Any, features_extractor_class: type[BaseFeaturesExtractor] = CombinedExtractor, **kwargs: Any
+        self,
+        observation_space: spaces.Dict,
+        action_space: spaces.Box,
+        lr_schedule: Schedule,
+        features_extractor_class: type[BaseFeaturesExtractor] = CombinedExtractor,
+        **kwargs: Any,
     ) -> None:
-        super().__init__(*args, features_extractor_class=features_extractor_class, **kwargs)
+        super().__init__(
+            observation_space,
+            action_space,
+            lr_schedule,
+            features_extractor_class=features_extractor_class,
+            **kwargs,
+        )

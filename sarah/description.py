@@ -73,7 +73,7 @@ def describe_robot(dimensions: Mapping[str, float] | None = None) -> RobotDescri
 
     :param dimensions: values for some of :func:`default_dimensions`; the others keep their defaults
     :return: the checked robot; equal dimensions give the same object
-    :raises DescriptionError: if a dimension is unknown or not a finite positive number, or the robot that follows is refused
+    :raises DescriptionError: if a dimension is unknown or not a finite positive number, or the robot is refused
     """
     given = dict(dimensions or {})
     check_dimensions(given)

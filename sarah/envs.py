@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any, ClassVar
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -35,7 +35,7 @@ class SteppingEnv(gymnasium.Env[np.ndarray, np.ndarray]):
     :param render_mode: ``"rgb_array"``, or ``None``
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 1}
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 1}
     observation_space = gymnasium.spaces.Box(-OBSERVATION_BOUND, OBSERVATION_BOUND, (16,), np.float32)
     action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(PARAMETER_NAMES),), np.float32)
 
@@ -74,7 +74,7 @@ class SteppingEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         info = {"seed": self._seed, "parameters": parameters, **fields}
         return observation_from(self._episode.last_reading), result.episode_return, True, False, info
 
-    def render(self) -> np.ndarray | None:  # type: ignore[override]
+    def render(self) -> np.ndarray | None:
         """Draw the robot as it stands now: uint8 of shape (480, 640, 3)."""
         if self.render_mode is None or self._episode is None:
             return None

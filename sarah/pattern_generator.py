@@ -36,7 +36,7 @@ MINIMUM_PHASE_SECONDS = 0.04
 TIME_OUT_SECONDS = 0.3
 RATE_SCALE = 0.2
 """Of P3 in the condition that ends SHIFT."""
-PUSH_LENGTH = 0.006
+PUSH_LENGTH = 0.004
 """How far the swing leg extends in SHIFT, in m."""
 LIFT_LENGTH = 0.020
 """How far the swing leg retracts in LIFT, in m."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from sarah.config import Randomisation
 from sarah.description import GROUPS
@@ -38,6 +38,10 @@ class Conditions:
     sensor_seed: int = 0
 
 
+NOMINAL = Conditions()
+"""The robot as designed, with perfect sensors."""
+
+
 def draw_conditions(ranges: Randomisation, seed: int) -> Conditions:
     """Draw one episode's conditions.
 
@@ -49,7 +53,7 @@ def draw_conditions(ranges: Randomisation, seed: int) -> Conditions:
     generator = random.Random(seed)
     velocity = (generator.gauss(0.0, ranges.start_speed), generator.gauss(0.0, ranges.start_speed))
     if not ranges.enabled:
-        return Conditions(start_velocity=velocity)
+        return replace(NOMINAL, start_velocity=velocity)
     return Conditions(
         friction=generator.uniform(*ranges.friction),
         mass_factors={link: 1.0 + ranges.mass_deviation * generator.uniform(-1.0, 1.0) for link in LINKS},

@@ -7,16 +7,33 @@ bit for bit, a fresh world does.
 from __future__ import annotations
 
 import math
+import os
 import tempfile
+from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
-import pybullet
 
 from sarah.config import CONTROL_DT, CONTROL_RATE, PHYSICS, Physics
 from sarah.description import ACTUATED_JOINTS, PASSIVE_JOINTS, SIDES, RobotDescription
-from sarah.randomisation import Conditions
+from sarah.randomisation import NOMINAL, Conditions
 from sarah.sensors import SensorReading, Vector
+
+
+def _import_pybullet() -> ModuleType:
+    """Import PyBullet without the build time that it writes to the process's standard error."""
+    kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 2)
+    try:
+        import pybullet
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(nowhere)
+    return pybullet
+
+
+pybullet = _import_pybullet()
 
 GRAVITY = 9.81
 
@@ -62,7 +79,7 @@ class Simulation:
         self,
         robot: RobotDescription,
         physics: Physics = PHYSICS["standard"],
-        conditions: Conditions = Conditions(),
+        conditions: Conditions = NOMINAL,
     ) -> None:
         self.robot = robot
         self.time = 0.0
@@ -143,9 +160,12 @@ class Simulation:
                 restitution=0.0,
                 linearDamping=0.0,
                 angularDamping=0.0,
-                activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING,
                 physicsClientId=client,
             )
+        # In a call of its own: together with other settings PyBullet applies those to the base instead of the link.
+        pybullet.changeDynamics(
+            self._body, -1, activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING, physicsClientId=client
+        )
         for name in PASSIVE_JOINTS:  # otherwise PyBullet's default motor holds them
             pybullet.setJointMotorControl2(
                 self._body, self._links[name], pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client

@@ -151,6 +151,4 @@ def evaluate(parameters: tuple[float, ...], config: TrainingConfig, seeds: range
     :param config: of the training they come from
     :param seeds: of the episodes; those below 2^31 are in no training
     """
-    return summarise(
-        simulate_all([EpisodeSpec(parameters, seed, config.task, config.episode) for seed in seeds])
-    )
+    return summarise(simulate_all([EpisodeSpec(parameters, seed, config.task, config.episode) for seed in seeds]))

@@ -1,0 +1,76 @@
+"""What every command does with its options, and with a user's mistake: one line and a non-zero exit."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+import sys
+from collections.abc import Callable, Sequence
+from typing import NoReturn, TypeVar
+
+import tyro
+
+from sarah.errors import SarahError
+
+OptionsType = TypeVar("OptionsType")
+USAGE_ERROR = 2
+
+
+def fail(command: str, message: str) -> NoReturn:
+    """Say what is wrong in one line, and exit.
+
+    :param command: name of the command
+    :param message: what is wrong
+    """
+    print(f"{command}: error: {' '.join(message.split())}", file=sys.stderr)
+    raise SystemExit(USAGE_ERROR)
+
+
+def parse_options(
+    options_type: type[OptionsType], command: str, arguments: Sequence[str], default: OptionsType
+) -> OptionsType:
+    """Make a command's options from its arguments; ``--help`` prints the help and exits.
+
+    :param options_type: a dataclass; its docstring is the help
+    :param command: name of the command
+    :param arguments: that follow it
+    :param default: what options that are not given are
+    """
+    errors = io.StringIO()
+    try:
+        with contextlib.redirect_stderr(errors):
+            return tyro.cli(
+                options_type,
+                prog=command,
+                args=list(arguments),
+                config=(tyro.conf.FlagCreatePairsOff,),
+                default=default,
+            )
+    except SystemExit as exit_request:
+        if not exit_request.code:
+            raise
+        fail(command, _one_line(errors.getvalue()))
+
+
+def _one_line(box: str) -> str:
+    """The message in tyro's frame, and the name that it thinks was meant."""
+    text = " ".join(line.strip("╭╮╰╯│ ") for line in box.splitlines()[1:])
+    message = re.sub(r"^Error parsing [\w.]+: ", "", text.split("───")[0]).strip()
+    meant = re.search(r"Perhaps you meant:\s+(--[\w.-]+)", text)
+    return f"{message}, did you mean {meant[1]}?" if meant else message
+
+
+def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
+    """Run a command; an error of ours is one line, without a traceback.
+
+    :param command: its name
+    :param main: what it does with its arguments
+    """
+    try:
+        main(sys.argv[1:])
+    except SarahError as error:
+        fail(command, str(error))
+    except KeyboardInterrupt:
+        print(f"\n{command}: interrupted", file=sys.stderr)
+        raise SystemExit(130) from None

@@ -1,0 +1,22 @@
+"""A training is a function of its seed, to the last bit."""
+
+import numpy as np
+import pytest
+from stable_baselines3.common.env_util import make_vec_env
+
+from sarah.agents import NAF, PRESETS
+
+
+def trained_weights(seed: int, n_envs: int, preset: str | None) -> np.ndarray:
+    arguments = {**PRESETS.get(preset, {}), "learning_starts": 30, "batch_size": 16, "buffer_size": 500}
+    env = make_vec_env("Pendulum-v1", n_envs=n_envs, seed=seed)
+    model = NAF("MlpPolicy", env, seed=seed, **arguments).learn(150)
+    return np.concatenate([model.policy.parameters_to_vector(), model.replay_buffer.actions.ravel()])
+
+
+@pytest.mark.parametrize("preset", [None, "one-step"])
+@pytest.mark.parametrize("n_envs", [1, 2])
+def test_same_seed_same_bits(n_envs, preset):
+    first = trained_weights(7, n_envs, preset)
+    np.testing.assert_array_equal(first, trained_weights(7, n_envs, preset))
+    assert (first != trained_weights(8, n_envs, preset)).any()

@@ -1,0 +1,169 @@
+"""Q, V, mu and L against the equations, written as plain loops."""
+
+import numpy as np
+import pytest
+import torch as th
+from gymnasium import spaces
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from stable_baselines3.common.utils import ConstantSchedule
+from torch import nn
+
+from sarah.agents.naf import locality_weights
+from sarah.agents.policies import MlpPolicy, QuadraticCritic
+
+OBS_DIM = 4
+
+
+def make_critic(action_dim: int, seed: int = 0, **policy_kwargs) -> QuadraticCritic:
+    """A critic whose weights are all random and large, so that no term of Q is small."""
+    th.manual_seed(seed)
+    policy = MlpPolicy(
+        spaces.Box(-1, 1, (OBS_DIM,)),
+        spaces.Box(-1, 1, (action_dim,)),
+        ConstantSchedule(1e-3),
+        net_arch=[16],
+        **policy_kwargs,
+    )
+    for parameter in policy.q_net.parameters():
+        nn.init.normal_(parameter, std=0.5)
+    return policy.q_net
+
+
+def draw(action_dim: int, batch: int = 7, seed: int = 1) -> tuple[th.Tensor, th.Tensor]:
+    generator = th.Generator().manual_seed(seed)
+    obs = th.randn(batch, OBS_DIM, generator=generator)
+    return obs, 2 * th.rand(batch, action_dim, generator=generator) - 1
+
+
+def lower_by_hand(outputs: np.ndarray, action_dim: int) -> np.ndarray:
+    """Equation 4 of Kouppas et al.: L1; L2 L3; L4 L5 L6; ... row by row."""
+    lower = np.zeros((action_dim, action_dim))
+    k = 0
+    for i in range(action_dim):
+        for j in range(i + 1):
+            lower[i, j] = np.exp(np.clip(outputs[k], -5, 5)) if i == j else outputs[k]
+            k += 1
+    return lower
+
+
+@pytest.mark.parametrize("lower_sees_action", [False, True])
+@pytest.mark.parametrize("action_dim", [1, 2, 5])
+def test_q_is_equation_3(action_dim, lower_sees_action):
+    critic = make_critic(action_dim, lower_sees_action=lower_sees_action)
+    obs, actions = draw(action_dim)
+    with th.no_grad():
+        q_values, mu = critic(obs, actions)
+        inputs = th.cat([obs, actions], dim=1) if lower_sees_action else obs
+        outputs = critic.lower_net(inputs).double().numpy()
+        values = critic.value_net(obs).double().numpy()
+        lowers = critic.lower(obs, actions).numpy()
+    assert q_values.shape == (7, 1)
+    for n in range(7):
+        lower = lower_by_hand(outputs[n], action_dim)
+        np.testing.assert_allclose(lowers[n], lower, rtol=1e-6)
+        difference = actions[n].double().numpy() - mu[n].double().numpy()
+        product = np.array([[sum(a * b for a, b in zip(p, q, strict=True)) for q in lower] for p in lower])
+        quadratic = sum(
+            difference[i] * product[i, j] * difference[j] for i in range(action_dim) for j in range(action_dim)
+        )
+        assert q_values[n].item() == pytest.approx(values[n, 0] - 0.5 * quadratic, rel=1e-5, abs=1e-5)
+
+
+def test_lower_triangle_of_the_paper():
+    critic = make_critic(5)
+    nn.init.zeros_(critic.lower_net[-1].weight)
+    critic.lower_net[-1].bias.data = th.arange(1.0, 16.0) / 10
+    lower = critic.lower(*draw(5))[0].detach().numpy()
+    expected = np.array(
+        [
+            [np.exp(0.1), 0, 0, 0, 0],
+            [0.2, np.exp(0.3), 0, 0, 0],
+            [0.4, 0.5, np.exp(0.6), 0, 0],
+            [0.7, 0.8, 0.9, np.exp(1.0), 0],
+            [1.1, 1.2, 1.3, 1.4, np.exp(1.5)],
+        ]
+    )
+    np.testing.assert_allclose(lower, expected, rtol=1e-6)
+
+
+@settings(max_examples=50, deadline=None)
+@given(
+    action_dim=st.integers(1, 6),
+    seed=st.integers(0, 10_000),
+    squash_mu=st.booleans(),
+    lower_sees_action=st.booleans(),
+)
+def test_mu_is_the_maximum_and_v_its_value(action_dim, seed, squash_mu, lower_sees_action):
+    critic = make_critic(action_dim, seed, squash_mu=squash_mu, lower_sees_action=lower_sees_action)
+    obs, actions = draw(action_dim, batch=64, seed=seed)
+    with th.no_grad():
+        mu, values = critic.mu(obs), critic.value(obs)
+        at_mu, mu_again = critic(obs, mu)
+        elsewhere, _ = critic(obs, actions)
+        nearby, _ = critic(obs, mu + 0.1 * actions)
+    th.testing.assert_close(mu, mu_again)
+    th.testing.assert_close(at_mu, values)
+    assert (elsewhere <= values).all() and (elsewhere < values).any()
+    assert (nearby <= values).all()
+
+
+@settings(max_examples=30, deadline=None)
+@given(action_dim=st.integers(1, 6), seed=st.integers(0, 10_000))
+def test_curvature_is_positive_definite(action_dim, seed):
+    lower = make_critic(action_dim, seed).lower(*draw(action_dim, seed=seed)).detach().double()
+    assert (th.linalg.eigvalsh(lower @ lower.transpose(1, 2)) > 0).all()
+
+
+@settings(max_examples=30, deadline=None)
+@given(scale=st.floats(1, 1e30), seed=st.integers(0, 10_000))
+def test_diagonal_is_bounded_whatever_the_weights(scale, seed):
+    critic = make_critic(3, seed)
+    critic.lower_net[-1].bias.data *= scale
+    lower = critic.lower(*draw(3, seed=seed)).detach()
+    diagonal = lower.diagonal(dim1=1, dim2=2)
+    assert (diagonal >= np.exp(-5.001)).all() and (diagonal <= np.exp(5.001)).all()
+    assert (lower.triu(1) == 0).all()
+
+
+def test_an_untrained_policy_proposes_the_centre():
+    th.manual_seed(0)
+    space = spaces.Box(np.array([0.0, -4.0], np.float32), np.array([2.0, 2.0], np.float32))
+    policy = MlpPolicy(spaces.Box(-1, 1, (OBS_DIM,)), space, ConstantSchedule(1e-3))
+    actions, _ = policy.predict(draw(2)[0].numpy())
+    np.testing.assert_array_equal(actions, np.tile([1.0, -1.0], (7, 1)))
+
+
+def test_every_head_gets_a_gradient():
+    critic = make_critic(3)
+    critic(*draw(3))[0].sum().backward()
+    assert all(p.grad is not None and p.grad.abs().sum() > 0 for p in critic.parameters())
+
+
+def test_locality_weights():
+    mu = th.zeros(3, 2)
+    actions = th.tensor([[0.0, 0.0], [0.3, 0.4], [1.0, 1.0]])
+    raw = np.array([1.0, np.exp(-0.25 / 0.32), np.exp(-2 / 0.32)]) + 0.02
+    weights = locality_weights(actions, mu, 0.4)
+    assert weights.shape == (3, 1)
+    np.testing.assert_allclose(weights[:, 0].numpy(), raw / raw.mean(), rtol=1e-6)
+
+
+def test_heads_take_their_own_sizes():
+    critic = make_critic(2)
+    th.manual_seed(0)
+    policy = MlpPolicy(
+        critic.observation_space,
+        critic.action_space,
+        ConstantSchedule(1e-3),
+        net_arch=dict(V=[7, 8], mu=[], L=[5]),
+        activation_fn=nn.Sigmoid,
+    )
+
+    def sizes(net):
+        return [layer.out_features for layer in net if isinstance(layer, nn.Linear)]
+
+    q_net = policy.q_net
+    assert [sizes(net) for net in (q_net.value_net, q_net.mu_net, q_net.lower_net)] == [[7, 8, 1], [2], [5, 3]]
+    with pytest.raises(ValueError, match="V, mu and L"):
+        MlpPolicy(critic.observation_space, critic.action_space, ConstantSchedule(1e-3), net_arch=dict(pi=[4]))

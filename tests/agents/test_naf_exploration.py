@@ -1,0 +1,84 @@
+"""Exploration: the warm-up, then Gaussian noise around mu that follows its schedule."""
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium import spaces
+from stable_baselines3.common.noise import NormalActionNoise
+from stable_baselines3.common.utils import LinearSchedule
+from stable_baselines3.common.vec_env import DummyVecEnv
+
+from sarah.agents import NAF
+
+
+class Recorder(gym.Env):
+    """Keeps its actions; the centre of the action space is (1, -1)."""
+
+    observation_space = spaces.Box(-1, 1, (2,))
+    action_space = spaces.Box(np.array([0.0, -3.0], np.float32), np.array([2.0, 1.0], np.float32))
+
+    def __init__(self):
+        self.actions = []
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        return np.zeros(2, np.float32), {}
+
+    def step(self, action):
+        self.actions.append(action)
+        return np.zeros(2, np.float32), 0.0, True, False, {}
+
+
+def explore(steps: int, n_envs: int = 1, **kwargs) -> np.ndarray:
+    """Scaled actions of a model that is never trained, so that mu stays 0; (steps, n_envs, 2)."""
+    envs = [Recorder() for _ in range(n_envs)]
+    kwargs = {"learning_starts": 0, "gradient_steps": 0, "buffer_size": 10_000, "seed": 0, **kwargs}
+    model = NAF("MlpPolicy", DummyVecEnv([lambda e=e: e for e in envs]), **kwargs)
+    model.learn(steps * n_envs)
+    actions = (np.stack([e.actions for e in envs], axis=1) - [1.0, -1.0]) / [1.0, 2.0]
+    # What the buffer keeps is what was done
+    np.testing.assert_allclose(model.replay_buffer.actions[:steps], actions, atol=1e-6)
+    return actions
+
+
+def test_noise_has_its_standard_deviation():
+    actions = explore(3000, exploration_std=0.2)
+    np.testing.assert_allclose(actions.std(axis=0), 0.2, rtol=0.05)
+    np.testing.assert_allclose(actions.mean(axis=0), 0.0, atol=0.02)
+
+
+def test_zero_switches_noise_off():
+    np.testing.assert_array_equal(explore(20, exploration_std=0.0), 0.0)
+
+
+def test_noise_is_independent_between_environments_and_dimensions():
+    actions = explore(1500, n_envs=3, exploration_std=0.2).reshape(1500, 6)
+    assert np.abs(np.corrcoef(actions.T) - np.eye(6)).max() < 0.1
+
+
+def test_schedule():
+    actions = explore(3000, exploration_std=LinearSchedule(0.3, 0.05, end_fraction=0.5))
+    np.testing.assert_allclose(actions[:100].std(), 0.3, rtol=0.15)
+    np.testing.assert_allclose(actions[1500:].std(), 0.05, rtol=0.05)
+
+
+def test_given_action_noise_takes_precedence():
+    noise = NormalActionNoise(np.array([0.5, -0.5]), np.zeros(2))
+    actions = explore(10, n_envs=2, action_noise=noise, exploration_std=0.3)
+    np.testing.assert_allclose(actions, np.broadcast_to([0.5, -0.5], actions.shape), atol=1e-6)
+
+
+@pytest.mark.parametrize("n_envs", [1, 3])
+def test_gaussian_warm_up(n_envs):
+    actions = explore(3000, n_envs, learning_starts=1500 * n_envs, warmup_std=0.4, exploration_std=0.0)
+    warm_up, after = actions[:1500], actions[1500:]
+    np.testing.assert_array_equal(after, 0.0)
+    # 1.2 % of a Gaussian of 0.4 lies beyond the bounds, and is clipped to them
+    assert np.abs(warm_up).max() == pytest.approx(1.0, abs=1e-6)
+    np.testing.assert_allclose(warm_up.std(axis=0), 0.4, rtol=0.08)
+    assert 0.5 < np.mean(np.abs(warm_up) < 0.4) < 0.85
+
+
+def test_uniform_warm_up():
+    actions = explore(3000, learning_starts=3000, exploration_std=0.0)
+    np.testing.assert_allclose(actions.std(axis=0), 1 / np.sqrt(3), rtol=0.05)

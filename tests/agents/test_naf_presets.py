@@ -1,0 +1,78 @@
+"""The presets: "one-step" solves a task of one step, "paper" is the paper's networks."""
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium import spaces
+from torch import nn
+
+from sarah.agents import NAF, PRESETS
+
+
+class Cliff(gym.Env):
+    """One action of five numbers per episode; a noisy hill whose top is near a cliff."""
+
+    observation_space = spaces.Box(-1, 1, (16,))
+    action_space = spaces.Box(0, 2, (5,))
+
+    def __init__(self, seed: int):
+        self.top = np.random.default_rng(seed).uniform(-0.5, 0.5, 5)
+        self.scores: list[float] = []
+
+    def score(self, action) -> float:
+        difference = np.asarray(action, float) - 1 - self.top
+        return 0.0 if difference[0] > 0.15 else float(np.exp(-2 * difference @ difference))
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        return self.np_random.uniform(-0.1, 0.1, 16).astype(np.float32), {}
+
+    def step(self, action):
+        self.scores.append(self.score(action))
+        reward = self.scores[-1] + self.np_random.normal(scale=0.05)
+        return np.zeros(16, np.float32), reward, True, False, {}
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_one_step_solves_a_hill_beside_a_cliff(seed):
+    env = Cliff(seed)
+    model = NAF("MlpPolicy", env, seed=seed, **PRESETS["one-step"]).learn(150)
+    learned = env.score(model.predict(np.zeros(16, np.float32))[0])
+    assert learned > max(env.scores[: model.learning_starts])
+    assert learned > 0.9
+
+
+def test_one_step_over_several_environments():
+    """As many updates an episode as with one environment, if gradient_steps are multiplied."""
+    from stable_baselines3.common.vec_env import DummyVecEnv
+
+    envs = [Cliff(0) for _ in range(4)]
+    arguments = {**PRESETS["one-step"], "gradient_steps": 4 * PRESETS["one-step"]["gradient_steps"]}
+    model = NAF("MlpPolicy", DummyVecEnv([lambda e=e: e for e in envs]), seed=0, **arguments).learn(160)
+    assert envs[0].score(model.predict(np.zeros(16, np.float32))[0]) > 0.9
+    assert model.replay_buffer.size() == 160
+
+
+def test_paper_networks():
+    model = NAF("MlpPolicy", Cliff(0), seed=0, learning_starts=20, **PRESETS["paper"])
+
+    def layers(net):
+        return [layer.out_features if isinstance(layer, nn.Linear) else type(layer) for layer in net]
+
+    def sigmoid(widths, outputs):
+        return [entry for width in widths for entry in (width, nn.Sigmoid)] + [outputs]
+
+    assert layers(model.q_net.value_net) == sigmoid([256] * 3, 1)
+    assert layers(model.q_net.mu_net) == sigmoid([16] * 4, 5)
+    assert layers(model.q_net.lower_net) == sigmoid([80] * 4, 15)
+    # The paper's bias of 1 is the centre of Box(0, 2)
+    np.testing.assert_array_equal(model.predict(np.zeros(16, np.float32))[0], np.ones(5))
+    model.learn(60)
+    assert model.action_space.contains(model.predict(np.zeros(16, np.float32))[0])
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_training_leaves_presets_as_they_were(name):
+    before = repr(PRESETS[name])
+    NAF("MlpPolicy", Cliff(0), **PRESETS[name]).learn(60)
+    assert repr(PRESETS[name]) == before

@@ -1,0 +1,163 @@
+"""NAF runs wherever SB3's other off-policy algorithms run."""
+
+import gymnasium as gym
+import numpy as np
+import pytest
+import torch as th
+from gymnasium import spaces
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from stable_baselines3 import HerReplayBuffer
+from stable_baselines3.common.callbacks import (
+    CallbackList,
+    CheckpointCallback,
+    EvalCallback,
+    StopTrainingOnMaxEpisodes,
+)
+from stable_baselines3.common.env_util import make_vec_env
+from stable_baselines3.common.envs import BitFlippingEnv, FakeImageEnv, IdentityEnvBox, SimpleMultiObsEnv
+from stable_baselines3.common.monitor import Monitor
+from stable_baselines3.common.utils import ConstantSchedule
+from stable_baselines3.common.vec_env import DummyVecEnv, VecNormalize
+
+from sarah.agents import NAF, MlpPolicy
+
+SMALL = dict(policy_kwargs=dict(net_arch=[16]), learning_starts=20, batch_size=8, buffer_size=300, seed=0)
+
+
+class Steady(gym.Env):
+    """Any action space; checks that every action is a member of it."""
+
+    observation_space = spaces.Box(-1, 1, (3,))
+
+    def __init__(self, action_space: spaces.Box):
+        self.action_space = action_space
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        return self.observation_space.sample(), {}
+
+    def step(self, action):
+        assert self.action_space.contains(action), (action, self.action_space)
+        truncated = self.np_random.random() < 0.1
+        return self.observation_space.sample(), float(-np.square(action).sum()), False, truncated, {}
+
+
+def assert_learned(model: NAF) -> None:
+    """All weights moved, and all are finite."""
+    fresh = NAF(model.policy_class, model.env, policy_kwargs=model.policy_kwargs, seed=model.seed)
+    for old, new in zip(fresh.q_net.parameters(), model.q_net.parameters(), strict=True):
+        assert th.isfinite(new).all() and not th.equal(old, new)
+
+
+@pytest.mark.parametrize("kwargs", [{}, {"n_steps": 3}, {"locality": 0.4}, {"gradient_steps": -1}])
+@pytest.mark.parametrize("n_envs", [1, 3])
+def test_run(kwargs, n_envs):
+    env = make_vec_env("Pendulum-v1", n_envs=n_envs, seed=0)
+    model = NAF("MlpPolicy", env, **{**SMALL, **kwargs}).learn(150)
+    assert model.num_timesteps == 150
+    assert_learned(model)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("shape", [(1,), (5,), (2, 3)])
+def test_action_shapes_and_types(shape, dtype):
+    space = spaces.Box(-0.1, 0.3, shape, dtype)
+    model = NAF("MlpPolicy", Steady(space), exploration_std=1.0, **SMALL).learn(60)
+    action, _ = model.predict(np.zeros(3, np.float32))
+    assert action.shape == shape
+    assert space.contains(action.astype(dtype))
+
+
+@settings(max_examples=30, deadline=None)
+@given(low=st.floats(-100, 100, width=32), size=st.floats(2**-7, 100, width=32), seed=st.integers(0, 1000))
+def test_saturated_actions_are_in_the_space(low, size, seed):
+    """Also where low + (high - low) is rounded to more than high, and with a linear mu far outside."""
+    space = spaces.Box(np.float32(low), np.float32(low) + np.float32(size), (3,))
+    policy = MlpPolicy(spaces.Box(-1, 1, (2,)), space, ConstantSchedule(1e-3), net_arch=[4], squash_mu=False)
+    policy.q_net.mu_net[-1].bias.data = th.tensor([-50.0, 50.0, 1.0])
+    action, _ = policy.predict(np.zeros(2, np.float32))
+    assert space.contains(action)
+    np.testing.assert_array_equal(action, [space.low[0], space.high[1], space.high[2]])
+    # The module itself, for instance exported without predict(), keeps to the scaled space too
+    np.testing.assert_array_equal(policy(th.zeros(1, 2)).detach().numpy(), [[-1.0, 1.0, 1.0]])
+
+
+def test_predict():
+    model = NAF("MlpPolicy", "Pendulum-v1", **SMALL).learn(60)
+    one, state = model.predict(np.zeros(3, np.float32))
+    many, _ = model.predict(np.zeros((4, 3), np.float32))
+    assert one.shape == (1,) and many.shape == (4, 1) and state is None
+    np.testing.assert_array_equal(many, np.tile(one, (4, 1)))
+    # Exploration is of training: without it, predictions do not vary
+    np.testing.assert_array_equal(one, model.predict(np.zeros(3, np.float32), deterministic=True)[0])
+    with th.no_grad():
+        mu = model.q_net.mu(th.zeros(1, 3)).numpy()[0]
+    np.testing.assert_allclose(one, 2 * mu, rtol=1e-6)
+
+
+def test_images():
+    env = FakeImageEnv(screen_height=40, screen_width=40, n_channels=1, discrete=False)
+    model = NAF("CnnPolicy", env, learning_starts=10, batch_size=4, buffer_size=50, seed=0).learn(15)
+    assert model.predict(env.reset()[0])[0].shape == env.action_space.shape
+    assert_learned(model)
+
+
+def test_dicts():
+    env = SimpleMultiObsEnv(discrete_actions=False)
+    extractor = dict(features_extractor_kwargs=dict(cnn_output_dim=16), net_arch=[16])
+    model = NAF("MultiInputPolicy", env, **{**SMALL, "policy_kwargs": extractor}).learn(30)
+    assert model.predict(env.reset()[0])[0].shape == env.action_space.shape
+    assert_learned(model)
+
+
+@pytest.mark.parametrize("n_envs", [1, 2])
+def test_hindsight_replay(n_envs):
+    env = DummyVecEnv([lambda: BitFlippingEnv(n_bits=3, continuous=True)] * n_envs)
+    kwargs = dict(replay_buffer_class=HerReplayBuffer, replay_buffer_kwargs=dict(n_sampled_goal=2))
+    model = NAF("MultiInputPolicy", env, **SMALL, **kwargs).learn(100)
+    assert isinstance(model.replay_buffer, HerReplayBuffer)
+    assert_learned(model)
+
+
+def test_normalised_environments():
+    env = VecNormalize(make_vec_env("Pendulum-v1", n_envs=2, seed=0))
+    model = NAF("MlpPolicy", env, **SMALL).learn(100)
+    # The buffer keeps what the environment said; samples are normalised
+    assert np.abs(model.replay_buffer.rewards).max() > 1.5 * model.replay_buffer.sample(200, env).rewards.abs().max()
+    assert_learned(model)
+
+
+def test_callbacks(tmp_path):
+    callbacks = CallbackList(
+        [
+            CheckpointCallback(50, str(tmp_path), save_replay_buffer=True),
+            EvalCallback(
+                Monitor(IdentityEnvBox()), eval_freq=50, n_eval_episodes=1, best_model_save_path=str(tmp_path)
+            ),
+            StopTrainingOnMaxEpisodes(2),
+        ]
+    )
+    model = NAF("MlpPolicy", IdentityEnvBox(ep_length=60), **SMALL).learn(1000, callback=callbacks)
+    assert model.num_timesteps == 120
+    names = {path.name for path in tmp_path.iterdir()}
+    assert {"rl_model_50_steps.zip", "rl_model_replay_buffer_100_steps.pkl", "best_model.zip"} <= names
+
+
+def test_tensorboard(tmp_path):
+    from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+
+    NAF("MlpPolicy", IdentityEnvBox(ep_length=10), tensorboard_log=str(tmp_path), **SMALL).learn(100)
+    events = EventAccumulator(str(tmp_path / "NAF_1")).Reload()
+    wanted = {"train/loss", "train/q", "train/learning_rate", "train/exploration_std", "rollout/ep_rew_mean"}
+    assert wanted <= set(events.Tags()["scalars"])
+
+
+def test_discrete_actions_are_refused():
+    with pytest.raises(AssertionError, match=r"only supports .*Box.* as action spaces but Discrete"):
+        NAF("MlpPolicy", "CartPole-v1")
+
+
+def test_wrong_policy_for_dicts_is_refused():
+    with pytest.raises(ValueError, match="MultiInputPolicy"):
+        NAF("MlpPolicy", SimpleMultiObsEnv(discrete_actions=False))

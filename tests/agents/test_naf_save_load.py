@@ -1,0 +1,93 @@
+"""What is saved comes back, and training goes on from it."""
+
+import numpy as np
+import pytest
+import torch as th
+from stable_baselines3.common.env_util import make_vec_env
+from stable_baselines3.common.utils import LinearSchedule
+
+from sarah.agents import NAF, PRESETS, MlpPolicy, RankReplayBuffer
+
+SMALL = dict(learning_starts=20, batch_size=8, buffer_size=300, seed=0)
+OBS = np.random.default_rng(0).normal(size=(10, 3)).astype(np.float32)
+
+
+def assert_same_state(first, second):
+    assert first.keys() == second.keys()
+    for key, value in first.items():
+        th.testing.assert_close(value, second[key], rtol=0, atol=0, msg=key)
+
+
+def make_model(**kwargs):
+    arguments = {"policy_kwargs": dict(net_arch=dict(V=[16], mu=[8], L=[4])), **SMALL, **kwargs}
+    return NAF("MlpPolicy", "Pendulum-v1", **arguments)
+
+
+def test_save_load(tmp_path):
+    model = make_model(locality=0.3, warmup_std=0.2, exploration_std=LinearSchedule(0.3, 0.1, 0.5)).learn(100)
+    model.save(tmp_path / "model")
+    loaded = NAF.load(tmp_path / "model", env=make_vec_env("Pendulum-v1"))
+    np.testing.assert_array_equal(model.predict(OBS)[0], loaded.predict(OBS)[0])
+    assert_same_state(model.policy.state_dict(), loaded.policy.state_dict())
+    first, second = model.policy.optimizer.state_dict(), loaded.policy.optimizer.state_dict()
+    for key, state in first["state"].items():
+        assert_same_state(state, second["state"][key])
+    assert (loaded.locality, loaded.warmup_std, loaded.num_timesteps) == (0.3, 0.2, 100)
+    assert loaded.exploration_schedule(0.75) == pytest.approx(0.2)
+    assert loaded.policy.q_net is loaded.q_net and loaded.policy.q_net_target is loaded.q_net_target
+    loaded.learn(50, reset_num_timesteps=False)
+    assert loaded.num_timesteps == 150 and loaded._n_updates == model._n_updates + 50
+
+
+def test_arguments_can_change_at_load(tmp_path):
+    make_model().learn(30).save(tmp_path / "model")
+    loaded = NAF.load(tmp_path / "model", exploration_std=0.7, learning_rate=1e-5)
+    assert loaded.exploration_schedule(0.5) == 0.7 and loaded.lr_schedule(0.5) == 1e-5
+
+
+def test_number_of_environments_can_change_at_load(tmp_path):
+    make_model().learn(30).save(tmp_path / "model")
+    loaded = NAF.load(tmp_path / "model", env=make_vec_env("Pendulum-v1", n_envs=3))
+    assert loaded.learn(60).num_timesteps == 60
+
+
+@pytest.mark.parametrize("preset", [None, "one-step"])
+def test_replay_buffer(tmp_path, preset):
+    model = make_model(**{**PRESETS.get(preset, {}), **SMALL}).learn(100)
+    model.save(tmp_path / "model")
+    model.save_replay_buffer(tmp_path / "buffer")
+    loaded = NAF.load(tmp_path / "model", env=make_vec_env("Pendulum-v1"))
+    assert loaded.replay_buffer.size() == 0
+    loaded.load_replay_buffer(tmp_path / "buffer")
+    assert type(loaded.replay_buffer) is type(model.replay_buffer)
+    assert isinstance(loaded.replay_buffer, RankReplayBuffer) == (preset == "one-step")
+    for name in ("observations", "next_observations", "actions", "rewards", "dones", "timeouts"):
+        np.testing.assert_array_equal(getattr(loaded.replay_buffer, name), getattr(model.replay_buffer, name))
+    # The same draws, and so the same updates
+    for each in (model, loaded):
+        each.set_random_seed(5)
+        each._logger = model.logger
+        each.train(10, 16)
+    assert_same_state(model.policy.state_dict(), loaded.policy.state_dict())
+
+
+def test_set_parameters():
+    first, second = make_model().learn(60), make_model(seed=1)
+    assert (first.predict(OBS)[0] != second.predict(OBS)[0]).any()
+    second.set_parameters(first.get_parameters())
+    np.testing.assert_array_equal(first.predict(OBS)[0], second.predict(OBS)[0])
+    assert_same_state(first.policy.state_dict(), second.policy.state_dict())
+
+
+def test_policy_alone(tmp_path):
+    model = make_model(policy_kwargs=dict(net_arch=[8], squash_mu=False, lower_sees_action=True)).learn(60)
+    model.policy.save(tmp_path / "policy")
+    loaded = MlpPolicy.load(tmp_path / "policy")
+    np.testing.assert_array_equal(model.predict(OBS)[0], loaded.predict(OBS)[0])
+    assert_same_state(model.policy.state_dict(), loaded.state_dict())
+
+
+def test_loading_needs_no_environment(tmp_path):
+    model = make_model().learn(30)
+    model.save(tmp_path / "model")
+    np.testing.assert_array_equal(NAF.load(tmp_path / "model").predict(OBS)[0], model.predict(OBS)[0])

@@ -1,0 +1,148 @@
+"""What the networks are trained towards: targets computed by hand, the loss, the target network."""
+
+import gymnasium as gym
+import numpy as np
+import pytest
+import torch as th
+from gymnasium import spaces
+from torch import nn
+
+from sarah.agents import NAF
+from sarah.agents.naf import locality_weights
+
+GAMMA = 0.9
+
+
+class Corridor(gym.Env):
+    """The observation is the step's index, the reward is 1 + index; every end is of the given kind."""
+
+    observation_space = spaces.Box(0, 10, (1,))
+    action_space = spaces.Box(-1, 1, (1,))
+
+    def __init__(self, length: int = 3, timeout: bool = False):
+        self.length, self.timeout, self.index = length, timeout, 0
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.index = 0
+        return np.array([0.0], np.float32), {}
+
+    def step(self, action):
+        self.index += 1
+        end = self.index == self.length
+        obs = np.array([self.index], np.float32)
+        return obs, float(self.index), end and not self.timeout, end and self.timeout, {}
+
+
+def make_model(env, **kwargs):
+    kwargs = {"gamma": GAMMA, "learning_starts": 1000, "buffer_size": 200, "seed": 0, **kwargs}
+    return NAF("MlpPolicy", env, policy_kwargs=dict(net_arch=[8]), **kwargs)
+
+
+def fill_target(model) -> dict[int, float]:
+    """Random weights for the target network; returns its value of every observation."""
+    for parameter in model.q_net_target.parameters():
+        nn.init.normal_(parameter)
+    with th.no_grad():
+        return {i: model.q_net_target.value(th.tensor([[float(i)]])).item() for i in range(11)}
+
+
+def one_update(model, batch_size=64):
+    """Run one update; returns its batch, the loss by hand for given targets, and the logged loss."""
+    batches = []
+    sample = model.replay_buffer.sample
+
+    def remember(*args, **kwargs):
+        batches.append(sample(*args, **kwargs))
+        return batches[-1]
+
+    model.replay_buffer.sample = remember
+    weights = {k: v.clone() for k, v in model.q_net.state_dict().items()}
+    model.train(1, batch_size)
+    logged = model.logger.name_to_value["train/loss"]
+    model.q_net.load_state_dict(weights)
+    return batches[0], logged
+
+
+@pytest.mark.parametrize("timeout", [False, True])
+@pytest.mark.parametrize("n_steps", [1, 2])
+def test_targets(timeout, n_steps):
+    """The end of an episode is worth nothing, unless a time limit made it; n steps are discounted n times."""
+    model = make_model(Corridor(timeout=timeout), n_steps=n_steps).learn(30)
+    values = fill_target(model)
+    batch, logged = one_update(model)
+
+    def target(start: int) -> float:
+        last = min(start + n_steps, 3)
+        rewards = sum(GAMMA ** (k - start) * (k + 1) for k in range(start, last))
+        bootstrap = 0.0 if last == 3 and not timeout else GAMMA ** (last - start) * values[last]
+        return rewards + bootstrap
+
+    # The newest transition cannot look further ahead than the buffer: it is the 30th, an end
+    targets = np.array([target(int(start)) for start in batch.observations[:, 0]])
+    assert len(set(targets.tolist())) == 3
+    with th.no_grad():
+        q_values = model.q_net(batch.observations, batch.actions)[0][:, 0].numpy()
+    assert logged == pytest.approx(np.mean((q_values - targets) ** 2), rel=1e-5)
+
+
+def test_locality_weighs_the_loss():
+    model = make_model(Corridor(), locality=0.4).learn(30)
+    values = fill_target(model)
+    batch, logged = one_update(model)
+    starts = batch.observations[:, 0].numpy().astype(int)
+    targets = np.array([i + 1 + (GAMMA * values[i + 1] if i < 2 else 0.0) for i in starts])
+    with th.no_grad():
+        q_values, mu = model.q_net(batch.observations, batch.actions)
+    weights = locality_weights(batch.actions, mu, 0.4)[:, 0].numpy()
+    assert weights.max() / weights.min() > 2
+    assert logged == pytest.approx(np.mean(weights * (q_values[:, 0].numpy() - targets) ** 2), rel=1e-5)
+
+
+def test_locality_has_no_gradient():
+    """Moving mu must not pay by taking weight away from transitions that are fitted badly."""
+    model = make_model(Corridor(), locality=0.4, max_grad_norm=np.inf).learn(30)
+    # With L at its lower bound, Q does not depend on mu: all that could move mu is the weight
+    nn.init.zeros_(model.q_net.lower_net[-1].weight)
+    nn.init.constant_(model.q_net.lower_net[-1].bias, -1000.0)
+    model.train(1, 64)
+    value_gradient = model.q_net.value_net[-1].bias.grad.abs().item()
+    assert model.q_net.mu_net[-2].bias.grad.abs().item() < 1e-3 * value_gradient
+
+
+def test_target_network_starts_as_a_copy():
+    model = make_model(Corridor())
+    for target, online in zip(model.q_net_target.parameters(), model.q_net.parameters(), strict=True):
+        assert th.equal(target, online) and target.data_ptr() != online.data_ptr()
+
+
+def test_target_network_follows_by_tau():
+    model = make_model(Corridor(), tau=0.25).learn(30)
+    fill_target(model)
+    before = [p.clone() for p in model.q_net_target.parameters()]
+    model.train(1, 16)
+    for old, new, online in zip(before, model.q_net_target.parameters(), model.q_net.parameters(), strict=True):
+        th.testing.assert_close(new, 0.75 * old + 0.25 * online)
+
+
+def test_gradient_is_clipped():
+    model = make_model(Corridor(), max_grad_norm=1e-3).learn(30)
+    model.train(1, 16)
+    norm = th.stack([p.grad.norm() for p in model.q_net.parameters()]).norm().item()
+    assert norm == pytest.approx(1e-3, rel=1e-3)
+
+
+def test_schedules_and_logs():
+    model = make_model(Corridor(), learning_rate=lambda progress: 0.01 * (1 + progress), learning_starts=0)
+    # Longer than the training, so that nothing is dumped
+    model.learn(20, log_interval=100)
+    assert model._n_updates == 20
+    assert model.policy.optimizer.param_groups[0]["lr"] == pytest.approx(0.01)
+    logged = dict(model.logger.name_to_value)
+    assert logged["train/learning_rate"] == pytest.approx(0.01)
+    assert logged["train/exploration_std"] == pytest.approx(0.1)
+    assert logged["train/n_updates"] == 20
+    batch, _ = one_update(model)
+    with th.no_grad():
+        q_values = model.q_net(batch.observations, batch.actions)[0]
+    assert model.logger.name_to_value["train/q"] == pytest.approx(q_values.mean().item(), rel=1e-5)

@@ -1,0 +1,130 @@
+"""The rank replay buffer draws by the rank of the reward, and by nothing else."""
+
+import numpy as np
+import pytest
+from gymnasium import spaces
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from stable_baselines3.common.utils import set_random_seed
+
+from sarah.agents import RankReplayBuffer
+from sarah.agents.buffers import average_ranks
+
+BOX = spaces.Box(-1, 1, (2,))
+
+
+def fill(rewards, n_envs: int = 1, buffer_size: int = 100, **kwargs) -> RankReplayBuffer:
+    """A buffer whose k-th transition has the k-th reward and carries k in its observation and action."""
+    buffer = RankReplayBuffer(buffer_size, spaces.Box(-np.inf, np.inf, (1,)), BOX, "cpu", n_envs, **kwargs)
+    for start in range(0, len(rewards), n_envs):
+        numbers = np.arange(start, start + n_envs, dtype=np.float32)
+        buffer.add(
+            numbers[:, None],
+            numbers[:, None] + 0.5,
+            np.stack([numbers, -numbers], axis=1),
+            np.array(rewards[start : start + n_envs]),
+            np.ones(n_envs),
+            [{}] * n_envs,
+        )
+    return buffer
+
+
+def frequencies(buffer: RankReplayBuffer, n: int, draws: int = 200_000) -> np.ndarray:
+    numbers = buffer.sample(draws).observations[:, 0].numpy().astype(int)
+    return np.bincount(numbers, minlength=n) / draws
+
+
+@settings(deadline=None)
+@given(st.lists(st.integers(-5, 5), min_size=1, max_size=30))
+def test_ranks_by_counting(values):
+    n = len(values)
+    by_counting = [(sum(v < x for v in values) + (sum(v == x for v in values) - 1) / 2) for x in values]
+    np.testing.assert_allclose(average_ranks(np.array(values)), np.array(by_counting) / max(n - 1, 1))
+
+
+@settings(deadline=None)
+@given(st.lists(st.floats(-1e6, 1e6, width=32), min_size=2, max_size=30))
+def test_ranks_are_in_the_unit_interval_and_centred(values):
+    ranks = average_ranks(np.array(values))
+    assert ranks.min() >= 0 and ranks.max() <= 1
+    assert ranks.mean() == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("n_envs", [1, 4])
+def test_frequencies_follow_the_formula(n_envs):
+    set_random_seed(0)
+    rewards = [3.0, -1.0, 10.0, 3.0, 0.0, 7.0, 3.0, -8.0]
+    ranks = np.array([4, 1, 7, 4, 2, 6, 4, 0]) / 7
+    expected = np.exp(4 * ranks) / np.exp(4 * ranks).sum()
+    # Standard error at most 0.001
+    np.testing.assert_allclose(frequencies(fill(rewards, n_envs), 8), expected, atol=0.005)
+
+
+@pytest.mark.parametrize("rewards, temperature", [([1.0] * 8, 4.0), (list(range(8)), 0.0)])
+def test_uniform_when_nothing_distinguishes(rewards, temperature):
+    set_random_seed(0)
+    np.testing.assert_allclose(frequencies(fill(rewards, temperature=temperature), 8), 1 / 8, atol=0.005)
+
+
+def test_only_ranks_count():
+    """Scale, offset and outliers of the reward change nothing."""
+    draws = []
+    for rewards in ([1, 2, 3, 4], [10, 20, 30, 40], [-1e6, 0.0, 1e-3, 1e6]):
+        set_random_seed(0)
+        draws.append(fill(rewards).sample(1000).observations.numpy())
+    np.testing.assert_array_equal(draws[0], draws[1])
+    np.testing.assert_array_equal(draws[0], draws[2])
+
+
+def test_seeded_like_other_buffers():
+    buffer = fill(list(range(10)))
+    set_random_seed(3)
+    first = buffer.sample(50)
+    other = buffer.sample(50)
+    set_random_seed(3)
+    again = buffer.sample(50)
+    np.testing.assert_array_equal(first.actions, again.actions)
+    assert (first.actions != other.actions).any()
+
+
+@pytest.mark.parametrize("n_envs", [1, 3])
+def test_transitions_stay_together(n_envs):
+    batch = fill(list(np.linspace(-1, 1, 12)), n_envs).sample(200)
+    number = batch.observations[:, 0].numpy()
+    assert set(number) <= set(range(12)) and len(set(number)) > 6
+    np.testing.assert_array_equal(batch.next_observations[:, 0], number + 0.5)
+    np.testing.assert_array_equal(batch.actions, np.stack([number, -number], axis=1))
+    np.testing.assert_allclose(batch.rewards[:, 0], np.linspace(-1, 1, 12)[number.astype(int)], rtol=1e-6)
+    assert batch.rewards.shape == batch.dones.shape == (200, 1)
+
+
+def test_ranks_follow_additions_and_reset():
+    set_random_seed(0)
+    buffer = fill([0.0, 1.0])
+    assert frequencies(buffer, 3)[1] > 0.9
+    buffer.add(*(np.full((1, d), 2.0, np.float32) for d in (1, 1, 2)), np.array([9.0]), np.ones(1), [{}])
+    assert np.argmax(frequencies(buffer, 3)) == 2
+    buffer.reset()
+    buffer.add(*(np.zeros((1, d), np.float32) for d in (1, 1, 2)), np.array([-9.0]), np.ones(1), [{}])
+    assert frequencies(buffer, 3)[0] == 1.0
+
+
+@pytest.mark.parametrize("n_envs", [1, 3])
+def test_oldest_are_overwritten(n_envs):
+    buffer = fill(list(range(12, 0, -1)), n_envs, buffer_size=5)
+    assert buffer.size() == 5
+    assert set(buffer.sample(1000).observations[:, 0].numpy()) == {7.0, 8.0, 9.0, 10.0, 11.0}
+
+
+def test_time_limits_are_not_ends():
+    buffer = RankReplayBuffer(10, BOX, BOX, "cpu", n_envs=2)
+    infos = [{"TimeLimit.truncated": True}, {}]
+    obs = np.array([[0.0, 0.0], [1.0, 1.0]], np.float32)
+    buffer.add(obs, obs, obs, np.zeros(2), np.ones(2), infos)
+    batch = buffer.sample(100)
+    np.testing.assert_array_equal(batch.dones[:, 0], batch.observations[:, 0])
+
+
+def test_memory_optimisation_is_refused():
+    with pytest.raises(NotImplementedError, match="optimize_memory_usage"):
+        fill([], optimize_memory_usage=True)
