@@ -3,13 +3,16 @@
     >>> import sarah
     >>> result = sarah.simulate(sarah.EpisodeSpec(parameters=(0.4, 1.3, 0.1, 1.0, 1.0), seed=0))
 
-The names below are loaded when they are first used, so that importing the package is fast.
+The names below are loaded when they are first used, so that importing the package is fast. Importing it also makes
+``gymnasium.make("SarahStepping-v0")`` work.
 """
 
 from __future__ import annotations
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+from sarah.registration import register_with_gymnasium
 
 if TYPE_CHECKING:
     from sarah.config import PHYSICS, EpisodeConfig, Physics, Randomisation
@@ -24,7 +27,6 @@ __all__ = [
     "Physics",
     "Randomisation",
     "SarahError",
-    "register_environments",
     "simulate",
 ]
 
@@ -46,8 +48,4 @@ def __getattr__(name: str) -> Any:
     return getattr(import_module(f"sarah.{_HOMES[name]}"), name)
 
 
-def register_environments() -> None:
-    """Register the package's environments with gymnasium, which calls this by itself when it is imported."""
-    import gymnasium
-
-    gymnasium.register("SarahStepping-v0", entry_point="sarah.envs:SteppingEnv", max_episode_steps=None)
+register_with_gymnasium()

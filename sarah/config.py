@@ -212,7 +212,7 @@ def _converted(expected: Any, value: Any, key: str) -> Any:
         if not isinstance(value, (list, tuple)) or len(value) != len(parts):
             raise ConfigurationError(f"{key} must be a list of {len(parts)} values, not {value!r}")
         return tuple(_converted(part, item, key) for part, item in zip(parts, value, strict=True))
-    if get_origin(expected) is not None and issubclass(get_origin(expected), Mapping):
+    if get_origin(expected) is Mapping:
         if not isinstance(value, Mapping):
             raise ConfigurationError(f"{key} must hold names and values, not {value!r}")
         return {name: _converted(get_args(expected)[1], item, f"{key}.{name}") for name, item in value.items()}

@@ -66,7 +66,7 @@ class SteppingEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         :param action: P1 to P5, scaled to [-1, 1]
         :raises ConfigurationError: if the action is not finite or out of its box, or the episode is over
         """
-        if self._episode is None or self._episode.is_over:
+        if self._episode is None or self._episode.termination is not None:
             raise ConfigurationError("the episode is over: call reset before step")
         parameters = parameters_from(action)
         result = self._episode.run(parameters)

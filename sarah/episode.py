@@ -12,7 +12,7 @@ from sarah.config import CONTROL_DT, CONTROL_RATE, STAND_SECONDS, TASKS, Episode
 from sarah.description import PASSIVE_JOINTS, describe_robot
 from sarah.errors import ConfigurationError, unknown_name
 from sarah.gait import GaitRecord
-from sarah.pattern_generator import PatternGenerator, Phase, Side, SteppingParameters
+from sarah.pattern_generator import PatternGenerator, Phase, SteppingParameters
 from sarah.randomisation import draw_conditions
 from sarah.reward import highest_return, reward_rate
 from sarah.sensors import ImperfectSensors, SensorReading
@@ -61,7 +61,7 @@ class EpisodeResult:
     :param steps_per_second: mean over that time
     :param steps: completed ones
     :param duration: simulated time, the first second of standing included, in s
-    :param termination: one of :data:`TERMINATIONS`
+    :param termination: how it ended: one of :data:`TERMINATIONS`
     :param final_position: of the torso's centre, x and y relative to the start, z over the floor, in m
     :param sole_clearance: median over the steps of the swing foot's largest height over the floor, in m
     :param event_driven_shift: share of the SHIFT phases ended by sensors, and not by the time-out
@@ -93,29 +93,37 @@ class EpisodeResult:
 
 
 class Episode:
-    """A robot in its world, from standing to the end: :meth:`stand`, then :meth:`run`, then :meth:`close`.
+    """A robot in its world: :meth:`stand`, then :meth:`run`, then :meth:`close`.
+
+    Whoever wants to look at the robot in between calls :meth:`start` and then :meth:`tick` until :attr:`termination`
+    says how the episode ended.
 
     :param config: what all episodes of an experiment share
     :param seed: of this episode
     :param record_trace: whether to keep a trace of every control tick
     """
 
+    generator: PatternGenerator
+    """Of the joint targets, from :meth:`start` on."""
+
     def __init__(self, config: EpisodeConfig, seed: int, record_trace: bool = False) -> None:
         self.config = config
-        conditions = draw_conditions(config.randomisation, seed)
+        self.termination: str | None = None
         self.robot = describe_robot(config.dimensions)
+        conditions = draw_conditions(config.randomisation, seed)
         self.simulation = Simulation(self.robot, config.physics, conditions)
+        self.last_reading = self.simulation.read()
+        self._pad_threshold = conditions.pad_threshold
         self._sensors = ImperfectSensors(
             conditions.acceleration_noise,
             conditions.angular_rate_noise,
             conditions.delay_ticks,
             conditions.sensor_seed,
         )
-        self._pad_threshold = conditions.pad_threshold
-        self._start = self.simulation.torso_state()
-        self.is_over = False
-        self.last_reading = self.simulation.read()
         self._standing: list[SensorReading] = []
+        self._first = self._last = self.simulation.torso_state()
+        self._gait = GaitRecord()
+        self._ticks = 0
         self._return = 0.0
         self._trace: dict[str, list[Any]] | None = {} if record_trace else None
 
@@ -135,24 +143,57 @@ class Episode:
         :param parameters: P1 to P5
         :return: the result
         """
-        generator = PatternGenerator(SteppingParameters.checked(parameters), self._pad_threshold, CONTROL_DT)
+        self.start(parameters)
+        while self.termination is None:
+            self.tick()
+        return self.result()
+
+    def start(self, parameters: tuple[float, ...]) -> None:
+        """Make the pattern generator, which knows what was sensed while standing.
+
+        :param parameters: P1 to P5
+        """
+        self.generator = PatternGenerator(SteppingParameters.checked(parameters), self._pad_threshold, CONTROL_DT)
         for reading in self._standing:
-            generator.sense(reading)
-        gait = GaitRecord()
-        ticks = 0
-        termination = None
-        self.is_over = True
-        while termination is None:
-            self._tick(generator, gait, ticks * CONTROL_DT)
-            ticks += 1
-            torso = self.simulation.torso_state()
-            elapsed = ticks * CONTROL_DT
-            termination = self._termination(torso, gait.steps, STAND_SECONDS + elapsed)
-            if termination != "diverged":
-                frequency = gait.steps_per_second(elapsed)
-                x, y, z = self._displacement(torso)
-                self._return += reward_rate(x, y, z, frequency, self.config.reward_form) * CONTROL_DT
-        return self._result(termination, torso, gait, ticks * CONTROL_DT)
+            self.generator.sense(reading)
+
+    def tick(self) -> None:
+        """Sense, decide, act, simulate and judge one control tick."""
+        simulation, generator, gait = self.simulation, self.generator, self._gait
+        time = self._ticks * CONTROL_DT
+        reading = self._sense()
+        if generator.phase in (Phase.LIFT, Phase.LAND):
+            gait.swing(simulation.sole_height(generator.swing.name.lower()))
+        change = generator.tick(reading)
+        if change is not None:
+            gait.phase_change(time, change)
+        simulation.set_targets(generator.targets)
+        if self._trace is not None:
+            self._record(reading, time)
+        simulation.advance()
+        self._ticks += 1
+        self._judge()
+
+    def result(self) -> EpisodeResult:
+        """What has come out of the episode so far; of an episode that goes on, its ``termination`` is empty."""
+        elapsed = self._ticks * CONTROL_DT
+        ceiling = highest_return(self.robot.standing_height, self.config.time_limit - STAND_SECONDS)
+        trace = None
+        if self._trace is not None:
+            trace = {name: np.array(values) for name, values in self._trace.items()}
+        return EpisodeResult(
+            score=self._return / ceiling,
+            episode_return=self._return,
+            steps_per_second=self._gait.steps / elapsed if elapsed else 0.0,
+            steps=self._gait.steps,
+            duration=round(STAND_SECONDS + elapsed, 9),
+            termination=self.termination or "",
+            final_position=self._displacement(self._last),
+            sole_clearance=self._gait.sole_clearance,
+            event_driven_shift=self._gait.event_driven(Phase.SHIFT),
+            event_driven_lift=self._gait.event_driven(Phase.LIFT),
+            trace=trace,
+        )
 
     def close(self) -> None:
         """Give the physics engine's resources back."""
@@ -162,29 +203,26 @@ class Episode:
         self.last_reading = self._sensors(self.simulation.read())
         return self.last_reading
 
-    def _tick(self, generator: PatternGenerator, gait: GaitRecord, time: float) -> None:
-        """Sense, decide, act and simulate one control tick."""
-        simulation = self.simulation
-        reading = self._sense()
-        if generator.phase in (Phase.LIFT, Phase.LAND):
-            gait.swing(simulation.sole_height("right" if generator.swing is Side.RIGHT else "left"))
-        change = generator.tick(reading)
-        if change is not None:
-            gait.phase_change(time, change)
-        simulation.set_targets(generator.targets)
-        if self._trace is not None:
-            self._record(reading, generator, gait, time)
-        simulation.advance()
+    def _judge(self) -> None:
+        """Add this tick's reward, and see whether the episode ends."""
+        elapsed = self._ticks * CONTROL_DT
+        torso = self.simulation.torso_state()
+        self.termination = self._termination(torso, self._gait.steps, STAND_SECONDS + elapsed)
+        if self.termination == "diverged":  # the result keeps to the last finite state
+            return
+        self._last = torso
+        frequency = self._gait.steps_per_second(elapsed)
+        self._return += reward_rate(*self._displacement(torso), frequency, self.config.reward_form) * CONTROL_DT
 
     def _displacement(self, torso: TorsoState) -> tuple[float, float, float]:
         """Torso position as equation 2 wants it: x and y from the start, z over the floor."""
         x, y, z = torso.position
-        return (x - self._start.position[0], y - self._start.position[1], z)
+        return (x - self._first.position[0], y - self._first.position[1], z)
 
     def _termination(self, torso: TorsoState, steps: int, time: float) -> str | None:
         if not torso.is_finite:
             return "diverged"
-        moved = (now - start for now, start in zip(torso.position, self._start.position, strict=True))
+        moved = (now - start for now, start in zip(torso.position, self._first.position, strict=True))
         if max(map(abs, moved)) > BOX_HALF_WIDTH:
             return "left_box"
         if torso.tilt > LARGEST_TILT:
@@ -194,27 +232,9 @@ class Episode:
             return "no_oscillation"
         return "time_limit" if time > self.config.time_limit - half_tick else None
 
-    def _result(self, termination: str, torso: TorsoState, gait: GaitRecord, elapsed: float) -> EpisodeResult:
-        ceiling = highest_return(self.robot.standing_height, self.config.time_limit - STAND_SECONDS)
-        trace = None
-        if self._trace is not None:
-            trace = {name: np.array(values) for name, values in self._trace.items()}
-        return EpisodeResult(
-            score=self._return / ceiling,
-            episode_return=self._return,
-            steps_per_second=gait.steps / elapsed,
-            steps=gait.steps,
-            duration=round(STAND_SECONDS + elapsed, 9),
-            termination=termination,
-            final_position=self._displacement(torso),
-            sole_clearance=gait.sole_clearance,
-            event_driven_shift=gait.event_driven(Phase.SHIFT),
-            event_driven_lift=gait.event_driven(Phase.LIFT),
-            trace=trace,
-        )
-
-    def _record(self, reading: SensorReading, generator: PatternGenerator, gait: GaitRecord, time: float) -> None:
+    def _record(self, reading: SensorReading, time: float) -> None:
         assert self._trace is not None
+        generator = self.generator
         torso = self.simulation.torso_state()
         row = {
             "time": STAND_SECONDS + time,
@@ -231,7 +251,7 @@ class Episode:
             "stable_x": generator.stable_x,
             "tilt": generator.tilt,
             "rate": generator.rate,
-            "steps_per_second": gait.steps_per_second(time),
+            "steps_per_second": self._gait.steps_per_second(time),
         }
         for name, value in row.items():
             self._trace.setdefault(name, []).append(value)

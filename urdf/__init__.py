@@ -1,0 +1,1 @@
+"""The robot as a xacro; see :mod:`sarah.description`."""

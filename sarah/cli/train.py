@@ -45,9 +45,9 @@ def main() -> None:
 def _train(arguments: Sequence[str]) -> None:
     options = parse_options(TrainOptions, COMMAND, arguments, _from_file(arguments))
     config = options.training
-    from sarah.description import check_dimensions
+    from sarah.description import describe_robot
 
-    check_dimensions(config.episode.dimensions)
+    describe_robot(config.episode.dimensions)  # a bad dimension is refused before anything is written
     from sarah.runs import RunFolder, new_run_path
 
     run = RunFolder.create(options.run_dir or new_run_path(config.task, config.algo, config.seed), config)

@@ -1,0 +1,46 @@
+# `make train` and `make test` work as the first command in a fresh clone.
+PYTHON ?= $(shell command -v python3.11 || command -v python3.10 || command -v python3)
+VENV ?= .venv
+BIN := $(VENV)/bin
+SIMULATIONS ?= 200
+SEED ?= 0
+
+.PHONY: help install train test test-slow lint format bench clean
+
+help:  ## show what can be made
+	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
+
+install: $(VENV)/installed  ## create the environment in .venv, with the tested versions
+
+$(VENV)/installed: setup.cfg pyproject.toml constraints.txt
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --upgrade pip -c constraints.txt
+	$(BIN)/pip install --quiet -c constraints.txt --editable '.[dev]'
+	@touch $@
+
+train: install  ## the First Training with NAF: a robot that learned to step in place
+	$(BIN)/sarah-train --task stepping --algo naf --simulations $(SIMULATIONS) --seed $(SEED)
+
+test: install  ## the tests
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m 'not slow'
+
+test-slow: install  ## the slow tests: minutes of simulation
+	$(BIN)/python -m pytest -m slow
+
+lint: install  ## style and types
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy -p sarah
+
+format: install  ## put the style right
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+bench: install  ## the tables of the README and docs: hours of simulation
+	$(BIN)/python benchmarks/paper_parameters.py
+	$(BIN)/python benchmarks/landscape.py
+	$(BIN)/python benchmarks/clock.py
+	$(BIN)/python benchmarks/first_training.py
+
+clean:  ## remove what was built, but no runs
+	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis

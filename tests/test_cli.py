@@ -1,0 +1,145 @@
+"""The commands as a user runs them: in a process of their own, from another folder."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from sarah.pattern_generator import PARAMETER_NAMES
+
+BIN = Path(sys.executable).parent
+SHORT = ("--episode.time-limit", "1.5", "--n-envs", "1")
+
+
+def run(command: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([BIN / command, *arguments], capture_output=True, text=True, cwd=cwd, timeout=300)
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, subprocess.CompletedProcess[str]]:
+    folder = tmp_path_factory.mktemp("work")
+    arguments = ("--task", "stepping", "--algo", "naf", "--simulations", "4", "--seed", "1", "--run-dir", "mine")
+    return folder / "mine", run("sarah-train", *arguments, *SHORT, cwd=folder)
+
+
+def test_train_ends_with_a_summary(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
+    folder, process = trained
+    assert process.returncode == 0, process.stderr
+    for text in ("learned", *PARAMETER_NAMES, "score", "run folder  mine"):
+        assert text in process.stdout
+    assert "Traceback" not in process.stderr and "pybullet" not in process.stderr
+    assert (folder / "parameters.json").is_file()
+    assert "sarah-train --task stepping" in (folder / "command.txt").read_text()
+
+
+def test_train_shows_its_progress(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
+    _, process = trained
+    assert "4/4" in process.stdout + process.stderr
+
+
+def test_eval_summarises_a_run(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
+    folder, _ = trained
+    process = run("sarah-eval", str(folder), "--episodes", "2", cwd=folder)
+    assert process.returncode == 0, process.stderr
+    for text in ("parameters", "score", "steps per second", "drift", "survival", "by sensors", "sole clearance"):
+        assert text in process.stdout
+
+
+def test_eval_prints_one_json_object(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
+    folder, _ = trained
+    process = run("sarah-eval", str(folder), "--episodes", "2", "--first-seed", "5", "--json", cwd=folder)
+    content = json.loads(process.stdout)
+    expected = {"task", "algorithm", "episodes", "score_mean", "score_median", "steps_per_second_mean", "drift_mean"}
+    expected |= {"survival_rate", "event_driven_shift_mean", "event_driven_lift_mean", "sole_clearance_mean"}
+    assert expected | {"parameters"} <= set(content)
+    assert content["task"] == "stepping" and content["algorithm"] == "naf" and content["episodes"] == 2
+    learned = json.loads((folder / "parameters.json").read_text())["parameters"]
+    assert content["parameters"] == learned
+
+
+def test_eval_takes_parameters_without_a_run(tmp_path: Path) -> None:
+    arguments = ("--task", "stepping", "--parameters", "0.4,1.3,0.1,1,1", "--episodes", "2", "--json")
+    first, second = (json.loads(run("sarah-eval", *arguments, cwd=tmp_path).stdout) for _ in range(2))
+    assert first == second
+    assert first["algorithm"] is None and list(first["parameters"].values()) == [0.4, 1.3, 0.1, 1.0, 1.0]
+    assert first["survival_rate"] == 1.0 and first["score_median"] > 0.78
+    exact = json.loads(run("sarah-eval", *arguments, "--no-randomisation", cwd=tmp_path).stdout)
+    assert exact["score_mean"] != first["score_mean"] and exact["survival_rate"] == 1.0
+
+
+def test_training_is_configured_by_a_file_and_overridden_by_options(tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text("algo: td3\nsimulations: 2\nn_envs: 1\nepisode: {time_limit: 1.5}\n")
+    process = run("sarah-train", "--config", "mine.yaml", "--simulations", "3", "--run-dir", "out", cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    config = (tmp_path / "out" / "config.yaml").read_text()
+    assert "algo: td3" in config and "simulations: 3" in config and "time_limit: 1.5" in config
+
+
+@pytest.mark.parametrize(
+    ("command", "options"),
+    [
+        ("sarah-train", ("--task", "--algo", "--simulations", "--seed", "--run-dir", "--config")),
+        ("sarah-eval", ("RUN", "--episodes", "--first-seed", "--json", "--parameters", "--task")),
+    ],
+)
+def test_help_names_the_options(command: str, options: tuple[str, ...], tmp_path: Path) -> None:
+    process = run(command, "--help", cwd=tmp_path)
+    assert process.returncode == 0
+    for option in options:
+        assert option in process.stdout
+
+
+@pytest.mark.parametrize("command", ["train", "eval"])
+def test_help_loads_nothing_slow(command: str) -> None:
+    program = (
+        f"import sys\nfrom sarah.cli.{command} import main\nsys.argv = ['command', '--help']\n"
+        "try:\n    main()\nexcept SystemExit:\n    pass\n"
+        "slow = {'torch', 'gymnasium', 'numpy', 'pybullet', 'stable_baselines3', 'yourdfpy', 'yaml'}\n"
+        "sys.exit(' '.join(slow & set(sys.modules)))"
+    )
+    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert process.stderr == "" and process.returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ("sarah-train --task steping", "unknown task 'steping', did you mean 'stepping'?"),
+        ("sarah-train --algo naff", "unknown algo 'naff', did you mean 'naf'?"),
+        ("sarah-train --simulatons 5", "did you mean --simulations?"),
+        ("sarah-train --simulations -5", "simulations must be at least 1, not -5"),
+        ("sarah-train --simulations many", "--simulations"),
+        ("sarah-train --seed -1", "seed must be between 0"),
+        ("sarah-train --config nothing.yaml", "cannot read nothing.yaml"),
+        ("sarah-train --config", "--config"),
+        ("sarah-train --run-dir full", "run folder full is not empty"),
+        ("sarah-train --run-dir full/precious.txt", "cannot write run folder"),
+        ("sarah-train --episode.dimensions tigh_length 0.3", "did you mean 'thigh_length'?"),
+        ("sarah-train --episode.dimensions thigh_length nan", "must be a finite positive number"),
+        ("sarah-train --episode.dimensions thigh_mass 9", "must weigh 10 kg"),
+        ("sarah-train --episode.physics.rate 250", "physics.rate must be a multiple of 100 Hz"),
+        ("sarah-eval", "give either a run folder or --parameters"),
+        ("sarah-eval nowhere", "run folder nowhere does not exist"),
+        ("sarah-eval full", "not the folder of a finished training"),
+        ("sarah-eval full --parameters 1,1,1,1,1", "give either a run folder or --parameters"),
+        ("sarah-eval --parameters 0.4,1.3,0.1,1", "must be 5 numbers"),
+        ("sarah-eval --parameters 0.4,1.3,0.1,1,nan", "P5 must be between 0 and 2, not nan"),
+        ("sarah-eval --parameters 0.4,1.3,0.1,1,2.5", "P5 must be between 0 and 2, not 2.5"),
+        ("sarah-eval --parameters a,b", "numbers separated by commas"),
+        ("sarah-eval --task walk --parameters 1,1,1,1,1", "unknown task 'walk'"),
+        ("sarah-eval --parameters 1,1,1,1,1 --episodes 0", "episodes must be at least 1, not 0"),
+        ("sarah-eval --parameters 1,1,1,1,1 --first-seed -1", "first-seed must not be negative"),
+        ("sarah-eval --parameters 1,1,1,1,1 --physics fine", "unknown physics 'fine'"),
+    ],
+)
+def test_mistakes_get_one_line_and_leave_everything_alone(arguments: str, message: str, tmp_path: Path) -> None:
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "precious.txt").write_text("data")
+    command, *rest = arguments.split()
+    process = run(command, *rest, cwd=tmp_path)
+    assert process.returncode == 2
+    assert process.stdout == "" and len(process.stderr.splitlines()) == 1, process.stderr
+    assert process.stderr.startswith(f"{command}: error: ") and message in process.stderr
+    assert [str(path.relative_to(tmp_path)) for path in sorted(tmp_path.rglob("*"))] == ["full", "full/precious.txt"]

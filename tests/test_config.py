@@ -1,0 +1,85 @@
+"""Settings: what a file may say, and what is answered when it says something else."""
+
+import dataclasses
+from pathlib import Path
+
+import pytest
+
+from sarah.config import EpisodeConfig, Physics, Randomisation, TrainingConfig, read_config, write_config
+from sarah.errors import ConfigurationError
+
+
+def test_a_written_configuration_reads_back(tmp_path: Path) -> None:
+    config = TrainingConfig(
+        algo="td3",
+        simulations=7,
+        episode=EpisodeConfig(
+            physics=Physics(rate=200, solver_iterations=10),
+            randomisation=Randomisation(friction=(0.5, 0.6), enabled=False),
+            dimensions={"thigh_length": 0.35},
+            reward_form="printed",
+        ),
+    )
+    write_config(config, tmp_path / "config.yaml")
+    assert read_config(TrainingConfig, tmp_path / "config.yaml") == config
+
+
+def test_what_a_file_does_not_name_keeps_its_default(tmp_path: Path) -> None:
+    path = tmp_path / "config.yaml"
+    path.write_text("algo: sac\nepisode:\n  time_limit: 10\n")
+    config = read_config(TrainingConfig, path)
+    assert config == TrainingConfig(algo="sac", episode=EpisodeConfig(time_limit=10.0))
+    path.write_text("")
+    assert read_config(TrainingConfig, path) == TrainingConfig()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("simulatons: 5", "unknown key 'simulatons', did you mean 'simulations'"),
+        ("episode: {physics: {raet: 500}}", "unknown key 'episode.physics.raet', did you mean 'episode.physics.rate'"),
+        ("simulations: many", "simulations must be a whole number, not 'many'"),
+        ("simulations: 2.5", "simulations must be a whole number, not 2.5"),
+        ("simulations: true", "simulations must be a whole number, not True"),
+        ("simulations: 0", "simulations must be at least 1, not 0"),
+        ("simulations: -3", "simulations must be at least 1, not -3"),
+        ("seed: -1", "seed must be between 0 and 2147483647, not -1"),
+        ("n_envs: 0", "n_envs must be at least 1, not 0"),
+        ("task: walking", "unknown task 'walking'"),
+        ("algo: td33", "unknown algo 'td33', did you mean 'td3'"),
+        ("algo: 3", "algo must be a text, not 3"),
+        ("episode: 5", "episode. must hold keys and values, not 5"),
+        ("[1, 2]", "the file must hold keys and values"),
+        ("episode: {time_limit: .inf}", "time_limit must be finite and above 1 s, not inf"),
+        ("episode: {time_limit: 1}", "time_limit must be finite and above 1 s, not 1.0"),
+        ("episode: {reward_form: printd}", "unknown reward_form 'printd', did you mean 'printed'"),
+        ("episode: {physics: {rate: 333}}", "physics.rate must be a multiple of 100 Hz, not 333"),
+        ("episode: {physics: {solver_iterations: 0}}", "physics.solver_iterations must be at least 1, not 0"),
+        ("episode: {randomisation: {friction: 0.9}}", "friction must be a list of 2 values, not 0.9"),
+        ("episode: {randomisation: {friction: [1.0, 0.7]}}", "friction must be finite, not negative and in rising"),
+        ("episode: {randomisation: {friction: [.nan, 0.7]}}", "friction must be finite, not negative and in rising"),
+        ("episode: {randomisation: {mass_deviation: 1.0}}", "mass_deviation must be below 1"),
+        ("episode: {randomisation: {actuator_bandwidth: [0, 50]}}", "actuator_bandwidth must be above 0"),
+        ("episode: {randomisation: {enabled: 1}}", "enabled must be true or false, not 1"),
+        ("episode: {dimensions: [0.3]}", "dimensions must hold names and values"),
+        ("episode: {dimensions: {thigh_length: long}}", "dimensions.thigh_length must be a number, not 'long'"),
+        ("a: [", "is not YAML"),
+    ],
+)
+def test_mistakes_are_named_in_one_line(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "mine.yaml"
+    path.write_text(text)
+    with pytest.raises(ConfigurationError) as caught:
+        read_config(TrainingConfig, path)
+    assert message in str(caught.value)
+    assert str(caught.value).count("mine.yaml") >= 1 and "\n" not in str(caught.value)
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ConfigurationError, match=r"cannot read .*nothing.yaml: No such file"):
+        read_config(TrainingConfig, tmp_path / "nothing.yaml")
+
+
+def test_configurations_are_immutable() -> None:
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        TrainingConfig().seed = 3  # type: ignore[misc]

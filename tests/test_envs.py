@@ -1,0 +1,109 @@
+"""The gymnasium environment: what checkers, libraries and users expect of it."""
+
+import dataclasses
+import warnings
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+from stable_baselines3.common.env_checker import check_env as sb3_check_env
+
+import sarah
+from sarah.config import EpisodeConfig
+from sarah.envs import FIRST_TRAINING_SEED, SteppingEnv, parameters_from
+from sarah.episode import EpisodeResult
+from sarah.errors import ConfigurationError
+from sarah.pattern_generator import PAPER_PARAMETERS
+
+SHORT = EpisodeConfig(time_limit=4.0)
+PAPER_ACTION = np.array(PAPER_PARAMETERS, dtype=np.float32) - 1.0
+
+
+def test_gymnasium_knows_it_by_name() -> None:
+    env = gymnasium.make("SarahStepping-v0", config=SHORT)
+    assert isinstance(env.unwrapped, SteppingEnv)
+    env.close()
+
+
+def test_checkers_pass_without_a_warning() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        env = gymnasium.make("SarahStepping-v0", config=SHORT, render_mode="rgb_array")
+        check_env(env.unwrapped)
+        sb3_check_env(env.unwrapped)
+        env.close()
+
+
+def test_reset_stands_and_step_simulates_to_the_end() -> None:
+    env = SteppingEnv(SHORT)
+    observation, info = env.reset(seed=1)
+    assert observation.shape == (16,)
+    assert info["seed"] >= FIRST_TRAINING_SEED
+    _, reward, terminated, truncated, info = env.step(PAPER_ACTION)
+    assert terminated and not truncated
+    assert reward == info["episode_return"]
+    for field in dataclasses.fields(EpisodeResult):
+        assert field.name in info or field.name == "trace"
+    spec = sarah.EpisodeSpec(info["parameters"], info["seed"], config=SHORT)
+    repeated = sarah.simulate(spec)
+    assert all(info[field.name] == getattr(repeated, field.name) for field in dataclasses.fields(repeated)[:-1])
+    env.close()
+
+
+def test_observation_is_of_order_one_and_upright() -> None:
+    env = SteppingEnv(SHORT)
+    observation, _ = env.reset(seed=1)
+    assert env.observation_space.contains(observation)
+    acceleration, rates, pressures, joints = np.split(observation, [3, 6, 10])
+    assert acceleration == pytest.approx([0, 0, 1], abs=0.1)
+    assert rates == pytest.approx([0, 0, 0], abs=0.1)
+    assert (pressures > 0.1).all() and (pressures < 1.5).all()
+    assert joints == pytest.approx(np.zeros(6), abs=0.1)
+    env.close()
+
+
+def test_same_seed_gives_the_same_series_of_episodes() -> None:
+    series = []
+    for _ in range(2):
+        env = SteppingEnv(SHORT)
+        first, info = env.reset(seed=5)
+        second, next_info = env.reset()
+        series.append((first.tolist(), second.tolist(), info["seed"], next_info["seed"]))
+        env.close()
+    assert series[0] == series[1]
+    assert series[0][2] != series[0][3]
+
+
+def test_action_is_the_scaled_box() -> None:
+    assert parameters_from(np.zeros(5)) == (1.0,) * 5
+    assert parameters_from(-np.ones(5)) == (0.0,) * 5
+    assert parameters_from(np.ones(5)) == (2.0,) * 5
+
+
+@pytest.mark.parametrize("action", [np.full(5, np.nan), np.full(5, 1.5), np.zeros(4)])
+def test_impossible_actions_are_refused(action: np.ndarray) -> None:
+    env = SteppingEnv(SHORT)
+    env.reset(seed=0)
+    with pytest.raises(ConfigurationError, match="an action must be 5 numbers within -1 and 1"):
+        env.step(action)
+    env.close()
+
+
+def test_an_episode_has_one_step() -> None:
+    env = SteppingEnv(SHORT)
+    with pytest.raises(ConfigurationError, match="call reset"):
+        env.step(PAPER_ACTION)
+    env.reset(seed=0)
+    env.step(PAPER_ACTION)
+    with pytest.raises(ConfigurationError, match="call reset"):
+        env.step(PAPER_ACTION)
+    env.close()
+
+
+def test_render_gives_a_picture() -> None:
+    env = SteppingEnv(SHORT, render_mode="rgb_array")
+    env.reset(seed=0)
+    picture = env.render()
+    assert picture is not None and picture.shape == (480, 640, 3) and picture.std() > 10
+    env.close()

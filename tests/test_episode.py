@@ -1,0 +1,207 @@
+"""One episode: how it ends, what it returns, and that it repeats."""
+
+import dataclasses
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import sarah
+from sarah.config import CONTROL_DT, STAND_SECONDS, EpisodeConfig, Physics, Randomisation
+from sarah.description import describe_robot
+from sarah.episode import TERMINATIONS, Episode, EpisodeResult, EpisodeSpec, simulate
+from sarah.errors import ConfigurationError
+from sarah.pattern_generator import PAPER_PARAMETERS
+from sarah.randomisation import draw_conditions
+from sarah.reward import highest_return, reward_rate
+from sarah.simulation import TorsoState
+
+SHORT = EpisodeConfig(time_limit=6.0)
+
+
+@pytest.fixture(scope="module")
+def paper_episode() -> EpisodeResult:
+    return simulate(EpisodeSpec(PAPER_PARAMETERS, seed=0), record_trace=True)
+
+
+def test_papers_parameters_step_in_place_for_30_seconds(paper_episode: EpisodeResult) -> None:
+    result = paper_episode
+    assert result.termination == "time_limit" and result.survived
+    assert result.duration == 30.0
+    assert result.score > 0.78
+    assert 2.3 < result.steps_per_second < 3.5
+    assert result.drift < 0.06
+    assert result.sole_clearance > 0.010
+    assert result.event_driven_shift > 0.9 and result.event_driven_lift > 0.9
+
+
+def test_return_is_equation_2_integrated_over_the_trace(paper_episode: EpisodeResult) -> None:
+    trace = paper_episode.trace
+    assert trace is not None
+    start = trace["position"][0]
+    moved = trace["position"] - [start[0], start[1], 0.0]
+    rewards = [reward_rate(*position, f) for position, f in zip(moved, trace["steps_per_second"], strict=True)]
+    # The trace holds the state before each tick and the reward the one after it, hence the tolerance.
+    assert sum(rewards) * CONTROL_DT == pytest.approx(paper_episode.episode_return, rel=0.01)
+    ceiling = highest_return(describe_robot().standing_height, 29.0)
+    assert paper_episode.score == pytest.approx(paper_episode.episode_return / ceiling)
+
+
+def test_trace_has_a_row_for_every_tick(paper_episode: EpisodeResult) -> None:
+    trace = paper_episode.trace
+    assert trace is not None
+    assert {len(values) for values in trace.values()} == {2900}
+    assert np.allclose(np.diff(trace["time"]), CONTROL_DT)
+    assert set(trace["phase"]) == {"shift", "lift", "land"}
+    assert trace["joints"].shape == (2900, 6) and trace["ankles"].shape == (2900, 4)
+
+
+def test_trace_does_not_change_the_result(paper_episode: EpisodeResult) -> None:
+    assert simulate(EpisodeSpec(PAPER_PARAMETERS, seed=0)) == paper_episode
+
+
+def test_steps_of_the_trace_alternate_between_the_feet(paper_episode: EpisodeResult) -> None:
+    trace = paper_episode.trace
+    assert trace is not None
+    swaps = np.flatnonzero(np.diff(trace["support"]))
+    assert len(swaps) >= paper_episode.steps
+    assert np.median(np.diff(swaps)) * CONTROL_DT == pytest.approx(1 / paper_episode.steps_per_second, rel=0.1)
+
+
+def test_same_spec_gives_identical_results_in_two_fresh_processes() -> None:
+    program = (
+        "import dataclasses, json, sarah; "
+        "config = sarah.EpisodeConfig(time_limit=6.0); "
+        "result = sarah.simulate(sarah.EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), seed=7, config=config)); "
+        "print(json.dumps(dataclasses.asdict(result)))"
+    )
+    runs = [subprocess.run([sys.executable, "-c", program], capture_output=True, check=True).stdout for _ in range(2)]
+    assert runs[0] == runs[1]
+    assert json.loads(runs[0])["steps"] > 0
+
+
+def test_seeds_differ_and_the_order_of_episodes_does_not_matter() -> None:
+    specs = [EpisodeSpec(PAPER_PARAMETERS, seed, config=SHORT) for seed in (3, 4)]
+    forward = [simulate(spec) for spec in specs]
+    backward = [simulate(spec) for spec in reversed(specs)]
+    assert forward == backward[::-1]
+    assert forward[0] != forward[1]
+
+
+def test_everything_the_seed_draws_is_within_its_range() -> None:
+    ranges = Randomisation()
+    for seed in range(200):
+        drawn = draw_conditions(ranges, seed)
+        assert 0.7 <= drawn.friction <= 1.0
+        assert 40.0 <= drawn.actuator_bandwidth <= 50.0
+        assert 20.0 <= drawn.pad_threshold <= 40.0
+        assert all(0.95 <= factor <= 1.05 for factor in drawn.mass_factors.values())
+        assert len(set(drawn.mass_factors.values())) == len(drawn.mass_factors)
+
+
+def test_changing_one_range_leaves_the_other_draws_alone() -> None:
+    drawn = draw_conditions(Randomisation(), 5)
+    other = draw_conditions(Randomisation(friction=(0.2, 0.3)), 5)
+    assert 0.2 <= other.friction <= 0.3
+    assert dataclasses.replace(other, friction=drawn.friction) == drawn
+
+
+def test_randomisation_off_leaves_only_the_start_velocity() -> None:
+    first, second = (draw_conditions(Randomisation(enabled=False), seed) for seed in (1, 2))
+    assert first.start_velocity != second.start_velocity
+    assert dataclasses.replace(first, start_velocity=second.start_velocity) == second
+    assert set(first.mass_factors.values()) == {1.0} and first.acceleration_noise == 0.0 and first.delay_ticks == 0
+
+
+def test_robot_that_does_not_step_is_stopped_after_5_seconds() -> None:
+    """With conditions that no rocking meets and the slowest time-outs it makes no two steps in time."""
+    result = simulate(EpisodeSpec((2.0, 2.0, 2.0, 2.0, 2.0), seed=0))
+    assert result.termination == "no_oscillation"
+    assert result.duration == 5.0
+    assert result.score < 0.01
+
+
+def test_steps_by_time_outs_are_told_apart_from_steps_by_sensors() -> None:
+    """A P3 that is never reached leaves every SHIFT to its time-out, the fastest of which is too slow to score."""
+    result = simulate(EpisodeSpec((0.1, 2.0, 2.0, 0.0, 0.0), seed=0))
+    assert result.steps > 40
+    assert result.event_driven_shift < 0.1
+    assert result.score < 0.2
+
+
+@pytest.mark.parametrize(
+    ("state", "steps", "time", "expected"),
+    [
+        (TorsoState((0.0, 0.0, 0.84), (0, 0, 0, 1), (0, 0, 0), (0, 0, 0)), 9, 10.0, None),
+        (TorsoState((0.251, 0.0, 0.84), (0, 0, 0, 1), (0, 0, 0), (0, 0, 0)), 9, 10.0, "left_box"),
+        (TorsoState((0.0, -0.251, 0.84), (0, 0, 0, 1), (0, 0, 0), (0, 0, 0)), 9, 10.0, "left_box"),
+        (TorsoState((0.0, 0.0, 0.58), (0, 0, 0, 1), (0, 0, 0), (0, 0, 0)), 9, 10.0, "left_box"),
+        (TorsoState((0.0, 0.0, 0.84), (0.4, 0, 0, 0.917), (0, 0, 0), (0, 0, 0)), 9, 10.0, "fell"),  # 47 degrees
+        (TorsoState((0.0, 0.0, 0.84), (0.37, 0, 0, 0.929), (0, 0, 0), (0, 0, 0)), 9, 10.0, None),  # 43 degrees
+        (TorsoState((float("nan"), 0.0, 0.84), (0, 0, 0, 1), (0, 0, 0), (0, 0, 0)), 9, 10.0, "diverged"),
+        (TorsoState((0.0, 0.0, 0.84), (0, 0, 0, 1), (0, 0, float("inf")), (0, 0, 0)), 9, 10.0, "diverged"),
+        (TorsoState((0.0, 0.0, 0.84), (0, 0, 0, 1), (0, 0, 0), (0, 0, 0)), 1, 4.99, None),
+        (TorsoState((0.0, 0.0, 0.84), (0, 0, 0, 1), (0, 0, 0), (0, 0, 0)), 1, 5.0, "no_oscillation"),
+        (TorsoState((0.0, 0.0, 0.84), (0, 0, 0, 1), (0, 0, 0), (0, 0, 0)), 9, 30.0, "time_limit"),
+    ],
+)
+def test_stop_criteria(state: TorsoState, steps: int, time: float, expected: str | None) -> None:
+    episode = Episode(EpisodeConfig(), seed=0)
+    assert episode._termination(state, steps, time) == expected
+    assert expected is None or expected in TERMINATIONS
+    episode.close()
+
+
+def test_diverging_physics_ends_with_a_finite_return(monkeypatch: pytest.MonkeyPatch) -> None:
+    episode = Episode(SHORT, seed=0)
+    episode.stand()
+    healthy = episode.simulation.torso_state
+    calls = 0
+
+    def diverging() -> TorsoState:
+        nonlocal calls
+        calls += 1
+        state = healthy()
+        return state._replace(position=(float("nan"),) * 3) if calls > 100 else state
+
+    monkeypatch.setattr(episode.simulation, "torso_state", diverging)
+    result = episode.run(PAPER_PARAMETERS)
+    episode.close()
+    assert result.termination == "diverged" and not result.survived
+    assert np.isfinite([result.score, result.episode_return, *result.final_position]).all()
+
+
+def test_printed_reward_form_changes_the_return() -> None:
+    printed = dataclasses.replace(SHORT, reward_form="printed")
+    returns = [simulate(EpisodeSpec(PAPER_PARAMETERS, 0, config=config)).episode_return for config in (SHORT, printed)]
+    assert returns[0] != returns[1]
+
+
+def test_longer_feet_are_another_robot() -> None:
+    longer = dataclasses.replace(SHORT, dimensions={"forefoot_contact": 0.14, "hindfoot_contact": 0.14})
+    assert simulate(EpisodeSpec(PAPER_PARAMETERS, 0, config=SHORT)) != simulate(
+        EpisodeSpec(PAPER_PARAMETERS, 0, config=longer)
+    )
+
+
+def test_spec_refuses_unknown_tasks_and_bad_parameters() -> None:
+    with pytest.raises(ConfigurationError, match="unknown task 'steping', did you mean 'stepping'"):
+        EpisodeSpec(PAPER_PARAMETERS, 0, task="steping")
+    with pytest.raises(ConfigurationError, match="P1 must be between"):
+        EpisodeSpec((3.0, 1.3, 0.1, 1.0, 1.0), 0)
+
+
+def test_package_offers_the_simulation_by_name() -> None:
+    assert sarah.simulate is simulate and sarah.EpisodeSpec is EpisodeSpec
+    assert sarah.Physics is Physics
+    with pytest.raises(AttributeError, match="simulat"):
+        sarah.simulat  # noqa: B018
+
+
+def test_standing_lasts_one_second() -> None:
+    episode = Episode(SHORT, seed=0)
+    episode.stand()
+    assert episode.simulation.time == pytest.approx(STAND_SECONDS)
+    episode.close()

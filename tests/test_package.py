@@ -1,0 +1,57 @@
+"""What is built: the wheel and the sdist hold everything, and claim one name."""
+
+import os
+import subprocess
+import sys
+import tarfile
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PROGRAM = (
+    "import sarah, sarah.agents.naf, sarah.urdf\n"
+    "from sarah.description import describe_robot\n"
+    "print(sarah.__file__, describe_robot().standing_height, sorted(sarah.agents.naf.PRESETS))"
+)
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """An sdist of the checkout, and the wheel made from that sdist."""
+    folder = tmp_path_factory.mktemp("dist")
+    command = [sys.executable, "-m", "build", "--no-isolation", "--outdir", str(folder), str(ROOT)]
+    subprocess.run(command, check=True, capture_output=True)
+    (sdist,), (wheel,) = folder.glob("*.tar.gz"), folder.glob("*.whl")
+    return sdist, wheel
+
+
+def test_wheel_holds_the_robot_and_the_agent_and_claims_one_name(built: tuple[Path, Path]) -> None:
+    names = zipfile.ZipFile(built[1]).namelist()
+    for name in ("urdf/sarah.urdf.xacro", "urdf/__init__.py", "agents/naf.py", "cli/train.py", "py.typed"):
+        assert f"sarah/{name}" in names
+    tops = {name.split("/")[0] for name in names}
+    assert {top for top in tops if not top.endswith(".dist-info")} == {"sarah"}
+
+
+def test_sdist_holds_what_a_developer_needs(built: tuple[Path, Path]) -> None:
+    with tarfile.open(built[0]) as archive:
+        names = {name.split("/", 1)[1] for name in archive.getnames() if "/" in name}
+    for name in ("setup.cfg", "pyproject.toml", "constraints.txt", "Makefile", "LICENSE", "urdf/sarah.urdf.xacro"):
+        assert name in names
+    assert {"agents/naf.py", "tests/test_package.py", "README.md", "CITATION.cff", "CHANGELOG.md"} <= names
+
+
+def test_wheel_works_from_another_folder(built: tuple[Path, Path], tmp_path: Path) -> None:
+    site = tmp_path / "site"
+    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target", str(site), str(built[1])]
+    subprocess.run(pip, check=True, capture_output=True)
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    environment = {**os.environ, "PYTHONPATH": str(site)}
+    process = subprocess.run(
+        [sys.executable, "-c", PROGRAM], cwd=elsewhere, env=environment, capture_output=True, text=True, check=True
+    )
+    assert process.stdout.startswith(str(site))
+    assert "0.84" in process.stdout and "one-step" in process.stdout

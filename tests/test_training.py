@@ -1,0 +1,136 @@
+"""A short training in this process: the run folder it leaves, and that it repeats."""
+
+import csv
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from stable_baselines3 import DDPG, SAC, TD3
+from stable_baselines3.common.base_class import BaseAlgorithm
+from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+
+from sarah.agents.naf import NAF
+from sarah.config import EpisodeConfig, TrainingConfig
+from sarah.envs import FIRST_TRAINING_SEED
+from sarah.episode import EpisodeSpec, simulate
+from sarah.errors import RunFolderError
+from sarah.pattern_generator import PARAMETER_NAMES
+from sarah.runs import RunFolder, new_run_path
+from sarah.training import train
+
+# Longer than the 40 simulations of warm-up, on episodes of one second of stepping.
+SHORT = TrainingConfig(simulations=44, n_envs=1, seed=3, episode=EpisodeConfig(time_limit=2.0))
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
+    folder = RunFolder.create(tmp_path_factory.mktemp("runs") / "first", SHORT)
+    train(SHORT, folder)
+    return folder
+
+
+def test_run_folder_holds_what_it_should(run: RunFolder) -> None:
+    names = {path.name for path in run.path.iterdir()}
+    expected = {"config.yaml", "command.txt", "versions.txt", "episodes.csv", "progress.csv", "model.zip"}
+    assert expected | {"parameters.json"} <= names
+    assert any(name.startswith("events.out.tfevents") for name in names)
+    assert run.config() == SHORT
+
+
+def test_every_simulation_has_its_row_and_can_be_repeated(run: RunFolder) -> None:
+    rows = list(run.episodes())
+    assert [int(row["index"]) for row in rows] == list(range(44))
+    assert all(int(row["seed"]) >= FIRST_TRAINING_SEED for row in rows)
+    row = rows[7]
+    parameters = tuple(float(row[name]) for name in PARAMETER_NAMES)
+    result = simulate(EpisodeSpec(parameters, int(row["seed"]), config=SHORT.episode))
+    assert float(row["return"]) == result.episode_return
+    assert (float(row["x"]), float(row["y"])) == result.final_position[:2]
+    assert row["termination"] == result.termination
+
+
+def test_tensorboard_shows_the_episodes_the_parameters_and_the_learning(run: RunFolder) -> None:
+    events = EventAccumulator(str(run.path))
+    events.Reload()
+    episode = ("return", "score", "steps_per_second", "x", "y", "duration", "event_driven_shift", "event_driven_lift")
+    expected = {f"episode/{name}" for name in episode} | {f"parameters/{name}" for name in PARAMETER_NAMES}
+    assert expected | {"train/loss", "train/q", "train/exploration_std"} <= set(events.Tags()["scalars"])
+    assert [event.step for event in events.Scalars("episode/score")] == list(range(1, 45))
+
+
+def test_progress_has_the_same_figures_as_the_episodes(run: RunFolder) -> None:
+    with (run.path / "progress.csv").open() as file:
+        progress = list(csv.DictReader(file))
+    for row, episode in zip(progress, run.episodes(), strict=True):
+        assert float(row["episode/return"]) == pytest.approx(float(episode["return"]))
+        assert float(row["parameters/P3"]) == pytest.approx(float(episode["P3"]))
+
+
+def test_parameters_are_read_without_the_agent(run: RunFolder) -> None:
+    content = json.loads((run.path / "parameters.json").read_text())
+    assert tuple(content["parameters"]) == PARAMETER_NAMES
+    assert content["task"] == "stepping" and content["algorithm"] == "naf" and content["simulations"] == 44
+    assert tuple(content["parameters"].values()) == RunFolder.open(run.path).parameters()
+    assert all(0.0 <= value <= 2.0 for value in run.parameters())
+
+
+def test_model_loads_and_predicts(run: RunFolder) -> None:
+    action, _ = NAF.load(run.model_path).predict(np.zeros(16, dtype=np.float32), deterministic=True)
+    assert action.shape == (5,)
+
+
+def test_training_repeats_from_its_seed(run: RunFolder, tmp_path: Path) -> None:
+    again = RunFolder.create(tmp_path / "again", SHORT)
+    train(SHORT, again)
+    assert (again.path / "episodes.csv").read_bytes() == (run.path / "episodes.csv").read_bytes()
+    assert again.parameters() == run.parameters()
+
+
+@pytest.mark.parametrize(("algo", "algorithm"), [("td3", TD3), ("sac", SAC), ("ddpg", DDPG)])
+def test_other_algorithms_run_the_same_path(algo: str, algorithm: type[BaseAlgorithm], tmp_path: Path) -> None:
+    config = TrainingConfig(algo=algo, simulations=42, n_envs=1, episode=EpisodeConfig(time_limit=1.5))
+    run = RunFolder.create(tmp_path / algo, config)
+    parameters, evaluation = train(config, run)
+    assert isinstance(algorithm.load(run.model_path), algorithm)
+    assert len(list(run.episodes())) == 42 and len(parameters) == 5
+    assert math.isfinite(evaluation.score_mean)
+
+
+def test_budget_is_kept_with_environments_side_by_side(tmp_path: Path) -> None:
+    config = TrainingConfig(simulations=5, n_envs=2, episode=EpisodeConfig(time_limit=1.5))
+    run = RunFolder.create(tmp_path / "run", config)
+    train(config, run)
+    rows = list(run.episodes())
+    assert len(rows) == 5 and len({row["seed"] for row in rows}) == 5
+
+
+def test_run_folder_that_is_not_empty_is_refused_and_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "precious.txt").write_text("data")
+    with pytest.raises(RunFolderError, match="is not empty"):
+        RunFolder.create(tmp_path, SHORT)
+    assert [path.name for path in tmp_path.iterdir()] == ["precious.txt"]
+
+
+def test_run_folders_number_themselves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert new_run_path("stepping", "naf", 3) == Path("runs/stepping/naf-s3")
+    Path("runs/stepping/naf-s3").mkdir(parents=True)
+    assert new_run_path("stepping", "naf", 3) == Path("runs/stepping/naf-s3-2")
+
+
+def test_folders_without_a_finished_training_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(RunFolderError, match="does not exist"):
+        RunFolder.open(tmp_path / "nowhere")
+    RunFolder.create(tmp_path / "begun", SHORT)
+    with pytest.raises(RunFolderError, match=r"no parameters.json"):
+        RunFolder.open(tmp_path / "begun")
+
+
+@pytest.mark.parametrize("content", ["{", "[]", "{}", '{"parameters": {"P1": "x"}}'])
+def test_spoilt_parameters_are_named(tmp_path: Path, content: str) -> None:
+    run = RunFolder.create(tmp_path / "run", SHORT)
+    (run.path / "parameters.json").write_text(content)
+    with pytest.raises(RunFolderError, match=r"parameters.json does not hold learned parameters"):
+        run.parameters()
