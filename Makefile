@@ -2,7 +2,7 @@
 PYTHON ?= $(shell command -v python3.11 || command -v python3.10 || command -v python3)
 VENV ?= .venv
 BIN := $(VENV)/bin
-SIMULATIONS ?= 200
+SIMULATIONS ?= 160
 SEED ?= 0
 
 .PHONY: help install train test test-slow lint format bench clean

@@ -34,8 +34,8 @@ class Physics:
     :param solver_iterations: of the constraint solver, per physics step
     """
 
-    rate: int = 500
-    solver_iterations: int = 30
+    rate: int = 1000
+    solver_iterations: int = 20
 
     def __post_init__(self) -> None:
         """Refuse rates that do not divide into control ticks."""
@@ -133,7 +133,7 @@ class TrainingConfig:
 
     task: str = "stepping"
     algo: str = "naf"
-    simulations: int = 200
+    simulations: int = 160
     seed: int = 0
     n_envs: int = 2
     episode: EpisodeConfig = EpisodeConfig()

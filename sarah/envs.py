@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from typing import Any
 
 import gymnasium
@@ -70,8 +69,7 @@ class SteppingEnv(gymnasium.Env[np.ndarray, np.ndarray]):
             raise ConfigurationError("the episode is over: call reset before step")
         parameters = parameters_from(action)
         result = self._episode.run(parameters)
-        fields = {field.name: getattr(result, field.name) for field in dataclasses.fields(result) if field.compare}
-        info = {"seed": self._seed, "parameters": parameters, **fields}
+        info = {"seed": self._seed, "parameters": parameters, **result.fields()}
         return observation_from(self._episode.last_reading), result.episode_return, True, False, info
 
     def render(self) -> np.ndarray | None:

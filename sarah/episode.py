@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass, field
 from typing import Any
@@ -80,6 +81,10 @@ class EpisodeResult:
     event_driven_shift: float
     event_driven_lift: float
     trace: dict[str, np.ndarray] | None = field(default=None, repr=False, compare=False)
+
+    def fields(self) -> dict[str, Any]:
+        """Every field but the trace, by name."""
+        return {field.name: getattr(self, field.name) for field in dataclasses.fields(self) if field.name != "trace"}
 
     @property
     def survived(self) -> bool:

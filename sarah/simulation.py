@@ -64,6 +64,21 @@ class TorsoState(NamedTuple):
         return all(math.isfinite(value) for part in self for value in part)
 
 
+class Camera(NamedTuple):
+    """Where a picture is taken from: a point over the floor below the torso, seen from a distance.
+
+    :param height: of the point, in m
+    :param distance: from it, in m
+    :param yaw: in degrees; 180 looks at the robot from its front
+    :param pitch: in degrees; negative looks down
+    """
+
+    height: float = 0.47
+    distance: float = 1.6
+    yaw: float = 155.0
+    pitch: float = -12.0
+
+
 class Simulation:
     """The robot standing on a plane, its soles just touching, all joints at zero.
 
@@ -91,6 +106,7 @@ class Simulation:
             fixedTimeStep=CONTROL_DT,
             numSubSteps=self._substeps,
             numSolverIterations=physics.solver_iterations,
+            enableConeFriction=0,  # scores differ by less than 0.03 from those with cones, at a fifth less time
             enableFileCaching=0,
             physicsClientId=self._client,
         )
@@ -260,16 +276,19 @@ class Simulation:
                 lowest = min(lowest, height)
         return lowest - self.robot.contact_radius
 
-    def render(self, width: int = 640, height: int = 480) -> np.ndarray:
+    def render(self, width: int = 640, height: int = 480, camera: Camera = Camera()) -> np.ndarray:  # noqa: B008
         """Draw the robot as it stands, by PyBullet's software renderer.
 
+        :param width: of the picture, in pixels
+        :param height: of the picture, in pixels
+        :param camera: where to look from
         :return: uint8 array of shape (height, width, 3)
         """
-        target = self.torso_state().position
+        x, y, _ = self.torso_state().position
         view = pybullet.computeViewMatrixFromYawPitchRoll(
-            (target[0], target[1], 0.5), distance=1.7, yaw=155.0, pitch=-12.0, roll=0.0, upAxisIndex=2
+            (x, y, camera.height), camera.distance, camera.yaw, camera.pitch, roll=0.0, upAxisIndex=2
         )
-        projection = pybullet.computeProjectionMatrixFOV(fov=45.0, aspect=width / height, nearVal=0.1, farVal=10.0)
+        projection = pybullet.computeProjectionMatrixFOV(fov=45.0, aspect=width / height, nearVal=0.05, farVal=10.0)
         image = pybullet.getCameraImage(
             width, height, view, projection, renderer=pybullet.ER_TINY_RENDERER, physicsClientId=self._client
         )

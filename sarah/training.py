@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import random
 from typing import Any
 
 import numpy as np
@@ -17,15 +18,25 @@ from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv, VecEnv
 
 from sarah.agents.naf import NAF, PRESETS
 from sarah.config import EpisodeConfig, Randomisation, TrainingConfig
-from sarah.envs import SteppingEnv, observation_from, parameters_from
+from sarah.envs import FIRST_TRAINING_SEED, SteppingEnv, observation_from, parameters_from
 from sarah.episode import Episode, EpisodeSpec
 from sarah.evaluation import Evaluation, simulate_all, summarise
 from sarah.pattern_generator import PARAMETER_NAMES
+from sarah.recommendation import SIMULATIONS_PER_CANDIDATE, Parameters, candidate_count, candidates
 from sarah.runs import RunFolder
 
 UPDATES_PER_SIMULATION = 5
 SUMMARY_EPISODES = 10
 """Episodes on unseen seeds that the closing summary's score is the median of."""
+LOGGED_FIELDS = (
+    "score",
+    "steps_per_second",
+    "duration",
+    "event_driven_shift",
+    "event_driven_lift",
+    "sole_clearance",
+)
+"""Fields of a result that are logged under their own names."""
 ACTOR_CRITIC_SETTINGS: dict[str, Any] = dict(
     learning_starts=40,
     batch_size=64,
@@ -52,41 +63,41 @@ def make_algorithm(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
 
 
 class EpisodeRecorder(BaseCallback):
-    """Writes every simulation to ``episodes.csv`` and to the logger, and keeps to the budget.
+    """Writes every simulation to ``episodes.csv`` and to the logger, and stops the learning at its budget.
 
     :param run: where to
-    :param simulations: after which the training stops
+    :param simulations: that the agent may learn from
     """
 
     def __init__(self, run: RunFolder, simulations: int) -> None:
         super().__init__()
+        self.tried: list[tuple[Parameters, float]] = []
         self._run = run
-        self._simulations = simulations
-        self._done = 0
+        self.simulations = simulations
 
     def _on_step(self) -> bool:
         for info in self.locals["infos"]:
-            if self._done < self._simulations:
-                self._run.append_episode(self._done, PARAMETER_NAMES, info)
-                self._done += 1
-                self._log(info)
-        return self._done < self._simulations
+            if len(self.tried) < self.simulations:
+                self.record(info)
+        return len(self.tried) < self.simulations
 
-    def _log(self, info: dict[str, Any]) -> None:
+    def record(self, info: dict[str, Any]) -> None:
+        """Write one simulation.
+
+        :param info: what the environment's step returned
+        """
+        self._run.append_episode(len(self.tried), PARAMETER_NAMES, info)
+        self.tried.append((info["parameters"], info["score"]))
         x, y, _ = info["final_position"]
-        values = {"return": info["episode_return"], "x": x, "y": y}
-        for name in (
-            "score", "steps_per_second", "duration", "event_driven_shift", "event_driven_lift", "sole_clearance"
-        ):  # fmt: skip
-            values[name] = info[name]
-        for name, value in values.items():
+        shown = {"return": info["episode_return"], "x": x, "y": y, **{name: info[name] for name in LOGGED_FIELDS}}
+        for name, value in shown.items():
             self.logger.record(f"episode/{name}", value)
         for name, value in zip(PARAMETER_NAMES, info["parameters"], strict=True):
             self.logger.record(f"parameters/{name}", value)
-        self.logger.dump(self._done)
+        self.logger.dump(len(self.tried))
 
 
-def train(config: TrainingConfig, run: RunFolder, progress_bar: bool = False) -> tuple[tuple[float, ...], Evaluation]:
+def train(config: TrainingConfig, run: RunFolder, progress_bar: bool = False) -> tuple[Parameters, Evaluation]:
     """Train, and write the run folder.
 
     :param config: of the training
@@ -96,22 +107,14 @@ def train(config: TrainingConfig, run: RunFolder, progress_bar: bool = False) ->
     """
     # The networks are small: more threads only wait for each other.
     torch.set_num_threads(1)
-    env = make_vec_env(
-        SteppingEnv,
-        config.n_envs,
-        seed=config.seed,
-        env_kwargs={"config": config.episode},
-        vec_env_cls=DummyVecEnv if config.n_envs == 1 else SubprocVecEnv,
-    )
-    try:
-        model = make_algorithm(config, env)
-        model.set_logger(configure(str(run.path), ["csv", "tensorboard"]))
-        recorder = EpisodeRecorder(run, config.simulations)
-        model.learn(config.simulations, callback=recorder, log_interval=None, progress_bar=progress_bar)  # type: ignore[arg-type]
-        model.logger.close()
-    finally:
-        env.close()
-    parameters = recommended_parameters(model, config.episode)
+    count = candidate_count(config.simulations)
+    comparisons = count * SIMULATIONS_PER_CANDIDATE if count > 1 else 0
+    recorder = EpisodeRecorder(run, config.simulations - comparisons)
+    model = _learn(config, run, recorder, progress_bar)
+    parameters = chosen_parameters(model, config.episode)
+    if comparisons:
+        parameters = _compare(candidates(parameters, recorder.tried, count), config, recorder)
+    model.logger.close()
     evaluation = evaluate(parameters, config, range(SUMMARY_EPISODES))
     model.save(run.model_path)
     run.write_parameters(
@@ -127,7 +130,25 @@ def train(config: TrainingConfig, run: RunFolder, progress_bar: bool = False) ->
     return parameters, evaluation
 
 
-def recommended_parameters(model: OffPolicyAlgorithm, config: EpisodeConfig) -> tuple[float, ...]:
+def _learn(config: TrainingConfig, run: RunFolder, recorder: EpisodeRecorder, progress_bar: bool) -> OffPolicyAlgorithm:
+    env = make_vec_env(
+        SteppingEnv,
+        config.n_envs,
+        seed=config.seed,
+        env_kwargs={"config": config.episode},
+        vec_env_cls=DummyVecEnv if config.n_envs == 1 else SubprocVecEnv,
+    )
+    try:
+        model = make_algorithm(config, env)
+        model.set_logger(configure(str(run.path), ["csv", "tensorboard"]))
+        # The recorder logs every simulation; stable-baselines3's own averages are left out.
+        model.learn(recorder.simulations, callback=recorder, log_interval=None, progress_bar=progress_bar)  # type: ignore[arg-type]
+    finally:
+        env.close()
+    return model
+
+
+def chosen_parameters(model: OffPolicyAlgorithm, config: EpisodeConfig) -> Parameters:
     """What the agent does, without exploration, when the robot as designed stands before it.
 
     :param model: the agent
@@ -144,7 +165,19 @@ def recommended_parameters(model: OffPolicyAlgorithm, config: EpisodeConfig) -> 
     return parameters_from(action)
 
 
-def evaluate(parameters: tuple[float, ...], config: TrainingConfig, seeds: range) -> Evaluation:
+def _compare(rivals: list[Parameters], config: TrainingConfig, recorder: EpisodeRecorder) -> Parameters:
+    """Simulate each candidate on the same seeds, and return the one of the best mean score."""
+    generator = random.Random(config.seed)
+    seeds = [generator.randrange(FIRST_TRAINING_SEED, 2**32) for _ in range(SIMULATIONS_PER_CANDIDATE)]
+    specs = [EpisodeSpec(rival, seed, config.task, config.episode) for rival in rivals for seed in seeds]
+    total = dict.fromkeys(rivals, 0.0)
+    for spec, result in zip(specs, simulate_all(specs, config.n_envs), strict=True):
+        recorder.record({**result.fields(), "seed": spec.seed, "parameters": spec.parameters})
+        total[spec.parameters] += result.score
+    return max(total, key=lambda rival: total[rival])
+
+
+def evaluate(parameters: Parameters, config: TrainingConfig, seeds: range) -> Evaluation:
     """Simulate parameters on some seeds.
 
     :param parameters: of the pattern generator

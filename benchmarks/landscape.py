@@ -1,0 +1,36 @@
+"""What each parameter does: score and steps per second with one of P1 to P5 varied around a good set."""
+
+from __future__ import annotations
+
+import argparse
+
+from sarah.config import PHYSICS, EpisodeConfig
+from sarah.episode import EpisodeSpec
+from sarah.evaluation import simulate_all, summarise
+from sarah.pattern_generator import PARAMETER_NAMES
+
+CENTRE = (0.4, 1.0, 0.1, 1.0, 1.0)
+VALUES = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 1.75, 2.0)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--episodes", type=int, default=3)
+    parser.add_argument("--physics", choices=PHYSICS, default="standard")
+    options = parser.parse_args()
+    config = EpisodeConfig(physics=PHYSICS[options.physics])
+    print(f"median score (steps per second) of {options.episodes} seeds around {CENTRE}, {options.physics} physics\n")
+    print("| value |", " | ".join(PARAMETER_NAMES), "|")
+    print("|---" * (len(PARAMETER_NAMES) + 1) + "|")
+    for value in VALUES:
+        cells = []
+        for index in range(len(PARAMETER_NAMES)):
+            parameters = (*CENTRE[:index], value, *CENTRE[index + 1 :])
+            specs = [EpisodeSpec(parameters, seed, config=config) for seed in range(options.episodes)]
+            evaluation = summarise(simulate_all(specs))
+            cells.append(f"{evaluation.score_median:.2f} ({evaluation.steps_per_second_mean:.1f})")
+        print(f"| {value:g} |", " | ".join(cells), "|", flush=True)
+
+
+if __name__ == "__main__":
+    main()
