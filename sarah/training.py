@@ -37,13 +37,6 @@ LOGGED_FIELDS = (
     "sole_clearance",
 )
 """Fields of a result that are logged under their own names."""
-ACTOR_CRITIC_SETTINGS: dict[str, Any] = dict(
-    learning_starts=40,
-    batch_size=64,
-    gamma=0.0,  # the reward is the return
-    policy_kwargs=dict(net_arch=[64, 64]),
-)
-"""For stable-baselines3's own algorithms, whose defaults are for long episodes of small rewards."""
 
 
 def make_algorithm(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
@@ -55,7 +48,8 @@ def make_algorithm(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
     common: dict[str, Any] = dict(seed=config.seed, gradient_steps=UPDATES_PER_SIMULATION * env.num_envs)
     if config.algo == "naf":
         return NAF("MlpPolicy", env, **{**PRESETS["one-step"], **common})
-    settings = {**ACTOR_CRITIC_SETTINGS, **common}
+    # Their defaults are for long episodes of small rewards; here the reward is the return.
+    settings = dict(learning_starts=40, batch_size=64, gamma=0.0, policy_kwargs=dict(net_arch=[64, 64]), **common)
     if config.algo == "sac":
         return SAC("MlpPolicy", env, **settings)
     noise = NormalActionNoise(np.zeros(len(PARAMETER_NAMES)), np.full(len(PARAMETER_NAMES), 0.2))

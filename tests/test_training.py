@@ -11,6 +11,7 @@ from stable_baselines3 import DDPG, SAC, TD3
 from stable_baselines3.common.base_class import BaseAlgorithm
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
+from sarah import training
 from sarah.agents.naf import NAF
 from sarah.config import EpisodeConfig, TrainingConfig
 from sarah.envs import FIRST_TRAINING_SEED
@@ -104,6 +105,21 @@ def test_budget_is_kept_with_environments_side_by_side(tmp_path: Path) -> None:
     train(config, run)
     rows = list(run.episodes())
     assert len(rows) == 5 and len({row["seed"] for row in rows}) == 5
+
+
+def test_candidates_are_compared_on_the_same_seeds_within_the_budget(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(training, "candidate_count", lambda simulations: 2)
+    config = TrainingConfig(simulations=16, n_envs=1, episode=EpisodeConfig(time_limit=2.0))
+    run = RunFolder.create(tmp_path / "run", config)
+    parameters, _ = train(config, run)
+    rows = list(run.episodes())
+    assert len(rows) == 16
+    first, second = rows[6:11], rows[11:]
+    assert [row["seed"] for row in first] == [row["seed"] for row in second]
+    best = max((first, second), key=lambda rivals: sum(float(row["score"]) for row in rivals))
+    assert all(tuple(float(row[name]) for name in PARAMETER_NAMES) == parameters for row in best)
 
 
 def test_run_folder_that_is_not_empty_is_refused_and_left_alone(tmp_path: Path) -> None:
