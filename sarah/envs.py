@@ -35,10 +35,10 @@ class SteppingEnv(gymnasium.Env[np.ndarray, np.ndarray]):
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 1}
-    observation_space = gymnasium.spaces.Box(-OBSERVATION_BOUND, OBSERVATION_BOUND, (16,), np.float32)
-    action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(PARAMETER_NAMES),), np.float32)
 
     def __init__(self, config: EpisodeConfig | None = None, render_mode: str | None = None) -> None:
+        self.observation_space = gymnasium.spaces.Box(-OBSERVATION_BOUND, OBSERVATION_BOUND, (16,), np.float32)
+        self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(PARAMETER_NAMES),), np.float32)
         self.config = config or EpisodeConfig()
         self.render_mode = render_mode
         self._episode: Episode | None = None

@@ -35,10 +35,10 @@ class EpisodeSpec:
     """Everything that an episode's result depends on.
 
     :param parameters: of the pattern generator: P1 to P5
-    :param seed: of the conditions that are drawn and of the sensor noise
+    :param seed: of the conditions that are drawn and of the sensor noise; a whole number from 0
     :param task: what is trained: ``"stepping"``
     :param config: what all episodes of an experiment share
-    :raises ConfigurationError: for an unknown task, or parameters out of their box
+    :raises ConfigurationError: for an unknown task, parameters out of their box, or a seed that is none
     """
 
     parameters: tuple[float, ...]
@@ -47,10 +47,12 @@ class EpisodeSpec:
     config: EpisodeConfig = EpisodeConfig()
 
     def __post_init__(self) -> None:
-        """Refuse unknown tasks, and parameters out of their box."""
+        """Refuse what has no result of its own."""
         if self.task not in TASKS:
             raise ConfigurationError(unknown_name("task", self.task, TASKS))
         SteppingParameters.checked(self.parameters)
+        if not isinstance(self.seed, int) or isinstance(self.seed, bool) or self.seed < 0:
+            raise ConfigurationError(f"seed must be a whole number from 0, not {self.seed!r}")
 
 
 @dataclass(frozen=True)
@@ -135,7 +137,7 @@ class Episode:
     def stand(self) -> SensorReading:
         """Stand for the first second.
 
-        :return: what the sensors say at its end: the observation that the agent acts on
+        :return: the last reading of that second: the observation that the agent acts on
         """
         for _ in range(round(STAND_SECONDS * CONTROL_RATE)):
             self._standing.append(self._sense())
@@ -165,16 +167,15 @@ class Episode:
     def tick(self) -> None:
         """Sense, decide, act, simulate and judge one control tick."""
         simulation, generator, gait = self.simulation, self.generator, self._gait
-        time = self._ticks * CONTROL_DT
         reading = self._sense()
         if generator.phase in (Phase.LIFT, Phase.LAND):
             gait.swing(simulation.sole_height(generator.swing.name.lower()))
         change = generator.tick(reading)
         if change is not None:
-            gait.phase_change(time, change)
+            gait.phase_change(self._ticks, change)
         simulation.set_targets(generator.targets)
         if self._trace is not None:
-            self._record(reading, time)
+            self._record(reading)
         simulation.advance()
         self._ticks += 1
         self._judge()
@@ -216,7 +217,7 @@ class Episode:
         if self.termination == "diverged":  # the result keeps to the last finite state
             return
         self._last = torso
-        frequency = self._gait.steps_per_second(elapsed)
+        frequency = self._gait.steps_per_second(self._ticks)
         self._return += reward_rate(*self._displacement(torso), frequency, self.config.reward_form) * CONTROL_DT
 
     def _displacement(self, torso: TorsoState) -> tuple[float, float, float]:
@@ -237,12 +238,12 @@ class Episode:
             return "no_oscillation"
         return "time_limit" if time > self.config.time_limit - half_tick else None
 
-    def _record(self, reading: SensorReading, time: float) -> None:
+    def _record(self, reading: SensorReading) -> None:
         assert self._trace is not None
         generator = self.generator
         torso = self.simulation.torso_state()
         row = {
-            "time": STAND_SECONDS + time,
+            "time": STAND_SECONDS + self._ticks * CONTROL_DT,
             "position": torso.position,
             "orientation": torso.orientation,
             "acceleration": reading.acceleration,
@@ -256,7 +257,7 @@ class Episode:
             "stable_x": generator.stable_x,
             "tilt": generator.tilt,
             "rate": generator.rate,
-            "steps_per_second": self._gait.steps_per_second(time),
+            "steps_per_second": self._gait.steps_per_second(self._ticks),
         }
         for name, value in row.items():
             self._trace.setdefault(name, []).append(value)

@@ -5,18 +5,21 @@ from __future__ import annotations
 from collections import deque
 from statistics import median
 
+from sarah.config import CONTROL_RATE
 from sarah.pattern_generator import Phase, PhaseChange
 
-WINDOW_SECONDS = 2.0
-SHORTEST_WINDOW_SECONDS = 0.5
+WINDOW_TICKS = 2 * CONTROL_RATE
+"""Over which steps per second are counted: 2 s."""
+SHORTEST_WINDOW_TICKS = CONTROL_RATE // 2
+"""What the time since the start counts as at least: 0.5 s."""
 
 
 class GaitRecord:
-    """Follows one episode's gait from the pattern generator's start. Times are since then, in s."""
+    """Follows one episode's gait. Ticks are control ticks since the pattern generator's start."""
 
     def __init__(self) -> None:
         self.steps = 0
-        self._recent: deque[float] = deque()
+        self._recent: deque[int] = deque()
         self._swing_height = 0.0
         self._clearances: list[float] = []
         self._ends = {Phase.SHIFT: 0, Phase.LIFT: 0, Phase.LAND: 0}
@@ -29,10 +32,10 @@ class GaitRecord:
         """
         self._swing_height = max(self._swing_height, sole_height)
 
-    def phase_change(self, time: float, change: PhaseChange) -> None:
+    def phase_change(self, tick: int, change: PhaseChange) -> None:
         """Note the end of a phase, and the step that it may complete.
 
-        :param time: of the change
+        :param tick: in which the phase ended, from 0
         :param change: what the pattern generator reported
         """
         if change.ended is Phase.STAND:
@@ -41,19 +44,19 @@ class GaitRecord:
         self._ends_by_sensors[change.ended] += change.by_sensors
         if change.is_step:
             self.steps += 1
-            self._recent.append(time)
+            self._recent.append(tick)
             self._clearances.append(self._swing_height)
         if change.ended is Phase.LAND:
             self._swing_height = 0.0
 
-    def steps_per_second(self, time: float) -> float:
+    def steps_per_second(self, ticks: int) -> float:
         """The f of equation 2: steps of the last 2 s; at first, of the time that has passed, at least 0.5 s.
 
-        :param time: now; must not run backwards
+        :param ticks: that have passed; must not run backwards
         """
-        while self._recent and self._recent[0] <= time - WINDOW_SECONDS:
+        while self._recent and self._recent[0] < ticks - WINDOW_TICKS:
             self._recent.popleft()
-        return len(self._recent) / max(SHORTEST_WINDOW_SECONDS, min(WINDOW_SECONDS, time))
+        return len(self._recent) * CONTROL_RATE / max(SHORTEST_WINDOW_TICKS, min(WINDOW_TICKS, ticks))
 
     def event_driven(self, phase: Phase) -> float:
         """Share of a phase's ends that its sensor condition made, and not its time-out; 0 if it never ended.

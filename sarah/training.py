@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import random
+from statistics import mean
 from typing import Any
 
 import numpy as np
@@ -45,7 +46,9 @@ def make_algorithm(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
     :param config: of the training
     :param env: to learn from
     """
-    common: dict[str, Any] = dict(seed=config.seed, gradient_steps=UPDATES_PER_SIMULATION * env.num_envs)
+    # stable-baselines3 gives environment i the seed + i; spread out, neighbouring trainings share no episode.
+    seed = int(np.random.SeedSequence(config.seed).generate_state(1)[0]) // 2
+    common: dict[str, Any] = dict(seed=seed, gradient_steps=UPDATES_PER_SIMULATION * env.num_envs)
     if config.algo == "naf":
         return NAF("MlpPolicy", env, **{**PRESETS["one-step"], **common})
     # Their defaults are for long episodes of small rewards; here the reward is the return.
@@ -57,23 +60,20 @@ def make_algorithm(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
 
 
 class EpisodeRecorder(BaseCallback):
-    """Writes every simulation to ``episodes.csv`` and to the logger, and stops the learning at its budget.
+    """Writes every simulation to ``episodes.csv`` and to the logger.
 
     :param run: where to
-    :param simulations: that the agent may learn from
     """
 
-    def __init__(self, run: RunFolder, simulations: int) -> None:
+    def __init__(self, run: RunFolder) -> None:
         super().__init__()
         self.tried: list[tuple[Parameters, float]] = []
         self._run = run
-        self.simulations = simulations
 
     def _on_step(self) -> bool:
         for info in self.locals["infos"]:
-            if len(self.tried) < self.simulations:
-                self.record(info)
-        return len(self.tried) < self.simulations
+            self.record(info)
+        return True
 
     def record(self, info: dict[str, Any]) -> None:
         """Write one simulation.
@@ -102,15 +102,16 @@ def train(config: TrainingConfig, run: RunFolder, progress_bar: bool = False) ->
     # The networks are small: more threads only wait for each other.
     torch.set_num_threads(1)
     count = candidate_count(config.simulations)
-    comparisons = count * SIMULATIONS_PER_CANDIDATE if count > 1 else 0
-    recorder = EpisodeRecorder(run, config.simulations - comparisons)
-    model = _learn(config, run, recorder, progress_bar)
-    parameters = chosen_parameters(model, config.episode)
-    if comparisons:
-        parameters = _compare(candidates(parameters, recorder.tried, count), config, recorder)
+    compared = count * SIMULATIONS_PER_CANDIDATE if count > 1 else 0
+    # Environments side by side take simulations n_envs at a time; what that leaves over goes to the comparison.
+    learned_from = (config.simulations - compared) // config.n_envs * config.n_envs
+    recorder = EpisodeRecorder(run)
+    model = _learn(config, learned_from, run, recorder, progress_bar)
+    model.save(run.model_path)
+    rivals = candidates(chosen_parameters(model, config.episode), recorder.tried, count)
+    parameters = _compare(rivals, config.simulations - learned_from, config, recorder)
     model.logger.close()
     evaluation = evaluate(parameters, config, range(SUMMARY_EPISODES))
-    model.save(run.model_path)
     run.write_parameters(
         {
             "task": config.task,
@@ -124,11 +125,12 @@ def train(config: TrainingConfig, run: RunFolder, progress_bar: bool = False) ->
     return parameters, evaluation
 
 
-def _learn(config: TrainingConfig, run: RunFolder, recorder: EpisodeRecorder, progress_bar: bool) -> OffPolicyAlgorithm:
+def _learn(
+    config: TrainingConfig, simulations: int, run: RunFolder, recorder: EpisodeRecorder, progress_bar: bool
+) -> OffPolicyAlgorithm:
     env = make_vec_env(
         SteppingEnv,
         config.n_envs,
-        seed=config.seed,
         env_kwargs={"config": config.episode},
         vec_env_cls=DummyVecEnv if config.n_envs == 1 else SubprocVecEnv,
     )
@@ -136,7 +138,7 @@ def _learn(config: TrainingConfig, run: RunFolder, recorder: EpisodeRecorder, pr
         model = make_algorithm(config, env)
         model.set_logger(configure(str(run.path), ["csv", "tensorboard"]))
         # The recorder logs every simulation; stable-baselines3's own averages are left out.
-        model.learn(recorder.simulations, callback=recorder, log_interval=None, progress_bar=progress_bar)  # type: ignore[arg-type]
+        model.learn(simulations, callback=recorder, log_interval=None, progress_bar=progress_bar)  # type: ignore[arg-type]
     finally:
         env.close()
     return model
@@ -159,16 +161,21 @@ def chosen_parameters(model: OffPolicyAlgorithm, config: EpisodeConfig) -> Param
     return parameters_from(action)
 
 
-def _compare(rivals: list[Parameters], config: TrainingConfig, recorder: EpisodeRecorder) -> Parameters:
-    """Simulate each candidate on the same seeds, and return the one of the best mean score."""
+def _compare(
+    rivals: list[Parameters], simulations: int, config: TrainingConfig, recorder: EpisodeRecorder
+) -> Parameters:
+    """Simulate the candidates in turn, each round on one seed for all, and return the one of the best mean score."""
     generator = random.Random(config.seed)
-    seeds = [generator.randrange(FIRST_TRAINING_SEED, 2**32) for _ in range(SIMULATIONS_PER_CANDIDATE)]
-    specs = [EpisodeSpec(rival, seed, config.task, config.episode) for rival in rivals for seed in seeds]
-    total = dict.fromkeys(rivals, 0.0)
+    specs: list[EpisodeSpec] = []
+    while len(specs) < simulations:
+        seed = generator.randrange(FIRST_TRAINING_SEED, 2**32)
+        specs += [EpisodeSpec(rival, seed, config.task, config.episode) for rival in rivals]
+    scores: dict[Parameters, list[float]] = {rival: [] for rival in rivals}
+    specs = specs[:simulations]
     for spec, result in zip(specs, simulate_all(specs, config.n_envs), strict=True):
         recorder.record({**result.fields(), "seed": spec.seed, "parameters": spec.parameters})
-        total[spec.parameters] += result.score
-    return max(total, key=lambda rival: total[rival])
+        scores[spec.parameters].append(result.score)
+    return max(rivals, key=lambda rival: mean(scores[rival] or [0.0]))
 
 
 def evaluate(parameters: Parameters, config: TrainingConfig, seeds: range) -> Evaluation:

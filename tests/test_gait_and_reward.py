@@ -11,25 +11,31 @@ from sarah.reward import highest_return, reward_rate
 STEP = PhaseChange(Phase.LAND, by_sensors=True, is_step=True)
 
 
-def record_of_steps(times: list[float]) -> GaitRecord:
+def record_of_steps(ticks: list[int]) -> GaitRecord:
     gait = GaitRecord()
-    for time in times:
-        gait.phase_change(time, STEP)
+    for tick in ticks:
+        gait.phase_change(tick, STEP)
     return gait
 
 
 def test_steps_per_second_counts_the_last_two_seconds() -> None:
-    gait = record_of_steps([0.5, 1.0, 1.5, 2.0, 2.5, 3.0])
-    assert gait.steps_per_second(3.2) == 4 / 2.0  # 1.5, 2.0, 2.5 and 3.0
-    assert gait.steps_per_second(3.5) == 3 / 2.0
-    assert gait.steps_per_second(9.0) == 0.0
+    gait = record_of_steps([50, 100, 150, 200, 250, 300])
+    assert gait.steps_per_second(320) == 4 / 2.0  # those at 150, 200, 250 and 300
+    assert gait.steps_per_second(351) == 3 / 2.0
+    assert gait.steps_per_second(900) == 0.0
     assert gait.steps == 6
 
 
+def test_every_step_counts_for_two_seconds_to_the_tick() -> None:
+    for tick in (0, 7, 1234):
+        gait = record_of_steps([tick])
+        assert sum(gait.steps_per_second(now) > 0 for now in range(tick + 1, tick + 400)) == 200
+
+
 def test_steps_per_second_starts_with_the_elapsed_time() -> None:
-    gait = record_of_steps([0.1, 0.2])
-    assert gait.steps_per_second(0.25) == 2 / 0.5  # at least half a second
-    assert gait.steps_per_second(0.8) == 2 / 0.8
+    gait = record_of_steps([10, 20])
+    assert gait.steps_per_second(25) == 2 / 0.5  # at least half a second
+    assert gait.steps_per_second(80) == 2 / 0.8
 
 
 def test_clearance_is_the_median_of_each_steps_highest() -> None:
@@ -37,7 +43,7 @@ def test_clearance_is_the_median_of_each_steps_highest() -> None:
     for heights in ((0.001, 0.010, 0.004), (0.020,), (0.012, 0.011)):
         for height in heights:
             gait.swing(height)
-        gait.phase_change(1.0, STEP)
+        gait.phase_change(100, STEP)
     assert gait.sole_clearance == 0.012
     assert GaitRecord().sole_clearance == 0.0
 
@@ -45,9 +51,9 @@ def test_clearance_is_the_median_of_each_steps_highest() -> None:
 def test_shares_of_phases_that_sensors_ended() -> None:
     gait = GaitRecord()
     for by_sensors in (True, True, True, False):
-        gait.phase_change(0.0, PhaseChange(Phase.SHIFT, by_sensors))
-    gait.phase_change(0.0, PhaseChange(Phase.LIFT, by_sensors=False))
-    gait.phase_change(0.0, PhaseChange(Phase.STAND, by_sensors=False))
+        gait.phase_change(0, PhaseChange(Phase.SHIFT, by_sensors))
+    gait.phase_change(0, PhaseChange(Phase.LIFT, by_sensors=False))
+    gait.phase_change(0, PhaseChange(Phase.STAND, by_sensors=False))
     assert gait.event_driven(Phase.SHIFT) == 0.75
     assert gait.event_driven(Phase.LIFT) == 0.0
     assert gait.event_driven(Phase.LAND) == 0.0

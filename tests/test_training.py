@@ -107,6 +107,16 @@ def test_budget_is_kept_with_environments_side_by_side(tmp_path: Path) -> None:
     assert len(rows) == 5 and len({row["seed"] for row in rows}) == 5
 
 
+def test_trainings_of_neighbouring_seeds_share_no_episode(tmp_path: Path) -> None:
+    seeds = []
+    for seed in (0, 1):
+        config = TrainingConfig(simulations=6, n_envs=2, seed=seed, episode=EpisodeConfig(time_limit=1.2))
+        run = RunFolder.create(tmp_path / str(seed), config)
+        train(config, run)
+        seeds += [row["seed"] for row in run.episodes()]
+    assert len(set(seeds)) == len(seeds) == 12
+
+
 def test_candidates_are_compared_on_the_same_seeds_within_the_budget(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -116,8 +126,9 @@ def test_candidates_are_compared_on_the_same_seeds_within_the_budget(
     parameters, _ = train(config, run)
     rows = list(run.episodes())
     assert len(rows) == 16
-    first, second = rows[6:11], rows[11:]
+    first, second = rows[6::2], rows[7::2]
     assert [row["seed"] for row in first] == [row["seed"] for row in second]
+    assert len({row["seed"] for row in first}) == 5
     best = max((first, second), key=lambda rivals: sum(float(row["score"]) for row in rivals))
     assert all(tuple(float(row[name]) for name in PARAMETER_NAMES) == parameters for row in best)
 
