@@ -39,6 +39,7 @@ def row(name: str, parameters: tuple[float, ...], standard: Evaluation, referenc
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--algo", nargs="+", choices=ALGORITHMS, default=["naf", "td3"])
+    parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--seeds", type=int, default=10)
     parser.add_argument("--simulations", type=int, default=TrainingConfig().simulations)
     parser.add_argument("--episodes", type=int, default=20, help="unseen seeds at the standard physics")
@@ -59,7 +60,7 @@ def main() -> None:
     print(row("paper", PAPER_PARAMETERS, *evaluations(PAPER_PARAMETERS, TrainingConfig())), flush=True)
     for algo in options.algo:
         scores = []
-        for seed in range(options.seeds):
+        for seed in range(options.first_seed, options.first_seed + options.seeds):
             config = TrainingConfig(algo=algo, simulations=options.simulations, seed=seed)
             parameters = learned(config, options.runs / f"{algo}-{options.simulations}-s{seed}")
             standard, reference = evaluations(parameters, config)
