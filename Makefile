@@ -1,5 +1,5 @@
 # `make train` and `make test` work as the first command in a fresh clone.
-PYTHON ?= $(shell command -v python3.11 || command -v python3.10 || command -v python3)
+PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV ?= .venv
 BIN := $(VENV)/bin
 SIMULATIONS ?= 160
@@ -13,6 +13,7 @@ help:  ## show what can be made
 install: $(VENV)/installed  ## create the environment in .venv, with the tested versions
 
 $(VENV)/installed: setup.cfg pyproject.toml constraints.txt
+	@$(PYTHON) -c 'import sys; sys.version_info[:2] == (3, 11) or sys.exit("the tested versions are for Python 3.11: make PYTHON=...")'
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/pip install --quiet --upgrade pip -c constraints.txt
 	$(BIN)/pip install --quiet -c constraints.txt --editable '.[dev]'
@@ -22,7 +23,7 @@ train: install  ## the First Training with NAF: a robot that learned to step in 
 	$(BIN)/sarah-train --task stepping --algo naf --simulations $(SIMULATIONS) --seed $(SEED)
 
 test: install  ## the tests
-	$(BIN)/python -m pytest -n 2 --dist worksteal -m 'not slow'
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m 'not slow'
 
 test-slow: install  ## the slow tests: minutes of simulation
 	$(BIN)/python -m pytest -m slow
@@ -40,6 +41,7 @@ bench: install  ## the tables of the README and docs: hours of simulation
 	$(BIN)/python benchmarks/paper_parameters.py
 	$(BIN)/python benchmarks/landscape.py
 	$(BIN)/python benchmarks/clock.py
+	$(BIN)/python benchmarks/physics.py
 	$(BIN)/python benchmarks/first_training.py
 
 clean:  ## remove what was built, but no runs

@@ -11,13 +11,13 @@ import random
 
 from sarah import pattern_generator
 from sarah.episode import EpisodeResult, EpisodeSpec, simulate
-from sarah.evaluation import CLOCK_SHARE
+from sarah.evaluation import SMALLEST_EVENT_SHARE
 
 CLOCKS = ((0.05, 2.0, 2.0, 0.0, 0.0), (0.2, 0.0, 2.0, 0.0, 0.0), (1.0, 1.0, 1.0, 0.0, 0.0), (1.5, 0.5, 0.1, 0.0, 0.0))
 
 
 def is_clock(result: EpisodeResult) -> bool:
-    return min(result.event_driven_shift, result.event_driven_lift) < CLOCK_SHARE
+    return min(result.event_driven_shift, result.event_driven_lift) < SMALLEST_EVENT_SHARE
 
 
 def main() -> None:

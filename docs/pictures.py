@@ -13,7 +13,7 @@ import numpy as np
 from sarah.config import EpisodeConfig, Randomisation
 from sarah.episode import Episode
 from sarah.pattern_generator import Phase, Side
-from sarah.simulation import Camera
+from sarah.simulator import Camera
 
 PARAMETERS = (0.37, 0.3, 0.1, 1.0, 1.0)
 FROM_SECONDS, TO_SECONDS = 8.0, 8.75

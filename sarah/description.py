@@ -27,6 +27,14 @@ PASSIVE_JOINTS = tuple(f"{side}_{plate}" for side in SIDES for plate in PLATES)
 JOINT_TYPES = {
     joint: "prismatic" if joint.endswith("leg_length") else "revolute" for joint in (*ACTUATED_JOINTS, *PASSIVE_JOINTS)
 }
+JOINT_AXES = {
+    **dict.fromkeys(("left_hip_abduction", "right_hip_abduction"), (0.0, 1.0, 0.0)),
+    **dict.fromkeys(("left_hip_flexion", "right_hip_flexion"), (1.0, 0.0, 0.0)),
+    **dict.fromkeys(("left_leg_length", "right_leg_length"), (0.0, 0.0, 1.0)),
+    **dict.fromkeys(("left_forefoot", "right_forefoot"), (1.0, 0.0, 0.0)),
+    **dict.fromkeys(("left_hindfoot", "right_hindfoot"), (-1.0, 0.0, 0.0)),
+}
+"""In the torso's frame: positive swings a leg to the left, forward, retracts it, and turns a plate against its pad."""
 GROUPS = {
     "top": ("torso", "left_hip", "right_hip"),
     "left leg": ("left_thigh", "left_shank", "left_forefoot", "left_hindfoot"),
@@ -184,6 +192,8 @@ def _check_joints(model: Any) -> None:
             raise DescriptionError(f"URDF has no joint {name!r}")
         if joints[name].type != kind:
             raise DescriptionError(f"URDF joint {name!r} must be {kind}, not {joints[name].type}")
+        if tuple(joints[name].axis) != JOINT_AXES[name]:
+            raise DescriptionError(f"URDF joint {name!r} must turn about {JOINT_AXES[name]}, not {joints[name].axis}")
         limit = joints[name].limit
         if limit is None or limit.lower is None or limit.upper is None or not limit.lower <= 0.0 <= limit.upper:
             raise DescriptionError(f"URDF joint {name!r} must have limits with zero between them")
@@ -221,7 +231,7 @@ def _check_inertials(model: Any) -> None:
 
 def _read_off(urdf: str, model: Any) -> RobotDescription:
     soles: dict[str, tuple[tuple[float, float, float], ...]] = {}
-    lowest, radius = 0.0, 0.0
+    lowest, lowest_box, radius = 0.0, 0.0, 0.0
     for plate in PASSIVE_JOINTS:
         spheres = [shape for shape in model.link_map[plate].collisions if shape.geometry.sphere is not None]
         if not spheres:
@@ -230,6 +240,13 @@ def _read_off(urdf: str, model: Any) -> RobotDescription:
         soles[plate] = tuple((float(s.origin[0, 3]), float(s.origin[1, 3]), float(s.origin[2, 3])) for s in spheres)
         to_torso = model.get_transform(plate, "torso")
         lowest = min(lowest, *((to_torso @ [*sole, 1.0])[2] - radius for sole in soles[plate]))
+        boxes = [shape for shape in model.link_map[plate].collisions if shape.geometry.box is not None]
+        for box in boxes:
+            lowest_box = min(lowest_box, to_torso[2, 3] + box.origin[2, 3] - box.geometry.box.size[2] / 2)
+    if lowest_box < lowest:
+        raise DescriptionError(
+            "the foot plates must lie above the soles: raise hinge_height or make the plates thinner"
+        )
     limits = {name: (joint.limit.lower, joint.limit.upper) for name, joint in model.joint_map.items()}
     efforts = {name: joint.limit.effort for name, joint in model.joint_map.items()}
     return RobotDescription(urdf, float(-lowest), limits, efforts, soles, radius)

@@ -12,7 +12,7 @@ from sarah.episode import Episode
 from sarah.errors import ConfigurationError
 from sarah.pattern_generator import PARAMETER_NAMES, PARAMETER_RANGE
 from sarah.sensors import SensorReading
-from sarah.simulation import GRAVITY
+from sarah.simulator import GRAVITY
 
 FIRST_TRAINING_SEED = 2**31
 """Episode seeds that the environment draws start here, so that smaller ones stay unseen by every training."""

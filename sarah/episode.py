@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from sarah.config import CONTROL_DT, CONTROL_RATE, STAND_SECONDS, TASKS, EpisodeConfig
-from sarah.description import PASSIVE_JOINTS, describe_robot
+from sarah.config import CONTROL_DT, CONTROL_RATE, STAND_SECONDS, TASKS, EpisodeConfig, Physics
+from sarah.description import PASSIVE_JOINTS, RobotDescription, describe_robot
 from sarah.errors import ConfigurationError, unknown_name
 from sarah.gait import GaitRecord
 from sarah.pattern_generator import PatternGenerator, Phase, SteppingParameters
-from sarah.randomisation import draw_conditions
+from sarah.randomisation import Conditions, draw_conditions
 from sarah.reward import highest_return, reward_rate
 from sarah.sensors import ImperfectSensors, SensorReading
-from sarah.simulation import Simulation, TorsoState
+from sarah.simulation import Simulation
+from sarah.simulator import Simulator, TorsoState
 
 BOX_HALF_WIDTH = 0.25
 """Displacement of the torso along any axis at which an episode ends, in m; the paper's second criterion."""
@@ -47,10 +49,11 @@ class EpisodeSpec:
     config: EpisodeConfig = EpisodeConfig()
 
     def __post_init__(self) -> None:
-        """Refuse what has no result of its own."""
+        """Refuse what has no result of its own, and take the parameters as floats."""
         if self.task not in TASKS:
             raise ConfigurationError(unknown_name("task", self.task, TASKS))
         SteppingParameters.checked(self.parameters)
+        object.__setattr__(self, "parameters", tuple(map(float, self.parameters)))
         if not isinstance(self.seed, int) or isinstance(self.seed, bool) or self.seed < 0:
             raise ConfigurationError(f"seed must be a whole number from 0, not {self.seed!r}")
 
@@ -108,17 +111,24 @@ class Episode:
     :param config: what all episodes of an experiment share
     :param seed: of this episode
     :param record_trace: whether to keep a trace of every control tick
+    :param build: makes the simulator from robot, physics and conditions
     """
 
     generator: PatternGenerator
     """Of the joint targets, from :meth:`start` on."""
 
-    def __init__(self, config: EpisodeConfig, seed: int, record_trace: bool = False) -> None:
+    def __init__(
+        self,
+        config: EpisodeConfig,
+        seed: int,
+        record_trace: bool = False,
+        build: Callable[[RobotDescription, Physics, Conditions], Simulator] = Simulation,
+    ) -> None:
         self.config = config
         self.termination: str | None = None
         self.robot = describe_robot(config.dimensions)
         conditions = draw_conditions(config.randomisation, seed)
-        self.simulation = Simulation(self.robot, config.physics, conditions)
+        self.simulation = build(self.robot, config.physics, conditions)
         self.last_reading = self.simulation.read()
         self._pad_threshold = conditions.pad_threshold
         self._sensors = ImperfectSensors(

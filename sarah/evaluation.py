@@ -11,8 +11,10 @@ from statistics import mean, median, pstdev
 
 from sarah.episode import EpisodeResult, EpisodeSpec, simulate
 
-CLOCK_SHARE = 0.9
+SMALLEST_EVENT_SHARE = 0.9
+"""Share of SHIFT and of LIFT phases that sensors end, below which a gait is a clock."""
 SMALLEST_CLEARANCE = 0.010
+"""Sole clearance in m below which a gait is a shuffle."""
 
 
 def simulate_all(specs: Sequence[EpisodeSpec], processes: int | None = None) -> list[EpisodeResult]:
@@ -35,10 +37,9 @@ class Evaluation:
 
     :param episodes: how many
     :param score_mean: of :attr:`~sarah.episode.EpisodeResult.score`; ``_median``, ``_std``, ``_min`` likewise
-    :param steps_per_second_mean: in 1/s
-    :param steps_per_second_std: in 1/s
-    :param drift_mean: of the torso's horizontal distance from its start at the end, in m
-    :param drift_max: the largest, in m
+    :param steps_per_second_mean: in 1/s; ``_median``, ``_std`` likewise
+    :param drift_mean: of the torso's horizontal distance from its start at the end, in m; ``_median``, ``_std``,
+        ``_max`` likewise
     :param survival_rate: share of the episodes that ran to their time limit
     :param event_driven_shift_mean: share of the SHIFT phases that sensors ended
     :param event_driven_lift_mean: the same of the LIFT phases
@@ -51,8 +52,11 @@ class Evaluation:
     score_std: float
     score_min: float
     steps_per_second_mean: float
+    steps_per_second_median: float
     steps_per_second_std: float
     drift_mean: float
+    drift_median: float
+    drift_std: float
     drift_max: float
     survival_rate: float
     event_driven_shift_mean: float
@@ -63,7 +67,7 @@ class Evaluation:
     def is_gait(self) -> bool:
         """Whether the robot steps by its sensors and lifts its feet, and does not shuffle to a clock."""
         shares = (self.event_driven_shift_mean, self.event_driven_lift_mean)
-        return min(shares) >= CLOCK_SHARE and self.sole_clearance_mean >= SMALLEST_CLEARANCE
+        return min(shares) >= SMALLEST_EVENT_SHARE and self.sole_clearance_mean >= SMALLEST_CLEARANCE
 
 
 def summarise(results: Iterable[EpisodeResult]) -> Evaluation:
@@ -82,8 +86,11 @@ def summarise(results: Iterable[EpisodeResult]) -> Evaluation:
         score_std=pstdev(scores),
         score_min=min(scores),
         steps_per_second_mean=mean(frequencies),
+        steps_per_second_median=median(frequencies),
         steps_per_second_std=pstdev(frequencies),
         drift_mean=mean(drifts),
+        drift_median=median(drifts),
+        drift_std=pstdev(drifts),
         drift_max=max(drifts),
         survival_rate=mean(result.survived for result in episodes),
         event_driven_shift_mean=mean(result.event_driven_shift for result in episodes),

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from sarah.config import Randomisation
 from sarah.description import GROUPS
+from sarah.errors import ConfigurationError
 
 LINKS = tuple(link for group in GROUPS.values() for link in group)
 
@@ -17,7 +18,7 @@ class Conditions:
     """One episode's draw: the robot and the world as they really are.
 
     :param friction: Coulomb friction coefficient between sole and floor
-    :param mass_factors: factor on each link's mass and inertia
+    :param mass_factors: factor on the mass and inertia of every link
     :param actuator_bandwidth: of the position servos, per second
     :param pad_threshold: pad load above which a foot counts as carrying, in N
     :param acceleration_noise: standard deviation in m/s^2
@@ -36,6 +37,11 @@ class Conditions:
     delay_ticks: int = 0
     start_velocity: tuple[float, float] = (0.0, 0.0)
     sensor_seed: int = 0
+
+    def __post_init__(self) -> None:
+        """Refuse factors that leave a link out."""
+        if set(self.mass_factors) != set(LINKS):
+            raise ConfigurationError(f"mass_factors must name every link: {', '.join(LINKS)}")
 
 
 NOMINAL = Conditions()

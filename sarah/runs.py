@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import csv
 import json
+import os
 import platform
 import shlex
 import sys
@@ -142,17 +143,22 @@ class RunFolder:
 
         :param content: with at least the learned ``parameters`` by name
         """
-        self._parameters_path.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+        unfinished = self._parameters_path.with_suffix(".json.new")
+        unfinished.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+        os.replace(unfinished, self._parameters_path)
 
-    def parameters(self) -> tuple[float, ...]:
+    def parameters(self, names: Sequence[str]) -> tuple[float, ...]:
         """Read the learned parameters.
 
-        :raises RunFolderError: if the file does not hold them
+        :param names: of the parameters, in the order to return them
+        :raises RunFolderError: if the file does not hold exactly these
         """
         try:
-            content = json.loads(self._parameters_path.read_text(encoding="utf-8"))
-            return tuple(float(value) for value in content["parameters"].values())
-        except (OSError, ValueError, KeyError, AttributeError, TypeError) as error:
+            learned = json.loads(self._parameters_path.read_text(encoding="utf-8"))["parameters"]
+            if set(learned) != set(names):
+                raise ValueError(f"it names {', '.join(map(str, learned)) or 'none'} instead of {', '.join(names)}")
+            return tuple(float(learned[name]) for name in names)
+        except (OSError, ValueError, KeyError, TypeError) as error:
             raise RunFolderError(f"{self._parameters_path} does not hold learned parameters: {error}") from error
 
 

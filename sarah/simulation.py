@@ -9,81 +9,39 @@ from __future__ import annotations
 import math
 import os
 import tempfile
+from importlib import import_module
+from itertools import product
 from types import ModuleType
-from typing import Any, NamedTuple
 
 import numpy as np
 
 from sarah.config import CONTROL_DT, CONTROL_RATE, PHYSICS, Physics
-from sarah.description import ACTUATED_JOINTS, PASSIVE_JOINTS, SIDES, RobotDescription
+from sarah.description import ACTUATED_JOINTS, PASSIVE_JOINTS, PLATES, SIDES, RobotDescription
 from sarah.randomisation import NOMINAL, Conditions
 from sarah.sensors import SensorReading, Vector
+from sarah.simulator import GRAVITY, STANDARD_CAMERA, Camera, TorsoState, rotate_to_body
 
 
 def _import_pybullet() -> ModuleType:
     """Import PyBullet without the build time that it writes to the process's standard error."""
-    kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 2)
     try:
-        import pybullet
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
-        os.close(nowhere)
-    return pybullet
+        kept = os.dup(2)
+    except OSError:  # closed: nothing will be written
+        return import_module("pybullet")
+    with open(os.devnull, "wb") as nowhere:
+        os.dup2(nowhere.fileno(), 2)
+        try:
+            return import_module("pybullet")
+        finally:
+            os.dup2(kept, 2)
+            os.close(kept)
 
 
 pybullet = _import_pybullet()
 
-GRAVITY = 9.81
-
-
-class TorsoState(NamedTuple):
-    """Where the torso really is, in the world's frame.
-
-    :param position: of its centre, in m
-    :param orientation: unit quaternion (x, y, z, w)
-    :param velocity: in m/s
-    :param angular_velocity: in rad/s
-    """
-
-    position: Vector
-    orientation: tuple[float, float, float, float]
-    velocity: Vector
-    angular_velocity: Vector
-
-    @property
-    def tilt(self) -> float:
-        """Angle between the torso's axis and the vertical, in rad."""
-        x, y, _, _ = self.orientation
-        return math.acos(max(-1.0, min(1.0, 1.0 - 2.0 * (x * x + y * y))))
-
-    @property
-    def is_finite(self) -> bool:
-        """Whether the physics engine still returns numbers."""
-        return all(math.isfinite(value) for part in self for value in part)
-
-
-class Camera(NamedTuple):
-    """Where a picture is taken from: a point over the floor below the torso, seen from a distance.
-
-    :param height: of the point, in m
-    :param distance: from it, in m
-    :param yaw: in degrees; 180 looks at the robot from its front
-    :param pitch: in degrees; negative looks down
-    """
-
-    height: float = 0.47
-    distance: float = 1.6
-    yaw: float = 155.0
-    pitch: float = -12.0
-
 
 class Simulation:
-    """The robot standing on a plane, its soles just touching, all joints at zero.
-
-    Implements what an episode needs of a physics engine: :meth:`set_targets`, :meth:`push`, :meth:`advance`,
-    :meth:`read`, :meth:`torso_state`, :meth:`sole_height` and :meth:`close`.
+    """A :class:`~sarah.simulator.Simulator` in PyBullet.
 
     :param robot: the checked robot
     :param physics: how finely to integrate
@@ -102,11 +60,18 @@ class Simulation:
         self._client = pybullet.connect(pybullet.DIRECT)
         if self._client < 0:
             raise RuntimeError("PyBullet has no free client: close simulations that are done")
+        try:
+            self._build(physics, conditions)
+        except BaseException:
+            self.close()
+            raise
+
+    def _build(self, physics: Physics, conditions: Conditions) -> None:
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=CONTROL_DT,
             numSubSteps=self._substeps,
             numSolverIterations=physics.solver_iterations,
-            enableConeFriction=0,  # scores differ by less than 0.03 from those with cones, at a fifth less time
+            enableConeFriction=0,  # as good as friction cones here, and cheaper
             enableFileCaching=0,
             physicsClientId=self._client,
         )
@@ -117,12 +82,12 @@ class Simulation:
         self._joints = [self._links[name] for name in ACTUATED_JOINTS]
         self._pads = {
             (self._links[f"{side}_shank"], self._links[f"{side}_{plate}"]): index
-            for index, (side, plate) in enumerate((side, plate) for side in SIDES for plate in ("forefoot", "hindfoot"))
+            for index, (side, plate) in enumerate(product(SIDES, PLATES))
         }
         self._keep_only_pad_contacts()
         self._apply_conditions(conditions)
         self._gains = [conditions.actuator_bandwidth * CONTROL_DT / self._substeps] * len(self._joints)
-        self._efforts = [robot.efforts[name] for name in ACTUATED_JOINTS]
+        self._efforts = [self.robot.efforts[name] for name in ACTUATED_JOINTS]
         self._velocity_before = self.torso_state().velocity
         self.set_targets((0.0,) * len(self._joints))
 
@@ -164,7 +129,7 @@ class Simulation:
 
     def _apply_conditions(self, conditions: Conditions) -> None:
         client = self._client
-        for link, factor in conditions.mass_factors.items():
+        for link, factor in conditions.mass_factors.items():  # of every link
             index = self._links[link]
             dynamics = pybullet.getDynamicsInfo(self._body, index, physicsClientId=client)
             pybullet.changeDynamics(
@@ -235,10 +200,10 @@ class Simulation:
             rotate_to_body(torso.orientation, specific_force),
             rotate_to_body(torso.orientation, torso.angular_velocity),
             self._pressures(),
-            self.joint_positions(ACTUATED_JOINTS),
+            self.joint_positions(ACTUATED_JOINTS),  # type: ignore[arg-type]  # six of them
         )
 
-    def joint_positions(self, names: tuple[str, ...]) -> Any:
+    def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
         """Positions of some joints, in rad and m.
 
         :param names: of the joints
@@ -276,7 +241,7 @@ class Simulation:
                 lowest = min(lowest, height)
         return lowest - self.robot.contact_radius
 
-    def render(self, width: int = 640, height: int = 480, camera: Camera = Camera()) -> np.ndarray:  # noqa: B008
+    def render(self, width: int = 640, height: int = 480, camera: Camera = STANDARD_CAMERA) -> np.ndarray:
         """Draw the robot as it stands, by PyBullet's software renderer.
 
         :param width: of the picture, in pixels
@@ -299,19 +264,3 @@ class Simulation:
         if self._client >= 0:
             pybullet.disconnect(self._client)
             self._client = -1
-
-
-def rotate_to_body(orientation: tuple[float, float, float, float], vector: Vector) -> Vector:
-    """Turn a vector from the world's frame into a body's.
-
-    :param orientation: the body's unit quaternion (x, y, z, w)
-    :param vector: in the world's frame
-    :return: the same vector in the body's frame
-    """
-    x, y, z, w = orientation
-    a, b, c = vector
-    return (
-        (1.0 - 2.0 * (y * y + z * z)) * a + 2.0 * (x * y + w * z) * b + 2.0 * (x * z - w * y) * c,
-        2.0 * (x * y - w * z) * a + (1.0 - 2.0 * (x * x + z * z)) * b + 2.0 * (y * z + w * x) * c,
-        2.0 * (x * z + w * y) * a + 2.0 * (y * z - w * x) * b + (1.0 - 2.0 * (x * x + y * y)) * c,
-    )

@@ -1,6 +1,7 @@
 """The commands as a user runs them: in a process of their own, from another folder."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -91,6 +92,22 @@ def test_help_names_the_options(command: str, options: tuple[str, ...], tmp_path
         assert option in process.stdout
 
 
+def test_mistakes_get_one_line_on_a_plain_terminal_too(tmp_path: Path) -> None:
+    environment = {**os.environ, "LC_ALL": "C", "PYTHONIOENCODING": "ascii"}
+    process = subprocess.run(
+        [BIN / "sarah-train", "--simulatons", "5"], capture_output=True, text=True, cwd=tmp_path, env=environment
+    )
+    assert process.stderr == (
+        "sarah-train: error: Unrecognized options: --simulatons, 5, did you mean --simulations?\n"
+    )
+
+
+def test_a_reader_who_has_had_enough_is_no_error(tmp_path: Path) -> None:
+    command = f"{BIN / 'sarah-eval'} --parameters 1,1,1,1,1 --episodes 1 | true"
+    process = subprocess.run(["bash", "-c", command], capture_output=True, text=True, cwd=tmp_path)
+    assert process.stderr == ""
+
+
 @pytest.mark.parametrize("command", ["train", "eval"])
 def test_help_loads_nothing_slow(command: str) -> None:
     program = (
@@ -123,6 +140,7 @@ def test_help_loads_nothing_slow(command: str) -> None:
         ("sarah-eval", "give either a run folder or --parameters"),
         ("sarah-eval nowhere", "run folder nowhere does not exist"),
         ("sarah-eval full", "not the folder of a finished training"),
+        ("sarah-eval full --task steping", "unknown task 'steping', did you mean 'stepping'?"),
         ("sarah-eval full --parameters 1,1,1,1,1", "give either a run folder or --parameters"),
         ("sarah-eval --parameters 0.4,1.3,0.1,1", "must be 5 numbers"),
         ("sarah-eval --parameters 0.4,1.3,0.1,1,nan", "P5 must be between 0 and 2, not nan"),

@@ -69,7 +69,7 @@ def test_urdf_does_not_say_where_it_was_made(urdf: str) -> None:
 
 
 @pytest.mark.parametrize("name", list(default_dimensions()))
-def test_every_dimension_changes_the_robot(name: str) -> None:
+def test_every_dimension_reaches_the_urdf(name: str) -> None:
     if name.endswith("_mass"):
         with pytest.raises(DescriptionError, match="must weigh 10 kg"):
             describe_robot({name: default_dimensions()[name] * 1.01})
@@ -89,6 +89,7 @@ def test_mass_moves_between_links_of_a_group() -> None:
         ({"thigh_length": True}, "'thigh_length' must be a finite positive number, not True"),
         ({"thigh_length": float("nan")}, "'thigh_length' must be a finite positive number, not nan"),
         ({"thigh_length": -0.3}, "'thigh_length' must be a finite positive number, not -0.3"),
+        ({"hinge_height": 0.005}, "plates must lie above the soles"),
         ({"shank_mass": 5.0}, "group 'left leg' .* must weigh 10 kg, not 11"),
     ],
 )
@@ -148,6 +149,10 @@ def no_limit(root: ElementTree.Element) -> None:
     joint.remove(joint.find("limit"))  # type: ignore[arg-type]
 
 
+def flipped_axis(root: ElementTree.Element) -> None:
+    find(root, "joint", "left_leg_length").find("axis").set("xyz", "0 0 -1")  # type: ignore[union-attr]
+
+
 def powerless(root: ElementTree.Element) -> None:
     find(root, "joint", "left_leg_length").find("limit").set("effort", "0")  # type: ignore[union-attr]
 
@@ -171,6 +176,7 @@ def heavy_torso(root: ElementTree.Element) -> None:
         (wrong_kind, "'left_leg_length' must be prismatic, not revolute"),
         (renamed_joint, "no joint 'left_leg_length'"),
         (no_limit, "yourdfpy finds the URDF invalid: .*limit"),
+        (flipped_axis, "'left_leg_length' must turn about"),
         (powerless, "'left_leg_length' must have a positive effort limit"),
         (heavy_torso, "group 'top' .* must weigh 10 kg, not 11"),
     ],

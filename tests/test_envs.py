@@ -1,6 +1,8 @@
 """The gymnasium environment: what checkers, libraries and users expect of it."""
 
 import dataclasses
+import subprocess
+import sys
 import warnings
 
 import gymnasium
@@ -18,6 +20,23 @@ from sarah.pattern_generator import PAPER_PARAMETERS
 
 SHORT = EpisodeConfig(time_limit=4.0)
 PAPER_ACTION = np.array(PAPER_PARAMETERS, dtype=np.float32) - 1.0
+
+
+@pytest.mark.parametrize("imports", ["import gymnasium, sarah", "import sarah, gymnasium"])
+def test_importing_sarah_registers_it_in_either_order(imports: str) -> None:
+    program = f"{imports}; print(gymnasium.make('SarahStepping-v0').unwrapped)"
+    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert "SteppingEnv" in process.stdout
+
+
+def test_environments_do_not_share_their_spaces() -> None:
+    first, second = SteppingEnv(SHORT), SteppingEnv(SHORT)
+    first.action_space.seed(0)
+    second.action_space.seed(0)
+    first.action_space.sample()
+    again = SteppingEnv(SHORT)
+    again.action_space.seed(0)
+    assert (second.action_space.sample() == again.action_space.sample()).all()
 
 
 def test_gymnasium_knows_it_by_name() -> None:

@@ -16,7 +16,8 @@ from sarah.errors import ConfigurationError
 from sarah.pattern_generator import PAPER_PARAMETERS
 from sarah.randomisation import draw_conditions
 from sarah.reward import highest_return, reward_rate
-from sarah.simulation import TorsoState
+from sarah.sensors import SensorReading
+from sarah.simulator import STANDARD_CAMERA, Camera, TorsoState
 
 SHORT = EpisodeConfig(time_limit=6.0)
 
@@ -123,11 +124,18 @@ def test_robot_that_does_not_step_is_stopped_after_5_seconds() -> None:
     assert result.score < 0.01
 
 
-def test_steps_by_time_outs_are_told_apart_from_steps_by_sensors() -> None:
-    """A P3 that is never reached leaves every SHIFT to its time-out, the fastest of which is too slow to score."""
-    result = simulate(EpisodeSpec((0.1, 2.0, 2.0, 0.0, 0.0), seed=0))
-    assert result.steps > 40
-    assert result.event_driven_shift < 0.1
+@pytest.mark.parametrize(
+    "parameters",
+    [
+        (0.1, 2.0, 2.0, 0.0, 0.0),  # a P3 that no rate reaches leaves every SHIFT to its time-out
+        (1.0, 1.0, 1.0, 0.0, 0.0),  # and a high P1 every LIFT
+        (1.5, 0.5, 0.1, 0.0, 0.0),
+    ],
+)
+def test_stepping_by_the_fastest_time_outs_is_told_apart_and_does_not_pay(parameters: tuple[float, ...]) -> None:
+    result = simulate(EpisodeSpec(parameters, seed=0))
+    assert result.steps > 0
+    assert min(result.event_driven_shift, result.event_driven_lift) < 0.5
     assert result.score < 0.2
 
 
@@ -191,6 +199,59 @@ def test_spec_refuses_unknown_tasks_and_bad_parameters() -> None:
         EpisodeSpec(PAPER_PARAMETERS, 0, task="steping")
     with pytest.raises(ConfigurationError, match="P1 must be between"):
         EpisodeSpec((3.0, 1.3, 0.1, 1.0, 1.0), 0)
+
+
+@pytest.mark.parametrize("seed", [None, -1, 1.5, True])
+def test_spec_refuses_seeds_that_would_not_repeat(seed: object) -> None:
+    with pytest.raises(ConfigurationError, match="seed must be a whole number from 0"):
+        EpisodeSpec(PAPER_PARAMETERS, seed)  # type: ignore[arg-type]
+
+
+class NoPhysics:
+    """A simulator in which nothing ever moves."""
+
+    def __init__(self, *_: object) -> None:
+        self.time = 0.0
+        self.closed = False
+        self.targets: list[tuple[float, ...]] = []
+
+    def set_targets(self, targets: tuple[float, ...]) -> None:
+        self.targets.append(targets)
+
+    def push(self, force: tuple[float, float, float]) -> None:
+        raise AssertionError("nobody pushes in the first training")
+
+    def advance(self) -> None:
+        self.time += CONTROL_DT
+
+    def read(self) -> SensorReading:
+        return SensorReading((0.0, 0.0, 9.81), (0.0, 0.0, 0.0), (75.0,) * 4, (0.0,) * 6)
+
+    def torso_state(self) -> TorsoState:
+        return TorsoState((0.0, 0.0, 0.84), (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+    def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
+        return (0.0,) * len(names)
+
+    def sole_height(self, side: str) -> float:
+        return 0.0
+
+    def render(self, width: int = 1, height: int = 1, camera: Camera = STANDARD_CAMERA) -> np.ndarray:
+        return np.zeros((height, width, 3), np.uint8)
+
+    def close(self) -> None:
+        self.closed = True
+
+
+def test_episode_runs_on_any_simulator() -> None:
+    """Where nothing moves, the feet never leave the floor: time-outs only, no step, no oscillation."""
+    episode = Episode(EpisodeConfig(), seed=0, build=NoPhysics)
+    reading = episode.stand()
+    assert episode.simulation.time == pytest.approx(1.0) and reading.pressures == (75.0,) * 4
+    result = episode.run(PAPER_PARAMETERS)
+    assert result.termination == "no_oscillation" and result.duration == 5.0
+    assert result.steps == 0 and result.event_driven_shift == 0.0
+    assert result.final_position == (0.0, 0.0, 0.84)
 
 
 def test_package_offers_the_simulation_by_name() -> None:

@@ -1,6 +1,8 @@
 """What is built: the wheel and the sdist hold everything, and claim one name."""
 
+import json
 import os
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -19,9 +21,11 @@ PROGRAM = (
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
-    """An sdist of the checkout, and the wheel made from that sdist."""
-    folder = tmp_path_factory.mktemp("dist")
-    command = [sys.executable, "-m", "build", "--no-isolation", "--outdir", str(folder), str(ROOT)]
+    """An sdist of the checkout, and the wheel made from that sdist; built in a copy, without what others built."""
+    copy, folder = tmp_path_factory.mktemp("copy") / "sarah", tmp_path_factory.mktemp("dist")
+    left_out = shutil.ignore_patterns(".git", ".venv", ".*_cache", ".hypothesis", "*.egg-info", "build", "dist", "runs")
+    shutil.copytree(ROOT, copy, symlinks=True, ignore=left_out)
+    command = [sys.executable, "-m", "build", "--no-isolation", "--outdir", str(folder), str(copy)]
     subprocess.run(command, check=True, capture_output=True)
     (sdist,), (wheel,) = folder.glob("*.tar.gz"), folder.glob("*.whl")
     return sdist, wheel
@@ -55,3 +59,8 @@ def test_wheel_works_from_another_folder(built: tuple[Path, Path], tmp_path: Pat
     )
     assert process.stdout.startswith(str(site))
     assert "0.84" in process.stdout and "one-step" in process.stdout
+    arguments = ["--parameters", "0.4,1.3,0.1,1,1", "--episodes", "1", "--json"]
+    evaluated = subprocess.run(
+        [site / "bin" / "sarah-eval", *arguments], cwd=elsewhere, env=environment, capture_output=True, check=True
+    )
+    assert json.loads(evaluated.stdout)["survival_rate"] == 1.0

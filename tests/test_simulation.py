@@ -10,7 +10,8 @@ import pytest
 from sarah.config import CONTROL_RATE, Physics
 from sarah.description import ACTUATED_JOINTS, GROUPS, PASSIVE_JOINTS, SIDES, describe_robot
 from sarah.randomisation import LINKS, NOMINAL, Conditions
-from sarah.simulation import GRAVITY, Simulation, rotate_to_body
+from sarah.simulation import Simulation
+from sarah.simulator import GRAVITY, rotate_to_body
 
 SECOND = CONTROL_RATE
 BuildSimulation = Callable[..., Simulation]
@@ -72,19 +73,22 @@ def test_pybullet_weighs_the_robot_as_it_is_described(build: BuildSimulation) ->
 
 
 def test_standing_30_seconds_neither_drifts_nor_tilts(build: BuildSimulation) -> None:
-    """Measured: 1.5 mm, 0.10 degrees, and less than 3 mm of height."""
+    """Measured: 0.7 mm, 0.04 degrees and 0.2 mm of height."""
     simulation = build()
     height = simulation.torso_state().position[2]
     for _ in range(30 * SECOND):
         simulation.advance()
         torso = simulation.torso_state()
-        assert math.hypot(*torso.position[:2]) < 0.004
-        assert math.degrees(torso.tilt) < 0.15
-        assert abs(torso.position[2] - height) < 0.001
+        assert math.hypot(*torso.position[:2]) < 0.002
+        assert math.degrees(torso.tilt) < 0.1
+        assert abs(torso.position[2] - height) < 0.0005
 
 
 def test_standing_pads_carry_a_steady_and_symmetric_load(build: BuildSimulation) -> None:
-    """The pads carry most of the weight, but not all: sole friction holds the rest. Measured: 84 to 94 %."""
+    """The pads carry most of the weight, but not all: sole friction holds the rest.
+
+    Measured: 89 to 97 % of it together, at least 18 % each, and 8 % between left and right.
+    """
     simulation = build()
     loads = []
     for tick in range(10 * SECOND):
@@ -94,15 +98,15 @@ def test_standing_pads_carry_a_steady_and_symmetric_load(build: BuildSimulation)
     pads = np.array(loads)
     total = pads.sum(axis=1)
     weight = 30.0 * GRAVITY
-    assert (0.8 * weight < total).all() and (total < weight).all()
+    assert (0.85 * weight < total).all() and (total < weight).all()
     assert np.ptp(total) < 0.1 * weight
     left, right = pads[:, :2].sum(axis=1).mean(), pads[:, 2:].sum(axis=1).mean()
     assert abs(left - right) < 0.1 * weight
-    assert (pads > 0.1 * weight).all()
+    assert (pads > 0.15 * weight).all()
 
 
 def test_pads_stop_the_plates(build: BuildSimulation) -> None:
-    """With the pads the ankles stay below 0.02 rad, without them the plates fold up."""
+    """With the pads the ankles stay below 0.02 rad (measured: 0.0014), without them the plates fold up (0.22)."""
 
     def largest_ankle_angle(simulation: Simulation) -> float:
         largest = 0.0
@@ -202,7 +206,7 @@ def test_push_lasts_one_tick(build: BuildSimulation) -> None:
 @pytest.mark.parametrize(("height", "accuracy"), [(30.0, 1e-5), (0.0, 0.1)])
 def test_mirrored_push_gives_mirrored_motion(build: BuildSimulation, height: float, accuracy: float) -> None:
     """Within a millionth in the air. On the floor the solver treats the contacts in turn: measured within 7 % of the
-    motion at 2 kHz and 200 iterations (0.3 mm of 4.4 mm), and within a third of it at the standard setting.
+    motion, 0.3 mm of 4.4 mm, with steps and iterations as fine as here.
     """
     physics = Physics(rate=2000, solver_iterations=200)
     right, left = build(physics=physics), build(physics=physics)

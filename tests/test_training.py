@@ -73,8 +73,8 @@ def test_parameters_are_read_without_the_agent(run: RunFolder) -> None:
     content = json.loads((run.path / "parameters.json").read_text())
     assert tuple(content["parameters"]) == PARAMETER_NAMES
     assert content["task"] == "stepping" and content["algorithm"] == "naf" and content["simulations"] == 44
-    assert tuple(content["parameters"].values()) == RunFolder.open(run.path).parameters()
-    assert all(0.0 <= value <= 2.0 for value in run.parameters())
+    assert tuple(content["parameters"].values()) == RunFolder.open(run.path).parameters(PARAMETER_NAMES)
+    assert all(0.0 <= value <= 2.0 for value in run.parameters(PARAMETER_NAMES))
 
 
 def test_model_loads_and_predicts(run: RunFolder) -> None:
@@ -86,7 +86,7 @@ def test_training_repeats_from_its_seed(run: RunFolder, tmp_path: Path) -> None:
     again = RunFolder.create(tmp_path / "again", SHORT)
     train(SHORT, again)
     assert (again.path / "episodes.csv").read_bytes() == (run.path / "episodes.csv").read_bytes()
-    assert again.parameters() == run.parameters()
+    assert again.parameters(PARAMETER_NAMES) == run.parameters(PARAMETER_NAMES)
 
 
 @pytest.mark.parametrize(("algo", "algorithm"), [("td3", TD3), ("sac", SAC), ("ddpg", DDPG)])
@@ -155,9 +155,18 @@ def test_folders_without_a_finished_training_are_refused(tmp_path: Path) -> None
         RunFolder.open(tmp_path / "begun")
 
 
-@pytest.mark.parametrize("content", ["{", "[]", "{}", '{"parameters": {"P1": "x"}}'])
+@pytest.mark.parametrize(
+    "content",
+    ["{", "[]", "{}", '{"parameters": {"P1": 1}}', '{"parameters": {"P1": "x", "P2": 1, "P3": 1, "P4": 1, "P5": 1}}'],
+)
 def test_spoilt_parameters_are_named(tmp_path: Path, content: str) -> None:
     run = RunFolder.create(tmp_path / "run", SHORT)
     (run.path / "parameters.json").write_text(content)
     with pytest.raises(RunFolderError, match=r"parameters.json does not hold learned parameters"):
-        run.parameters()
+        run.parameters(PARAMETER_NAMES)
+
+
+def test_parameters_are_read_by_name_whatever_their_order(tmp_path: Path) -> None:
+    run = RunFolder.create(tmp_path / "run", SHORT)
+    run.write_parameters({"parameters": {"P5": 5, "P2": 2, "P1": 1, "P4": 4, "P3": 3}})
+    assert run.parameters(PARAMETER_NAMES) == (1, 2, 3, 4, 5)

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.options import parse_options, run_command
-from sarah.config import PHYSICS, EpisodeConfig
+from sarah.config import PHYSICS, TASKS, EpisodeConfig
 from sarah.errors import ConfigurationError, unknown_name
+from sarah.pattern_generator import PARAMETER_NAMES
 
 if TYPE_CHECKING:
     from sarah.evaluation import Evaluation
@@ -26,7 +27,7 @@ class EvalOptions:
     """Simulate a run's learned parameters, or given ones, on unseen seeds, and summarise the episodes.
 
     :param run: folder of a finished training; its episode settings are used
-    :param task: instead of a run: the task of --parameters
+    :param task: of --parameters: ``stepping``, which is the default, as it is the only one yet
     :param parameters: instead of a run: P1 to P5, separated by commas
     :param episodes: how many
     :param first_seed: seed of the first episode; the others follow. Trainings use seeds from 2^31 up
@@ -36,7 +37,7 @@ class EvalOptions:
     """
 
     run: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN")] = None
-    task: str = "stepping"
+    task: str | None = None
     parameters: Annotated[str | None, tyro.conf.arg(metavar="P1,P2,P3,P4,P5")] = None
     episodes: int = 20
     first_seed: int = 0
@@ -50,6 +51,8 @@ class EvalOptions:
             raise ConfigurationError(f"episodes must be at least 1, not {self.episodes!r}")
         if self.first_seed < 0:
             raise ConfigurationError(f"first-seed must not be negative, not {self.first_seed!r}")
+        if self.task is not None and self.task not in TASKS:
+            raise ConfigurationError(unknown_name("task", self.task, TASKS))
         if self.physics is not None and self.physics not in PHYSICS:
             raise ConfigurationError(unknown_name("physics", self.physics, PHYSICS))
 
@@ -68,7 +71,6 @@ def _evaluate(arguments: Sequence[str]) -> None:
         config = dataclasses.replace(config, randomisation=dataclasses.replace(config.randomisation, enabled=False))
     from sarah.episode import EpisodeSpec
     from sarah.evaluation import simulate_all, summarise
-    from sarah.pattern_generator import PARAMETER_NAMES
 
     seeds = range(options.first_seed, options.first_seed + options.episodes)
     evaluation = summarise(simulate_all([EpisodeSpec(parameters, seed, task, config) for seed in seeds]))
@@ -89,14 +91,16 @@ def _subject(options: EvalOptions) -> tuple[str, str | None, tuple[float, ...], 
 
         run = RunFolder.open(options.run)
         training = run.config()
-        return training.task, training.algo, run.parameters(), training.episode
+        if options.task not in (None, training.task):
+            raise ConfigurationError(f"task is {options.task!r}, but {options.run} learned {training.task!r}")
+        return training.task, training.algo, run.parameters(PARAMETER_NAMES), training.episode
     try:
         parameters = tuple(float(value) for value in str(options.parameters).split(","))
     except ValueError:
         raise ConfigurationError(
             f"parameters must be numbers separated by commas, not {options.parameters!r}"
         ) from None
-    return options.task, None, parameters, EpisodeConfig()
+    return options.task or TASKS[0], None, parameters, EpisodeConfig()
 
 
 def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[str, str]]:
@@ -107,8 +111,16 @@ def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[st
             "score",
             f"{e.score_median:.3f} median, {e.score_mean:.3f} mean, {e.score_std:.3f} std, {e.score_min:.3f} min",
         ),
-        ("steps per second", f"{e.steps_per_second_mean:.2f} mean, {e.steps_per_second_std:.2f} std"),
-        ("drift", f"{100 * e.drift_mean:.1f} cm mean, {100 * e.drift_max:.1f} cm max"),
+        (
+            "steps per second",
+            f"{e.steps_per_second_median:.2f} median, {e.steps_per_second_mean:.2f} mean, "
+            f"{e.steps_per_second_std:.2f} std",
+        ),
+        (
+            "drift",
+            f"{100 * e.drift_median:.1f} cm median, {100 * e.drift_mean:.1f} cm mean, {100 * e.drift_std:.1f} cm std, "
+            f"{100 * e.drift_max:.1f} cm max",
+        ),
         ("survival", f"{round(e.survival_rate * e.episodes)} of {e.episodes} episodes"),
         ("by sensors", f"{e.event_driven_shift_mean:.1%} of shifts, {e.event_driven_lift_mean:.1%} of lifts"),
         ("sole clearance", f"{1000 * e.sole_clearance_mean:.1f} mm"),

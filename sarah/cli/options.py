@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
 import re
 import sys
 from collections.abc import Callable, Sequence
@@ -55,8 +56,9 @@ def parse_options(
 
 def _one_line(box: str) -> str:
     """The message in tyro's frame, and the name that it thinks was meant."""
-    text = " ".join(line.strip("╭╮╰╯│ ") for line in box.splitlines()[1:])
-    message = re.sub(r"^Error parsing [\w.]+: ", "", text.split("───")[0]).strip()
+    # The frame is of ASCII characters where the terminal knows no others.
+    text = " ".join(line.strip("╭╮╰╯│|+ ") for line in box.splitlines()[1:])
+    message = re.sub(r"^Error parsing [\w.]+: ", "", re.split("[─-]{5}", text)[0]).strip()
     meant = re.search(r"Perhaps you meant:\s+(--[\w.-]+)", text)
     return f"{message}, did you mean {meant[1]}?" if meant else message
 
@@ -69,7 +71,12 @@ def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
     """
     try:
         main(sys.argv[1:])
+        sys.stdout.flush()
     except SarahError as error:
+        fail(command, str(error))
+    except BrokenPipeError:  # whoever read the output has had enough, as in `| head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except OSError as error:
         fail(command, str(error))
     except KeyboardInterrupt:
         print(f"\n{command}: interrupted", file=sys.stderr)

@@ -1,0 +1,126 @@
+"""What an episode needs of a physics engine, whichever it is."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from sarah.sensors import SensorReading, Vector
+
+GRAVITY = 9.81
+"""In m/s^2."""
+
+
+class TorsoState(NamedTuple):
+    """Where the torso really is, in the world's frame.
+
+    :param position: of its centre, in m
+    :param orientation: unit quaternion (x, y, z, w)
+    :param velocity: in m/s
+    :param angular_velocity: in rad/s
+    """
+
+    position: Vector
+    orientation: tuple[float, float, float, float]
+    velocity: Vector
+    angular_velocity: Vector
+
+    @property
+    def tilt(self) -> float:
+        """Angle between the torso's axis and the vertical, in rad."""
+        x, y, _, _ = self.orientation
+        return math.acos(max(-1.0, min(1.0, 1.0 - 2.0 * (x * x + y * y))))
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether the physics engine still returns numbers."""
+        return all(math.isfinite(value) for part in self for value in part)
+
+
+class Camera(NamedTuple):
+    """Where a picture is taken from: a point over the floor below the torso, seen from a distance.
+
+    :param height: of the point, in m
+    :param distance: from it, in m
+    :param yaw: in degrees; 180 looks at the robot from its front
+    :param pitch: in degrees; negative looks down
+    """
+
+    height: float = 0.47
+    distance: float = 1.6
+    yaw: float = 155.0
+    pitch: float = -12.0
+
+
+STANDARD_CAMERA = Camera()
+
+
+class Simulator(Protocol):
+    """A robot in its world, built for one episode: it stands on a plane, soles just touching, all joints at zero."""
+
+    @property
+    def time(self) -> float:
+        """Simulated so far, in s."""
+
+    def set_targets(self, targets: tuple[float, ...]) -> None:
+        """Set where the servos move the joints from now on.
+
+        :param targets: positions in the order of ``ACTUATED_JOINTS``, in rad and m
+        """
+
+    def push(self, force: Vector) -> None:
+        """Push the torso at its centre during the next control tick.
+
+        :param force: in the world's frame, in N
+        """
+
+    def advance(self) -> None:
+        """Simulate one control tick."""
+
+    def read(self) -> SensorReading:
+        """The true sensor signals of the last control tick, without noise or delay."""
+
+    def torso_state(self) -> TorsoState:
+        """Where the torso really is; no sensor of the robot knows it."""
+
+    def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
+        """Positions of some joints, in rad and m.
+
+        :param names: of the joints
+        """
+
+    def sole_height(self, side: str) -> float:
+        """Height of a foot's lowest sole contact over the floor, in m.
+
+        :param side: ``"left"`` or ``"right"``
+        """
+
+    def render(self, width: int = 640, height: int = 480, camera: Camera = STANDARD_CAMERA) -> np.ndarray:
+        """Draw the robot as it stands.
+
+        :param width: of the picture, in pixels
+        :param height: of the picture, in pixels
+        :param camera: where to look from
+        :return: uint8 array of shape (height, width, 3)
+        """
+
+    def close(self) -> None:
+        """Give the engine's resources back; the simulator cannot be used any more."""
+
+
+def rotate_to_body(orientation: tuple[float, float, float, float], vector: Vector) -> Vector:
+    """Turn a vector from the world's frame into a body's.
+
+    :param orientation: the body's unit quaternion (x, y, z, w)
+    :param vector: in the world's frame
+    :return: the same vector in the body's frame
+    """
+    x, y, z, w = orientation
+    a, b, c = vector
+    return (
+        (1.0 - 2.0 * (y * y + z * z)) * a + 2.0 * (x * y + w * z) * b + 2.0 * (x * z - w * y) * c,
+        2.0 * (x * y - w * z) * a + (1.0 - 2.0 * (x * x + z * z)) * b + 2.0 * (y * z + w * x) * c,
+        2.0 * (x * z + w * y) * a + 2.0 * (y * z - w * x) * b + (1.0 - 2.0 * (x * x + y * y)) * c,
+    )

@@ -1,0 +1,48 @@
+"""What the README says of the paper's parameters and of clocks, over many seeds: minutes of simulation."""
+
+import random
+
+import pytest
+
+from sarah.config import PHYSICS, EpisodeConfig, Randomisation
+from sarah.episode import EpisodeSpec
+from sarah.evaluation import SMALLEST_EVENT_SHARE, simulate_all, summarise
+from sarah.pattern_generator import PAPER_PARAMETERS
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.mark.parametrize(("randomised", "survivors"), [(True, 19), (False, 20)])
+def test_papers_parameters_step_on_20_seeds(randomised: bool, survivors: int) -> None:
+    config = EpisodeConfig(randomisation=Randomisation(enabled=randomised))
+    results = simulate_all([EpisodeSpec(PAPER_PARAMETERS, seed, config=config) for seed in range(20)])
+    evaluation = summarise(results)
+    assert sum(result.survived for result in results) >= survivors
+    assert all(2.3 <= result.steps_per_second <= 3.5 for result in results if result.survived)
+    assert evaluation.drift_max < 0.06
+    assert evaluation.score_median >= 0.78
+
+
+def test_papers_parameters_keep_their_score_at_the_reference_physics() -> None:
+    standard, reference = (
+        summarise(
+            simulate_all(
+                [EpisodeSpec(PAPER_PARAMETERS, seed, config=EpisodeConfig(physics=physics)) for seed in range(5)]
+            )
+        )
+        for physics in PHYSICS.values()
+    )
+    assert reference.score_median >= 0.95 * standard.score_median
+
+
+def test_no_clock_among_random_parameters_pays() -> None:
+    generator = random.Random(0)
+    drawn = [tuple(generator.uniform(0.0, 2.0) for _ in range(5)) for _ in range(60)]
+    results = simulate_all([EpisodeSpec(parameters, seed) for seed, parameters in enumerate(drawn)])
+    clocks = [
+        result.score
+        for result in results
+        if min(result.event_driven_shift, result.event_driven_lift) < SMALLEST_EVENT_SHARE
+    ]
+    assert len(clocks) > 10
+    assert max(clocks) < 0.6
