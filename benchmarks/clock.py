@@ -22,7 +22,7 @@ def is_clock(result: EpisodeResult) -> bool:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--random", type=int, default=100, help="how many random parameter sets")
+    parser.add_argument("--random", type=int, default=40, help="how many random parameter sets")
     count = parser.parse_args().random
     generator = random.Random(0)
     drawn = [tuple(generator.uniform(0.0, 2.0) for _ in range(5)) for _ in range(count)]
