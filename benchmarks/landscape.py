@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from itertools import islice
 
 from sarah.config import PHYSICS, EpisodeConfig
 from sarah.episode import EpisodeSpec
@@ -22,14 +23,19 @@ def main() -> None:
     print(f"median score (steps per second) of {options.episodes} seed(s) around {CENTRE}, {options.physics} physics\n")
     print("| value |", " | ".join(PARAMETER_NAMES), "|")
     print("|---" * (len(PARAMETER_NAMES) + 1) + "|")
+    cells = [(value, index) for value in VALUES for index in range(len(PARAMETER_NAMES))]
+    specs = [
+        EpisodeSpec((*CENTRE[:index], value, *CENTRE[index + 1 :]), seed, config=config)
+        for value, index in cells
+        for seed in range(options.episodes)
+    ]
+    results = iter(simulate_all(specs))
     for value in VALUES:
-        cells = []
-        for index in range(len(PARAMETER_NAMES)):
-            parameters = (*CENTRE[:index], value, *CENTRE[index + 1 :])
-            specs = [EpisodeSpec(parameters, seed, config=config) for seed in range(options.episodes)]
-            evaluation = summarise(simulate_all(specs))
-            cells.append(f"{evaluation.score_median:.2f} ({evaluation.steps_per_second_mean:.1f})")
-        print(f"| {value:g} |", " | ".join(cells), "|", flush=True)
+        row = []
+        for _ in PARAMETER_NAMES:
+            evaluation = summarise(list(islice(results, options.episodes)))
+            row.append(f"{evaluation.score_median:.2f} ({evaluation.steps_per_second_mean:.1f})")
+        print(f"| {value:g} |", " | ".join(row), "|")
 
 
 if __name__ == "__main__":

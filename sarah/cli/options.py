@@ -16,6 +16,12 @@ from sarah.errors import SarahError
 
 OptionsType = TypeVar("OptionsType")
 USAGE_ERROR = 2
+PYTHON_WORDS = {
+    r"^Error parsing (\S+): invalid literal for int\(\) with base 10: (.*)": r"\1 must be a whole number, not \2",
+    r"^Error parsing (\S+): could not convert string to float: (.*)": r"\1 must be a number, not \2",
+    r"^Error parsing [\w.]+: ": "",
+}
+"""What Python says of bad values, and what a user is told."""
 
 
 def fail(command: str, message: str) -> NoReturn:
@@ -56,9 +62,11 @@ def parse_options(
 
 def _one_line(box: str) -> str:
     """The message in tyro's frame, and the name that it thinks was meant."""
-    # The frame is of ASCII characters where the terminal knows no others.
-    text = " ".join(line.strip("╭╮╰╯│|+ ") for line in box.splitlines()[1:])
-    message = re.sub(r"^Error parsing [\w.]+: ", "", re.split("[─-]{5}", text)[0]).strip()
+    # Without the title. Where the terminal knows no frames, rules stand alone, and one comes first.
+    text = " ".join(line.strip("╭╮╰╯│ ") for line in box.splitlines()[1:])
+    message = next(section.strip() for section in re.split("[─-]{5,}", text) if section.strip())
+    for pattern, words in PYTHON_WORDS.items():
+        message = re.sub(pattern, words, message)
     meant = re.search(r"Perhaps you meant:\s+(--[\w.-]+)", text)
     return f"{message}, did you mean {meant[1]}?" if meant else message
 
