@@ -13,14 +13,14 @@ from statistics import median
 from sarah.config import ALGORITHMS, PHYSICS, TrainingConfig
 from sarah.errors import RunFolderError
 from sarah.evaluation import Evaluation
-from sarah.pattern_generator import PAPER_PARAMETERS, PARAMETER_NAMES
+from sarah.pattern_generator import PAPER_PARAMETERS
 from sarah.runs import RunFolder
 from sarah.training import evaluate, train
 
 
 def learned(config: TrainingConfig, path: Path) -> tuple[float, ...]:
     try:
-        return RunFolder.open(path).parameters(PARAMETER_NAMES)
+        return RunFolder.open(path).parameters()
     except RunFolderError:
         return train(config, RunFolder.create(path, config))[0]
 

@@ -8,7 +8,7 @@ from itertools import islice
 from sarah.config import PHYSICS, EpisodeConfig
 from sarah.episode import EpisodeSpec
 from sarah.evaluation import simulate_all, summarise
-from sarah.pattern_generator import PARAMETER_NAMES
+from sarah.tasks import STEPPING
 
 CENTRE = (0.4, 1.0, 0.1, 1.0, 1.0)
 VALUES = (0.0, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0)
@@ -21,9 +21,9 @@ def main() -> None:
     options = parser.parse_args()
     config = EpisodeConfig(physics=PHYSICS[options.physics])
     print(f"median score (steps per second) of {options.episodes} seed(s) around {CENTRE}, {options.physics} physics\n")
-    print("| value |", " | ".join(PARAMETER_NAMES), "|")
-    print("|---" * (len(PARAMETER_NAMES) + 1) + "|")
-    cells = [(value, index) for value in VALUES for index in range(len(PARAMETER_NAMES))]
+    print("| value |", " | ".join(STEPPING.parameter_names), "|")
+    print("|---" * (len(STEPPING.parameter_names) + 1) + "|")
+    cells = [(value, index) for value in VALUES for index in range(len(STEPPING.parameter_names))]
     specs = [
         EpisodeSpec((*CENTRE[:index], value, *CENTRE[index + 1 :]), seed, config=config)
         for value, index in cells
@@ -32,7 +32,7 @@ def main() -> None:
     results = iter(simulate_all(specs))
     for value in VALUES:
         row = []
-        for _ in PARAMETER_NAMES:
+        for _ in STEPPING.parameter_names:
             evaluation = summarise(list(islice(results, options.episodes)))
             row.append(f"{evaluation.score_median:.2f} ({evaluation.steps_per_second_mean:.1f})")
         print(f"| {value:g} |", " | ".join(row), "|")

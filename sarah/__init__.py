@@ -4,7 +4,7 @@
     >>> result = sarah.simulate(sarah.EpisodeSpec(parameters=(0.4, 1.3, 0.1, 1.0, 1.0), seed=0))
 
 The names below are loaded when they are first used, so that importing the package is fast. Importing it also makes
-``gymnasium.make("SarahStepping-v0")`` work.
+``gymnasium.make("SarahStepping-v0")`` and ``gymnasium.make("SarahBalance-v0")`` work.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from sarah.registration import register_with_gymnasium
 
 if TYPE_CHECKING:
-    from sarah.config import PHYSICS, EpisodeConfig, Physics, Randomisation
+    from sarah.config import PHYSICS, EpisodeConfig, Physics, Push, Randomisation
     from sarah.episode import EpisodeResult, EpisodeSpec, simulate
     from sarah.errors import SarahError
 
@@ -25,6 +25,7 @@ __all__ = [
     "EpisodeResult",
     "EpisodeSpec",
     "Physics",
+    "Push",
     "Randomisation",
     "SarahError",
     "simulate",
@@ -34,6 +35,7 @@ _HOMES = {
     "PHYSICS": "config",
     "EpisodeConfig": "config",
     "Physics": "config",
+    "Push": "config",
     "Randomisation": "config",
     "EpisodeResult": "episode",
     "EpisodeSpec": "episode",

@@ -13,14 +13,14 @@ from pathlib import Path
 from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 from sarah.errors import ConfigurationError, unknown_name
+from sarah.tasks import STEPPING, TASKS
 
-CONTROL_RATE = 100
-"""Control ticks per second; the paper's."""
-CONTROL_DT = 1.0 / CONTROL_RATE
 STAND_SECONDS = 1.0
 """How long the robot stands before the pattern generator starts; the paper's."""
+SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE = 50, 1000
+TRAINED_STEPPING = (0.40, 0.80, 0.10, 1.0, 1.0)
+"""P1 to P5 that the balance task keeps unless others are given."""
 
-TASKS = ("stepping",)
 ALGORITHMS = ("naf", "td3", "sac", "ddpg")
 RewardForm = Literal["symmetric", "printed"]
 ConfigType = TypeVar("ConfigType")
@@ -28,21 +28,33 @@ ConfigType = TypeVar("ConfigType")
 
 @dataclass(frozen=True)
 class Physics:
-    """How finely the physics engine integrates.
+    """How finely time is divided.
 
-    :param rate: physics steps per second, a multiple of the control rate of 100
-    :param solver_iterations: of the constraint solver, per physics step
+    :param rate: physics steps per second, a multiple of the control rate
+    :param solver_iterations: of the physics engine's constraint solver, per physics step
+    :param control_rate: control ticks per second; the paper's pattern generator ran at 100
     """
 
     rate: int = 1000
     solver_iterations: int = 20
+    control_rate: int = 100
 
     def __post_init__(self) -> None:
-        """Refuse rates that do not divide into control ticks."""
-        if self.rate < CONTROL_RATE or self.rate % CONTROL_RATE:
-            raise ConfigurationError(f"physics.rate must be a multiple of {CONTROL_RATE} Hz, not {self.rate!r}")
+        """Refuse rates that do not divide into each other."""
+        if not SLOWEST_CONTROL_RATE <= self.control_rate <= FASTEST_CONTROL_RATE:
+            raise ConfigurationError(
+                f"physics.control_rate must be between {SLOWEST_CONTROL_RATE} and {FASTEST_CONTROL_RATE} Hz, "
+                f"not {self.control_rate!r}"
+            )
+        if self.rate < self.control_rate or self.rate % self.control_rate:
+            raise ConfigurationError(f"physics.rate must be a multiple of {self.control_rate} Hz, not {self.rate!r}")
         if self.solver_iterations < 1:
             raise ConfigurationError(f"physics.solver_iterations must be at least 1, not {self.solver_iterations!r}")
+
+    @property
+    def control_dt(self) -> float:
+        """Duration of a control tick, in s."""
+        return 1.0 / self.control_rate
 
 
 PHYSICS = {"standard": Physics(), "reference": Physics(rate=1000, solver_iterations=100)}
@@ -63,6 +75,8 @@ class Randomisation:
     :param pad_threshold: pad load above which a foot counts as carrying, in N
     :param acceleration_noise: standard deviation of the accelerometer's white noise, in m/s^2
     :param angular_rate_noise: standard deviation of the gyroscope's white noise, in rad/s
+    :param imu_bandwidth: of the first-order low-pass inside the inertial measurement unit, in Hz
+    :param pad_noise: standard deviation of each pressure pad's white noise, in N
     :param delay_ticks: control ticks of delay between sensing and acting
     :param start_speed: standard deviation of the torso's velocity along x and y at the start, in m/s
     """
@@ -74,22 +88,53 @@ class Randomisation:
     pad_threshold: tuple[float, float] = (20.0, 40.0)
     acceleration_noise: float = 0.2
     angular_rate_noise: float = 0.02
+    imu_bandwidth: float = 40.0
+    pad_noise: float = 3.0
     delay_ticks: int = 1
     start_speed: float = 0.01
 
     def __post_init__(self) -> None:
         """Refuse ranges that no robot has."""
-        for item in fields(self):
-            value = getattr(self, item.name)
-            low, high = value if isinstance(value, tuple) else (value, value)
-            if not 0.0 <= low <= high < math.inf:
-                raise ConfigurationError(
-                    f"randomisation.{item.name} must be finite, not negative and in rising order, not {value!r}"
-                )
+        _refuse_impossible_ranges(self, "randomisation")
         if self.mass_deviation >= 1.0:
             raise ConfigurationError(f"randomisation.mass_deviation must be below 1, not {self.mass_deviation!r}")
-        if self.actuator_bandwidth[0] == 0.0:
-            raise ConfigurationError("randomisation.actuator_bandwidth must be above 0")
+        for name, value in (("actuator_bandwidth", self.actuator_bandwidth[0]), ("imu_bandwidth", self.imu_bandwidth)):
+            if value == 0.0:
+                raise ConfigurationError(f"randomisation.{name} must be above 0")
+
+
+@dataclass(frozen=True)
+class Push:
+    """The push of the balance task, drawn for each episode from its seed. Equal ends of a range fix the value.
+
+    It acts on the torso's centre, horizontally and with constant force.
+
+    :param newtons: uniform range of the force; the paper's is up to 100 N
+    :param degrees: uniform range of the direction: 0 pushes to the robot's right, 90 forward
+    :param at_seconds: uniform range of when it begins; the paper's is after the first second
+    :param duration: in s
+    """
+
+    newtons: tuple[float, float] = (0.0, 100.0)
+    degrees: tuple[float, float] = (0.0, 360.0)
+    at_seconds: tuple[float, float] = (1.0, 4.0)
+    duration: float = 0.15
+
+    def __post_init__(self) -> None:
+        """Refuse what is no push, or comes while the robot is still held to be standing."""
+        _refuse_impossible_ranges(self, "push")
+        if self.at_seconds[0] < STAND_SECONDS:
+            raise ConfigurationError(f"push.at_seconds must be from {STAND_SECONDS:g} s on, not {self.at_seconds!r}")
+
+
+def _refuse_impossible_ranges(config: Any, key: str) -> None:
+    for item in fields(config):
+        value = getattr(config, item.name)
+        low, high = value if isinstance(value, tuple) else (value, value)
+        if not 0.0 <= low <= high < math.inf:
+            raise ConfigurationError(
+                f"{key}.{item.name} must be finite, not negative and in rising order, not {value!r}"
+            )
 
 
 @dataclass(frozen=True)
@@ -101,6 +146,8 @@ class EpisodeConfig:
     :param dimensions: of the robot, where they differ from the xacro's defaults
     :param time_limit: of an episode, in s; the paper's first criterion
     :param reward_form: ``"symmetric"``, or ``"printed"`` for equation 2 to the letter
+    :param stepping: P1 to P5 of the balance task, which the agent does not choose there
+    :param push: of the balance task
     """
 
     physics: Physics = PHYSICS["standard"]
@@ -108,6 +155,8 @@ class EpisodeConfig:
     dimensions: Mapping[str, float] = field(default_factory=dict)
     time_limit: float = 30.0
     reward_form: RewardForm = "symmetric"
+    stepping: tuple[float, float, float, float, float] = TRAINED_STEPPING
+    push: Push = Push()
 
     def __post_init__(self) -> None:
         """Refuse what cannot be simulated."""
@@ -117,13 +166,15 @@ class EpisodeConfig:
             )
         if self.reward_form not in get_args(RewardForm):
             raise ConfigurationError(unknown_name("reward_form", self.reward_form, get_args(RewardForm)))
+        STEPPING.checked(self.stepping, "stepping")
 
 
 @dataclass(frozen=True)
 class TrainingConfig:
     """A training: what ``sarah-train`` does.
 
-    :param task: what to learn: ``stepping`` is the paper's first training, P1 to P5
+    :param task: what to learn: ``stepping`` is the paper's first training, P1 to P5, and ``balance`` its
+        second, V1 to V4
     :param algo: what learns: ``naf``, or stable-baselines3's ``td3``, ``sac`` or ``ddpg``
     :param simulations: budget; every simulation is one action of the agent and up to 30 s of the robot
     :param seed: of the training and of all its episodes

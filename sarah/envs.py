@@ -1,4 +1,4 @@
-"""The gymnasium environment of the first training: one episode of the robot is one step of the agent."""
+"""The gymnasium environments of the two trainings: one episode of the robot is one step of the agent."""
 
 from __future__ import annotations
 
@@ -9,36 +9,42 @@ import numpy as np
 
 from sarah.config import EpisodeConfig
 from sarah.episode import Episode
-from sarah.errors import ConfigurationError
-from sarah.pattern_generator import PARAMETER_NAMES, PARAMETER_RANGE
+from sarah.errors import ConfigurationError, unknown_name
 from sarah.sensors import SensorReading
 from sarah.simulator import GRAVITY
+from sarah.tasks import TASKS, Task
 
 FIRST_TRAINING_SEED = 2**31
-"""Episode seeds that the environment draws start here, so that smaller ones stay unseen by every training."""
+"""Episode seeds that the environments draw start here, so that smaller ones stay unseen by every training."""
 OBSERVATION_BOUND = 5.0
 OBSERVATION_SCALES = (*(GRAVITY,) * 3, *(1.0,) * 3, *(100.0,) * 4, *(1.0,) * 4, *(0.1,) * 2)
 """What each signal is divided by to be of order 1, in SI units."""
 
 
-class SteppingEnv(gymnasium.Env[np.ndarray, np.ndarray]):
-    """Choose P1 to P5 once, and see what comes of it.
+class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
+    """Choose the task's parameters once, and see what comes of it.
 
     ``reset`` lets the robot stand for one second, ``step`` runs the pattern generator to the episode's end and
     always terminates. The observation is the 16 sensor signals after standing, each divided by its
-    ``OBSERVATION_SCALES`` and clipped; the action is P1 to P5 with the box of the parameters scaled to [-1, 1];
-    the reward is the episode's return. ``info`` holds the episode's seed, and after the step every field of
+    ``OBSERVATION_SCALES`` and clipped; the action is P1 to P5, or V1 to V4, with the box of the parameters scaled to
+    [-1, 1]; the reward is the episode's return. ``info`` holds the episode's seed, and after the step every field of
     :class:`~sarah.episode.EpisodeResult` and the parameters.
 
+    :param task: ``"stepping"``: choose P1 to P5; ``"balance"``: choose V1 to V4 and be pushed
     :param config: settings of the episodes; the defaults if ``None``
     :param render_mode: ``"rgb_array"``, or ``None``
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 1}
 
-    def __init__(self, config: EpisodeConfig | None = None, render_mode: str | None = None) -> None:
+    def __init__(
+        self, task: str = "stepping", config: EpisodeConfig | None = None, render_mode: str | None = None
+    ) -> None:
+        if task not in TASKS:
+            raise ConfigurationError(unknown_name("task", task, TASKS))
+        self.task = TASKS[task]
         self.observation_space = gymnasium.spaces.Box(-OBSERVATION_BOUND, OBSERVATION_BOUND, (16,), np.float32)
-        self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(PARAMETER_NAMES),), np.float32)
+        self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(self.task.parameter_names),), np.float32)
         self.config = config or EpisodeConfig()
         self.render_mode = render_mode
         self._episode: Episode | None = None
@@ -56,7 +62,7 @@ class SteppingEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         super().reset(seed=seed)
         self.close()
         self._seed = int(self.np_random.integers(FIRST_TRAINING_SEED, 2**32))
-        self._episode = Episode(self.config, self._seed)
+        self._episode = Episode(self.config, self._seed, self.task)
         return observation_from(self._episode.stand()), {"seed": self._seed}
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
@@ -67,7 +73,7 @@ class SteppingEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         """
         if self._episode is None or self._episode.termination is not None:
             raise ConfigurationError("the episode is over: call reset before step")
-        parameters = parameters_from(action)
+        parameters = parameters_from(action, self.task)
         result = self._episode.run(parameters)
         info = {"seed": self._seed, "parameters": parameters, **result.fields()}
         return observation_from(self._episode.last_reading), result.episode_return, True, False, info
@@ -96,15 +102,15 @@ def observation_from(reading: SensorReading) -> np.ndarray:
     return np.clip(scaled, -OBSERVATION_BOUND, OBSERVATION_BOUND).astype(np.float32)
 
 
-def parameters_from(action: np.ndarray) -> tuple[float, ...]:
-    """Turn an action into the pattern generator's parameters.
+def parameters_from(action: np.ndarray, task: Task) -> tuple[float, ...]:
+    """Turn an action into a task's parameters.
 
-    :param action: of shape (5,), within [-1, 1]
-    :return: P1 to P5
+    :param action: one number within [-1, 1] for each parameter
+    :param task: whose parameters
     :raises ConfigurationError: if the action is not finite or out of its box
     """
     values = np.asarray(action, dtype=float)
-    if values.shape != (len(PARAMETER_NAMES),) or not (np.abs(values) <= 1.0).all():
-        raise ConfigurationError(f"an action must be {len(PARAMETER_NAMES)} numbers within -1 and 1, not {action!r}")
-    low, high = PARAMETER_RANGE
-    return tuple(float(low + (high - low) * (value + 1.0) / 2.0) for value in values)
+    count = len(task.parameter_names)
+    if values.shape != (count,) or not (np.abs(values) <= 1.0).all():
+        raise ConfigurationError(f"an action must be {count} numbers within -1 and 1, not {action!r}")
+    return tuple(float(task.low + (task.high - task.low) * (value + 1.0) / 2.0) for value in values)

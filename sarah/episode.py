@@ -10,16 +10,19 @@ from typing import Any
 
 import numpy as np
 
-from sarah.config import CONTROL_DT, CONTROL_RATE, STAND_SECONDS, TASKS, EpisodeConfig, Physics
+from sarah.config import STAND_SECONDS, EpisodeConfig, Physics
 from sarah.description import PASSIVE_JOINTS, RobotDescription, describe_robot
 from sarah.errors import ConfigurationError, unknown_name
 from sarah.gait import GaitRecord
+from sarah.hips import BalanceParameters
+from sarah.motion import MotionRecord
 from sarah.pattern_generator import PatternGenerator, Phase, SteppingParameters
-from sarah.randomisation import Conditions, draw_conditions
+from sarah.randomisation import Conditions, DrawnPush, draw_conditions, draw_push
 from sarah.reward import highest_return, reward_rate
 from sarah.sensors import ImperfectSensors, SensorReading
 from sarah.simulation import Simulation
 from sarah.simulator import Simulator, TorsoState
+from sarah.tasks import BALANCE, STEPPING, TASKS, Task
 
 BOX_HALF_WIDTH = 0.25
 """Displacement of the torso along any axis at which an episode ends, in m; the paper's second criterion."""
@@ -36,9 +39,9 @@ TERMINATIONS = ("time_limit", "left_box", "no_oscillation", "fell", "diverged")
 class EpisodeSpec:
     """Everything that an episode's result depends on.
 
-    :param parameters: of the pattern generator: P1 to P5
-    :param seed: of the conditions that are drawn and of the sensor noise; a whole number from 0
-    :param task: what is trained: ``"stepping"``
+    :param parameters: of the task: P1 to P5, or V1 to V4
+    :param seed: of the conditions and the push that are drawn and of the sensor noise; a whole number from 0
+    :param task: what is trained: ``"stepping"`` or ``"balance"``
     :param config: what all episodes of an experiment share
     :raises ConfigurationError: for an unknown task, parameters out of their box, or a seed that is none
     """
@@ -52,8 +55,7 @@ class EpisodeSpec:
         """Refuse what has no result of its own, and take the parameters as floats."""
         if self.task not in TASKS:
             raise ConfigurationError(unknown_name("task", self.task, TASKS))
-        SteppingParameters.checked(self.parameters)
-        object.__setattr__(self, "parameters", tuple(map(float, self.parameters)))
+        object.__setattr__(self, "parameters", TASKS[self.task].checked(self.parameters))
         if not isinstance(self.seed, int) or isinstance(self.seed, bool) or self.seed < 0:
             raise ConfigurationError(f"seed must be a whole number from 0, not {self.seed!r}")
 
@@ -72,6 +74,10 @@ class EpisodeResult:
     :param sole_clearance: median over the steps of the swing foot's largest height over the floor, in m
     :param event_driven_shift: share of the SHIFT phases ended by sensors, and not by the time-out
     :param event_driven_lift: the same of the LIFT phases
+    :param vibration: mean square of the torso's acceleration above 20 Hz, in m^2/s^4; a robot that chatters shows here
+    :param actuator_power: mean mechanical power of the six actuators together, in W
+    :param peak_hip_rate: fastest hip motion, in rad/s
+    :param peak_leg_speed: fastest change of a leg's length, in m/s
     :param trace: per control tick, on request: see :func:`simulate`
     """
 
@@ -85,6 +91,10 @@ class EpisodeResult:
     sole_clearance: float
     event_driven_shift: float
     event_driven_lift: float
+    vibration: float
+    actuator_power: float
+    peak_hip_rate: float
+    peak_leg_speed: float
     trace: dict[str, np.ndarray] | None = field(default=None, repr=False, compare=False)
 
     def fields(self) -> dict[str, Any]:
@@ -110,6 +120,7 @@ class Episode:
 
     :param config: what all episodes of an experiment share
     :param seed: of this episode
+    :param task: ``STEPPING``, or ``BALANCE``, in which the robot is pushed
     :param record_trace: whether to keep a trace of every control tick
     :param build: makes the simulator from robot, physics and conditions
     """
@@ -121,25 +132,33 @@ class Episode:
         self,
         config: EpisodeConfig,
         seed: int,
+        task: Task = STEPPING,
         record_trace: bool = False,
         build: Callable[[RobotDescription, Physics, Conditions], Simulator] = Simulation,
     ) -> None:
         self.config = config
+        self.task = task
+        self.push: DrawnPush | None = draw_push(config.push, seed) if task is BALANCE else None
         self.termination: str | None = None
         self.robot = describe_robot(config.dimensions)
         conditions = draw_conditions(config.randomisation, seed)
         self.simulation = build(self.robot, config.physics, conditions)
-        self.last_reading = self.simulation.read()
+        self._truth = self.last_reading = self.simulation.read()
+        self._dt = config.physics.control_dt
         self._pad_threshold = conditions.pad_threshold
         self._sensors = ImperfectSensors(
             conditions.acceleration_noise,
             conditions.angular_rate_noise,
+            conditions.imu_bandwidth,
+            conditions.pad_noise,
             conditions.delay_ticks,
             conditions.sensor_seed,
+            self._dt,
         )
         self._standing: list[SensorReading] = []
         self._first = self._last = self.simulation.torso_state()
-        self._gait = GaitRecord()
+        self._gait = GaitRecord(config.physics.control_rate)
+        self._motion = MotionRecord(config.physics.control_rate)
         self._ticks = 0
         self._return = 0.0
         self._trace: dict[str, list[Any]] | None = {} if record_trace else None
@@ -149,7 +168,7 @@ class Episode:
 
         :return: the last reading of that second: the observation that the agent acts on
         """
-        for _ in range(round(STAND_SECONDS * CONTROL_RATE)):
+        for _ in range(round(STAND_SECONDS / self._dt)):
             self._standing.append(self._sense())
             self.simulation.advance()
         return self.last_reading
@@ -157,7 +176,7 @@ class Episode:
     def run(self, parameters: tuple[float, ...]) -> EpisodeResult:
         """Let the pattern generator run until the episode ends.
 
-        :param parameters: P1 to P5
+        :param parameters: of the task
         :return: the result
         """
         self.start(parameters)
@@ -168,9 +187,16 @@ class Episode:
     def start(self, parameters: tuple[float, ...]) -> None:
         """Make the pattern generator, which knows what was sensed while standing.
 
-        :param parameters: P1 to P5
+        :param parameters: of the task: P1 to P5, or V1 to V4
         """
-        self.generator = PatternGenerator(SteppingParameters.checked(parameters), self._pad_threshold, CONTROL_DT)
+        learned = self.task.checked(parameters)
+        stepping, balance = (self.config.stepping, learned) if self.task is BALANCE else (learned, None)
+        self.generator = PatternGenerator(
+            SteppingParameters(*stepping),
+            self._pad_threshold,
+            self._dt,
+            BalanceParameters(*balance) if balance else None,
+        )
         for reading in self._standing:
             self.generator.sense(reading)
 
@@ -178,12 +204,14 @@ class Episode:
         """Sense, decide, act, simulate and judge one control tick."""
         simulation, generator, gait = self.simulation, self.generator, self._gait
         reading = self._sense()
+        self._motion.tick(self._truth.acceleration, *simulation.actuator_motion())
         if generator.phase in (Phase.LIFT, Phase.LAND):
             gait.swing(simulation.sole_height(generator.swing.name.lower()))
         change = generator.tick(reading)
         if change is not None:
             gait.phase_change(self._ticks, change)
         simulation.set_targets(generator.targets)
+        self._push()
         if self._trace is not None:
             self._record(reading)
         simulation.advance()
@@ -192,7 +220,7 @@ class Episode:
 
     def result(self) -> EpisodeResult:
         """What has come out of the episode so far; of an episode that goes on, its ``termination`` is empty."""
-        elapsed = self._ticks * CONTROL_DT
+        elapsed = self._ticks * self._dt
         ceiling = highest_return(self.robot.standing_height, self.config.time_limit - STAND_SECONDS)
         trace = None
         if self._trace is not None:
@@ -208,6 +236,10 @@ class Episode:
             sole_clearance=self._gait.sole_clearance,
             event_driven_shift=self._gait.event_driven(Phase.SHIFT),
             event_driven_lift=self._gait.event_driven(Phase.LIFT),
+            vibration=self._motion.vibration,
+            actuator_power=self._motion.actuator_power,
+            peak_hip_rate=self._motion.peak_hip_rate,
+            peak_leg_speed=self._motion.peak_leg_speed,
             trace=trace,
         )
 
@@ -216,19 +248,28 @@ class Episode:
         self.simulation.close()
 
     def _sense(self) -> SensorReading:
-        self.last_reading = self._sensors(self.simulation.read())
+        self._truth = self.simulation.read()
+        self.last_reading = self._sensors(self._truth)
         return self.last_reading
+
+    def _push(self) -> None:
+        """Push during this tick, if the push's time has come."""
+        if self.push is None:
+            return
+        since_begin = STAND_SECONDS + self._ticks * self._dt - self.push.begin
+        if -self._dt / 2 <= since_begin < self.push.duration - self._dt / 2:
+            self.simulation.push(self.push.force)
 
     def _judge(self) -> None:
         """Add this tick's reward, and see whether the episode ends."""
-        elapsed = self._ticks * CONTROL_DT
+        elapsed = self._ticks * self._dt
         torso = self.simulation.torso_state()
         self.termination = self._termination(torso, self._gait.steps, STAND_SECONDS + elapsed)
         if self.termination == "diverged":  # the result keeps to the last finite state
             return
         self._last = torso
         frequency = self._gait.steps_per_second(self._ticks)
-        self._return += reward_rate(*self._displacement(torso), frequency, self.config.reward_form) * CONTROL_DT
+        self._return += reward_rate(*self._displacement(torso), frequency, self.config.reward_form) * self._dt
 
     def _displacement(self, torso: TorsoState) -> tuple[float, float, float]:
         """Torso position as equation 2 wants it: x and y from the start, z over the floor."""
@@ -243,7 +284,7 @@ class Episode:
             return "left_box"
         if torso.tilt > LARGEST_TILT:
             return "fell"
-        half_tick = CONTROL_DT / 2
+        half_tick = self._dt / 2
         if steps < OSCILLATION_STEPS and time > OSCILLATION_SECONDS - half_tick:
             return "no_oscillation"
         return "time_limit" if time > self.config.time_limit - half_tick else None
@@ -253,7 +294,7 @@ class Episode:
         generator = self.generator
         torso = self.simulation.torso_state()
         row = {
-            "time": STAND_SECONDS + self._ticks * CONTROL_DT,
+            "time": STAND_SECONDS + self._ticks * self._dt,
             "position": torso.position,
             "orientation": torso.orientation,
             "acceleration": reading.acceleration,
@@ -283,7 +324,7 @@ def simulate(spec: EpisodeSpec, record_trace: bool = False) -> EpisodeResult:
         ``phase``, ``support`` (+1 right, -1 left), ``stable_x``, ``tilt``, ``rate`` and ``steps_per_second``
     :return: the result
     """
-    episode = Episode(spec.config, spec.seed, record_trace)
+    episode = Episode(spec.config, spec.seed, TASKS[spec.task], record_trace)
     try:
         episode.stand()
         return episode.run(spec.parameters)

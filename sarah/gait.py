@@ -5,20 +5,25 @@ from __future__ import annotations
 from collections import deque
 from statistics import median
 
-from sarah.config import CONTROL_RATE
 from sarah.pattern_generator import Phase, PhaseChange
 
-WINDOW_TICKS = 2 * CONTROL_RATE
-"""Over which steps per second are counted: 2 s."""
-SHORTEST_WINDOW_TICKS = CONTROL_RATE // 2
-"""What the time since the start counts as at least: 0.5 s."""
+WINDOW_SECONDS = 2.0
+"""Over which steps per second are counted."""
+SHORTEST_WINDOW_SECONDS = 0.5
+"""What the time since the start counts as at least."""
 
 
 class GaitRecord:
-    """Follows one episode's gait. Ticks are control ticks since the pattern generator's start."""
+    """Follows one episode's gait. Ticks are control ticks since the pattern generator's start.
 
-    def __init__(self) -> None:
+    :param control_rate: control ticks per second
+    """
+
+    def __init__(self, control_rate: int) -> None:
         self.steps = 0
+        self._control_rate = control_rate
+        self._window = round(WINDOW_SECONDS * control_rate)
+        self._shortest_window = round(SHORTEST_WINDOW_SECONDS * control_rate)
         self._recent: deque[int] = deque()
         self._swing_height = 0.0
         self._clearances: list[float] = []
@@ -54,9 +59,9 @@ class GaitRecord:
 
         :param ticks: that have passed; must not run backwards
         """
-        while self._recent and self._recent[0] < ticks - WINDOW_TICKS:
+        while self._recent and self._recent[0] < ticks - self._window:
             self._recent.popleft()
-        return len(self._recent) * CONTROL_RATE / max(SHORTEST_WINDOW_TICKS, min(WINDOW_TICKS, ticks))
+        return len(self._recent) * self._control_rate / max(self._shortest_window, min(self._window, ticks))
 
     def event_driven(self, phase: Phase) -> float:
         """Share of a phase's ends that its sensor condition made, and not its time-out; 0 if it never ended.

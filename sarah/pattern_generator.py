@@ -19,17 +19,13 @@ only: it runs once per control tick, and on a robot.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
-from sarah.errors import ConfigurationError
+from sarah.filters import LowPass, ramped
+from sarah.hips import LARGEST_ACCELERATION, BalanceParameters, HipLaw, Side
 from sarah.sensors import SensorReading
 
-PARAMETER_NAMES = ("P1", "P2", "P3", "P4", "P5")
-PARAMETER_RANGE = (0.0, 2.0)
-"""Box of P1-P5; the paper observed that they must be positive."""
 PAPER_PARAMETERS = (0.4, 1.3, 0.1, 1.0, 1.0)
 """Where the paper's P1-P3 settled; its P4 and P5 did not matter and are set to 1 here."""
 
@@ -37,16 +33,14 @@ MINIMUM_PHASE_SECONDS = 0.04
 TIME_OUT_SECONDS = 0.5
 RATE_SCALE = 0.2
 """Of P3 in the condition that ends SHIFT."""
-PUSH_LENGTH = 0.004
+PUSH_LENGTH = 0.008
 """How far the swing leg extends in SHIFT, in m."""
-LIFT_LENGTH = 0.020
+LIFT_LENGTH = 0.030
 """How far the swing leg retracts in LIFT, in m."""
 LEG_SPEED = 1.0
 """Of the ramp that leg length targets follow, in m/s."""
 TILT_TIME_CONSTANT = 0.10
 RATE_TIME_CONSTANT = 0.01
-ACCELERATION_LIMIT = 20.0
-"""Accelerations are clipped to this, in m/s^2, before the low-pass."""
 
 
 class Phase(Enum):
@@ -56,18 +50,6 @@ class Phase(Enum):
     SHIFT = "shift"
     LIFT = "lift"
     LAND = "land"
-
-
-class Side(Enum):
-    """A leg; the value is its sign along the torso's x axis."""
-
-    LEFT = -1
-    RIGHT = 1
-
-    @property
-    def other(self) -> Side:
-        """The opposite leg."""
-        return Side.LEFT if self is Side.RIGHT else Side.RIGHT
 
 
 @dataclass(frozen=True)
@@ -86,38 +68,6 @@ class SteppingParameters:
     P3: float
     P4: float
     P5: float
-
-    @classmethod
-    def checked(cls, values: Sequence[float]) -> SteppingParameters:
-        """Make them from five numbers.
-
-        :param values: P1 to P5
-        :raises ConfigurationError: naming the first one that is not a number within the box
-        """
-        if len(values) != len(PARAMETER_NAMES):
-            raise ConfigurationError(f"parameters must be {len(PARAMETER_NAMES)} numbers (P1 to P5), not {len(values)}")
-        low, high = PARAMETER_RANGE
-        for name, value in zip(PARAMETER_NAMES, values, strict=True):
-            if not (math.isfinite(value) and low <= value <= high):
-                raise ConfigurationError(f"parameter {name} must be between {low:g} and {high:g}, not {value!r}")
-        return cls(*(float(value) for value in values))
-
-
-class LowPass:
-    """First-order low-pass filter, starting at zero.
-
-    :param time_constant: in s
-    :param dt: control period in s
-    """
-
-    def __init__(self, time_constant: float, dt: float) -> None:
-        self.value = 0.0
-        self._gain = 1.0 - math.exp(-dt / time_constant)
-
-    def __call__(self, sample: float) -> float:
-        """Take one sample and return the filtered value."""
-        self.value += self._gain * (sample - self.value)
-        return self.value
 
 
 @dataclass(frozen=True)
@@ -140,9 +90,16 @@ class PatternGenerator:
     :param parameters: P1 to P5
     :param pad_threshold: load above which a foot counts as carrying, in N
     :param dt: control period in s
+    :param balance: V1 to V4; without them the hips are locked, as in the first training
     """
 
-    def __init__(self, parameters: SteppingParameters, pad_threshold: float = 30.0, dt: float = 0.01) -> None:
+    def __init__(
+        self,
+        parameters: SteppingParameters,
+        pad_threshold: float = 30.0,
+        dt: float = 0.01,
+        balance: BalanceParameters | None = None,
+    ) -> None:
         self.parameters = parameters
         self.phase = Phase.STAND
         self.support = Side.RIGHT
@@ -154,6 +111,7 @@ class PatternGenerator:
         self._rate_y = LowPass(RATE_TIME_CONSTANT, dt)
         self._lengths = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
         self._loads = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
+        self._hips = HipLaw(balance, dt) if balance is not None else None
 
     @property
     def swing(self) -> Side:
@@ -177,12 +135,13 @@ class PatternGenerator:
 
     def sense(self, reading: SensorReading) -> None:
         """Filter one reading without acting on it, as while standing."""
-        lateral = max(-ACCELERATION_LIMIT, min(ACCELERATION_LIMIT, reading.acceleration[0]))
-        self._stable_x(lateral)
+        self._stable_x(max(-LARGEST_ACCELERATION, min(LARGEST_ACCELERATION, reading.acceleration[0])))
         self._rate_y(reading.angular_rate[1])
         left_fore, left_hind, right_fore, right_hind = reading.pressures
         self._loads[Side.LEFT] = left_fore + left_hind
         self._loads[Side.RIGHT] = right_fore + right_hind
+        if self._hips is not None:
+            self._hips.sense(reading)
 
     def tick(self, reading: SensorReading) -> PhaseChange | None:
         """Advance by one control tick.
@@ -198,12 +157,18 @@ class PatternGenerator:
         if change is not None:
             self._enter_next_phase()
         self._ramp_legs()
+        if self._hips is not None:
+            self._hips.tick(self.swing)
         return change
 
     @property
     def targets(self) -> tuple[float, float, float, float, float, float]:
-        """Joint targets in the order of ``ACTUATED_JOINTS``; the hips are locked in the first training."""
-        return (0.0, 0.0, 0.0, 0.0, self._lengths[Side.LEFT], self._lengths[Side.RIGHT])
+        """Joint targets in the order of ``ACTUATED_JOINTS``."""
+        left, right = self._lengths[Side.LEFT], self._lengths[Side.RIGHT]
+        if self._hips is None:
+            return (0.0, 0.0, 0.0, 0.0, left, right)
+        abduction, flexion = self._hips.abduction, self._hips.flexion
+        return (abduction, abduction, flexion[Side.LEFT], flexion[Side.RIGHT], left, right)
 
     def _phase_change(self) -> PhaseChange | None:
         elapsed = self._ticks_in_phase * self._dt
@@ -251,5 +216,4 @@ class PatternGenerator:
         swing_length = {Phase.SHIFT: -PUSH_LENGTH, Phase.LIFT: LIFT_LENGTH}.get(self.phase, 0.0)
         largest = LEG_SPEED * self._dt
         for side, goal in ((self.swing, swing_length), (self.support, 0.0)):
-            change = goal - self._lengths[side]
-            self._lengths[side] += max(-largest, min(largest, change))
+            self._lengths[side] = ramped(self._lengths[side], goal, largest)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from sarah.config import Randomisation
+from sarah.config import Push, Randomisation
 from sarah.description import GROUPS
 from sarah.errors import ConfigurationError
+from sarah.sensors import Vector
 
 LINKS = tuple(link for group in GROUPS.values() for link in group)
 
@@ -23,6 +25,8 @@ class Conditions:
     :param pad_threshold: pad load above which a foot counts as carrying, in N
     :param acceleration_noise: standard deviation in m/s^2
     :param angular_rate_noise: standard deviation in rad/s
+    :param imu_bandwidth: of the inertial measurement unit's low-pass, in Hz
+    :param pad_noise: standard deviation in N
     :param delay_ticks: control ticks between sensing and acting
     :param start_velocity: of the torso along x and y, in m/s
     :param sensor_seed: of the sensor noise
@@ -34,6 +38,8 @@ class Conditions:
     pad_threshold: float = 30.0
     acceleration_noise: float = 0.0
     angular_rate_noise: float = 0.0
+    imu_bandwidth: float = math.inf
+    pad_noise: float = 0.0
     delay_ticks: int = 0
     start_velocity: tuple[float, float] = (0.0, 0.0)
     sensor_seed: int = 0
@@ -67,7 +73,36 @@ def draw_conditions(ranges: Randomisation, seed: int) -> Conditions:
         pad_threshold=generator.uniform(*ranges.pad_threshold),
         acceleration_noise=ranges.acceleration_noise,
         angular_rate_noise=ranges.angular_rate_noise,
+        imu_bandwidth=ranges.imu_bandwidth,
+        pad_noise=ranges.pad_noise,
         delay_ticks=ranges.delay_ticks,
         start_velocity=velocity,
         sensor_seed=generator.getrandbits(64),
     )
+
+
+@dataclass(frozen=True)
+class DrawnPush:
+    """One episode's push.
+
+    :param force: on the torso's centre, in the world's frame, in N
+    :param begin: simulated time at which it begins, in s
+    :param duration: in s
+    """
+
+    force: Vector
+    begin: float
+    duration: float
+
+
+def draw_push(ranges: Push, seed: int) -> DrawnPush:
+    """Draw one episode's push, independently of its conditions.
+
+    :param ranges: what to draw from
+    :param seed: of the episode; the same seed draws the same direction and time at any force
+    """
+    generator = random.Random(f"push {seed}")
+    newtons = generator.uniform(*ranges.newtons)
+    direction = math.radians(generator.uniform(*ranges.degrees))
+    begin = generator.uniform(*ranges.at_seconds)
+    return DrawnPush((newtons * math.cos(direction), newtons * math.sin(direction), 0.0), begin, ranges.duration)

@@ -9,12 +9,16 @@ from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
 from types import ModuleType
 
+ENVIRONMENTS = {"SarahStepping-v0": "stepping", "SarahBalance-v0": "balance"}
+"""Task of each registered environment."""
+
 
 def register_environments() -> None:
     """Register the package's environments; importing ``sarah`` does so, as soon as gymnasium is imported too."""
     import gymnasium
 
-    gymnasium.register("SarahStepping-v0", entry_point="sarah.envs:SteppingEnv")
+    for name, task in ENVIRONMENTS.items():
+        gymnasium.register(name, entry_point="sarah.envs:SarahEnv", kwargs={"task": task})
 
 
 class _OnGymnasiumImport(MetaPathFinder):

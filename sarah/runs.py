@@ -5,6 +5,7 @@
     progress.csv  events.out.tfevents.*        the learning curves, for tables and for TensorBoard
     model.zip                                  the agent, in stable-baselines3's format
     parameters.json                            the learned parameters: what a robot would be sent
+    figures/                                   what sarah-figures draws of this run
 
 Everything but the model is read without unpickling: opening somebody's run executes none of its code.
 """
@@ -24,6 +25,7 @@ from typing import Any
 
 from sarah.config import TrainingConfig, read_config, write_config
 from sarah.errors import RunFolderError
+from sarah.tasks import TASKS
 
 PACKAGES = ("sarah", "pybullet", "stable-baselines3", "gymnasium", "torch", "numpy")
 EPISODE_FIELDS = (
@@ -37,6 +39,10 @@ EPISODE_FIELDS = (
     "event_driven_shift",
     "event_driven_lift",
     "sole_clearance",
+    "vibration",
+    "actuator_power",
+    "peak_hip_rate",
+    "peak_leg_speed",
 )
 
 
@@ -63,6 +69,7 @@ class RunFolder:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.model_path = path / "model.zip"
+        self.figures_path = path / "figures"
         self._config_path = path / "config.yaml"
         self._episodes_path = path / "episodes.csv"
         self._parameters_path = path / "parameters.json"
@@ -134,7 +141,9 @@ class RunFolder:
             writer.writerow(row)
 
     def episodes(self) -> Iterator[dict[str, str]]:
-        """Read ``episodes.csv``, row by row, as text."""
+        """Read ``episodes.csv``, row by row, as text; nothing if nothing has been simulated yet."""
+        if not self._episodes_path.exists():
+            return
         with self._episodes_path.open(newline="", encoding="utf-8") as file:
             yield from csv.DictReader(file)
 
@@ -147,12 +156,12 @@ class RunFolder:
         unfinished.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
         os.replace(unfinished, self._parameters_path)
 
-    def parameters(self, names: Sequence[str]) -> tuple[float, ...]:
-        """Read the learned parameters.
+    def parameters(self) -> tuple[float, ...]:
+        """Read the learned parameters, in the order of the task.
 
-        :param names: of the parameters, in the order to return them
         :raises RunFolderError: if the file does not hold exactly these
         """
+        names = TASKS[self.config().task].parameter_names
         try:
             learned = json.loads(self._parameters_path.read_text(encoding="utf-8"))["parameters"]
             if set(learned) != set(names):

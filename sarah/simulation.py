@@ -15,7 +15,7 @@ from types import ModuleType
 
 import numpy as np
 
-from sarah.config import CONTROL_DT, CONTROL_RATE, PHYSICS, Physics
+from sarah.config import PHYSICS, Physics
 from sarah.description import ACTUATED_JOINTS, PASSIVE_JOINTS, PLATES, SIDES, RobotDescription
 from sarah.randomisation import NOMINAL, Conditions
 from sarah.sensors import SensorReading, Vector
@@ -56,7 +56,8 @@ class Simulation:
     ) -> None:
         self.robot = robot
         self.time = 0.0
-        self._substeps = physics.rate // CONTROL_RATE
+        self._dt = physics.control_dt
+        self._substeps = physics.rate // physics.control_rate
         self._client = pybullet.connect(pybullet.DIRECT)
         if self._client < 0:
             raise RuntimeError("PyBullet has no free client: close simulations that are done")
@@ -68,7 +69,7 @@ class Simulation:
 
     def _build(self, physics: Physics, conditions: Conditions) -> None:
         pybullet.setPhysicsEngineParameter(
-            fixedTimeStep=CONTROL_DT,
+            fixedTimeStep=self._dt,
             numSubSteps=self._substeps,
             numSolverIterations=physics.solver_iterations,
             enableConeFriction=0,  # as good as friction cones here, and cheaper
@@ -86,7 +87,7 @@ class Simulation:
         }
         self._keep_only_pad_contacts()
         self._apply_conditions(conditions)
-        self._gains = [conditions.actuator_bandwidth * CONTROL_DT / self._substeps] * len(self._joints)
+        self._gains = [conditions.actuator_bandwidth * self._dt / self._substeps] * len(self._joints)
         self._efforts = [self.robot.efforts[name] for name in ACTUATED_JOINTS]
         self._velocity_before = self.torso_state().velocity
         self.set_targets((0.0,) * len(self._joints))
@@ -180,7 +181,7 @@ class Simulation:
         """Simulate one control tick."""
         self._velocity_before = pybullet.getBaseVelocity(self._body, physicsClientId=self._client)[0]
         pybullet.stepSimulation(physicsClientId=self._client)
-        self.time += CONTROL_DT
+        self.time += self._dt
 
     def torso_state(self) -> TorsoState:
         """Where the torso really is; no sensor of the robot knows it."""
@@ -192,9 +193,9 @@ class Simulation:
         torso = self.torso_state()
         now, before = torso.velocity, self._velocity_before
         specific_force = (
-            (now[0] - before[0]) * CONTROL_RATE,
-            (now[1] - before[1]) * CONTROL_RATE,
-            (now[2] - before[2]) * CONTROL_RATE + GRAVITY,
+            (now[0] - before[0]) / self._dt,
+            (now[1] - before[1]) / self._dt,
+            (now[2] - before[2]) / self._dt + GRAVITY,
         )
         return SensorReading(
             rotate_to_body(torso.orientation, specific_force),
@@ -211,6 +212,12 @@ class Simulation:
         """
         indices = [self._links[name] for name in names]
         return tuple(state[0] for state in pybullet.getJointStates(self._body, indices, self._client))
+
+    def actuator_motion(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Speeds (rad/s, m/s) and efforts (Nm, N) of the actuators, in the order of ``ACTUATED_JOINTS``."""
+        states = pybullet.getJointStates(self._body, self._joints, self._client)
+        # As with contacts, PyBullet reports the impulse of the last substep over the whole tick.
+        return tuple(state[1] for state in states), tuple(state[3] * self._substeps for state in states)
 
     def _pressures(self) -> tuple[float, float, float, float]:
         loads = [0.0, 0.0, 0.0, 0.0]

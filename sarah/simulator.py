@@ -91,6 +91,9 @@ class Simulator(Protocol):
         :param names: of the joints
         """
 
+    def actuator_motion(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Speeds (rad/s, m/s) and efforts (Nm, N) of the actuators, in the order of ``ACTUATED_JOINTS``."""
+
     def sole_height(self, side: str) -> float:
         """Height of a foot's lowest sole contact over the floor, in m.
 

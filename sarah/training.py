@@ -18,13 +18,13 @@ from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv, VecEnv
 
 from sarah.agents.naf import NAF, PRESETS
-from sarah.config import EpisodeConfig, Randomisation, TrainingConfig
-from sarah.envs import FIRST_TRAINING_SEED, SteppingEnv, observation_from, parameters_from
+from sarah.config import Randomisation, TrainingConfig
+from sarah.envs import FIRST_TRAINING_SEED, SarahEnv, observation_from, parameters_from
 from sarah.episode import Episode, EpisodeSpec
 from sarah.evaluation import Evaluation, simulate_all, summarise
-from sarah.pattern_generator import PARAMETER_NAMES
 from sarah.recommendation import SIMULATIONS_PER_CANDIDATE, Parameters, candidate_count, candidates
 from sarah.runs import RunFolder
+from sarah.tasks import TASKS, Task
 
 UPDATES_PER_SIMULATION = 5
 SUMMARY_EPISODES = 10
@@ -36,6 +36,8 @@ LOGGED_FIELDS = (
     "event_driven_shift",
     "event_driven_lift",
     "sole_clearance",
+    "vibration",
+    "actuator_power",
 )
 """Fields of a result that are logged under their own names."""
 
@@ -55,7 +57,8 @@ def make_algorithm(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
     settings = dict(learning_starts=40, batch_size=64, gamma=0.0, policy_kwargs=dict(net_arch=[64, 64]), **common)
     if config.algo == "sac":
         return SAC("MlpPolicy", env, **settings)
-    noise = NormalActionNoise(np.zeros(len(PARAMETER_NAMES)), np.full(len(PARAMETER_NAMES), 0.2))
+    dimensions = len(TASKS[config.task].parameter_names)
+    noise = NormalActionNoise(np.zeros(dimensions), np.full(dimensions, 0.2))
     return {"td3": TD3, "ddpg": DDPG}[config.algo]("MlpPolicy", env, action_noise=noise, **settings)
 
 
@@ -63,10 +66,12 @@ class EpisodeRecorder(BaseCallback):
     """Writes every simulation to ``episodes.csv`` and to the logger.
 
     :param run: where to
+    :param task: whose parameters they are
     """
 
-    def __init__(self, run: RunFolder) -> None:
+    def __init__(self, run: RunFolder, task: Task) -> None:
         super().__init__()
+        self._names = task.parameter_names
         self.tried: list[tuple[Parameters, float]] = []
         self._run = run
 
@@ -80,13 +85,13 @@ class EpisodeRecorder(BaseCallback):
 
         :param info: what the environment's step returned
         """
-        self._run.append_episode(len(self.tried), PARAMETER_NAMES, info)
+        self._run.append_episode(len(self.tried), self._names, info)
         self.tried.append((info["parameters"], info["score"]))
         x, y, _ = info["final_position"]
         shown = {"return": info["episode_return"], "x": x, "y": y, **{name: info[name] for name in LOGGED_FIELDS}}
         for name, value in shown.items():
             self.logger.record(f"episode/{name}", value)
-        for name, value in zip(PARAMETER_NAMES, info["parameters"], strict=True):
+        for name, value in zip(self._names, info["parameters"], strict=True):
             self.logger.record(f"parameters/{name}", value)
         self.logger.dump(len(self.tried))
 
@@ -105,10 +110,10 @@ def train(config: TrainingConfig, run: RunFolder, progress_bar: bool = False) ->
     compared = count * SIMULATIONS_PER_CANDIDATE if count > 1 else 0
     # Environments side by side take simulations n_envs at a time; what that leaves over goes to the comparison.
     learned_from = (config.simulations - compared) // config.n_envs * config.n_envs
-    recorder = EpisodeRecorder(run)
+    recorder = EpisodeRecorder(run, TASKS[config.task])
     model = _learn(config, learned_from, run, recorder, progress_bar)
     model.save(run.model_path)
-    rivals = candidates(chosen_parameters(model, config.episode), recorder.tried, count)
+    rivals = candidates(chosen_parameters(model, config), recorder.tried, count)
     parameters = _compare(rivals, config.simulations - learned_from, config, recorder)
     model.logger.close()
     evaluation = evaluate(parameters, config, range(SUMMARY_EPISODES))
@@ -118,7 +123,7 @@ def train(config: TrainingConfig, run: RunFolder, progress_bar: bool = False) ->
             "algorithm": config.algo,
             "seed": config.seed,
             "simulations": config.simulations,
-            "parameters": dict(zip(PARAMETER_NAMES, parameters, strict=True)),
+            "parameters": dict(zip(TASKS[config.task].parameter_names, parameters, strict=True)),
             "evaluation": dataclasses.asdict(evaluation),
         }
     )
@@ -129,9 +134,9 @@ def _learn(
     config: TrainingConfig, simulations: int, run: RunFolder, recorder: EpisodeRecorder, progress_bar: bool
 ) -> OffPolicyAlgorithm:
     env = make_vec_env(
-        SteppingEnv,
+        SarahEnv,
         config.n_envs,
-        env_kwargs={"config": config.episode},
+        env_kwargs={"task": config.task, "config": config.episode},
         vec_env_cls=DummyVecEnv if config.n_envs == 1 else SubprocVecEnv,
     )
     try:
@@ -144,21 +149,22 @@ def _learn(
     return model
 
 
-def chosen_parameters(model: OffPolicyAlgorithm, config: EpisodeConfig) -> Parameters:
+def chosen_parameters(model: OffPolicyAlgorithm, config: TrainingConfig) -> Parameters:
     """What the agent does, without exploration, when the robot as designed stands before it.
 
     :param model: the agent
-    :param config: settings of the episodes; the randomisation is left out
+    :param config: of the training; the randomisation is left out
     :return: the parameters
     """
-    nominal = dataclasses.replace(config, randomisation=Randomisation(enabled=False, start_speed=0.0))
-    episode = Episode(nominal, seed=0)
+    task = TASKS[config.task]
+    nominal = dataclasses.replace(config.episode, randomisation=Randomisation(enabled=False, start_speed=0.0))
+    episode = Episode(nominal, 0, task)
     try:
         observation = observation_from(episode.stand())
     finally:
         episode.close()
     action, _ = model.predict(observation, deterministic=True)
-    return parameters_from(action)
+    return parameters_from(action, task)
 
 
 def _compare(

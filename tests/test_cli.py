@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from sarah.pattern_generator import PARAMETER_NAMES
+from sarah.tasks import STEPPING
 
 BIN = Path(sys.executable).parent
 SHORT = ("--episode.time-limit", "1.5", "--n-envs", "1")
@@ -28,7 +28,7 @@ def trained(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, subprocess.
 def test_train_ends_with_a_summary(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
     folder, process = trained
     assert process.returncode == 0, process.stderr
-    for text in ("learned", *PARAMETER_NAMES, "score", "run folder  mine"):
+    for text in ("learned", *STEPPING.parameter_names, "score", "run folder  mine"):
         assert text in process.stdout
     assert "Traceback" not in process.stderr and "pybullet" not in process.stderr
     assert (folder / "parameters.json").is_file()
@@ -82,6 +82,7 @@ def test_training_is_configured_by_a_file_and_overridden_by_options(tmp_path: Pa
     ("command", "options"),
     [
         ("sarah-train", ("--task", "--algo", "--simulations", "--seed", "--run-dir", "--config")),
+        ("sarah-figures", ("RUN", "--out")),
         ("sarah-eval", ("RUN", "--episodes", "--first-seed", "--json", "--parameters", "--task")),
     ],
 )
@@ -108,12 +109,12 @@ def test_a_reader_who_has_had_enough_is_no_error(tmp_path: Path) -> None:
     assert process.stderr == ""
 
 
-@pytest.mark.parametrize("command", ["train", "eval"])
+@pytest.mark.parametrize("command", ["train", "eval", "figures"])
 def test_help_loads_nothing_slow(command: str) -> None:
     program = (
         f"import sys\nfrom sarah.cli.{command} import main\nsys.argv = ['command', '--help']\n"
         "try:\n    main()\nexcept SystemExit:\n    pass\n"
-        "slow = {'torch', 'gymnasium', 'numpy', 'pybullet', 'stable_baselines3', 'yourdfpy', 'yaml'}\n"
+        "slow = {'torch', 'matplotlib', 'gymnasium', 'numpy', 'pybullet', 'stable_baselines3', 'yourdfpy', 'yaml'}\n"
         "sys.exit(' '.join(slow & set(sys.modules)) or 0)"
     )
     process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
@@ -137,6 +138,27 @@ def test_help_loads_nothing_slow(command: str) -> None:
         ("sarah-train --episode.dimensions thigh_length nan", "must be a finite positive number"),
         ("sarah-train --episode.dimensions thigh_mass 9", "must weigh 10 kg"),
         ("sarah-train --episode.physics.rate 250", "physics.rate must be a multiple of 100 Hz"),
+        ("sarah-train --from nowhere --task balance", "run folder nowhere does not exist"),
+        ("sarah-train --task balance --from full", "not the folder of a finished training"),
+        ("sarah-train --task balance --episode.stepping 1 1 1 1 3", "parameter P5 must be between 0 and 2, not 3.0"),
+        ("sarah-train --episode.push.newtons 50 20", "push.newtons must be finite, not negative and in rising order"),
+        ("sarah-train --episode.push.at-seconds 0.5 2", "push.at_seconds must be from 1 s on"),
+        ("sarah-train --episode.physics.control-rate 5", "physics.control_rate must be between 50 and 1000 Hz, not 5"),
+        ("sarah-eval --task balance --parameters 1,0,1", "must be 4 numbers (V1 to V4), not 3"),
+        ("sarah-eval --task balance --parameters 1,0,1,-3", "V4 must be between -2 and 2, not -3.0"),
+        (
+            "sarah-eval --task balance --parameters 1,0,1,0 --push-newtons -5",
+            "push.newtons must be finite, not negative",
+        ),
+        (
+            "sarah-eval --task balance --parameters 1,0,1,0 --stepping 1,1",
+            "stepping must be 5 numbers (P1 to P5), not 2",
+        ),
+        ("sarah-eval --parameters 1,1,1,1,1 --push-newtons 50", "--push-newtons is for --task balance"),
+        ("sarah-eval --parameters 1,1,1,1,1 --stepping 1,1,1,1,1", "--stepping is for --task balance"),
+        ("sarah-figures", "give at least one run folder"),
+        ("sarah-figures full full", "several runs need a folder for their figures: --out DIR"),
+        ("sarah-figures full", "not the folder of a finished training"),
         ("sarah-eval", "give either a run folder or --parameters"),
         ("sarah-eval nowhere", "run folder nowhere does not exist"),
         ("sarah-eval full", "not the folder of a finished training"),

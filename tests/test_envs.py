@@ -13,10 +13,11 @@ from stable_baselines3.common.env_checker import check_env as sb3_check_env
 
 import sarah
 from sarah.config import EpisodeConfig
-from sarah.envs import FIRST_TRAINING_SEED, SteppingEnv, parameters_from
+from sarah.envs import FIRST_TRAINING_SEED, SarahEnv, parameters_from
 from sarah.episode import EpisodeResult
 from sarah.errors import ConfigurationError
 from sarah.pattern_generator import PAPER_PARAMETERS
+from sarah.tasks import STEPPING
 
 SHORT = EpisodeConfig(time_limit=4.0)
 PAPER_ACTION = np.array(PAPER_PARAMETERS, dtype=np.float32) - 1.0
@@ -26,22 +27,22 @@ PAPER_ACTION = np.array(PAPER_PARAMETERS, dtype=np.float32) - 1.0
 def test_importing_sarah_registers_it_in_either_order(imports: str) -> None:
     program = f"{imports}; print(gymnasium.make('SarahStepping-v0').unwrapped)"
     process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert "SteppingEnv" in process.stdout
+    assert "SarahEnv" in process.stdout
 
 
 def test_environments_do_not_share_their_spaces() -> None:
-    first, second = SteppingEnv(SHORT), SteppingEnv(SHORT)
+    first, second = SarahEnv(config=SHORT), SarahEnv(config=SHORT)
     first.action_space.seed(0)
     second.action_space.seed(0)
     first.action_space.sample()
-    again = SteppingEnv(SHORT)
+    again = SarahEnv(config=SHORT)
     again.action_space.seed(0)
     assert (second.action_space.sample() == again.action_space.sample()).all()
 
 
 def test_gymnasium_knows_it_by_name() -> None:
     env = gymnasium.make("SarahStepping-v0", config=SHORT)
-    assert isinstance(env.unwrapped, SteppingEnv)
+    assert isinstance(env.unwrapped, SarahEnv)
     env.close()
 
 
@@ -55,7 +56,7 @@ def test_checkers_pass_without_a_warning() -> None:
 
 
 def test_reset_stands_and_step_simulates_to_the_end() -> None:
-    env = SteppingEnv(SHORT)
+    env = SarahEnv(config=SHORT)
     observation, info = env.reset(seed=1)
     assert observation.shape == (16,)
     assert info["seed"] >= FIRST_TRAINING_SEED
@@ -71,7 +72,7 @@ def test_reset_stands_and_step_simulates_to_the_end() -> None:
 
 
 def test_observation_is_of_order_one_and_upright() -> None:
-    env = SteppingEnv(SHORT)
+    env = SarahEnv(config=SHORT)
     observation, _ = env.reset(seed=1)
     assert env.observation_space.contains(observation)
     acceleration, rates, pressures, joints = np.split(observation, [3, 6, 10])
@@ -85,7 +86,7 @@ def test_observation_is_of_order_one_and_upright() -> None:
 def test_same_seed_gives_the_same_series_of_episodes() -> None:
     series = []
     for _ in range(2):
-        env = SteppingEnv(SHORT)
+        env = SarahEnv(config=SHORT)
         first, info = env.reset(seed=5)
         second, next_info = env.reset()
         series.append((first.tolist(), second.tolist(), info["seed"], next_info["seed"]))
@@ -95,14 +96,14 @@ def test_same_seed_gives_the_same_series_of_episodes() -> None:
 
 
 def test_action_is_the_scaled_box() -> None:
-    assert parameters_from(np.zeros(5)) == (1.0,) * 5
-    assert parameters_from(-np.ones(5)) == (0.0,) * 5
-    assert parameters_from(np.ones(5)) == (2.0,) * 5
+    assert parameters_from(np.zeros(5), STEPPING) == (1.0,) * 5
+    assert parameters_from(-np.ones(5), STEPPING) == (0.0,) * 5
+    assert parameters_from(np.ones(5), STEPPING) == (2.0,) * 5
 
 
 @pytest.mark.parametrize("action", [np.full(5, np.nan), np.full(5, 1.5), np.zeros(4)])
 def test_impossible_actions_are_refused(action: np.ndarray) -> None:
-    env = SteppingEnv(SHORT)
+    env = SarahEnv(config=SHORT)
     env.reset(seed=0)
     with pytest.raises(ConfigurationError, match="an action must be 5 numbers within -1 and 1"):
         env.step(action)
@@ -110,7 +111,7 @@ def test_impossible_actions_are_refused(action: np.ndarray) -> None:
 
 
 def test_an_episode_has_one_step() -> None:
-    env = SteppingEnv(SHORT)
+    env = SarahEnv(config=SHORT)
     with pytest.raises(ConfigurationError, match="call reset"):
         env.step(PAPER_ACTION)
     env.reset(seed=0)
@@ -121,7 +122,7 @@ def test_an_episode_has_one_step() -> None:
 
 
 def test_render_gives_a_picture() -> None:
-    env = SteppingEnv(SHORT, render_mode="rgb_array")
+    env = SarahEnv(config=SHORT, render_mode="rgb_array")
     env.reset(seed=0)
     picture = env.render()
     assert picture is not None and picture.shape == (480, 640, 3) and picture.std() > 10

@@ -9,16 +9,19 @@ import numpy as np
 import pytest
 
 import sarah
-from sarah.config import CONTROL_DT, STAND_SECONDS, EpisodeConfig, Physics, Randomisation
+from sarah.config import PHYSICS, STAND_SECONDS, EpisodeConfig, Physics, Push, Randomisation
 from sarah.description import describe_robot
 from sarah.episode import TERMINATIONS, Episode, EpisodeResult, EpisodeSpec, simulate
 from sarah.errors import ConfigurationError
+from sarah.evaluation import Evaluation, summarise
 from sarah.pattern_generator import PAPER_PARAMETERS
-from sarah.randomisation import draw_conditions
+from sarah.randomisation import draw_conditions, draw_push
 from sarah.reward import highest_return, reward_rate
 from sarah.sensors import SensorReading
 from sarah.simulator import STANDARD_CAMERA, Camera, TorsoState
+from sarah.tasks import BALANCE
 
+CONTROL_DT = PHYSICS["standard"].control_dt
 SHORT = EpisodeConfig(time_limit=6.0)
 
 
@@ -188,7 +191,7 @@ def test_printed_reward_form_changes_the_return() -> None:
 
 
 def test_longer_feet_are_another_robot() -> None:
-    longer = dataclasses.replace(SHORT, dimensions={"forefoot_contact": 0.14, "hindfoot_contact": 0.14})
+    longer = dataclasses.replace(SHORT, dimensions={"forefoot_contact": 0.15, "hindfoot_contact": 0.15})
     assert simulate(EpisodeSpec(PAPER_PARAMETERS, 0, config=SHORT)) != simulate(
         EpisodeSpec(PAPER_PARAMETERS, 0, config=longer)
     )
@@ -230,6 +233,9 @@ class NoPhysics:
     def torso_state(self) -> TorsoState:
         return TorsoState((0.0, 0.0, 0.84), (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
+    def actuator_motion(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        return (0.0,) * 6, (0.0,) * 6
+
     def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
         return (0.0,) * len(names)
 
@@ -245,7 +251,8 @@ class NoPhysics:
 
 def test_episode_runs_on_any_simulator() -> None:
     """Where nothing moves, the feet never leave the floor: time-outs only, no step, no oscillation."""
-    episode = Episode(EpisodeConfig(), seed=0, build=NoPhysics)
+    perfect = EpisodeConfig(randomisation=Randomisation(enabled=False))
+    episode = Episode(perfect, seed=0, build=NoPhysics)
     reading = episode.stand()
     assert episode.simulation.time == pytest.approx(1.0) and reading.pressures == (75.0,) * 4
     result = episode.run(PAPER_PARAMETERS)
@@ -266,3 +273,85 @@ def test_standing_lasts_one_second() -> None:
     episode.stand()
     assert episode.simulation.time == pytest.approx(STAND_SECONDS)
     episode.close()
+
+
+def test_hard_push_throws_the_robot_over_and_a_soft_one_does_not() -> None:
+    def pushed(newtons: float) -> EpisodeResult:
+        push = Push(newtons=(newtons, newtons), degrees=(90.0, 90.0), at_seconds=(2.0, 2.0))
+        config = EpisodeConfig(push=push, time_limit=5.0, randomisation=Randomisation(enabled=False))
+        return simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.0), 0, "balance", config))
+
+    assert pushed(40.0).survived
+    thrown = pushed(300.0)
+    assert thrown.termination == "left_box" and thrown.final_position[1] > 0.2
+    assert 2.15 < thrown.duration < 3.0
+
+
+def test_push_is_the_only_difference_between_forces() -> None:
+    """The force changes neither direction nor time of the push, nor the episode's other draws."""
+    soft, hard = (draw_push(Push(newtons=(newtons, newtons)), seed=5) for newtons in (50.0, 100.0))
+    assert hard.begin == soft.begin
+    assert hard.force == pytest.approx(tuple(2 * component for component in soft.force))
+
+
+def test_pushes_cover_every_direction_force_and_time() -> None:
+    pushes = [draw_push(Push(), seed) for seed in range(400)]
+    newtons = [np.hypot(*push.force[:2]) for push in pushes]
+    assert min(newtons) < 5.0 and 95.0 < max(newtons) <= 100.0
+    quadrants = {(push.force[0] > 0, push.force[1] > 0) for push in pushes}
+    assert len(quadrants) == 4 and all(push.force[2] == 0.0 for push in pushes)
+    begins = [push.begin for push in pushes]
+    assert 1.0 <= min(begins) < 1.1 and 3.9 < max(begins) <= 4.0
+
+
+def test_push_lasts_as_long_as_it_says() -> None:
+    class Pushed(NoPhysics):
+        forces: list[tuple[float, float, float]]
+
+        def push(self, force: tuple[float, float, float]) -> None:
+            self.forces.append(force)
+
+    Pushed.forces = []
+    push = Push(newtons=(80.0, 80.0), degrees=(0.0, 0.0), at_seconds=(2.0, 2.0), duration=0.15)
+    episode = Episode(EpisodeConfig(push=push), 0, BALANCE, build=Pushed)
+    episode.stand()
+    episode.run((1.0, 0.0, 1.0, 0.0))
+    assert Pushed.forces == [(80.0, 0.0, 0.0)] * 15
+
+
+def test_balance_without_v_and_without_a_push_steps_as_in_the_first_training() -> None:
+    config = EpisodeConfig(push=Push(newtons=(0.0, 0.0)), time_limit=4.0, stepping=PAPER_PARAMETERS)
+    balance = simulate(EpisodeSpec((0.0,) * 4, 1, "balance", config))
+    assert balance == simulate(EpisodeSpec(PAPER_PARAMETERS, 1, "stepping", config))
+
+
+def test_episode_runs_at_another_control_rate() -> None:
+    config = EpisodeConfig(physics=Physics(control_rate=200), time_limit=6.0)
+    result = simulate(EpisodeSpec(PAPER_PARAMETERS, 0, config=config), record_trace=True)
+    assert result.survived and result.steps > 5 and result.trace is not None
+    assert np.allclose(np.diff(result.trace["time"]), 0.005)
+
+
+def shaken_by(amplitude: float) -> Evaluation:
+    """The same episode, with flexions that a controller shakes at half the control rate."""
+    episode = Episode(SHORT, 0)
+    episode.stand()
+    episode.start(PAPER_PARAMETERS)
+    send = episode.simulation.set_targets
+
+    def shaken(targets: tuple[float, ...]) -> None:
+        flexion = amplitude if round(episode.simulation.time / CONTROL_DT) % 2 else -amplitude
+        send((*targets[:2], flexion, flexion, *targets[4:]))
+
+    episode.simulation.set_targets = shaken  # type: ignore[method-assign]
+    while episode.termination is None:
+        episode.tick()
+    episode.close()
+    return summarise([episode.result()])
+
+
+def test_chattering_hips_show_as_vibration() -> None:
+    calm, chattering = shaken_by(0.0), shaken_by(0.02)
+    assert not calm.chatters and chattering.chatters
+    assert chattering.actuator_power_mean > calm.actuator_power_mean
+    assert chattering.peak_hip_rate_max > 10 * calm.peak_hip_rate_max

@@ -12,7 +12,7 @@ STEP = PhaseChange(Phase.LAND, by_sensors=True, is_step=True)
 
 
 def record_of_steps(ticks: list[int]) -> GaitRecord:
-    gait = GaitRecord()
+    gait = GaitRecord(100)
     for tick in ticks:
         gait.phase_change(tick, STEP)
     return gait
@@ -39,17 +39,17 @@ def test_steps_per_second_starts_with_the_elapsed_time() -> None:
 
 
 def test_clearance_is_the_median_of_each_steps_highest() -> None:
-    gait = GaitRecord()
+    gait = GaitRecord(100)
     for heights in ((0.001, 0.010, 0.004), (0.020,), (0.012, 0.011)):
         for height in heights:
             gait.swing(height)
         gait.phase_change(100, STEP)
     assert gait.sole_clearance == 0.012
-    assert GaitRecord().sole_clearance == 0.0
+    assert GaitRecord(100).sole_clearance == 0.0
 
 
 def test_shares_of_phases_that_sensors_ended() -> None:
-    gait = GaitRecord()
+    gait = GaitRecord(100)
     for by_sensors in (True, True, True, False):
         gait.phase_change(0, PhaseChange(Phase.SHIFT, by_sensors))
     gait.phase_change(0, PhaseChange(Phase.LIFT, by_sensors=False))

@@ -7,15 +7,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sarah.errors import ConfigurationError
+from sarah.filters import LowPass
+from sarah.hips import LARGEST_ACCELERATION
 from sarah.pattern_generator import (
-    ACCELERATION_LIMIT,
     LEG_SPEED,
     LIFT_LENGTH,
     MINIMUM_PHASE_SECONDS,
     PAPER_PARAMETERS,
     PUSH_LENGTH,
     TILT_TIME_CONSTANT,
-    LowPass,
     PatternGenerator,
     Phase,
     PhaseChange,
@@ -23,6 +23,7 @@ from sarah.pattern_generator import (
     SteppingParameters,
 )
 from sarah.sensors import SensorReading
+from sarah.tasks import STEPPING
 
 DT = 0.01
 LOADED, UNLOADED = 75.0, 0.0
@@ -36,7 +37,7 @@ def reading(lateral: float = 0.0, rate: float = 0.0, left: float = LOADED, right
 
 def started(parameters: tuple[float, ...] = PAPER_PARAMETERS) -> PatternGenerator:
     """A pattern generator that has just entered its first SHIFT."""
-    generator = PatternGenerator(SteppingParameters.checked(parameters), dt=DT)
+    generator = PatternGenerator(SteppingParameters(*parameters), dt=DT)
     generator.tick(reading())
     assert generator.phase is Phase.SHIFT
     return generator
@@ -163,11 +164,11 @@ def test_legs_push_lift_and_straighten_at_the_leg_speed() -> None:
     assert generator.targets == (0.0, 0.0, 0.0, 0.0, pytest.approx(-PUSH_LENGTH), 0.0)
     tick_until_change(generator, OVER_RIGHT)
     lengths = [generator.targets[4]]
-    for _ in range(3):
+    for _ in range(4):
         generator.tick(reading(left=UNLOADED))
         lengths.append(generator.targets[4])
-    step = LEG_SPEED * DT
-    assert lengths == pytest.approx([step - PUSH_LENGTH, 2 * step - PUSH_LENGTH, LIFT_LENGTH, LIFT_LENGTH])
+    ramp = [LEG_SPEED * DT * ticks - PUSH_LENGTH for ticks in (1, 2, 3)]
+    assert lengths == pytest.approx([*ramp, LIFT_LENGTH, LIFT_LENGTH])
     assert generator.targets[5] == 0.0
 
 
@@ -183,7 +184,7 @@ def test_legs_push_lift_and_straighten_at_the_leg_speed() -> None:
 )
 def test_parameters_out_of_their_box_are_refused(values: tuple[float, ...], message: str) -> None:
     with pytest.raises(ConfigurationError, match=message):
-        SteppingParameters.checked(values)
+        STEPPING.checked(values)
 
 
 @given(
@@ -195,7 +196,7 @@ def test_parameters_out_of_their_box_are_refused(values: tuple[float, ...], mess
 def test_any_readings_keep_targets_bounded_and_slow(
     parameters: tuple[float, ...], signals: list[tuple[float, float, float, float]]
 ) -> None:
-    generator = PatternGenerator(SteppingParameters.checked(parameters), dt=DT)
+    generator = PatternGenerator(SteppingParameters(*parameters), dt=DT)
     before = generator.targets
     for signal in signals:
         generator.tick(reading(*signal))
@@ -203,7 +204,7 @@ def test_any_readings_keep_targets_bounded_and_slow(
         assert targets[:4] == (0.0, 0.0, 0.0, 0.0)
         assert all(-PUSH_LENGTH - 1e-12 <= length <= LIFT_LENGTH + 1e-12 for length in targets[4:])
         assert all(abs(now - then) <= LEG_SPEED * DT + 1e-12 for now, then in zip(targets, before, strict=True))
-        assert abs(generator.stable_x) <= ACCELERATION_LIMIT
+        assert abs(generator.stable_x) <= LARGEST_ACCELERATION
         before = targets
 
 

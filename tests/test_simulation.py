@@ -7,13 +7,13 @@ import numpy as np
 import pybullet
 import pytest
 
-from sarah.config import CONTROL_RATE, Physics
+from sarah.config import PHYSICS, Physics
 from sarah.description import ACTUATED_JOINTS, GROUPS, PASSIVE_JOINTS, SIDES, describe_robot
 from sarah.randomisation import LINKS, NOMINAL, Conditions
 from sarah.simulation import Simulation
 from sarah.simulator import GRAVITY, rotate_to_body
 
-SECOND = CONTROL_RATE
+SECOND = PHYSICS["standard"].control_rate
 BuildSimulation = Callable[..., Simulation]
 
 
@@ -72,14 +72,15 @@ def test_pybullet_weighs_the_robot_as_it_is_described(build: BuildSimulation) ->
     assert frictions == {0.8}
 
 
-def test_standing_30_seconds_neither_drifts_nor_tilts(build: BuildSimulation) -> None:
-    """Measured: 0.7 mm, 0.04 degrees and 0.2 mm of height."""
-    simulation = build()
+@pytest.mark.parametrize(("physics", "drift"), [("reference", 0.001), ("standard", 0.008)])
+def test_standing_30_seconds_neither_drifts_nor_tilts(build: BuildSimulation, physics: str, drift: float) -> None:
+    """Measured: 0.2 mm, and 6.2 mm where few iterations let the soles creep; 0.02 degrees and 0.2 mm of height."""
+    simulation = build(physics=PHYSICS[physics])
     height = simulation.torso_state().position[2]
     for _ in range(30 * SECOND):
         simulation.advance()
         torso = simulation.torso_state()
-        assert math.hypot(*torso.position[:2]) < 0.002
+        assert math.hypot(*torso.position[:2]) < drift
         assert math.degrees(torso.tilt) < 0.1
         assert abs(torso.position[2] - height) < 0.0005
 
@@ -187,7 +188,7 @@ def test_push_delivers_force_times_duration(build: BuildSimulation, force: tuple
     for _ in range(ticks):
         simulation.push(force)
         simulation.advance()
-    duration = ticks / CONTROL_RATE
+    duration = ticks / SECOND
     gained = momentum(simulation) - before + np.array((0.0, 0.0, 30.0 * GRAVITY * duration))
     impulse = np.array(force) * duration
     assert np.linalg.norm(gained - impulse) < 0.01 * np.linalg.norm(impulse)
@@ -216,8 +217,8 @@ def test_mirrored_push_gives_mirrored_motion(build: BuildSimulation, height: flo
             place(simulation, height)
     for tick in range(SECOND // 2):
         if tick < 10:
-            right.push((60.0, 0.0, 0.0))
-            left.push((-60.0, 0.0, 0.0))
+            right.push((200.0, 0.0, 0.0))
+            left.push((-200.0, 0.0, 0.0))
         right.advance()
         left.advance()
         (x_right, *others_right), (x_left, *others_left) = (s.torso_state().position for s in (right, left))

@@ -17,8 +17,8 @@ from sarah.config import EpisodeConfig, TrainingConfig
 from sarah.envs import FIRST_TRAINING_SEED
 from sarah.episode import EpisodeSpec, simulate
 from sarah.errors import RunFolderError
-from sarah.pattern_generator import PARAMETER_NAMES
 from sarah.runs import RunFolder, new_run_path
+from sarah.tasks import STEPPING
 from sarah.training import train
 
 # Longer than the 40 simulations of warm-up, on episodes of one second of stepping.
@@ -45,7 +45,7 @@ def test_every_simulation_has_its_row_and_can_be_repeated(run: RunFolder) -> Non
     assert [int(row["index"]) for row in rows] == list(range(44))
     assert all(int(row["seed"]) >= FIRST_TRAINING_SEED for row in rows)
     row = rows[7]
-    parameters = tuple(float(row[name]) for name in PARAMETER_NAMES)
+    parameters = tuple(float(row[name]) for name in STEPPING.parameter_names)
     result = simulate(EpisodeSpec(parameters, int(row["seed"]), config=SHORT.episode))
     assert float(row["return"]) == result.episode_return
     assert (float(row["x"]), float(row["y"])) == result.final_position[:2]
@@ -56,7 +56,7 @@ def test_tensorboard_shows_the_episodes_the_parameters_and_the_learning(run: Run
     events = EventAccumulator(str(run.path))
     events.Reload()
     episode = ("return", "score", "steps_per_second", "x", "y", "duration", "event_driven_shift", "event_driven_lift")
-    expected = {f"episode/{name}" for name in episode} | {f"parameters/{name}" for name in PARAMETER_NAMES}
+    expected = {f"episode/{name}" for name in episode} | {f"parameters/{name}" for name in STEPPING.parameter_names}
     assert expected | {"train/loss", "train/q", "train/exploration_std"} <= set(events.Tags()["scalars"])
     assert [event.step for event in events.Scalars("episode/score")] == list(range(1, 45))
 
@@ -71,10 +71,10 @@ def test_progress_has_the_same_figures_as_the_episodes(run: RunFolder) -> None:
 
 def test_parameters_are_read_without_the_agent(run: RunFolder) -> None:
     content = json.loads((run.path / "parameters.json").read_text())
-    assert tuple(content["parameters"]) == PARAMETER_NAMES
+    assert tuple(content["parameters"]) == STEPPING.parameter_names
     assert content["task"] == "stepping" and content["algorithm"] == "naf" and content["simulations"] == 44
-    assert tuple(content["parameters"].values()) == RunFolder.open(run.path).parameters(PARAMETER_NAMES)
-    assert all(0.0 <= value <= 2.0 for value in run.parameters(PARAMETER_NAMES))
+    assert tuple(content["parameters"].values()) == RunFolder.open(run.path).parameters()
+    assert all(0.0 <= value <= 2.0 for value in run.parameters())
 
 
 def test_model_loads_and_predicts(run: RunFolder) -> None:
@@ -86,7 +86,7 @@ def test_training_repeats_from_its_seed(run: RunFolder, tmp_path: Path) -> None:
     again = RunFolder.create(tmp_path / "again", SHORT)
     train(SHORT, again)
     assert (again.path / "episodes.csv").read_bytes() == (run.path / "episodes.csv").read_bytes()
-    assert again.parameters(PARAMETER_NAMES) == run.parameters(PARAMETER_NAMES)
+    assert again.parameters() == run.parameters()
 
 
 @pytest.mark.parametrize(("algo", "algorithm"), [("td3", TD3), ("sac", SAC), ("ddpg", DDPG)])
@@ -130,7 +130,7 @@ def test_candidates_are_compared_on_the_same_seeds_within_the_budget(
     assert [row["seed"] for row in first] == [row["seed"] for row in second]
     assert len({row["seed"] for row in first}) == 5
     best = max((first, second), key=lambda rivals: sum(float(row["score"]) for row in rivals))
-    assert all(tuple(float(row[name]) for name in PARAMETER_NAMES) == parameters for row in best)
+    assert all(tuple(float(row[name]) for name in STEPPING.parameter_names) == parameters for row in best)
 
 
 def test_run_folder_that_is_not_empty_is_refused_and_left_alone(tmp_path: Path) -> None:
@@ -163,10 +163,10 @@ def test_spoilt_parameters_are_named(tmp_path: Path, content: str) -> None:
     run = RunFolder.create(tmp_path / "run", SHORT)
     (run.path / "parameters.json").write_text(content)
     with pytest.raises(RunFolderError, match=r"parameters.json does not hold learned parameters"):
-        run.parameters(PARAMETER_NAMES)
+        run.parameters()
 
 
 def test_parameters_are_read_by_name_whatever_their_order(tmp_path: Path) -> None:
     run = RunFolder.create(tmp_path / "run", SHORT)
     run.write_parameters({"parameters": {"P5": 5, "P2": 2, "P1": 1, "P4": 4, "P3": 3}})
-    assert run.parameters(PARAMETER_NAMES) == (1, 2, 3, 4, 5)
+    assert run.parameters() == (1, 2, 3, 4, 5)

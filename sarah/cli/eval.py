@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.options import parse_options, run_command
-from sarah.config import PHYSICS, TASKS, EpisodeConfig
+from sarah.config import PHYSICS, EpisodeConfig
 from sarah.errors import ConfigurationError, unknown_name
-from sarah.pattern_generator import PARAMETER_NAMES
+from sarah.tasks import STEPPING, TASKS
 
 if TYPE_CHECKING:
     from sarah.evaluation import Evaluation
@@ -27,8 +27,12 @@ class EvalOptions:
     """Simulate a run's learned parameters, or given ones, on unseen seeds, and summarise the episodes.
 
     :param run: folder of a finished training; its episode settings are used
-    :param task: of --parameters: ``stepping``, which is the default, as it is the only one yet
-    :param parameters: instead of a run: P1 to P5, separated by commas
+    :param task: of --parameters: ``stepping`` (the default), or ``balance``, in which the robot is pushed
+    :param parameters: instead of a run: P1 to P5, or V1 to V4 with --task balance, separated by commas
+    :param stepping: P1 to P5 to balance with, separated by commas; by default the run's own, or trained ones
+    :param push_newtons: force of every push, whose direction and time vary; by default up to 100 N, as in training
+    :param robustness: folder for a table and a polar plot of survival by push: with and without V1 to V4, by direction,
+        --episodes times at each of 25, 50, 75, 100, 125 and 150 N
     :param episodes: how many
     :param first_seed: seed of the first episode; the others follow. Trainings use seeds from 2^31 up
     :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default the run's own
@@ -38,7 +42,10 @@ class EvalOptions:
 
     run: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN")] = None
     task: str | None = None
-    parameters: Annotated[str | None, tyro.conf.arg(metavar="P1,P2,P3,P4,P5")] = None
+    parameters: Annotated[str | None, tyro.conf.arg(metavar="NUMBERS")] = None
+    stepping: Annotated[str | None, tyro.conf.arg(metavar="P1,P2,P3,P4,P5")] = None
+    push_newtons: Annotated[float | None, tyro.conf.arg(metavar="FLOAT")] = None
+    robustness: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     episodes: int = 20
     first_seed: int = 0
     physics: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
@@ -65,16 +72,16 @@ def main() -> None:
 def _evaluate(arguments: Sequence[str]) -> None:
     options = parse_options(EvalOptions, COMMAND, arguments, EvalOptions())
     task, algorithm, parameters, config = _subject(options)
-    if options.physics is not None:
-        config = dataclasses.replace(config, physics=PHYSICS[options.physics])
-    if not options.randomisation:
-        config = dataclasses.replace(config, randomisation=dataclasses.replace(config.randomisation, enabled=False))
+    config = _changed(config, options, task)
+    if options.robustness is not None:
+        _show_robustness(parameters, config, options)
+        return
     from sarah.episode import EpisodeSpec
     from sarah.evaluation import simulate_all, summarise
 
     seeds = range(options.first_seed, options.first_seed + options.episodes)
     evaluation = summarise(simulate_all([EpisodeSpec(parameters, seed, task, config) for seed in seeds]))
-    named = dict(zip(PARAMETER_NAMES, parameters, strict=True))
+    named = dict(zip(TASKS[task].parameter_names, parameters, strict=True))
     if options.json:
         print(json_format.dumps({"task": task, "algorithm": algorithm, "parameters": named, **vars(evaluation)}))
         return
@@ -93,14 +100,34 @@ def _subject(options: EvalOptions) -> tuple[str, str | None, tuple[float, ...], 
         training = run.config()
         if options.task not in (None, training.task):
             raise ConfigurationError(f"task is {options.task!r}, but {options.run} learned {training.task!r}")
-        return training.task, training.algo, run.parameters(PARAMETER_NAMES), training.episode
+        return training.task, training.algo, run.parameters(), training.episode
+    task = options.task or STEPPING.name
+    return task, None, TASKS[task].checked(_numbers("parameters", str(options.parameters))), EpisodeConfig()
+
+
+def _changed(config: EpisodeConfig, options: EvalOptions, task: str) -> EpisodeConfig:
+    """The episode settings, as the options change them."""
+    for name in ("stepping", "push_newtons", "robustness"):
+        if task == STEPPING.name and getattr(options, name) is not None:
+            raise ConfigurationError(f"--{name.replace('_', '-')} is for --task balance")
+    if options.physics is not None:
+        config = dataclasses.replace(config, physics=PHYSICS[options.physics])
+    if not options.randomisation:
+        config = dataclasses.replace(config, randomisation=dataclasses.replace(config.randomisation, enabled=False))
+    if options.stepping is not None:
+        stepping = STEPPING.checked(_numbers("stepping", options.stepping), "stepping")
+        config = dataclasses.replace(config, stepping=stepping)  # type: ignore[arg-type]  # five of them
+    if options.push_newtons is not None:
+        force = (options.push_newtons, options.push_newtons)
+        config = dataclasses.replace(config, push=dataclasses.replace(config.push, newtons=force))
+    return config
+
+
+def _numbers(name: str, text: str) -> tuple[float, ...]:
     try:
-        parameters = tuple(float(value) for value in str(options.parameters).split(","))
+        return tuple(float(value) for value in text.split(","))
     except ValueError:
-        raise ConfigurationError(
-            f"parameters must be numbers separated by commas, not {options.parameters!r}"
-        ) from None
-    return options.task or TASKS[0], None, parameters, EpisodeConfig()
+        raise ConfigurationError(f"{name} must be numbers separated by commas, not {text!r}") from None
 
 
 def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[str, str]]:
@@ -124,4 +151,35 @@ def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[st
         ("survival", f"{round(e.survival_rate * e.episodes)} of {e.episodes} episodes"),
         ("by sensors", f"{e.event_driven_shift_mean:.1%} of shifts, {e.event_driven_lift_mean:.1%} of lifts"),
         ("sole clearance", f"{1000 * e.sole_clearance_mean:.1f} mm"),
+        ("vibration", f"{e.vibration_mean:.1f} m²/s⁴ above 20 Hz" + (": it chatters" if e.chatters else "")),
+        (
+            "actuators",
+            f"{e.actuator_power_mean:.0f} W; peaks {e.peak_hip_rate_max:.1f} rad/s and {e.peak_leg_speed_max:.2f} m/s",
+        ),
     ]
+
+
+def _show_robustness(parameters: tuple[float, ...], config: EpisodeConfig, options: EvalOptions) -> None:
+    """Print the table as Markdown, and write it and the polar plot."""
+    from sarah.figures import draw_survival
+    from sarah.robustness import NO_BALANCE, push_many, robustness_table
+
+    folder = options.robustness
+    assert folder is not None
+    folder.mkdir(parents=True, exist_ok=True)
+    names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
+    pushed = push_many((NO_BALANCE, parameters), config, episodes=options.episodes, first_seed=options.first_seed)
+    head = "".join(f" {name}: survival | score | drift | vibration |" for name in names)
+    lines = [f"| push | direction | episodes |{head}", "|---" * (3 + 4 * len(names)) + "|"]
+    for rows in zip(*map(robustness_table, pushed), strict=True):
+        cells = "".join(
+            f" {row.survival:.2f} ({row.survival_low:.2f} to {row.survival_high:.2f}) | {row.score_median:.2f} "
+            f"| {100 * row.drift_median:.1f} cm | {row.vibration_median:.1f} |"
+            for row in rows
+        )
+        lines.append(f"| {rows[0].newtons:.0f} N | {rows[0].direction} | {rows[0].episodes} |{cells}")
+    table = "\n".join(lines)
+    print(table)
+    (folder / "robustness.md").write_text(table + "\n", encoding="utf-8")
+    for file in draw_survival(dict(zip(names, pushed, strict=True)), folder / "robustness"):
+        print(file)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,9 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.options import parse_options, run_command
-from sarah.config import TrainingConfig, read_config
+from sarah.config import EpisodeConfig, TrainingConfig, read_config
+from sarah.errors import ConfigurationError
+from sarah.tasks import BALANCE, STEPPING, TASKS
 
 if TYPE_CHECKING:
     from sarah.evaluation import Evaluation
@@ -23,18 +26,20 @@ COMMAND = "sarah-train"
 class TrainOptions:
     """Learn the pattern generator's parameters, one simulation per action of the agent.
 
-    Settings come from the defaults below, then from the file of --config, then from the command line. The run
-    folder holds the learned parameters (parameters.json), every simulation (episodes.csv), the agent (model.zip)
-    and what TensorBoard shows.
+    Settings come from the defaults below, then from the file of --config, then from the run of --from, then from the
+    command line. The run folder holds the learned parameters (parameters.json), every simulation (episodes.csv), the
+    agent (model.zip) and what TensorBoard shows.
 
     :param training: what to train
     :param run_dir: folder of the run, new or empty; by default a new one, runs/<task>/<algo>-s<seed>
     :param config: YAML file of settings, like the config.yaml of any run
+    :param from_run: balance with P1 to P5 and the robot of this First Training's run folder
     """
 
     training: Annotated[TrainingConfig, tyro.conf.arg(name="")] = TrainingConfig()
     run_dir: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     config: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    from_run: Annotated[Path | None, tyro.conf.arg(name="from", metavar="RUN")] = None
 
 
 def main() -> None:
@@ -43,8 +48,10 @@ def main() -> None:
 
 
 def _train(arguments: Sequence[str]) -> None:
-    options = parse_options(TrainOptions, COMMAND, arguments, _from_file(arguments))
+    options = parse_options(TrainOptions, COMMAND, arguments, _defaults(arguments))
     config = options.training
+    if options.from_run is not None and config.task != BALANCE.name:
+        raise ConfigurationError(f"--from is for --task {BALANCE.name}, not {config.task!r}")
     from sarah.description import describe_robot
 
     describe_robot(config.episode.dimensions)  # a bad dimension is refused before anything is written
@@ -55,24 +62,41 @@ def _train(arguments: Sequence[str]) -> None:
     from sarah.training import train
 
     parameters, evaluation = train(config, run, progress_bar=True)
-    _summarise(parameters, evaluation, run.path)
+    _summarise(config.task, parameters, evaluation, run.path)
 
 
-def _from_file(arguments: Sequence[str]) -> TrainOptions:
-    """The defaults, as --config changes them."""
+def _defaults(arguments: Sequence[str]) -> TrainOptions:
+    """The defaults, as --config and --from change them."""
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
     parser.add_argument("--config", type=Path)
+    parser.add_argument("--from", type=Path, dest="from_run")
     try:
-        path = parser.parse_known_args(arguments)[0].config
-    except argparse.ArgumentError:  # a --config without a file, which the real parser reports
-        path = None
-    return TrainOptions() if path is None else TrainOptions(read_config(TrainingConfig, path))
+        files = parser.parse_known_args(arguments)[0]
+    except argparse.ArgumentError:  # an option without its file, which the real parser reports
+        return TrainOptions()
+    training = TrainingConfig() if files.config is None else read_config(TrainingConfig, files.config)
+    if files.from_run is not None:
+        training = dataclasses.replace(training, episode=_stepping_of(files.from_run, training.episode))
+    return TrainOptions(training)
 
 
-def _summarise(parameters: tuple[float, ...], evaluation: Evaluation, path: Path) -> None:
-    from sarah.pattern_generator import PARAMETER_NAMES
+def _stepping_of(path: Path, episode: EpisodeConfig) -> EpisodeConfig:
+    """Episode settings with what a First Training learned, and the robot that it learned on."""
+    from sarah.runs import RunFolder
 
-    learned = ", ".join(f"{name} = {value:.2f}" for name, value in zip(PARAMETER_NAMES, parameters, strict=True))
+    run = RunFolder.open(path)
+    learned = run.config()
+    if learned.task != STEPPING.name:
+        raise ConfigurationError(
+            f"{path} learned {learned.task!r}, and --from needs a run that learned {STEPPING.name!r}"
+        )
+    stepping = run.parameters()
+    return dataclasses.replace(episode, stepping=stepping, dimensions=learned.episode.dimensions)  # type: ignore[arg-type]
+
+
+def _summarise(task: str, parameters: tuple[float, ...], evaluation: Evaluation, path: Path) -> None:
+    names = TASKS[task].parameter_names
+    learned = ", ".join(f"{name} = {value:.2f}" for name, value in zip(names, parameters, strict=True))
     print(f"\nlearned     {learned}")
     print(f"score       {evaluation.score_median:.3f} (median of {evaluation.episodes} unseen seeds; 1 is the ceiling)")
     print(f"steps       {evaluation.steps_per_second_mean:.2f} per second, {evaluation.survival_rate:.0%} survive 30 s")
@@ -80,4 +104,6 @@ def _summarise(parameters: tuple[float, ...], evaluation: Evaluation, path: Path
     print(f"by sensors  {shares}; sole clearance {1000 * evaluation.sole_clearance_mean:.0f} mm")
     if not evaluation.is_gait:
         print("            not a gait: it steps to a clock, or does not lift its feet")
+    if evaluation.chatters:
+        print("            it chatters: no real robot could do that")
     print(f"run folder  {path}")

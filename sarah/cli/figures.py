@@ -1,0 +1,49 @@
+"""``sarah-figures``: the paper's figures from run folders."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from sarah.cli.options import parse_options, run_command
+from sarah.errors import ConfigurationError
+
+COMMAND = "sarah-figures"
+
+
+@dataclass(frozen=True)
+class FigureOptions:
+    """Draw the paper's Figures 4 and 5 of First Trainings, and 6 and 7 of Second Trainings, as PNG and PDF.
+
+    Several runs of one algorithm become a median and a band between quartiles; several algorithms, several colours.
+
+    :param runs: run folders
+    :param out: folder for the figures; by default the folder figures of the run, if it is only one
+    """
+
+    runs: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="RUN...")] = ()
+    out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
+
+
+def main() -> None:
+    """Run the command with the arguments of the process."""
+    run_command(COMMAND, _draw)
+
+
+def _draw(arguments: Sequence[str]) -> None:
+    options = parse_options(FigureOptions, COMMAND, arguments, FigureOptions())
+    if not options.runs:
+        raise ConfigurationError("give at least one run folder")
+    if options.out is None and len(options.runs) > 1:
+        raise ConfigurationError("several runs need a folder for their figures: --out DIR")
+    from sarah.runs import RunFolder
+
+    runs = [RunFolder.open(path) for path in options.runs]
+    from sarah.figures import draw_figures
+
+    for file in draw_figures(runs, options.out or runs[0].figures_path):
+        print(file)

@@ -1,0 +1,197 @@
+"""The paper's Figures 4 to 7 from run folders, and survival against direction and force of a push.
+
+Figures 4 to 7 show what was tried, and what came of it, against training steps. A training step is one simulation. One
+run shows its simulations as dots and their running median as a line; several runs of an algorithm show the median over
+the runs of that line, and the band between their quartiles.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.figure import Figure
+
+from sarah.errors import RunFolderError
+from sarah.robustness import PushedEpisode, survival_by_direction
+from sarah.runs import RunFolder
+from sarah.tasks import BALANCE, STEPPING, Task
+
+COLUMN_WIDTH = 3.5
+"""Of a two-column page, in inches."""
+WINDOW = 15
+"""Simulations that the running median is over."""
+SECTORS = 16
+"""Directions that survival is shown by."""
+COLOURS = {"naf": "#0072B2", "td3": "#D55E00", "sac": "#009E73", "ddpg": "#CC79A7"}
+"""Of each algorithm; told apart by the colour-blind (Okabe and Ito)."""
+STYLE: dict[Any, Any] = {
+    "font.size": 8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.linewidth": 0.4,
+    "grid.alpha": 0.5,
+    "legend.frameon": False,
+    "pdf.fonttype": 42,  # text stays text
+}
+
+
+@dataclass(frozen=True)
+class Curves:
+    """What the runs of one algorithm went through.
+
+    :param algorithm: its name
+    :param columns: of ``episodes.csv`` as numbers, each of shape (runs, simulations)
+    """
+
+    algorithm: str
+    columns: dict[str, np.ndarray]
+
+
+def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
+    """Draw Figures 4 and 5 of First Trainings, and 6 and 7 of Second Trainings, as PNG and PDF.
+
+    :param runs: whose simulations to draw
+    :param folder: where to; made if it is not there
+    :return: the files
+    :raises RunFolderError: if a run has no simulations
+    """
+    files = []
+    with plt.rc_context(STYLE):
+        for task, draw in ((STEPPING, _first_training), (BALANCE, _second_training)):
+            curves = _curves([run for run in runs if run.config().task == task.name], task)
+            if not curves:
+                continue
+            folder.mkdir(parents=True, exist_ok=True)
+            for name, panels in draw(task).items():
+                files += _draw(curves, panels, folder / name)
+    return files
+
+
+Panels = list[tuple[str, str]]
+"""Column and label of each panel, from top to bottom."""
+
+
+def _first_training(task: Task) -> dict[str, Panels]:
+    return {
+        "figure_4_reward_and_frequency": [("return", "reward (m³)"), ("steps_per_second", "steps per second")],
+        "figure_5_parameters": [(name, name) for name in task.parameter_names],
+    }
+
+
+def _second_training(task: Task) -> dict[str, Panels]:
+    return {
+        "figure_6_reward_and_position": [("return", "reward (m³)"), ("x", "final x (m)"), ("y", "final y (m)")],
+        "figure_7_parameters": [(name, name) for name in task.parameter_names],
+    }
+
+
+def _curves(runs: Sequence[RunFolder], task: Task) -> list[Curves]:
+    by_algorithm: dict[str, list[dict[str, list[float]]]] = {}
+    names = ("return", "steps_per_second", "x", "y", *task.parameter_names)
+    for run in runs:
+        rows = list(run.episodes())
+        if not rows:
+            raise RunFolderError(f"{run.path} has no simulations to draw")
+        columns = {name: [float(row[name]) for row in rows] for name in names}
+        by_algorithm.setdefault(run.config().algo, []).append(columns)
+    curves = []
+    for algorithm, tables in by_algorithm.items():
+        shortest = min(len(table["return"]) for table in tables)
+        stacked = {name: np.array([table[name][:shortest] for table in tables]) for name in names}
+        curves.append(Curves(algorithm, stacked))
+    return curves
+
+
+def _draw(curves: Sequence[Curves], panels: Panels, path: Path) -> list[Path]:
+    figure, axes = plt.subplots(
+        len(panels),
+        1,
+        sharex=True,
+        squeeze=False,
+        figsize=(COLUMN_WIDTH, 0.6 + 1.1 * len(panels)),
+        layout="constrained",
+    )
+    for axis, (column, label) in zip(axes[:, 0], panels, strict=True):
+        for curve in curves:
+            _draw_panel(axis, curve.columns[column], curve.algorithm)
+        axis.set_ylabel(label)
+    axes[-1, 0].set_xlabel("training steps (simulations)")
+    axes[0, 0].legend(loc="lower right")
+    return _save(figure, path)
+
+
+def _draw_panel(axis: Axes, values: np.ndarray, algorithm: str) -> None:
+    steps = np.arange(1, values.shape[1] + 1)
+    smooth = np.array([running_median(run) for run in values])
+    colour = COLOURS[algorithm]
+    if len(values) == 1:
+        axis.plot(steps, values[0], ".", markersize=2, color=colour, alpha=0.4)
+    else:
+        axis.fill_between(steps, *np.quantile(smooth, (0.25, 0.75), axis=0), color=colour, alpha=0.25, linewidth=0)
+    label = algorithm.upper() if len(values) == 1 else f"{algorithm.upper()}, {len(values)} runs"
+    axis.plot(steps, np.median(smooth, axis=0), color=colour, linewidth=1.2, label=label)
+
+
+def running_median(values: np.ndarray) -> np.ndarray:
+    """Median of each value and those around it, fewer at the ends.
+
+    :param values: of shape (n,)
+    :return: of shape (n,)
+    """
+    half = WINDOW // 2
+    return np.array([np.median(values[max(0, i - half) : i + half + 1]) for i in range(len(values))])
+
+
+def draw_survival(controllers: Mapping[str, Sequence[PushedEpisode]], path: Path) -> list[Path]:
+    """Draw survival against direction and force of the push, one polar plot for each controller.
+
+    :param controllers: pushed episodes by the controller's name
+    :param path: of the picture, without suffix
+    :return: the files, PNG and PDF
+    """
+    with plt.rc_context({**STYLE, "axes.grid": False}):
+        figure, axes = plt.subplots(
+            1,
+            len(controllers),
+            squeeze=False,
+            figsize=(COLUMN_WIDTH * len(controllers), 1.1 * COLUMN_WIDTH),
+            subplot_kw={"projection": "polar"},
+            layout="constrained",
+        )
+        for axis, (name, episodes) in zip(axes[0], controllers.items(), strict=True):
+            mesh = _draw_survival(axis, survival_by_direction(episodes, SECTORS))
+            axis.set_title(name)
+        figure.colorbar(mesh, ax=axes, label="survival", orientation="horizontal", shrink=0.6)
+        return _save(figure, path)
+
+
+def _draw_survival(axis: Any, survival: Mapping[float, Sequence[float | None]]) -> QuadMesh:
+    forces = list(survival)
+    middles = [(low + high) / 2 for low, high in itertools.pairwise(forces)]
+    rings = [0.0, *middles, forces[-1] + (forces[-1] - middles[-1] if middles else 0.0)]
+    sectors = (np.arange(SECTORS + 1) - 0.5) * 2 * np.pi / SECTORS
+    shares = np.array([[np.nan if share is None else share for share in row] for row in survival.values()])
+    mesh: QuadMesh = axis.pcolormesh(sectors, rings, shares, cmap="cividis", vmin=0.0, vmax=1.0)
+    axis.set_rgrids(forces, [f"{force:.0f} N" for force in forces], angle=22.5, fontsize=6, color="white")
+    axis.set_thetagrids((0, 90, 180, 270), ("right", "forward", "left", "back"))
+    return mesh
+
+
+def _save(figure: Figure, path: Path) -> list[Path]:
+    files = [path.with_suffix(suffix) for suffix in (".png", ".pdf")]
+    for file in files:
+        figure.savefig(file, dpi=200)
+    plt.close(figure)
+    return files

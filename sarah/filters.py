@@ -1,0 +1,32 @@
+"""Filters that run once per control tick, in plain floats."""
+
+from __future__ import annotations
+
+import math
+
+
+class LowPass:
+    """First-order low-pass filter, starting at zero.
+
+    :param time_constant: in s
+    :param dt: control period in s
+    """
+
+    def __init__(self, time_constant: float, dt: float) -> None:
+        self.value = 0.0
+        self._gain = 1.0 - math.exp(-dt / time_constant)
+
+    def __call__(self, sample: float) -> float:
+        """Take one sample and return the filtered value."""
+        self.value += self._gain * (sample - self.value)
+        return self.value
+
+
+def ramped(now: float, goal: float, largest_change: float) -> float:
+    """Move a value towards its goal, by one tick's largest change at most.
+
+    :param now: the value
+    :param goal: where it is to go
+    :param largest_change: of this tick, not negative
+    """
+    return now + max(-largest_change, min(largest_change, goal - now))
