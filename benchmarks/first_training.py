@@ -22,7 +22,7 @@ def learned(config: TrainingConfig, path: Path) -> tuple[float, ...]:
     try:
         return RunFolder.open(path).parameters()
     except RunFolderError:
-        return train(config, RunFolder.create(path, config))[0]
+        return train(config, RunFolder.create(path, config)).parameters
 
 
 def row(name: str, parameters: tuple[float, ...], standard: Evaluation, reference: Evaluation) -> str:

@@ -14,7 +14,7 @@ from sarah.config import STAND_SECONDS, EpisodeConfig, Physics
 from sarah.description import PASSIVE_JOINTS, RobotDescription, describe_robot
 from sarah.errors import ConfigurationError, unknown_name
 from sarah.gait import GaitRecord
-from sarah.hips import BalanceParameters
+from sarah.hips import BalanceParameters, HipLaw
 from sarah.motion import MotionRecord
 from sarah.pattern_generator import PatternGenerator, Phase, SteppingParameters
 from sarah.randomisation import Conditions, DrawnPush, draw_conditions, draw_push
@@ -195,7 +195,7 @@ class Episode:
             SteppingParameters(*stepping),
             self._pad_threshold,
             self._dt,
-            BalanceParameters(*balance) if balance else None,
+            HipLaw(BalanceParameters(*balance), self._dt) if balance else None,
         )
         for reading in self._standing:
             self.generator.sense(reading)

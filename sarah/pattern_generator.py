@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from sarah.filters import LowPass, ramped
-from sarah.hips import LARGEST_ACCELERATION, BalanceParameters, HipLaw, Side
+from sarah.hips import LARGEST_ACCELERATION, HipLaw, Side
 from sarah.sensors import SensorReading
 
 PAPER_PARAMETERS = (0.4, 1.3, 0.1, 1.0, 1.0)
@@ -90,7 +90,7 @@ class PatternGenerator:
     :param parameters: P1 to P5
     :param pad_threshold: load above which a foot counts as carrying, in N
     :param dt: control period in s
-    :param balance: V1 to V4; without them the hips are locked, as in the first training
+    :param hips: the hip law; without one the hips are locked, as in the first training
     """
 
     def __init__(
@@ -98,9 +98,10 @@ class PatternGenerator:
         parameters: SteppingParameters,
         pad_threshold: float = 30.0,
         dt: float = 0.01,
-        balance: BalanceParameters | None = None,
+        hips: HipLaw | None = None,
     ) -> None:
         self.parameters = parameters
+        self.hips = hips
         self.phase = Phase.STAND
         self.support = Side.RIGHT
         self._pad_threshold = pad_threshold
@@ -111,7 +112,6 @@ class PatternGenerator:
         self._rate_y = LowPass(RATE_TIME_CONSTANT, dt)
         self._lengths = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
         self._loads = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
-        self._hips = HipLaw(balance, dt) if balance is not None else None
 
     @property
     def swing(self) -> Side:
@@ -140,8 +140,8 @@ class PatternGenerator:
         left_fore, left_hind, right_fore, right_hind = reading.pressures
         self._loads[Side.LEFT] = left_fore + left_hind
         self._loads[Side.RIGHT] = right_fore + right_hind
-        if self._hips is not None:
-            self._hips.sense(reading)
+        if self.hips is not None:
+            self.hips.sense(reading)
 
     def tick(self, reading: SensorReading) -> PhaseChange | None:
         """Advance by one control tick.
@@ -157,17 +157,17 @@ class PatternGenerator:
         if change is not None:
             self._enter_next_phase()
         self._ramp_legs()
-        if self._hips is not None:
-            self._hips.tick(self.swing)
+        if self.hips is not None:
+            self.hips.tick(self.swing)
         return change
 
     @property
     def targets(self) -> tuple[float, float, float, float, float, float]:
         """Joint targets in the order of ``ACTUATED_JOINTS``."""
         left, right = self._lengths[Side.LEFT], self._lengths[Side.RIGHT]
-        if self._hips is None:
+        if self.hips is None:
             return (0.0, 0.0, 0.0, 0.0, left, right)
-        abduction, flexion = self._hips.abduction, self._hips.flexion
+        abduction, flexion = self.hips.abduction, self.hips.flexion
         return (abduction, abduction, flexion[Side.LEFT], flexion[Side.RIGHT], left, right)
 
     def _phase_change(self) -> PhaseChange | None:

@@ -24,8 +24,6 @@ PUSHED_BETWEEN = (2.0, 4.0)
 """When the pushes begin, in s: one to three seconds after the pattern generator's start."""
 SECONDS_AFTER = 10.0
 """How long after the latest push the robot must stay up."""
-NO_BALANCE = (0.0,) * len(BALANCE.parameter_names)
-"""V1 to V4 that lock the hips."""
 DIRECTIONS = ("all", "lateral", "sagittal")
 CONFIDENCE_QUANTILE = 1.96
 """Of the normal distribution, for intervals of 95 %."""

@@ -20,12 +20,14 @@ class Task:
     :param parameter_names: of what the agent chooses, in order
     :param low: end of every parameter's range
     :param high: the other end
+    :param neutral: parameters that do nothing, which learned ones are compared with
     """
 
     name: str
     parameter_names: tuple[str, ...]
     low: float
     high: float
+    neutral: tuple[float, ...] | None = None
 
     def checked(self, values: Sequence[float], name: str = "parameters") -> tuple[float, ...]:
         """Take a value for every parameter as floats.
@@ -49,6 +51,6 @@ class Task:
 
 STEPPING = Task("stepping", ("P1", "P2", "P3", "P4", "P5"), 0.0, 2.0)
 """The First Training: step fast, stay put. The paper observed that P1 to P5 must be positive."""
-BALANCE = Task("balance", ("V1", "V2", "V3", "V4"), -2.0, 2.0)
+BALANCE = Task("balance", ("V1", "V2", "V3", "V4"), -2.0, 2.0, neutral=(0.0, 0.0, 0.0, 0.0))
 """The Second Training: come back after a push. The box is ours."""
 TASKS = {task.name: task for task in (STEPPING, BALANCE)}

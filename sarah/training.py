@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import random
+from dataclasses import dataclass
 from statistics import mean
 from typing import Any
 
@@ -24,7 +25,7 @@ from sarah.episode import Episode, EpisodeSpec
 from sarah.evaluation import Evaluation, simulate_all, summarise
 from sarah.recommendation import SIMULATIONS_PER_CANDIDATE, Parameters, candidate_count, candidates
 from sarah.runs import RunFolder
-from sarah.tasks import TASKS, Task
+from sarah.tasks import BALANCE, TASKS, Task
 
 UPDATES_PER_SIMULATION = 5
 SUMMARY_EPISODES = 10
@@ -96,13 +97,27 @@ class EpisodeRecorder(BaseCallback):
         self.logger.dump(len(self.tried))
 
 
-def train(config: TrainingConfig, run: RunFolder, progress_bar: bool = False) -> tuple[Parameters, Evaluation]:
+@dataclass(frozen=True)
+class Learned:
+    """What a training ends with.
+
+    :param parameters: the learned ones
+    :param evaluation: how they do on unseen seeds
+    :param without: how the task's neutral parameters do on the same seeds, if it has some
+    """
+
+    parameters: Parameters
+    evaluation: Evaluation
+    without: Evaluation | None
+
+
+def train(config: TrainingConfig, run: RunFolder, progress_bar: bool = False) -> Learned:
     """Train, and write the run folder.
 
     :param config: of the training
     :param run: a new run folder
     :param progress_bar: whether to show one
-    :return: the learned parameters, and how they do on unseen seeds
+    :return: what was learned
     """
     # The networks are small: more threads only wait for each other.
     torch.set_num_threads(1)
@@ -116,18 +131,23 @@ def train(config: TrainingConfig, run: RunFolder, progress_bar: bool = False) ->
     rivals = candidates(chosen_parameters(model, config), recorder.tried, count)
     parameters = _compare(rivals, config.simulations - learned_from, config, recorder)
     model.logger.close()
-    evaluation = evaluate(parameters, config, range(SUMMARY_EPISODES))
+    task = TASKS[config.task]
+    seeds = range(SUMMARY_EPISODES)
+    evaluation = evaluate(parameters, config, seeds)
+    without = None if task.neutral is None else evaluate(task.neutral, config, seeds)
     run.write_parameters(
         {
             "task": config.task,
             "algorithm": config.algo,
             "seed": config.seed,
             "simulations": config.simulations,
-            "parameters": dict(zip(TASKS[config.task].parameter_names, parameters, strict=True)),
+            "parameters": dict(zip(task.parameter_names, parameters, strict=True)),
+            "stepping": config.episode.stepping if task is BALANCE else None,
             "evaluation": dataclasses.asdict(evaluation),
+            "without": without and dataclasses.asdict(without),
         }
     )
-    return parameters, evaluation
+    return Learned(parameters, evaluation, without)
 
 
 def _learn(

@@ -60,6 +60,54 @@ def test_eval_prints_one_json_object(trained: tuple[Path, subprocess.CompletedPr
     assert content["parameters"] == learned
 
 
+@pytest.fixture(scope="module")
+def balanced(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> Path:
+    """A second training on what the first one learned."""
+    first, _ = trained
+    arguments = ("--task", "balance", "--from", "mine", "--simulations", "4", "--run-dir", "second", *SHORT)
+    process = run("sarah-train", *arguments, cwd=first.parent)
+    assert process.returncode == 0, process.stderr
+    assert "V4 = " in process.stdout and "with V = 0" in process.stdout
+    return first.parent / "second"
+
+
+def test_second_training_keeps_what_the_first_learned(balanced: Path) -> None:
+    first = json.loads((balanced.parent / "mine" / "parameters.json").read_text())
+    second = json.loads((balanced / "parameters.json").read_text())
+    assert second["stepping"] == list(first["parameters"].values())
+    assert list(second["parameters"]) == ["V1", "V2", "V3", "V4"]
+
+
+def test_only_a_balance_training_continues_a_first_one(balanced: Path) -> None:
+    for arguments, message in (
+        (("--from", "mine"), "--from is for --task balance, not 'stepping'"),
+        (("--task", "balance", "--from", "second"), "--from needs a run that learned 'stepping'"),
+    ):
+        process = run("sarah-train", *arguments, cwd=balanced.parent)
+        assert process.returncode == 2 and message in process.stderr and len(process.stderr.splitlines()) == 1
+
+
+def test_eval_of_a_second_training_compares_with_v_at_zero(balanced: Path) -> None:
+    arguments = ("second", "--episodes", "2", "--push-newtons", "60")
+    content = json.loads(run("sarah-eval", *arguments, "--json", cwd=balanced.parent).stdout)
+    assert content["task"] == "balance" and list(content["parameters"]) == ["V1", "V2", "V3", "V4"]
+    assert content["chatters"] is False and content["without"]["episodes"] == 2
+    text = run("sarah-eval", *arguments, cwd=balanced.parent).stdout
+    for label in ("with V = 0", "vibration", "no chatter", "actuators"):
+        assert label in text
+
+
+def test_figures_of_both_trainings(balanced: Path) -> None:
+    process = run("sarah-figures", "mine", "second", "--out", "figures", cwd=balanced.parent)
+    assert process.returncode == 0, process.stderr
+    files = process.stdout.split()
+    assert len(files) == 8 and all((balanced.parent / file).stat().st_size > 5000 for file in files)
+    alone = run("sarah-figures", "second", cwd=balanced.parent)
+    assert sorted(path.name for path in (balanced / "figures").iterdir()) == sorted(
+        Path(file).name for file in alone.stdout.split()
+    )
+
+
 def test_eval_takes_parameters_without_a_run(tmp_path: Path) -> None:
     arguments = ("--task", "stepping", "--parameters", "0.4,1.3,0.1,1,1", "--episodes", "2", "--json")
     first, second = (json.loads(run("sarah-eval", *arguments, cwd=tmp_path).stdout) for _ in range(2))

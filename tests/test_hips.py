@@ -62,7 +62,7 @@ def test_zeros_leave_the_hips_locked() -> None:
 
 
 def test_pattern_generator_sends_the_hips_targets() -> None:
-    generator = PatternGenerator(SteppingParameters(*PAPER_PARAMETERS), dt=DT, balance=BalanceParameters(1, 0, 1, 0.5))
+    generator = PatternGenerator(SteppingParameters(*PAPER_PARAMETERS), dt=DT, hips=law(1.0, 0.0, 1.0, 0.5))
     for _ in range(5):
         generator.tick(reading(lateral=-3.0, rate_x=-0.4))
     left_abduction, right_abduction, left_flexion, right_flexion, *_ = generator.targets

@@ -18,7 +18,7 @@ from sarah.envs import FIRST_TRAINING_SEED
 from sarah.episode import EpisodeSpec, simulate
 from sarah.errors import RunFolderError
 from sarah.runs import RunFolder, new_run_path
-from sarah.tasks import STEPPING
+from sarah.tasks import BALANCE, STEPPING
 from sarah.training import train
 
 # Longer than the 40 simulations of warm-up, on episodes of one second of stepping.
@@ -89,14 +89,32 @@ def test_training_repeats_from_its_seed(run: RunFolder, tmp_path: Path) -> None:
     assert again.parameters() == run.parameters()
 
 
+def test_second_training_learns_v_with_the_legs_of_the_first(tmp_path: Path) -> None:
+    stepping = (0.35, 0.6, 0.2, 1.0, 1.0)
+    episode = EpisodeConfig(time_limit=2.0, stepping=stepping)
+    config = TrainingConfig(task="balance", simulations=42, n_envs=1, episode=episode)
+    run = RunFolder.create(tmp_path / "run", config)
+    learned = train(config, run)
+    row = list(run.episodes())[41]
+    parameters = tuple(float(row[name]) for name in BALANCE.parameter_names)
+    assert (
+        float(row["return"]) == simulate(EpisodeSpec(parameters, int(row["seed"]), "balance", episode)).episode_return
+    )
+    assert RunFolder.open(run.path).parameters() == learned.parameters and len(learned.parameters) == 4
+    content = json.loads((run.path / "parameters.json").read_text())
+    assert content["stepping"] == list(stepping) and content["without"]["survival_rate"] == 1.0
+    assert content["evaluation"]["score_median"] != content["without"]["score_median"]
+    assert NAF.load(run.model_path).action_space.shape == (4,)
+
+
 @pytest.mark.parametrize(("algo", "algorithm"), [("td3", TD3), ("sac", SAC), ("ddpg", DDPG)])
 def test_other_algorithms_run_the_same_path(algo: str, algorithm: type[BaseAlgorithm], tmp_path: Path) -> None:
     config = TrainingConfig(algo=algo, simulations=42, n_envs=1, episode=EpisodeConfig(time_limit=1.5))
     run = RunFolder.create(tmp_path / algo, config)
-    parameters, evaluation = train(config, run)
+    learned = train(config, run)
     assert isinstance(algorithm.load(run.model_path), algorithm)
-    assert len(list(run.episodes())) == 42 and len(parameters) == 5
-    assert math.isfinite(evaluation.score_mean)
+    assert len(list(run.episodes())) == 42 and len(learned.parameters) == 5
+    assert math.isfinite(learned.evaluation.score_mean)
 
 
 def test_budget_is_kept_with_environments_side_by_side(tmp_path: Path) -> None:
@@ -123,7 +141,7 @@ def test_candidates_are_compared_on_the_same_seeds_within_the_budget(
     monkeypatch.setattr(training, "candidate_count", lambda simulations: 2)
     config = TrainingConfig(simulations=16, n_envs=1, episode=EpisodeConfig(time_limit=2.0))
     run = RunFolder.create(tmp_path / "run", config)
-    parameters, _ = train(config, run)
+    parameters = train(config, run).parameters
     rows = list(run.episodes())
     assert len(rows) == 16
     first, second = rows[6::2], rows[7::2]

@@ -14,7 +14,7 @@ import tyro
 from sarah.cli.options import parse_options, run_command
 from sarah.config import PHYSICS, EpisodeConfig
 from sarah.errors import ConfigurationError, unknown_name
-from sarah.tasks import STEPPING, TASKS
+from sarah.tasks import BALANCE, STEPPING, TASKS
 
 if TYPE_CHECKING:
     from sarah.evaluation import Evaluation
@@ -76,17 +76,29 @@ def _evaluate(arguments: Sequence[str]) -> None:
     if options.robustness is not None:
         _show_robustness(parameters, config, options)
         return
+    evaluation = _evaluation(task, parameters, config, options)
+    neutral = TASKS[task].neutral
+    without = None if neutral is None else _evaluation(task, neutral, config, options)
+    named = dict(zip(TASKS[task].parameter_names, parameters, strict=True))
+    if options.json:
+        content = {"task": task, "algorithm": algorithm, "parameters": named, **vars(evaluation)}
+        if without is not None:
+            content |= {"chatters": evaluation.chatters(without), "without": vars(without)}
+        print(json_format.dumps(content))
+        return
+    for label, text in _rows(named, evaluation):
+        print(f"{label:17}{text}")
+    if without is not None:
+        for label, text in _comparison(evaluation, without):
+            print(f"{label:17}{text}")
+
+
+def _evaluation(task: str, parameters: tuple[float, ...], config: EpisodeConfig, options: EvalOptions) -> Evaluation:
     from sarah.episode import EpisodeSpec
     from sarah.evaluation import simulate_all, summarise
 
     seeds = range(options.first_seed, options.first_seed + options.episodes)
-    evaluation = summarise(simulate_all([EpisodeSpec(parameters, seed, task, config) for seed in seeds]))
-    named = dict(zip(TASKS[task].parameter_names, parameters, strict=True))
-    if options.json:
-        print(json_format.dumps({"task": task, "algorithm": algorithm, "parameters": named, **vars(evaluation)}))
-        return
-    for label, text in _rows(named, evaluation):
-        print(f"{label:17}{text}")
+    return summarise(simulate_all([EpisodeSpec(parameters, seed, task, config) for seed in seeds]))
 
 
 def _subject(options: EvalOptions) -> tuple[str, str | None, tuple[float, ...], EpisodeConfig]:
@@ -151,7 +163,7 @@ def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[st
         ("survival", f"{round(e.survival_rate * e.episodes)} of {e.episodes} episodes"),
         ("by sensors", f"{e.event_driven_shift_mean:.1%} of shifts, {e.event_driven_lift_mean:.1%} of lifts"),
         ("sole clearance", f"{1000 * e.sole_clearance_mean:.1f} mm"),
-        ("vibration", f"{e.vibration_mean:.1f} m²/s⁴ above 20 Hz" + (": it chatters" if e.chatters else "")),
+        ("vibration", f"{e.vibration_median:.1f} m²/s⁴ above 20 Hz"),
         (
             "actuators",
             f"{e.actuator_power_mean:.0f} W; peaks {e.peak_hip_rate_max:.1f} rad/s and {e.peak_leg_speed_max:.2f} m/s",
@@ -159,16 +171,29 @@ def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[st
     ]
 
 
+def _comparison(evaluation: Evaluation, without: Evaluation) -> list[tuple[str, str]]:
+    """The same episodes with V1 to V4 at zero."""
+    survived = f"{round(without.survival_rate * without.episodes)} of {without.episodes} survive"
+    chatter = "it chatters" if evaluation.chatters(without) else "no chatter"
+    return [
+        (
+            "with V = 0",
+            f"score {without.score_median:.3f} median, {survived}, {without.steps_per_second_mean:.2f} steps/s",
+        ),
+        ("", f"vibration {without.vibration_median:.1f} m²/s⁴: {chatter}"),
+    ]
+
+
 def _show_robustness(parameters: tuple[float, ...], config: EpisodeConfig, options: EvalOptions) -> None:
     """Print the table as Markdown, and write it and the polar plot."""
     from sarah.figures import draw_survival
-    from sarah.robustness import NO_BALANCE, push_many, robustness_table
+    from sarah.robustness import push_many, robustness_table
 
-    folder = options.robustness
-    assert folder is not None
+    folder, neutral = options.robustness, BALANCE.neutral
+    assert folder is not None and neutral is not None
     folder.mkdir(parents=True, exist_ok=True)
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
-    pushed = push_many((NO_BALANCE, parameters), config, episodes=options.episodes, first_seed=options.first_seed)
+    pushed = push_many((neutral, parameters), config, episodes=options.episodes, first_seed=options.first_seed)
     head = "".join(f" {name}: survival | score | drift | vibration |" for name in names)
     lines = [f"| push | direction | episodes |{head}", "|---" * (3 + 4 * len(names)) + "|"]
     for rows in zip(*map(robustness_table, pushed), strict=True):

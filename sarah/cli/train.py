@@ -17,7 +17,7 @@ from sarah.errors import ConfigurationError
 from sarah.tasks import BALANCE, STEPPING, TASKS
 
 if TYPE_CHECKING:
-    from sarah.evaluation import Evaluation
+    from sarah.training import Learned
 
 COMMAND = "sarah-train"
 
@@ -61,8 +61,7 @@ def _train(arguments: Sequence[str]) -> None:
     print(f"training {config.algo} on {config.task}: {config.simulations} simulations into {run.path}", flush=True)
     from sarah.training import train
 
-    parameters, evaluation = train(config, run, progress_bar=True)
-    _summarise(config.task, parameters, evaluation, run.path)
+    _summarise(config.task, train(config, run, progress_bar=True), run.path)
 
 
 def _defaults(arguments: Sequence[str]) -> TrainOptions:
@@ -94,16 +93,19 @@ def _stepping_of(path: Path, episode: EpisodeConfig) -> EpisodeConfig:
     return dataclasses.replace(episode, stepping=stepping, dimensions=learned.episode.dimensions)  # type: ignore[arg-type]
 
 
-def _summarise(task: str, parameters: tuple[float, ...], evaluation: Evaluation, path: Path) -> None:
-    names = TASKS[task].parameter_names
-    learned = ", ".join(f"{name} = {value:.2f}" for name, value in zip(names, parameters, strict=True))
-    print(f"\nlearned     {learned}")
+def _summarise(task: str, learned: Learned, path: Path) -> None:
+    evaluation, without = learned.evaluation, learned.without
+    named = zip(TASKS[task].parameter_names, learned.parameters, strict=True)
+    print("\nlearned     " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
     print(f"score       {evaluation.score_median:.3f} (median of {evaluation.episodes} unseen seeds; 1 is the ceiling)")
-    print(f"steps       {evaluation.steps_per_second_mean:.2f} per second, {evaluation.survival_rate:.0%} survive 30 s")
+    print(f"steps       {evaluation.steps_per_second_mean:.2f} per second")
+    print(
+        f"survival    {evaluation.survival_rate:.0%}" + (f", {without.survival_rate:.0%} with V = 0" if without else "")
+    )
     shares = f"{evaluation.event_driven_shift_mean:.0%} of shifts, {evaluation.event_driven_lift_mean:.0%} of lifts"
     print(f"by sensors  {shares}; sole clearance {1000 * evaluation.sole_clearance_mean:.0f} mm")
     if not evaluation.is_gait:
         print("            not a gait: it steps to a clock, or does not lift its feet")
-    if evaluation.chatters:
+    if without is not None and evaluation.chatters(without):
         print("            it chatters: no real robot could do that")
     print(f"run folder  {path}")

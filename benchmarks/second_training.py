@@ -1,0 +1,76 @@
+"""The Second Training over many seeds: what each algorithm learned, pushed by 100 N, and stepping without a push.
+
+All trainings keep the P1 to P5 of --stepping and last 12 s an episode. Run folders go to --runs; a training that is
+finished there is not run again. Every controller meets the same pushes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+from pathlib import Path
+from statistics import median
+
+from sarah.config import ALGORITHMS, TRAINED_STEPPING, EpisodeConfig, Push, TrainingConfig
+from sarah.errors import RunFolderError
+from sarah.evaluation import summarise
+from sarah.robustness import push_many, robustness_table
+from sarah.runs import RunFolder
+from sarah.tasks import BALANCE
+from sarah.training import evaluate, train
+
+
+def learned(config: TrainingConfig, path: Path) -> tuple[float, ...]:
+    try:
+        return RunFolder.open(path).parameters()
+    except RunFolderError:
+        return train(config, RunFolder.create(path, config)).parameters
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--algo", nargs="+", choices=ALGORITHMS, default=["naf"])
+    parser.add_argument("--first-seed", type=int, default=0)
+    parser.add_argument("--seeds", type=int, default=10)
+    parser.add_argument("--simulations", type=int, default=300)
+    parser.add_argument("--stepping", type=float, nargs=5, default=TRAINED_STEPPING)
+    parser.add_argument("--pushes", type=int, default=60)
+    parser.add_argument("--unpushed", type=int, default=4)
+    parser.add_argument("--runs", type=Path, default=Path("runs/benchmark"))
+    options = parser.parse_args()
+
+    episode = EpisodeConfig(stepping=tuple(options.stepping), time_limit=12.0)
+    free = dataclasses.replace(episode, push=Push(newtons=(0.0, 0.0)), time_limit=30.0)
+
+    def row(name: str, parameters: tuple[float, ...]) -> float:
+        (pushed,) = push_many([parameters], episode, forces=(100.0,), episodes=options.pushes)
+        everywhere, lateral, sagittal = robustness_table(pushed)
+        stepping = evaluate(parameters, TrainingConfig(task=BALANCE.name, episode=free), range(options.unpushed))
+        together = summarise(push.result for push in pushed)
+        print(
+            f"| {name} | {' | '.join(f'{value:.2f}' for value in parameters)} | {everywhere.survival:.2f} "
+            f"| {lateral.survival:.2f} | {sagittal.survival:.2f} | {together.score_mean:.3f} "
+            f"| {stepping.score_mean:.3f} | {stepping.steps_per_second_mean:.2f} "
+            f"| {1000 * stepping.sole_clearance_mean:.0f} mm "
+            f"| {together.vibration_median:.1f}, {stepping.vibration_median:.1f} |",
+            flush=True,
+        )
+        return everywhere.survival
+
+    columns = "run V1 V2 V3 V4 survival lateral sagittal score unpushed steps/s clearance vibration".split()
+    print(f"| {' | '.join(columns)} |\n{'|---' * len(columns)}|")
+    row("V = 0", BALANCE.neutral or ())
+    for algo in options.algo:
+        survivals = []
+        for seed in range(options.first_seed, options.first_seed + options.seeds):
+            config = TrainingConfig("balance", algo, options.simulations, seed, episode=episode)
+            parameters = learned(config, options.runs / f"balance-{algo}-{options.simulations}-s{seed}")
+            survivals.append(row(f"{algo} seed {seed}", parameters))
+        close = sum(survival >= max(survivals) - 0.05 for survival in survivals)
+        print(
+            f"\n{algo}: median survival {median(survivals):.2f}; {close} of {len(survivals)} within 0.05 of the best\n"
+        )
+
+
+if __name__ == "__main__":
+    main()
