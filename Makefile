@@ -2,8 +2,12 @@
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV ?= .venv
 BIN := $(VENV)/bin
-SIMULATIONS ?= 160
+SIMULATIONS ?= 100
+BALANCE_SIMULATIONS ?= 200
+BALANCE_SECONDS ?= 12
+PUSHES ?= 8
 SEED ?= 0
+RUN ?= runs/$(shell date +%Y%m%d-%H%M%S)
 
 .PHONY: help install train test test-slow lint format bench clean
 
@@ -19,8 +23,13 @@ $(VENV)/installed: setup.cfg pyproject.toml constraints.txt
 	$(BIN)/pip install --quiet -c constraints.txt --editable '.[dev]'
 	@touch $@
 
-train: install  ## the First Training with NAF: a robot that learned to step in place
-	$(BIN)/sarah-train --task stepping --algo naf --simulations $(SIMULATIONS) --seed $(SEED)
+train: RUN := $(RUN)
+train: install  ## both trainings with NAF, figures and robustness table: a robot that steps in place and comes back from pushes
+	$(BIN)/sarah-train --task stepping --simulations $(SIMULATIONS) --seed $(SEED) --run-dir $(RUN)/stepping
+	$(BIN)/sarah-train --task balance --from $(RUN)/stepping --simulations $(BALANCE_SIMULATIONS) --seed $(SEED) \
+		--episode.time-limit $(BALANCE_SECONDS) --run-dir $(RUN)/balance
+	$(BIN)/sarah-figures $(RUN)/stepping $(RUN)/balance --out $(RUN)/figures
+	$(BIN)/sarah-eval $(RUN)/balance --robustness $(RUN)/figures --episodes $(PUSHES)
 
 test: install  ## the tests
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m 'not slow'
@@ -43,6 +52,9 @@ bench: install  ## the tables of the README and docs: hours of simulation
 	$(BIN)/python benchmarks/clock.py
 	$(BIN)/python benchmarks/physics.py
 	$(BIN)/python benchmarks/first_training.py
+	$(BIN)/python benchmarks/robot.py
+	$(BIN)/python benchmarks/hip_laws.py
+	$(BIN)/python benchmarks/second_training.py --algo naf td3
 
 clean:  ## remove what was built, but no runs
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -57,8 +57,10 @@ def main() -> None:
         )
         return everywhere.survival
 
-    columns = "run V1 V2 V3 V4 survival lateral sagittal score unpushed steps/s clearance vibration".split()
-    print(f"| {' | '.join(columns)} |\n{'|---' * len(columns)}|")
+    head = (
+        "| run | V1 | V2 | V3 | V4 | survival | lateral | sagittal | score | unpushed | steps/s | clearance | vibration"
+    )
+    print(f"{head} |\n{'|---' * 13}|")
     row("V = 0", BALANCE.neutral or ())
     for algo in options.algo:
         survivals = []

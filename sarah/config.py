@@ -184,7 +184,7 @@ class TrainingConfig:
 
     task: str = "stepping"
     algo: str = "naf"
-    simulations: int = 160
+    simulations: int = 100
     seed: int = 0
     n_envs: int = 2
     episode: EpisodeConfig = EpisodeConfig()

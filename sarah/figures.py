@@ -21,6 +21,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
 from sarah.errors import RunFolderError
 from sarah.robustness import PushedEpisode, survival_by_direction
@@ -47,6 +48,22 @@ STYLE: dict[Any, Any] = {
 }
 
 
+Panels = list[tuple[str, str]]
+"""Column of ``episodes.csv`` and label of each panel, from top to bottom."""
+RETURN = ("return", "return (m³ s)")
+FIGURES: dict[Task, dict[str, Panels]] = {
+    STEPPING: {
+        "figure_4_reward_and_frequency": [RETURN, ("steps_per_second", "steps per second")],
+        "figure_5_parameters": [(name, name) for name in STEPPING.parameter_names],
+    },
+    BALANCE: {
+        "figure_6_reward_and_position": [RETURN, ("x", "final x (m)"), ("y", "final y (m)")],
+        "figure_7_parameters": [(name, name) for name in BALANCE.parameter_names],
+    },
+}
+"""The paper's figures of each training."""
+
+
 @dataclass(frozen=True)
 class Curves:
     """What the runs of one algorithm went through.
@@ -69,32 +86,14 @@ def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
     """
     files = []
     with plt.rc_context(STYLE):
-        for task, draw in ((STEPPING, _first_training), (BALANCE, _second_training)):
+        for task, figures in FIGURES.items():
             curves = _curves([run for run in runs if run.config().task == task.name], task)
             if not curves:
                 continue
             folder.mkdir(parents=True, exist_ok=True)
-            for name, panels in draw(task).items():
+            for name, panels in figures.items():
                 files += _draw(curves, panels, folder / name)
     return files
-
-
-Panels = list[tuple[str, str]]
-"""Column and label of each panel, from top to bottom."""
-
-
-def _first_training(task: Task) -> dict[str, Panels]:
-    return {
-        "figure_4_reward_and_frequency": [("return", "reward (m³)"), ("steps_per_second", "steps per second")],
-        "figure_5_parameters": [(name, name) for name in task.parameter_names],
-    }
-
-
-def _second_training(task: Task) -> dict[str, Panels]:
-    return {
-        "figure_6_reward_and_position": [("return", "reward (m³)"), ("x", "final x (m)"), ("y", "final y (m)")],
-        "figure_7_parameters": [(name, name) for name in task.parameter_names],
-    }
 
 
 def _curves(runs: Sequence[RunFolder], task: Task) -> list[Curves]:
@@ -128,7 +127,7 @@ def _draw(curves: Sequence[Curves], panels: Panels, path: Path) -> list[Path]:
             _draw_panel(axis, curve.columns[column], curve.algorithm)
         axis.set_ylabel(label)
     axes[-1, 0].set_xlabel("training steps (simulations)")
-    axes[0, 0].legend(loc="lower right")
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper right", ncols=len(curves))
     return _save(figure, path)
 
 
@@ -184,7 +183,10 @@ def _draw_survival(axis: Any, survival: Mapping[float, Sequence[float | None]]) 
     sectors = (np.arange(SECTORS + 1) - 0.5) * 2 * np.pi / SECTORS
     shares = np.array([[np.nan if share is None else share for share in row] for row in survival.values()])
     mesh: QuadMesh = axis.pcolormesh(sectors, rings, shares, cmap="cividis", vmin=0.0, vmax=1.0)
-    axis.set_rgrids(forces, [f"{force:.0f} N" for force in forces], angle=22.5, fontsize=6, color="white")
+    axis.set_rmax(rings[-1])
+    labels = axis.set_rgrids(forces, [f"{force:.0f} N" for force in forces], angle=67.5, fontsize=6)[1]
+    for label in labels:  # readable on every colour
+        label.set_path_effects([withStroke(linewidth=2, foreground="white")])
     axis.set_thetagrids((0, 90, 180, 270), ("right", "forward", "left", "back"))
     return mesh
 
