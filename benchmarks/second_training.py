@@ -1,6 +1,6 @@
 """The Second Training over many seeds: what each algorithm learned, pushed by 100 N, and stepping without a push.
 
-All trainings keep the P1 to P5 of --stepping and last 12 s an episode. Run folders go to --runs; a training that is
+All trainings keep the P1 to P5 of --stepping and last 10 s an episode. Run folders go to --runs; a training that is
 finished there is not run again. Every controller meets the same pushes.
 """
 
@@ -34,12 +34,12 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=10)
     parser.add_argument("--simulations", type=int, default=300)
     parser.add_argument("--stepping", type=float, nargs=5, default=TRAINED_STEPPING)
-    parser.add_argument("--pushes", type=int, default=60)
+    parser.add_argument("--pushes", type=int, default=50)
     parser.add_argument("--unpushed", type=int, default=4)
     parser.add_argument("--runs", type=Path, default=Path("runs/benchmark"))
     options = parser.parse_args()
 
-    episode = EpisodeConfig(stepping=tuple(options.stepping), time_limit=12.0)
+    episode = EpisodeConfig(stepping=tuple(options.stepping), time_limit=10.0)
     free = dataclasses.replace(episode, push=Push(newtons=(0.0, 0.0)), time_limit=30.0)
 
     def row(name: str, parameters: tuple[float, ...]) -> float:
