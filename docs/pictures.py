@@ -10,14 +10,14 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from sarah.config import EpisodeConfig, Randomisation
+from sarah.config import TRAINED_STEPPING, EpisodeConfig, Randomisation
 from sarah.episode import Episode
 from sarah.pattern_generator import Phase, Side
 from sarah.simulator import Camera
 
-PARAMETERS = (0.37, 0.3, 0.1, 1.0, 1.0)
+PARAMETERS = TRAINED_STEPPING
 FROM_SECONDS, TO_SECONDS = 8.0, 8.75
-FEET = Camera(height=0.17, distance=0.75, yaw=180.0, pitch=-3.0)
+FEET = Camera(height=0.17, distance=1.0, yaw=180.0, pitch=-3.0)
 HERE = Path(__file__).parent
 
 

@@ -1,4 +1,4 @@
-"""The gymnasium environment: what checkers, libraries and users expect of it."""
+"""The gymnasium environments: what checkers, libraries and users expect of it."""
 
 import dataclasses
 import subprocess
@@ -17,7 +17,8 @@ from sarah.envs import FIRST_TRAINING_SEED, SarahEnv, parameters_from
 from sarah.episode import EpisodeResult
 from sarah.errors import ConfigurationError
 from sarah.pattern_generator import PAPER_PARAMETERS
-from sarah.tasks import STEPPING
+from sarah.registration import ENVIRONMENTS
+from sarah.tasks import BALANCE, STEPPING, TASKS
 
 SHORT = EpisodeConfig(time_limit=4.0)
 PAPER_ACTION = np.array(PAPER_PARAMETERS, dtype=np.float32) - 1.0
@@ -40,16 +41,19 @@ def test_environments_do_not_share_their_spaces() -> None:
     assert (second.action_space.sample() == again.action_space.sample()).all()
 
 
-def test_gymnasium_knows_it_by_name() -> None:
-    env = gymnasium.make("SarahStepping-v0", config=SHORT)
-    assert isinstance(env.unwrapped, SarahEnv)
+@pytest.mark.parametrize(("name", "task"), ENVIRONMENTS.items())
+def test_gymnasium_knows_them_by_name(name: str, task: str) -> None:
+    env = gymnasium.make(name, config=SHORT)
+    assert isinstance(env.unwrapped, SarahEnv) and env.unwrapped.task is TASKS[task]
+    assert env.action_space.shape == (len(TASKS[task].parameter_names),)
     env.close()
 
 
-def test_checkers_pass_without_a_warning() -> None:
+@pytest.mark.parametrize("name", ENVIRONMENTS)
+def test_checkers_pass_without_a_warning(name: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        env = gymnasium.make("SarahStepping-v0", config=SHORT, render_mode="rgb_array")
+        env = gymnasium.make(name, config=SHORT, render_mode="rgb_array")
         check_env(env.unwrapped)
         sb3_check_env(env.unwrapped)
         env.close()
@@ -95,7 +99,24 @@ def test_same_seed_gives_the_same_series_of_episodes() -> None:
     assert series[0][2] != series[0][3]
 
 
+def test_balance_episode_repeats_with_its_push() -> None:
+    env = SarahEnv("balance", SHORT)
+    env.reset(seed=3)
+    _, reward, terminated, _, info = env.step(np.array([0.5, 0.0, 0.5, -0.1], dtype=np.float32))
+    assert terminated and info["parameters"] == pytest.approx((1.0, 0.0, 1.0, -0.2))
+    repeated = sarah.simulate(sarah.EpisodeSpec(info["parameters"], info["seed"], "balance", SHORT))
+    assert repeated.episode_return == reward
+    env.close()
+
+
+def test_unknown_task_is_refused() -> None:
+    with pytest.raises(ConfigurationError, match="unknown task 'balanse', did you mean 'balance'"):
+        SarahEnv("balanse")
+
+
 def test_action_is_the_scaled_box() -> None:
+    assert parameters_from(np.zeros(4), BALANCE) == (0.0,) * 4
+    assert parameters_from(np.ones(4), BALANCE) == (2.0,) * 4
     assert parameters_from(np.zeros(5), STEPPING) == (1.0,) * 5
     assert parameters_from(-np.ones(5), STEPPING) == (0.0,) * 5
     assert parameters_from(np.ones(5), STEPPING) == (2.0,) * 5
