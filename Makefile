@@ -5,6 +5,7 @@ BIN := $(VENV)/bin
 SIMULATIONS ?= 100
 BALANCE_SIMULATIONS ?= 200
 BALANCE_SECONDS ?= 10
+BALANCE_NEWTONS ?= 75 125
 PUSHES ?= 8
 SEED ?= 0
 RUN ?= runs/$(shell date +%Y%m%d-%H%M%S)
@@ -27,7 +28,7 @@ train: RUN := $(RUN)
 train: install  ## both trainings with NAF, figures and robustness table: a robot that steps in place and comes back from pushes
 	$(BIN)/sarah-train --task stepping --simulations $(SIMULATIONS) --seed $(SEED) --run-dir $(RUN)/stepping
 	$(BIN)/sarah-train --task balance --from $(RUN)/stepping --simulations $(BALANCE_SIMULATIONS) --seed $(SEED) \
-		--episode.time-limit $(BALANCE_SECONDS) --run-dir $(RUN)/balance
+		--episode.time-limit $(BALANCE_SECONDS) --episode.push.newtons $(BALANCE_NEWTONS) --run-dir $(RUN)/balance
 	$(BIN)/sarah-figures $(RUN)/stepping $(RUN)/balance --out $(RUN)/figures
 	$(BIN)/sarah-eval $(RUN)/balance --robustness $(RUN)/figures --episodes $(PUSHES)
 

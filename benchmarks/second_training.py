@@ -1,6 +1,7 @@
 """The Second Training over many seeds: what each algorithm learned, pushed by 100 N, and stepping without a push.
 
-All trainings keep the P1 to P5 of --stepping and last 10 s an episode. Run folders go to --runs; a training that is
+All trainings keep the P1 to P5 of --stepping, last 10 s an episode and push by 75 to 125 N: softer pushes hardly tell
+controllers apart. Run folders go to --runs; a training that is
 finished there is not run again. Every controller meets the same pushes.
 """
 
@@ -34,12 +35,14 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=10)
     parser.add_argument("--simulations", type=int, default=300)
     parser.add_argument("--stepping", type=float, nargs=5, default=TRAINED_STEPPING)
+    parser.add_argument("--newtons", type=float, nargs=2, default=(75.0, 125.0), help="range of the trainings' pushes")
     parser.add_argument("--pushes", type=int, default=50)
     parser.add_argument("--unpushed", type=int, default=4)
     parser.add_argument("--runs", type=Path, default=Path("runs/benchmark"))
     options = parser.parse_args()
 
-    episode = EpisodeConfig(stepping=tuple(options.stepping), time_limit=10.0)
+    hard = Push(newtons=tuple(options.newtons))
+    episode = EpisodeConfig(stepping=tuple(options.stepping), push=hard, time_limit=10.0)
     free = dataclasses.replace(episode, push=Push(newtons=(0.0, 0.0)), time_limit=30.0)
 
     def row(name: str, parameters: tuple[float, ...]) -> float:
