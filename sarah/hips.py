@@ -1,8 +1,8 @@
 """The hip law: how V1 to V4 tilt the hips so that the robot steps back to where it stood.
 
     abduction of both hips      0.05 (V1 stable_x + V2)
-    flexion of the swing leg    2.5 V3 pitch + 0.05 V4
-    flexion of the support leg  0.05 V4                     each within 0.3 rad, at 6 rad/s
+    flexion of the swing leg    2.5 V3 pitch + 0.02 V4
+    flexion of the support leg  0.02 V4                     each within 0.3 rad, at 6 rad/s
 
 stable_x is the lateral acceleration after a low-pass of its own, slower than the pattern generator's; with V1 above
 zero both feet follow the torso to the side it was pushed to. pitch is how far the torso has lately turned about its x
@@ -23,10 +23,12 @@ from enum import Enum
 from sarah.filters import LowPass, ramped
 from sarah.sensors import SensorReading
 
-ACCELERATION_SCALE = 0.05
-"""Radians of hip motion per m/s^2."""
+ABDUCTION_SCALE = 0.05
+"""Radians of abduction per m/s^2."""
 PITCH_SCALE = 2.5
 """Radians of swing leg flexion per radian of pitch, at V3 = 1."""
+FLEXION_SCALE = 0.02
+"""Radians of constant flexion at V4 = 1; 0.1 rad would lean the robot over its toes."""
 LARGEST_ANGLE = 0.3
 """Of either hip target, in rad."""
 HIP_SPEED = 6.0
@@ -60,7 +62,7 @@ class BalanceParameters:
     :param V1: how much the lateral acceleration abducts both hips
     :param V2: constant added to it, in m/s^2
     :param V3: how much the torso's pitch flexes the swing leg
-    :param V4: constant flexion of both legs, in units of 0.05 rad
+    :param V4: constant flexion of both legs, in units of 0.02 rad
     """
 
     V1: float
@@ -101,8 +103,8 @@ class HipLaw:
         :param swing: the leg that swings
         """
         v = self._parameters
-        constant = ACCELERATION_SCALE * v.V4
-        self.abduction = self._moved(self.abduction, -ACCELERATION_SCALE * (v.V1 * self.stable_x + v.V2))
+        constant = FLEXION_SCALE * v.V4
+        self.abduction = self._moved(self.abduction, -ABDUCTION_SCALE * (v.V1 * self.stable_x + v.V2))
         self.flexion[swing] = self._moved(self.flexion[swing], PITCH_SCALE * v.V3 * self.pitch + constant)
         self.flexion[swing.other] = self._moved(self.flexion[swing.other], constant)
 
