@@ -32,7 +32,7 @@ class EvalOptions:
     :param stepping: P1 to P5 to balance with, separated by commas; by default the run's own, or trained ones
     :param push_newtons: force of every push, whose direction and time vary; by default up to 100 N, as in training
     :param robustness: folder for a table and a polar plot of survival by push: with and without V1 to V4, by direction,
-        --episodes times at each of 25, 50, 75, 100, 125 and 150 N
+        --episodes times at each of 25, 50, 75, 100, 125 and 150 N, or at --push-newtons only
     :param episodes: how many
     :param first_seed: seed of the first episode; the others follow. Trainings use seeds from 2^31 up
     :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default the run's own
@@ -187,13 +187,14 @@ def _comparison(evaluation: Evaluation, without: Evaluation) -> list[tuple[str, 
 def _show_robustness(parameters: tuple[float, ...], config: EpisodeConfig, options: EvalOptions) -> None:
     """Print the table as Markdown, and write it and the polar plot."""
     from sarah.figures import draw_survival
-    from sarah.robustness import push_many, robustness_table
+    from sarah.robustness import FORCES, push_many, robustness_table
 
     folder, neutral = options.robustness, BALANCE.neutral
     assert folder is not None and neutral is not None
     folder.mkdir(parents=True, exist_ok=True)
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
-    pushed = push_many((neutral, parameters), config, episodes=options.episodes, first_seed=options.first_seed)
+    forces = FORCES if options.push_newtons is None else (options.push_newtons,)
+    pushed = push_many((neutral, parameters), config, forces, options.episodes, options.first_seed)
     head = "".join(f" {name}: survival | score | drift | vibration |" for name in names)
     lines = [f"| push | direction | episodes |{head}", "|---" * (3 + 4 * len(names)) + "|"]
     for rows in zip(*map(robustness_table, pushed), strict=True):
