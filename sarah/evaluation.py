@@ -76,9 +76,8 @@ class Evaluation:
 
     @property
     def is_gait(self) -> bool:
-        """Whether the robot steps by its sensors and lifts its feet, and does not shuffle to a clock."""
-        shares = (self.event_driven_shift_mean, self.event_driven_lift_mean)
-        return min(shares) >= SMALLEST_EVENT_SHARE and self.sole_clearance_mean >= SMALLEST_CLEARANCE
+        """:func:`is_gait` of the means."""
+        return is_gait(self.event_driven_shift_mean, self.event_driven_lift_mean, self.sole_clearance_mean)
 
     def chatters(self, without: Evaluation) -> bool:
         """Whether the hips shake the torso at frequencies that no real actuator follows.
@@ -86,6 +85,17 @@ class Evaluation:
         :param without: the same episodes with V1 to V4 at zero
         """
         return self.vibration_median > LARGEST_ACCELERATION_RATIO**2 * without.vibration_median
+
+
+def is_gait(event_driven_shift: float, event_driven_lift: float, sole_clearance: float) -> bool:
+    """Whether the robot steps by its sensors and lifts its feet, and does not shuffle to a clock.
+
+    :param event_driven_shift: share of the SHIFT phases that sensors ended
+    :param event_driven_lift: the same of the LIFT phases
+    :param sole_clearance: in m
+    """
+    shares = (event_driven_shift, event_driven_lift)
+    return min(shares) >= SMALLEST_EVENT_SHARE and sole_clearance >= SMALLEST_CLEARANCE
 
 
 def summarise(results: Iterable[EpisodeResult]) -> Evaluation:

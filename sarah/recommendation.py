@@ -1,14 +1,18 @@
 """Which parameters a training recommends: a few candidates, simulated again side by side.
 
-An agent's own choice stops at the edge of a flat crest, and the best single episode was lucky. So the last simulations
-of the budget compare the agent's choice with what did well around it in the episodes so far, each candidate on the
-same new seeds.
+An agent's own choice stops at the edge of a flat crest, the best single episode was lucky, and the reward does not see
+a robot that steps to a clock or drags its feet: what is no gait has no merit here, whatever its score. So the last
+simulations of the budget compare the agent's choice with what did well around it in the episodes so far, each candidate
+on the same new seeds.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from sarah.evaluation import is_gait
 
 Parameters = tuple[float, ...]
 
@@ -20,7 +24,16 @@ NEIGHBOURHOOD = 0.15
 DISTINCT = 0.2
 """Smallest distance between candidates."""
 DOUBT = 0.25
-"""Episodes of score zero that every neighbourhood is thought to hold, so that single lucky ones do not win."""
+"""Episodes without merit that every neighbourhood is thought to hold, so that single lucky ones do not win."""
+
+
+def merit(info: Mapping[str, Any]) -> float:
+    """What an episode says for its parameters: its score, or nothing if the robot did not really step.
+
+    :param info: the fields of its result
+    """
+    steps = is_gait(info["event_driven_shift"], info["event_driven_lift"], info["sole_clearance"])
+    return float(info["score"]) if steps else 0.0
 
 
 def candidate_count(simulations: int) -> int:
@@ -35,12 +48,12 @@ def candidates(choice: Parameters, tried: Sequence[tuple[Parameters, float]], co
     """What is worth simulating again.
 
     :param choice: the agent's own, always the first candidate
-    :param tried: parameters and score of every episode so far
+    :param tried: parameters and merit of every episode so far
     :param count: how many candidates
-    :return: the agent's choice, then the tried parameters whose neighbourhoods scored best, not too close together
+    :return: the agent's choice, then the tried parameters whose neighbourhoods did best, not too close together
     """
     chosen = [choice]
-    by_merit = sorted(tried, key=lambda episode: _neighbourhood_score(episode[0], tried), reverse=True)
+    by_merit = sorted(tried, key=lambda episode: _neighbourhood_merit(episode[0], tried), reverse=True)
     for parameters, _ in by_merit:
         if len(chosen) == count:
             break
@@ -49,7 +62,7 @@ def candidates(choice: Parameters, tried: Sequence[tuple[Parameters, float]], co
     return chosen
 
 
-def _neighbourhood_score(parameters: Parameters, tried: Sequence[tuple[Parameters, float]]) -> float:
+def _neighbourhood_merit(parameters: Parameters, tried: Sequence[tuple[Parameters, float]]) -> float:
     weights = [math.exp(-(math.dist(parameters, other) ** 2) / (2 * NEIGHBOURHOOD**2)) for other, _ in tried]
-    total = sum(weight * score for weight, (_, score) in zip(weights, tried, strict=True))
+    total = sum(weight * merit for weight, (_, merit) in zip(weights, tried, strict=True))
     return total / (sum(weights) + DOUBT)

@@ -23,7 +23,7 @@ from sarah.config import Randomisation, TrainingConfig
 from sarah.envs import FIRST_TRAINING_SEED, SarahEnv, observation_from, parameters_from
 from sarah.episode import Episode, EpisodeSpec
 from sarah.evaluation import Evaluation, simulate_all, summarise
-from sarah.recommendation import SIMULATIONS_PER_CANDIDATE, Parameters, candidate_count, candidates
+from sarah.recommendation import SIMULATIONS_PER_CANDIDATE, Parameters, candidate_count, candidates, merit
 from sarah.runs import RunFolder
 from sarah.tasks import BALANCE, TASKS, Task
 
@@ -87,7 +87,7 @@ class EpisodeRecorder(BaseCallback):
         :param info: what the environment's step returned
         """
         self._run.append_episode(len(self.tried), self._names, info)
-        self.tried.append((info["parameters"], info["score"]))
+        self.tried.append((info["parameters"], merit(info)))
         x, y, _ = info["final_position"]
         shown = {"return": info["episode_return"], "x": x, "y": y, **{name: info[name] for name in LOGGED_FIELDS}}
         for name, value in shown.items():
@@ -190,18 +190,18 @@ def chosen_parameters(model: OffPolicyAlgorithm, config: TrainingConfig) -> Para
 def _compare(
     rivals: list[Parameters], simulations: int, config: TrainingConfig, recorder: EpisodeRecorder
 ) -> Parameters:
-    """Simulate the candidates in turn, each round on one seed for all, and return the one of the best mean score."""
+    """Simulate the candidates in turn, each round on one seed for all, and return the one of the best mean merit."""
     generator = random.Random(config.seed)
     specs: list[EpisodeSpec] = []
     while len(specs) < simulations:
         seed = generator.randrange(FIRST_TRAINING_SEED, 2**32)
         specs += [EpisodeSpec(rival, seed, config.task, config.episode) for rival in rivals]
-    scores: dict[Parameters, list[float]] = {rival: [] for rival in rivals}
+    merits: dict[Parameters, list[float]] = {rival: [] for rival in rivals}
     specs = specs[:simulations]
     for spec, result in zip(specs, simulate_all(specs, config.n_envs), strict=True):
         recorder.record({**result.fields(), "seed": spec.seed, "parameters": spec.parameters})
-        scores[spec.parameters].append(result.score)
-    return max(rivals, key=lambda rival: mean(scores[rival] or [0.0]))
+        merits[spec.parameters].append(recorder.tried[-1][1])
+    return max(rivals, key=lambda rival: mean(merits[rival] or [0.0]))
 
 
 def evaluate(parameters: Parameters, config: TrainingConfig, seeds: range) -> Evaluation:

@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sarah.recommendation import DISTINCT, candidate_count, candidates
+from sarah.recommendation import DISTINCT, candidate_count, candidates, merit
 
 CHOICE = (1.0, 1.0, 1.0, 1.0, 1.0)
 
@@ -40,6 +40,12 @@ def test_there_are_never_more_than_asked_for(tried: list[tuple[tuple[float, ...]
         for index, first in enumerate(chosen)
         for second in chosen[:index]
     )
+
+
+def test_what_is_no_gait_has_no_merit() -> None:
+    stepping = {"score": 0.9, "event_driven_shift": 1.0, "event_driven_lift": 0.95, "sole_clearance": 0.02}
+    assert merit(stepping) == 0.9
+    assert merit(stepping | {"event_driven_lift": 0.5}) == merit(stepping | {"sole_clearance": 0.007}) == 0.0
 
 
 def test_a_small_budget_affords_no_comparison() -> None:
