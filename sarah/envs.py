@@ -68,7 +68,7 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """Run the pattern generator to the episode's end.
 
-        :param action: P1 to P5, scaled to [-1, 1]
+        :param action: of the task, scaled to [-1, 1]
         :raises ConfigurationError: if the action is not finite or out of its box, or the episode is over
         """
         if self._episode is None or self._episode.termination is not None:

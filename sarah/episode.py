@@ -138,7 +138,7 @@ class Episode:
     ) -> None:
         self.config = config
         self.task = task
-        self.push: DrawnPush | None = draw_push(config.push, seed) if task is BALANCE else None
+        self.push: DrawnPush | None = draw_push(config.push, seed) if task == BALANCE else None
         self.termination: str | None = None
         self.robot = describe_robot(config.dimensions)
         conditions = draw_conditions(config.randomisation, seed)
@@ -190,7 +190,7 @@ class Episode:
         :param parameters: of the task: P1 to P5, or V1 to V4
         """
         learned = self.task.checked(parameters)
-        stepping, balance = (self.config.stepping, learned) if self.task is BALANCE else (learned, None)
+        stepping, balance = (self.config.stepping, learned) if self.task == BALANCE else (learned, None)
         self.generator = PatternGenerator(
             SteppingParameters(*stepping),
             self._pad_threshold,

@@ -82,17 +82,15 @@ def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
     :param runs: whose simulations to draw
     :param folder: where to; made if it is not there
     :return: the files
-    :raises RunFolderError: if a run has no simulations
+    :raises RunFolderError: if a run has no simulations, or damaged ones; nothing is drawn then
     """
+    curves = {task: _curves([run for run in runs if run.config().task == task.name], task) for task in FIGURES}
+    folder.mkdir(parents=True, exist_ok=True)
     files = []
     with plt.rc_context(STYLE):
         for task, figures in FIGURES.items():
-            curves = _curves([run for run in runs if run.config().task == task.name], task)
-            if not curves:
-                continue
-            folder.mkdir(parents=True, exist_ok=True)
-            for name, panels in figures.items():
-                files += _draw(curves, panels, folder / name)
+            for name, panels in figures.items() if curves[task] else ():
+                files += _draw(curves[task], panels, folder / name)
     return files
 
 
@@ -103,7 +101,10 @@ def _curves(runs: Sequence[RunFolder], task: Task) -> list[Curves]:
         rows = list(run.episodes())
         if not rows:
             raise RunFolderError(f"{run.path} has no simulations to draw")
-        columns = {name: [float(row[name]) for row in rows] for name in names}
+        try:
+            columns = {name: [float(row[name]) for row in rows] for name in names}
+        except (KeyError, TypeError, ValueError) as error:
+            raise RunFolderError(f"the simulations of {run.path} cannot be read: {error!r}") from error
         by_algorithm.setdefault(run.config().algo, []).append(columns)
     curves = []
     for algorithm, tables in by_algorithm.items():

@@ -1,13 +1,14 @@
 """The hip law: how V1 to V4 tilt the hips so that the robot steps back to where it stood.
 
-    abduction of both hips      0.05 (V1 stable_x + V2)
+    abduction of both hips      -0.05 (V1 stable_x + V2)
     flexion of the swing leg    2.5 V3 pitch + 0.02 V4
     flexion of the support leg  0.02 V4                     each within 0.3 rad, at 6 rad/s
 
-stable_x is the lateral acceleration after a low-pass of its own, slower than the pattern generator's; with V1 above
-zero both feet follow the torso to the side it was pushed to. pitch is how far the torso has lately turned about its x
-axis, the leaky integral of that rate; with V3 above zero the swing leg turns on with the fall, and takes up momentum
-that would otherwise tip the robot over the support foot.
+Positive abduction turns both feet to the left of the torso, positive flexion turns a foot forward. stable_x is the
+lateral acceleration after a low-pass of its own, slower than the pattern generator's; with V1 above zero both feet go
+to the side that the torso was pushed to. pitch is how far the torso has lately turned about its x axis, the leaky
+integral of that rate; with V3 above zero the swing leg turns on with the fall, and takes up momentum that would
+otherwise tip the robot over the support foot.
 
 A reconstruction: the paper says only that V1 and V3 multiply signals of the x and the y axis, that V2 and V4 are
 constants, and that the sums adjust abduction and flexion. Its forward acceleration gave no law that helps, for a

@@ -15,7 +15,8 @@ from sarah.sensors import Vector
 
 CHATTER_HZ = 20.0
 """Above the gait's own harmonics, below half the control rate."""
-SHORTEST_SPECTRUM_SECONDS = 0.5
+SEGMENT_SECONDS = 0.5
+"""Length of the segments that spectra are averaged over."""
 LEGS = tuple(name.endswith("leg_length") for name in ACTUATED_JOINTS)
 """Which actuators are prismatic."""
 
@@ -57,23 +58,29 @@ class MotionRecord:
 
     @property
     def vibration(self) -> float:
-        """Mean square of the torso's acceleration above 20 Hz, all axes together, in m^2/s^4."""
+        """Mean square of the torso's acceleration above 20 Hz, all axes together, in m^2/s^4; 0 at first."""
         return power_above(np.array(self._accelerations), self._control_rate, CHATTER_HZ)
 
 
 def power_above(signals: np.ndarray, rate: int, hertz: float) -> float:
     """Mean square of what signals hold above a frequency, summed over the signals.
 
+    By Welch's method (1967): the mean over half-overlapping segments of half a second, so that a short burst counts
+    alike whenever it comes.
+
     :param signals: of shape (time, signals)
     :param rate: samples per second
     :param hertz: the frequency
-    :return: in the signals' unit squared; 0 for less than half a second
+    :return: in the signals' unit squared; 0 for less than one segment
     """
-    length = len(signals)
-    if length < SHORTEST_SPECTRUM_SECONDS * rate:
+    length = round(SEGMENT_SECONDS * rate)
+    if len(signals) < length:
         return 0.0
+    segments = np.lib.stride_tricks.sliding_window_view(signals, length, axis=0)[:: length // 2]
     window = np.hanning(length)  # so that slow motion does not leak into high frequencies
-    spectrum = np.abs(np.fft.rfft((signals - signals.mean(axis=0)) * window[:, None], axis=0)) ** 2
-    spectrum[1 : (length + 1) // 2] *= 2.0  # the negative frequencies
+    centred = segments - segments.mean(axis=-1, keepdims=True)
+    spectra = 2.0 * np.abs(np.fft.rfft(centred * window, axis=-1)) ** 2 / (length * (window**2).sum())
+    if length % 2 == 0:
+        spectra[..., -1] /= 2.0  # half the rate has no negative twin
     above = np.fft.rfftfreq(length, 1.0 / rate) > hertz
-    return float(spectrum[above].sum() / (length * (window**2).sum()))
+    return float(spectra[..., above].sum(axis=(1, 2)).mean())

@@ -142,9 +142,10 @@ def train(config: TrainingConfig, run: RunFolder, progress_bar: bool = False) ->
             "seed": config.seed,
             "simulations": config.simulations,
             "parameters": dict(zip(task.parameter_names, parameters, strict=True)),
-            "stepping": config.episode.stepping if task is BALANCE else None,
+            "stepping": config.episode.stepping if task == BALANCE else None,
             "evaluation": dataclasses.asdict(evaluation),
             "without": without and dataclasses.asdict(without),
+            "chatters": without and evaluation.chatters(without),
         }
     )
     return Learned(parameters, evaluation, without)

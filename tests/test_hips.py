@@ -29,10 +29,10 @@ def law(v1: float = 0.0, v2: float = 0.0, v3: float = 0.0, v4: float = 0.0) -> H
 
 
 def test_abduction_settles_where_the_law_says() -> None:
-    """0.05 (V1 stable_x + V2), turned so that the feet follow a torso that falls to the right."""
-    settled = after(law(v1=1.5, v2=0.4), reading(lateral=-2.0), ticks=300)
-    assert settled.stable_x == pytest.approx(-2.0, rel=1e-3)
-    assert settled.abduction == pytest.approx(-0.05 * (1.5 * -2.0 + 0.4), rel=1e-3)
+    """A push to the right reads positive, and both feet then go to the right: a negative angle."""
+    settled = after(law(v1=1.5, v2=0.4), reading(lateral=2.0), ticks=300)
+    assert settled.stable_x == pytest.approx(2.0, rel=1e-3)
+    assert settled.abduction == pytest.approx(-0.05 * (1.5 * 2.0 + 0.4), rel=1e-3)
 
 
 def test_pitch_is_the_rate_integrated_and_forgets() -> None:

@@ -28,6 +28,15 @@ def test_chatter_at_half_the_control_rate_counts() -> None:
     assert power_above(shaking, RATE, 20.0) == pytest.approx(16.0, rel=0.01)
 
 
+def test_a_burst_counts_alike_whenever_it_comes() -> None:
+    powers = []
+    for second in (1, 5, 9):
+        signal = np.zeros((1100, 1))
+        signal[100 * second : 100 * second + 100, 0] = sine(40.0, 6.0, 1.0)
+        powers.append(power_above(signal, RATE, 20.0))
+    assert powers == pytest.approx([18.0 / 11.0] * 3, rel=0.1)
+
+
 def test_too_short_for_a_spectrum_is_zero() -> None:
     assert power_above(np.ones((10, 3)), RATE, 20.0) == 0.0
 

@@ -30,7 +30,7 @@ class EvalOptions:
     :param task: of --parameters: ``stepping`` (the default), or ``balance``, in which the robot is pushed
     :param parameters: instead of a run: P1 to P5, or V1 to V4 with --task balance, separated by commas
     :param stepping: P1 to P5 to balance with, separated by commas; by default the run's own, or trained ones
-    :param push_newtons: force of every push, whose direction and time vary; by default up to 100 N, as in training
+    :param push_newtons: force of every push, whose direction and time vary; by default as in the run, or 0 to 100 N
     :param robustness: folder for a table and a polar plot of survival by push: with and without V1 to V4, by direction,
         --episodes times at each of 25, 50, 75, 100, 125 and 150 N, or at --push-newtons only
     :param episodes: how many
@@ -60,6 +60,10 @@ class EvalOptions:
             raise ConfigurationError(f"first-seed must not be negative, not {self.first_seed!r}")
         if self.task is not None and self.task not in TASKS:
             raise ConfigurationError(unknown_name("task", self.task, TASKS))
+        if self.json and self.robustness is not None:
+            raise ConfigurationError("--robustness prints a table, not JSON: leave --json out")
+        if self.robustness is not None and self.push_newtons == 0:
+            raise ConfigurationError("--robustness needs a push: --push-newtons must be above 0")
         if self.physics is not None and self.physics not in PHYSICS:
             raise ConfigurationError(unknown_name("physics", self.physics, PHYSICS))
 
@@ -123,7 +127,8 @@ def _changed(config: EpisodeConfig, options: EvalOptions, task: str) -> EpisodeC
         if task == STEPPING.name and getattr(options, name) is not None:
             raise ConfigurationError(f"--{name.replace('_', '-')} is for --task balance")
     if options.physics is not None:
-        config = dataclasses.replace(config, physics=PHYSICS[options.physics])
+        physics = dataclasses.replace(PHYSICS[options.physics], control_rate=config.physics.control_rate)
+        config = dataclasses.replace(config, physics=physics)
     if not options.randomisation:
         config = dataclasses.replace(config, randomisation=dataclasses.replace(config.randomisation, enabled=False))
     if options.stepping is not None:
@@ -191,7 +196,10 @@ def _show_robustness(parameters: tuple[float, ...], config: EpisodeConfig, optio
 
     folder, neutral = options.robustness, BALANCE.neutral
     assert folder is not None and neutral is not None
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ConfigurationError(f"cannot write folder {folder}: {error.strerror}") from error
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
     forces = FORCES if options.push_newtons is None else (options.push_newtons,)
     pushed = push_many((neutral, parameters), config, forces, options.episodes, options.first_seed)
