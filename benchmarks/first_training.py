@@ -10,19 +10,12 @@ import dataclasses
 from pathlib import Path
 from statistics import median
 
+from trainings import learned
+
 from sarah.config import ALGORITHMS, PHYSICS, TrainingConfig
-from sarah.errors import RunFolderError
 from sarah.evaluation import Evaluation
 from sarah.pattern_generator import PAPER_PARAMETERS
-from sarah.runs import RunFolder
-from sarah.training import evaluate, train
-
-
-def learned(config: TrainingConfig, path: Path) -> tuple[float, ...]:
-    try:
-        return RunFolder.open(path).parameters()
-    except RunFolderError:
-        return train(config, RunFolder.create(path, config)).parameters
+from sarah.training import evaluate
 
 
 def row(name: str, parameters: tuple[float, ...], standard: Evaluation, reference: Evaluation) -> str:

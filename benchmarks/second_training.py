@@ -12,20 +12,13 @@ import dataclasses
 from pathlib import Path
 from statistics import median
 
+from trainings import learned
+
 from sarah.config import ALGORITHMS, TRAINED_STEPPING, EpisodeConfig, Push, TrainingConfig
-from sarah.errors import RunFolderError
 from sarah.evaluation import summarise
 from sarah.robustness import push_many, robustness_table
-from sarah.runs import RunFolder
 from sarah.tasks import BALANCE
-from sarah.training import evaluate, train
-
-
-def learned(config: TrainingConfig, path: Path) -> tuple[float, ...]:
-    try:
-        return RunFolder.open(path).parameters()
-    except RunFolderError:
-        return train(config, RunFolder.create(path, config)).parameters
+from sarah.training import evaluate
 
 
 def main() -> None:

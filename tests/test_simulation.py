@@ -267,3 +267,33 @@ def test_picture_shows_the_robot(build: BuildSimulation) -> None:
     red, _, blue = picture.reshape(-1, 3).astype(int).T
     right_leg, left_leg = (red > blue + 60).sum(), (blue > red + 60).sum()
     assert right_leg > 100 and left_leg > 100
+
+
+@pytest.mark.parametrize(
+    ("joints", "axis", "direction"),
+    [(("left_hip_abduction", "right_hip_abduction"), 0, -1), (("left_hip_flexion",), 1, 1)],
+)
+def test_positive_abduction_turns_feet_left_and_positive_flexion_forward(
+    build: BuildSimulation, joints: tuple[str, ...], axis: int, direction: int
+) -> None:
+    simulation = build()
+    place(simulation, 2.0)
+    feet = [simulation._links[f"{name.split('_')[0]}_shank"] for name in joints]
+
+    def positions() -> list[float]:
+        """Of the shanks along the axis, in the torso's frame, which turns too in the air."""
+        torso = simulation.torso_state()
+        states = [
+            pybullet.getLinkState(
+                simulation._body, foot, computeForwardKinematics=1, physicsClientId=simulation._client
+            )
+            for foot in feet
+        ]
+        offsets = [np.subtract(state[4], torso.position) for state in states]
+        return [rotate_to_body(torso.orientation, tuple(offset))[axis] for offset in offsets]
+
+    before = positions()
+    simulation.set_targets(tuple(0.2 if name in joints else 0.0 for name in ACTUATED_JOINTS))
+    for _ in range(30):
+        simulation.advance()
+    assert all(direction * (now - then) > 0.03 for now, then in zip(positions(), before, strict=True))
