@@ -82,9 +82,9 @@ class Evaluation:
     def chatters(self, without: Evaluation) -> bool:
         """Whether the hips shake the torso at frequencies that no real actuator follows.
 
-        :param without: the same episodes with V1 to V4 at zero
+        :param without: the same episodes with V1 to V4 at zero; if those fell too early to tell, there is no verdict
         """
-        return self.vibration_median > LARGEST_ACCELERATION_RATIO**2 * without.vibration_median
+        return self.vibration_median > LARGEST_ACCELERATION_RATIO**2 * without.vibration_median > 0.0
 
 
 def is_gait(event_driven_shift: float, event_driven_lift: float, sole_clearance: float) -> bool:

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from sarah.cli.eval import EvalOptions, _changed
+from sarah.config import EpisodeConfig, Physics
 from sarah.tasks import STEPPING
 
 BIN = Path(sys.executable).parent
@@ -95,6 +97,14 @@ def test_eval_of_a_second_training_compares_with_v_at_zero(balanced: Path) -> No
     text = run("sarah-eval", *arguments, cwd=balanced.parent).stdout
     for label in ("with V = 0", "vibration", "no chatter", "actuators"):
         assert label in text
+
+
+def test_eval_options_reach_the_episodes() -> None:
+    options = EvalOptions(push_newtons=60.0, stepping="0.1,0.2,0.3,0.4,0.5", physics="reference", randomisation=False)
+    trained_at_200_hz = EpisodeConfig(physics=Physics(control_rate=200))
+    config = _changed(trained_at_200_hz, options, "balance")
+    assert config.push.newtons == (60.0, 60.0) and config.stepping == (0.1, 0.2, 0.3, 0.4, 0.5)
+    assert config.physics == Physics(1000, 100, 200) and not config.randomisation.enabled
 
 
 def test_figures_of_both_trainings(balanced: Path) -> None:

@@ -74,11 +74,14 @@ def test_steps_of_the_trace_alternate_between_the_feet(paper_episode: EpisodeRes
     assert np.median(np.diff(swaps)) * CONTROL_DT == pytest.approx(1 / paper_episode.steps_per_second, rel=0.1)
 
 
-def test_same_spec_gives_identical_results_in_two_fresh_processes() -> None:
+@pytest.mark.parametrize(
+    ("task", "parameters"), [("stepping", (0.4, 1.3, 0.1, 1.0, 1.0)), ("balance", (1.0, 0.1, 0.5, -0.2))]
+)
+def test_same_spec_gives_identical_results_in_two_fresh_processes(task: str, parameters: tuple[float, ...]) -> None:
     program = (
         "import dataclasses, json, sarah; "
         "config = sarah.EpisodeConfig(time_limit=6.0); "
-        "result = sarah.simulate(sarah.EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), seed=7, config=config)); "
+        f"result = sarah.simulate(sarah.EpisodeSpec({parameters}, 7, {task!r}, config)); "
         "print(json.dumps(dataclasses.asdict(result)))"
     )
     runs = [subprocess.run([sys.executable, "-c", program], capture_output=True, check=True).stdout for _ in range(2)]
