@@ -167,6 +167,9 @@ class EpisodeConfig:
         if self.reward_form not in get_args(RewardForm):
             raise ConfigurationError(unknown_name("reward_form", self.reward_form, get_args(RewardForm)))
         STEPPING.checked(self.stepping, "stepping")
+        if self.push.duration < self.physics.control_dt:
+            tick = f"a control tick, {self.physics.control_dt:g} s"
+            raise ConfigurationError(f"push.duration must be at least {tick}, not {self.push.duration!r}")
 
 
 @dataclass(frozen=True)

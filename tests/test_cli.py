@@ -201,6 +201,10 @@ def test_help_loads_nothing_slow(command: str) -> None:
         ("sarah-train --task balance --episode.stepping 1 1 1 1 3", "parameter P5 must be between 0 and 2, not 3.0"),
         ("sarah-train --episode.push.newtons 50 20", "push.newtons must be finite, not negative and in rising order"),
         ("sarah-train --episode.push.at-seconds 0.5 2", "push.at_seconds must be from 1 s on"),
+        (
+            "sarah-train --episode.push.duration 0.004",
+            "push.duration must be at least a control tick, 0.01 s, not 0.004",
+        ),
         ("sarah-train --episode.physics.control-rate 5", "physics.control_rate must be between 50 and 1000 Hz, not 5"),
         ("sarah-eval --task balance --parameters 1,0,1", "must be 4 numbers (V1 to V4), not 3"),
         ("sarah-eval --task balance --parameters 1,0,1,-3", "V4 must be between -2 and 2, not -3.0"),
