@@ -13,7 +13,7 @@ y axis, and the sensors, not a clock, decide when each phase of a step ends:
 
 Tilt is the low-passed lateral acceleration and rate the low-passed angular rate about y, both positive towards
 the support leg. The time-outs are slow on purpose: with faster ones a learner uses them as an open-loop clock and
-ignores the sensors (with 0.3 s instead of 0.5 s a clock scores 0.8, as benchmarks/clock.py shows). Plain floats
+ignores the sensors (benchmarks/clock.py compares 0.3 s and 0.5 s). Plain floats
 only: it runs once per control tick, and on a robot.
 """
 
