@@ -35,8 +35,8 @@ class Physics:
     :param control_rate: control ticks per second; the paper's pattern generator ran at 100
     """
 
-    rate: int = 1000
-    solver_iterations: int = 20
+    rate: int = 300
+    solver_iterations: int = 30
     control_rate: int = 100
 
     def __post_init__(self) -> None:

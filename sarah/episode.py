@@ -279,8 +279,8 @@ class Episode:
     def _termination(self, torso: TorsoState, steps: int, time: float) -> str | None:
         if not torso.is_finite:
             return "diverged"
-        moved = (now - start for now, start in zip(torso.position, self._first.position, strict=True))
-        if max(map(abs, moved)) > BOX_HALF_WIDTH:
+        (x, y, z), (start_x, start_y, start_z) = torso.position, self._first.position
+        if max(abs(x - start_x), abs(y - start_y), abs(z - start_z)) > BOX_HALF_WIDTH:
             return "left_box"
         if torso.tilt > LARGEST_TILT:
             return "fell"

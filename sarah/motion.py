@@ -17,8 +17,8 @@ CHATTER_HZ = 20.0
 """Above the gait's own harmonics, below half the control rate."""
 SEGMENT_SECONDS = 0.5
 """Length of the segments that spectra are averaged over."""
-LEGS = tuple(name.endswith("leg_length") for name in ACTUATED_JOINTS)
-"""Which actuators are prismatic."""
+IS_HIP = np.array([not name.endswith("leg_length") for name in ACTUATED_JOINTS])
+"""Which actuators turn; the others are the prismatic legs."""
 
 
 class MotionRecord:
@@ -30,10 +30,8 @@ class MotionRecord:
     def __init__(self, control_rate: int) -> None:
         self._control_rate = control_rate
         self._accelerations: list[Vector] = []
-        self._energy_rate = 0.0
-        self._ticks = 0
-        self.peak_hip_rate = 0.0
-        self.peak_leg_speed = 0.0
+        self._speeds: list[Sequence[float]] = []
+        self._efforts: list[Sequence[float]] = []
 
     def tick(self, acceleration: Vector, speeds: Sequence[float], efforts: Sequence[float]) -> None:
         """Note one control tick.
@@ -42,19 +40,29 @@ class MotionRecord:
         :param speeds: of the actuators in the order of ``ACTUATED_JOINTS``, in rad/s and m/s
         :param efforts: torques and forces of the same, in Nm and N
         """
-        self._ticks += 1
         self._accelerations.append(acceleration)
-        for is_leg, speed, effort in zip(LEGS, speeds, efforts, strict=True):
-            self._energy_rate += abs(speed * effort)
-            if is_leg:
-                self.peak_leg_speed = max(self.peak_leg_speed, abs(speed))
-            else:
-                self.peak_hip_rate = max(self.peak_hip_rate, abs(speed))
+        self._speeds.append(speeds)
+        self._efforts.append(efforts)
 
     @property
     def actuator_power(self) -> float:
         """Mean over the ticks of the six actuators' mechanical power, braking counted like driving, in W."""
-        return self._energy_rate / self._ticks if self._ticks else 0.0
+        if not self._speeds:
+            return 0.0
+        return float(np.abs(np.array(self._speeds) * np.array(self._efforts)).sum(axis=1).mean())
+
+    @property
+    def peak_hip_rate(self) -> float:
+        """Fastest motion of a hip joint, in rad/s."""
+        return self._peak_speed(IS_HIP)
+
+    @property
+    def peak_leg_speed(self) -> float:
+        """Fastest change of a leg's length, in m/s."""
+        return self._peak_speed(~IS_HIP)
+
+    def _peak_speed(self, which: np.ndarray) -> float:
+        return float(np.abs(np.array(self._speeds)[:, which]).max()) if self._speeds else 0.0
 
     @property
     def vibration(self) -> float:

@@ -213,7 +213,7 @@ class PatternGenerator:
 
     def _ramp_legs(self) -> None:
         """Move both leg targets towards where the phase wants them; positive lengths retract."""
-        swing_length = {Phase.SHIFT: -PUSH_LENGTH, Phase.LIFT: LIFT_LENGTH}.get(self.phase, 0.0)
+        swing_length = -PUSH_LENGTH if self.phase is Phase.SHIFT else LIFT_LENGTH if self.phase is Phase.LIFT else 0.0
         largest = LEG_SPEED * self._dt
         for side, goal in ((self.swing, swing_length), (self.support, 0.0)):
             self._lengths[side] = ramped(self._lengths[side], goal, largest)

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
-import random
 from collections import deque
+from collections.abc import Iterator
 from typing import NamedTuple
+
+import numpy as np
 
 from sarah.filters import LowPass
 
 Vector = tuple[float, float, float]
+TICKS_AT_ONCE = 256
+"""For which noise is drawn ahead."""
 
 
 class SensorReading(NamedTuple):
@@ -51,39 +55,41 @@ class ImperfectSensors:
         seed: int,
         dt: float,
     ) -> None:
-        self._acceleration_noise = acceleration_noise
-        self._angular_rate_noise = angular_rate_noise
-        self._pad_noise = pad_noise
-        self._gauss = random.Random(seed).gauss
+        deviations = [acceleration_noise] * 3 + [angular_rate_noise] * 3 + [pad_noise] * 4
+        self._deviations = np.array(deviations)
+        self._generator = np.random.default_rng(seed)
+        self._noise: Iterator[list[float]] = iter(())
         self._pending: deque[SensorReading] = deque(maxlen=delay_ticks + 1)
-        self._imu: list[LowPass] | None = None
+        self._imu: tuple[LowPass, ...] = ()
         if math.isfinite(imu_bandwidth):
-            self._imu = [LowPass(1.0 / (2.0 * math.pi * imu_bandwidth), dt) for _ in range(6)]
+            self._imu = tuple(LowPass(1.0 / (2.0 * math.pi * imu_bandwidth), dt) for _ in range(6))
 
     def __call__(self, truth: SensorReading) -> SensorReading:
         """Take the true reading of this tick and return what the controller gets to see."""
-        if self._imu is not None:
-            ax, ay, az, wx, wy, wz = (
-                limit(value) for limit, value in zip(self._imu, (*truth.acceleration, *truth.angular_rate), strict=True)
-            )
-            truth = truth._replace(acceleration=(ax, ay, az), angular_rate=(wx, wy, wz))
-        self._pending.append(truth)
-        late = self._pending[0]
-        return late._replace(
-            acceleration=self._noisy(late.acceleration, self._acceleration_noise),
-            angular_rate=self._noisy(late.angular_rate, self._angular_rate_noise),
-            pressures=self._noisy_pads(late.pressures),
+        self._pending.append(self._band_limited(truth))
+        (ax, ay, az), (wx, wy, wz), (a, b, c, d), joints = self._pending[0]
+        nax, nay, naz, nwx, nwy, nwz, na, nb, nc, nd = self._next_noise()
+        return SensorReading(
+            (ax + nax, ay + nay, az + naz),
+            (wx + nwx, wy + nwy, wz + nwz),
+            (max(0.0, a + na), max(0.0, b + nb), max(0.0, c + nc), max(0.0, d + nd)),
+            joints,
         )
 
-    def _noisy(self, vector: Vector, deviation: float) -> Vector:
-        if deviation == 0.0:
-            return vector
-        x, y, z = vector
-        gauss = self._gauss
-        return (x + gauss(0.0, deviation), y + gauss(0.0, deviation), z + gauss(0.0, deviation))
+    def _band_limited(self, truth: SensorReading) -> SensorReading:
+        if not self._imu:
+            return truth
+        (ax, ay, az), (wx, wy, wz) = truth.acceleration, truth.angular_rate
+        x, y, z, about_x, about_y, about_z = self._imu
+        return SensorReading(
+            (x(ax), y(ay), z(az)), (about_x(wx), about_y(wy), about_z(wz)), truth.pressures, truth.joints
+        )
 
-    def _noisy_pads(self, pressures: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
-        if self._pad_noise == 0.0:
-            return pressures
-        a, b, c, d = (max(0.0, pressure + self._gauss(0.0, self._pad_noise)) for pressure in pressures)
-        return (a, b, c, d)
+    def _next_noise(self) -> list[float]:
+        """One tick's noise of the ten noisy signals; drawn for many ticks at once, which is faster."""
+        noise = next(self._noise, None)
+        if noise is None:
+            drawn = self._generator.standard_normal((TICKS_AT_ONCE, len(self._deviations)))
+            self._noise = iter((drawn * self._deviations).tolist())
+            noise = next(self._noise)
+        return noise

@@ -39,6 +39,12 @@ def _import_pybullet() -> ModuleType:
 
 pybullet = _import_pybullet()
 
+CONTACT_SECONDS = 0.004
+"""Time in which contacts push errors of position back to 1/e. PyBullet takes a share per physics step instead; with the
+same share at every rate, coarse steps would make the floor soft."""
+CONTACT_MARGIN = 0.002
+"""Distance from which on the solver considers a contact, in m; PyBullet's 0.02 costs time for feet in the air."""
+
 
 class Simulation:
     """A :class:`~sarah.simulator.Simulator` in PyBullet.
@@ -68,10 +74,14 @@ class Simulation:
             raise
 
     def _build(self, physics: Physics, conditions: Conditions) -> None:
+        corrected = 1.0 - math.exp(-1.0 / (physics.rate * CONTACT_SECONDS))
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=self._dt,
             numSubSteps=self._substeps,
             numSolverIterations=physics.solver_iterations,
+            contactERP=corrected,
+            contactBreakingThreshold=CONTACT_MARGIN,
+            numNonContactInnerIterations=2,  # motors settle before contacts do: without, standing soles creep
             enableConeFriction=0,  # as good as friction cones here, and cheaper
             enableFileCaching=0,
             physicsClientId=self._client,
@@ -87,9 +97,14 @@ class Simulation:
         }
         self._keep_only_pad_contacts()
         self._apply_conditions(conditions)
-        self._gains = [conditions.actuator_bandwidth * self._dt / self._substeps] * len(self._joints)
+        # A servo's share of the way in one physics step, so that it is the same first-order lag at every rate.
+        gain = 1.0 - math.exp(-conditions.actuator_bandwidth / physics.rate)
+        self._gains = [gain] * len(self._joints)
         self._efforts = [self.robot.efforts[name] for name in ACTUATED_JOINTS]
-        self._velocity_before = self.torso_state().velocity
+        self._torso = self._torso_state()
+        self._velocity_before = self._torso.velocity
+        self._joint_states = self._actuator_states()
+        self._targets: tuple[float, ...] = ()
         self.set_targets((0.0,) * len(self._joints))
 
     def _build_floor(self) -> int:
@@ -159,6 +174,9 @@ class Simulation:
 
         :param targets: positions in the order of ``ACTUATED_JOINTS``, in rad and m
         """
+        if targets == self._targets:  # the servos keep them
+            return
+        self._targets = targets
         pybullet.setJointMotorControlArray(
             self._body,
             self._joints,
@@ -174,23 +192,29 @@ class Simulation:
 
         :param force: in the world's frame, in N
         """
-        position = self.torso_state().position
-        pybullet.applyExternalForce(self._body, -1, force, position, pybullet.WORLD_FRAME, physicsClientId=self._client)
+        pybullet.applyExternalForce(
+            self._body, -1, force, self._torso.position, pybullet.WORLD_FRAME, physicsClientId=self._client
+        )
 
     def advance(self) -> None:
         """Simulate one control tick."""
-        self._velocity_before = pybullet.getBaseVelocity(self._body, physicsClientId=self._client)[0]
+        self._velocity_before = self._torso.velocity
         pybullet.stepSimulation(physicsClientId=self._client)
         self.time += self._dt
+        self._torso = self._torso_state()
+        self._joint_states = self._actuator_states()
 
     def torso_state(self) -> TorsoState:
         """Where the torso really is; no sensor of the robot knows it."""
+        return self._torso
+
+    def _torso_state(self) -> TorsoState:
         position, orientation = pybullet.getBasePositionAndOrientation(self._body, physicsClientId=self._client)
         return TorsoState(position, orientation, *pybullet.getBaseVelocity(self._body, physicsClientId=self._client))
 
     def read(self) -> SensorReading:
         """The true sensor signals of the last control tick, without noise or delay."""
-        torso = self.torso_state()
+        torso = self._torso
         now, before = torso.velocity, self._velocity_before
         specific_force = (
             (now[0] - before[0]) / self._dt,
@@ -201,7 +225,7 @@ class Simulation:
             rotate_to_body(torso.orientation, specific_force),
             rotate_to_body(torso.orientation, torso.angular_velocity),
             self._pressures(),
-            self.joint_positions(ACTUATED_JOINTS),  # type: ignore[arg-type]  # six of them
+            tuple(state[0] for state in self._joint_states),  # type: ignore[arg-type]  # six of them
         )
 
     def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
@@ -215,9 +239,14 @@ class Simulation:
 
     def actuator_motion(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Speeds (rad/s, m/s) and efforts (Nm, N) of the actuators, in the order of ``ACTUATED_JOINTS``."""
-        states = pybullet.getJointStates(self._body, self._joints, self._client)
+        states = self._joint_states
         # As with contacts, PyBullet reports the impulse of the last substep over the whole tick.
         return tuple(state[1] for state in states), tuple(state[3] * self._substeps for state in states)
+
+    def _actuator_states(self) -> tuple[tuple[float, ...], ...]:
+        """PyBullet's position, speed, reaction and effort of each actuator."""
+        states: tuple[tuple[float, ...], ...] = pybullet.getJointStates(self._body, self._joints, self._client)
+        return states
 
     def _pressures(self) -> tuple[float, float, float, float]:
         loads = [0.0, 0.0, 0.0, 0.0]
@@ -256,7 +285,7 @@ class Simulation:
         :param camera: where to look from
         :return: uint8 array of shape (height, width, 3)
         """
-        x, y, _ = self.torso_state().position
+        x, y, _ = self._torso.position
         view = pybullet.computeViewMatrixFromYawPitchRoll(
             (x, y, camera.height), camera.distance, camera.yaw, camera.pitch, roll=0.0, upAxisIndex=2
         )

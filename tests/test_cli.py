@@ -101,7 +101,7 @@ def test_eval_of_a_second_training_compares_with_v_at_zero(balanced: Path) -> No
 
 def test_eval_options_reach_the_episodes() -> None:
     options = EvalOptions(push_newtons=60.0, stepping="0.1,0.2,0.3,0.4,0.5", physics="reference", randomisation=False)
-    trained_at_200_hz = EpisodeConfig(physics=Physics(control_rate=200))
+    trained_at_200_hz = EpisodeConfig(physics=Physics(rate=400, control_rate=200))
     config = _changed(trained_at_200_hz, options, "balance")
     assert config.push.newtons == (60.0, 60.0) and config.stepping == (0.1, 0.2, 0.3, 0.4, 0.5)
     assert config.physics == Physics(1000, 100, 200) and not config.randomisation.enabled

@@ -134,7 +134,7 @@ def test_robot_that_does_not_step_is_stopped_after_5_seconds() -> None:
     "parameters",
     [
         (0.1, 2.0, 2.0, 0.0, 0.0),  # a P3 that no rate reaches leaves every SHIFT to its time-out
-        (1.0, 1.0, 1.0, 0.0, 0.0),  # and a high P1 every LIFT
+        (1.3, 1.0, 1.0, 0.0, 0.0),  # and a high P1 every LIFT
         (1.5, 0.5, 0.1, 0.0, 0.0),
     ],
 )
@@ -329,7 +329,7 @@ def test_balance_without_v_and_without_a_push_steps_as_in_the_first_training() -
 
 
 def test_episode_runs_at_another_control_rate() -> None:
-    config = EpisodeConfig(physics=Physics(control_rate=200), time_limit=6.0)
+    config = EpisodeConfig(physics=Physics(rate=400, control_rate=200), time_limit=6.0)
     result = simulate(EpisodeSpec(PAPER_PARAMETERS, 0, config=config), record_trace=True)
     assert result.survived and result.steps > 5 and result.trace is not None
     assert np.allclose(np.diff(result.trace["time"]), 0.005)
