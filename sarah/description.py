@@ -72,8 +72,13 @@ def default_dimensions() -> dict[str, float]:
 
     :return: the xacro's arguments, in the order of the file
     """
+    return dict(_default_dimensions())
+
+
+@lru_cache(maxsize=1)
+def _default_dimensions() -> tuple[tuple[str, float], ...]:
     root = ElementTree.fromstring(_xacro_text())
-    return {arg.attrib["name"]: float(arg.attrib["default"]) for arg in root.iter(f"{_XACRO_NAMESPACE}arg")}
+    return tuple((arg.attrib["name"], float(arg.attrib["default"])) for arg in root.iter(f"{_XACRO_NAMESPACE}arg"))
 
 
 def describe_robot(dimensions: Mapping[str, float] | None = None) -> RobotDescription:

@@ -1,43 +1,23 @@
-"""One PyBullet world with one robot: build, act, sense, push. The only file that imports pybullet.
+"""One PyBullet world with one robot: build, act, sense, push.
 
 A world is built for one episode and closed after it: poses reset in place, or a restored state, do not repeat
-bit for bit, a fresh world does.
+bit for bit, a world built anew does.
 """
 
 from __future__ import annotations
 
 import math
-import os
-import tempfile
-from importlib import import_module
 from itertools import product
-from types import ModuleType
 
 import numpy as np
 
+from sarah.bullet import give_back_client, load_robot, pybullet, take_client
 from sarah.config import PHYSICS, Physics
 from sarah.description import ACTUATED_JOINTS, PASSIVE_JOINTS, PLATES, SIDES, RobotDescription
 from sarah.randomisation import NOMINAL, Conditions
+from sarah.renderer import Renderer
 from sarah.sensors import SensorReading, Vector
 from sarah.simulator import GRAVITY, STANDARD_CAMERA, Camera, TorsoState, rotate_to_body
-
-
-def _import_pybullet() -> ModuleType:
-    """Import PyBullet without the build time that it writes to the process's standard error."""
-    try:
-        kept = os.dup(2)
-    except OSError:  # closed: nothing will be written
-        return import_module("pybullet")
-    with open(os.devnull, "wb") as nowhere:
-        os.dup2(nowhere.fileno(), 2)
-        try:
-            return import_module("pybullet")
-        finally:
-            os.dup2(kept, 2)
-            os.close(kept)
-
-
-pybullet = _import_pybullet()
 
 CONTACT_SECONDS = 0.004
 """Time in which contacts push errors of position back to 1/e. PyBullet takes a share per physics step instead; with the
@@ -64,9 +44,8 @@ class Simulation:
         self.time = 0.0
         self._dt = physics.control_dt
         self._substeps = physics.rate // physics.control_rate
-        self._client = pybullet.connect(pybullet.DIRECT)
-        if self._client < 0:
-            raise RuntimeError("PyBullet has no free client: close simulations that are done")
+        self._client = take_client()
+        self._renderer: Renderer | None = None
         try:
             self._build(physics, conditions)
         except BaseException:
@@ -88,8 +67,16 @@ class Simulation:
         )
         pybullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self._client)
         self._floor = self._build_floor()
-        self._body = self._load_robot()
-        self._links = self._link_indices()
+        self._body, self._links = load_robot(
+            self._client,
+            self.robot.urdf,
+            self.robot.standing_height,
+            flags=pybullet.URDF_USE_INERTIA_FROM_FILE
+            | pybullet.URDF_IGNORE_VISUAL_SHAPES
+            # PyBullet gives parent-child contact (pad and plate) only with both of these.
+            | pybullet.URDF_USE_SELF_COLLISION
+            | pybullet.URDF_USE_SELF_COLLISION_INCLUDE_PARENT,
+        )
         self._joints = [self._links[name] for name in ACTUATED_JOINTS]
         self._pads = {
             (self._links[f"{side}_shank"], self._links[f"{side}_{plate}"]): index
@@ -112,29 +99,6 @@ class Simulation:
         floor = pybullet.createMultiBody(0.0, shape, physicsClientId=self._client)
         pybullet.changeDynamics(floor, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=self._client)
         return int(floor)
-
-    def _load_robot(self) -> int:
-        with tempfile.NamedTemporaryFile("w", prefix="sarah-", suffix=".urdf", encoding="utf-8") as file:
-            file.write(self.robot.urdf)
-            file.flush()
-            body = pybullet.loadURDF(
-                file.name,
-                basePosition=(0.0, 0.0, self.robot.standing_height),
-                flags=pybullet.URDF_USE_INERTIA_FROM_FILE
-                # PyBullet gives parent-child contact (pad and plate) only with both of these.
-                | pybullet.URDF_USE_SELF_COLLISION
-                | pybullet.URDF_USE_SELF_COLLISION_INCLUDE_PARENT,
-                physicsClientId=self._client,
-            )
-        return int(body)
-
-    def _link_indices(self) -> dict[str, int]:
-        """PyBullet's index of each link and of the joint that carries it, by either name."""
-        indices = {"torso": -1}
-        for joint in range(pybullet.getNumJoints(self._body, physicsClientId=self._client)):
-            info = pybullet.getJointInfo(self._body, joint, physicsClientId=self._client)
-            indices[info[1].decode()] = indices[info[12].decode()] = joint
-        return indices
 
     def _keep_only_pad_contacts(self) -> None:
         links = sorted(set(self._links.values()))
@@ -285,18 +249,16 @@ class Simulation:
         :param camera: where to look from
         :return: uint8 array of shape (height, width, 3)
         """
-        x, y, _ = self._torso.position
-        view = pybullet.computeViewMatrixFromYawPitchRoll(
-            (x, y, camera.height), camera.distance, camera.yaw, camera.pitch, roll=0.0, upAxisIndex=2
-        )
-        projection = pybullet.computeProjectionMatrixFOV(fov=45.0, aspect=width / height, nearVal=0.05, farVal=10.0)
-        image = pybullet.getCameraImage(
-            width, height, view, projection, renderer=pybullet.ER_TINY_RENDERER, physicsClientId=self._client
-        )
-        return np.reshape(np.asarray(image[2], dtype=np.uint8), (height, width, 4))[:, :, :3]
+        if self._renderer is None:
+            self._renderer = Renderer(self.robot)
+        names = ACTUATED_JOINTS + PASSIVE_JOINTS
+        joints = dict(zip(names, self.joint_positions(names), strict=True))
+        return self._renderer.draw(self._torso.position, self._torso.orientation, joints, width, height, camera)
 
     def close(self) -> None:
-        """Give PyBullet's client back; the simulation cannot be used any more."""
+        """Give PyBullet's clients back; the simulation cannot be used any more."""
         if self._client >= 0:
-            pybullet.disconnect(self._client)
+            give_back_client(self._client)
             self._client = -1
+        if self._renderer is not None:
+            self._renderer.close()

@@ -74,6 +74,20 @@ def test_steps_of_the_trace_alternate_between_the_feet(paper_episode: EpisodeRes
     assert np.median(np.diff(swaps)) * CONTROL_DT == pytest.approx(1 / paper_episode.steps_per_second, rel=0.1)
 
 
+def test_what_a_process_simulated_before_or_meanwhile_changes_nothing() -> None:
+    spec = EpisodeSpec(PAPER_PARAMETERS, seed=4, config=SHORT)
+    expected = simulate(spec)
+    longer = dataclasses.replace(SHORT, physics=Physics(1000, 10), dimensions={"thigh_length": 0.4})
+    simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.0), seed=5, task="balance", config=longer))
+    episode = Episode(SHORT, seed=4)
+    try:
+        episode.stand()
+        assert simulate(spec) == expected
+        assert episode.run(PAPER_PARAMETERS) == expected
+    finally:
+        episode.close()
+
+
 @pytest.mark.parametrize(
     ("task", "parameters"), [("stepping", (0.4, 1.3, 0.1, 1.0, 1.0)), ("balance", (1.0, 0.1, 0.5, -0.2))]
 )
