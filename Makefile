@@ -7,6 +7,7 @@ BALANCE_SIMULATIONS ?= 200
 BALANCE_SECONDS ?= 10
 BALANCE_NEWTONS ?= 75 125
 PUSHES ?= 8
+WORKERS ?= $(shell nproc)
 SEED ?= 0
 RUN ?= runs/$(shell date +%Y%m%d-%H%M%S)
 
@@ -26,11 +27,13 @@ $(VENV)/installed: setup.cfg pyproject.toml constraints.txt
 
 train: RUN := $(RUN)
 train: install  ## both trainings with NAF, figures and robustness table: a robot that steps in place and comes back from pushes
-	$(BIN)/sarah-train --task stepping --simulations $(SIMULATIONS) --seed $(SEED) --run-dir $(RUN)/stepping
+	$(BIN)/sarah-train --task stepping --simulations $(SIMULATIONS) --seed $(SEED) \
+		--workers $(WORKERS) --run-dir $(RUN)/stepping
 	$(BIN)/sarah-train --task balance --from $(RUN)/stepping --simulations $(BALANCE_SIMULATIONS) --seed $(SEED) \
-		--episode.time-limit $(BALANCE_SECONDS) --episode.push.newtons $(BALANCE_NEWTONS) --run-dir $(RUN)/balance
+		--episode.time-limit $(BALANCE_SECONDS) --episode.push.newtons $(BALANCE_NEWTONS) \
+		--workers $(WORKERS) --run-dir $(RUN)/balance
 	$(BIN)/sarah-figures $(RUN)/stepping $(RUN)/balance --out $(RUN)/figures
-	$(BIN)/sarah-eval $(RUN)/balance --robustness $(RUN)/figures --episodes $(PUSHES)
+	$(BIN)/sarah-eval $(RUN)/balance --robustness $(RUN)/figures --episodes $(PUSHES) --workers $(WORKERS)
 
 test: install  ## the tests
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m 'not slow'

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import os
 from pathlib import Path
 from statistics import median
 
@@ -16,6 +17,7 @@ from sarah.config import ALGORITHMS, PHYSICS, TrainingConfig
 from sarah.evaluation import Evaluation
 from sarah.pattern_generator import PAPER_PARAMETERS
 from sarah.training import evaluate
+from sarah.workers import Workers
 
 
 def row(name: str, parameters: tuple[float, ...], standard: Evaluation, reference: Evaluation) -> str:
@@ -40,12 +42,17 @@ def main() -> None:
     parser.add_argument("--runs", type=Path, default=Path("runs/benchmark"))
     options = parser.parse_args()
 
+    with Workers(os.cpu_count() or 1) as workers:
+        compare(options, workers)
+
+
+def compare(options: argparse.Namespace, workers: Workers) -> None:
     def evaluations(parameters: tuple[float, ...], config: TrainingConfig) -> tuple[Evaluation, Evaluation]:
         episode = dataclasses.replace(config.episode, physics=PHYSICS["reference"])
         reference = dataclasses.replace(config, episode=episode)
         return (
-            evaluate(parameters, config, range(options.episodes)),
-            evaluate(parameters, reference, range(options.reference_episodes)),
+            evaluate(parameters, config, range(options.episodes), workers),
+            evaluate(parameters, reference, range(options.reference_episodes), workers),
         )
 
     print("| run | P1 | P2 | P3 | P4 | P5 | score | steps/s | survived | by sensors | clearance | reference | kept |")
@@ -55,7 +62,7 @@ def main() -> None:
         scores = []
         for seed in range(options.first_seed, options.first_seed + options.seeds):
             config = TrainingConfig(algo=algo, simulations=options.simulations, seed=seed)
-            parameters = learned(config, options.runs / f"{algo}-{options.simulations}-s{seed}")
+            parameters = learned(config, options.runs / f"{algo}-{options.simulations}-s{seed}", workers)
             standard, reference = evaluations(parameters, config)
             scores.append(standard.score_median)
             print(row(f"{algo} seed {seed}", parameters, standard, reference), flush=True)

@@ -94,7 +94,10 @@ def simulate(job: Job) -> EpisodeResult:
     try:
         episode.stand()
         episode.start((1.0, 0.0, 0.0, 0.0))
-        episode.generator.hips = Candidate(job.signal, job.legs, job.v3, job.config.physics.control_dt)
+        candidate = Candidate(job.signal, job.legs, job.v3, job.config.physics.control_dt)
+        for reading in episode.standing:
+            candidate.sense(reading)
+        episode.generator.hips = candidate
         while episode.termination is None:
             episode.tick()
         return episode.result()

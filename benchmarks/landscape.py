@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import os
 from itertools import islice
 
 from sarah.config import PHYSICS, EpisodeConfig
 from sarah.episode import EpisodeSpec
-from sarah.evaluation import simulate_all, summarise
+from sarah.evaluation import summarise
 from sarah.tasks import STEPPING
+from sarah.workers import Workers
 
 CENTRE = (0.4, 1.0, 0.1, 1.0, 1.0)
 VALUES = (0.0, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0)
@@ -29,7 +31,8 @@ def main() -> None:
         for value, index in cells
         for seed in range(options.episodes)
     ]
-    results = iter(simulate_all(specs))
+    with Workers(os.cpu_count() or 1) as workers:
+        results = iter(list(workers.simulate_all(specs)))
     for value in VALUES:
         row = []
         for _ in STEPPING.parameter_names:

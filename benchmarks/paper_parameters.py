@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import os
+from itertools import product
 
 from sarah.config import PHYSICS, EpisodeConfig, Randomisation
 from sarah.episode import EpisodeSpec
-from sarah.evaluation import simulate_all, summarise
+from sarah.evaluation import summarise
 from sarah.pattern_generator import PAPER_PARAMETERS
+from sarah.workers import Workers
 
 
 def main() -> None:
@@ -16,11 +19,11 @@ def main() -> None:
     episodes = parser.parse_args().episodes
     print("| physics | randomisation | survived | median score | steps per second | mean, max drift | by sensors |")
     print("|---|---|---|---|---|---|---|")
-    for name, physics in PHYSICS.items():
-        for enabled in (True, False):
+    with Workers(os.cpu_count() or 1) as workers:
+        for (name, physics), enabled in product(PHYSICS.items(), (True, False)):
             config = EpisodeConfig(physics=physics, randomisation=Randomisation(enabled=enabled))
             specs = [EpisodeSpec(PAPER_PARAMETERS, seed, config=config) for seed in range(episodes)]
-            results = simulate_all(specs)
+            results = list(workers.simulate_all(specs))
             e = summarise(results)
             frequencies = [result.steps_per_second for result in results]
             print(

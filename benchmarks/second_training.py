@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import os
 from pathlib import Path
 from statistics import median
 
@@ -19,6 +20,7 @@ from sarah.evaluation import summarise
 from sarah.robustness import push_many, robustness_table
 from sarah.tasks import BALANCE
 from sarah.training import evaluate
+from sarah.workers import Workers
 
 
 def main() -> None:
@@ -33,15 +35,20 @@ def main() -> None:
     parser.add_argument("--unpushed", type=int, default=4)
     parser.add_argument("--runs", type=Path, default=Path("runs/benchmark"))
     options = parser.parse_args()
+    with Workers(os.cpu_count() or 1) as workers:
+        compare(options, workers)
 
+
+def compare(options: argparse.Namespace, workers: Workers) -> None:
     hard = Push(newtons=tuple(options.newtons))
     episode = EpisodeConfig(stepping=tuple(options.stepping), push=hard, time_limit=10.0)
     free = dataclasses.replace(episode, push=Push(newtons=(0.0, 0.0)), time_limit=30.0)
 
     def row(name: str, parameters: tuple[float, ...]) -> float:
-        (pushed,) = push_many([parameters], episode, forces=(100.0,), episodes=options.pushes)
+        (pushed,) = push_many([parameters], episode, workers, forces=(100.0,), episodes=options.pushes)
         everywhere, lateral, sagittal = robustness_table(pushed)
-        stepping = evaluate(parameters, TrainingConfig(task=BALANCE.name, episode=free), range(options.unpushed))
+        unpushed = TrainingConfig(task=BALANCE.name, episode=free)
+        stepping = evaluate(parameters, unpushed, range(options.unpushed), workers)
         together = summarise(push.result for push in pushed)
         print(
             f"| {name} | {' | '.join(f'{value:.2f}' for value in parameters)} | {everywhere.survival:.2f} "
@@ -62,7 +69,7 @@ def main() -> None:
         survivals = []
         for seed in range(options.first_seed, options.first_seed + options.seeds):
             config = TrainingConfig("balance", algo, options.simulations, seed, episode=episode)
-            parameters = learned(config, options.runs / f"balance-{algo}-{options.simulations}-s{seed}")
+            parameters = learned(config, options.runs / f"balance-{algo}-{options.simulations}-s{seed}", workers)
             survivals.append(row(f"{algo} seed {seed}", parameters))
         close = sum(survival >= max(survivals) - 0.05 for survival in survivals)
         print(

@@ -7,16 +7,18 @@ from pathlib import Path
 from sarah.config import TrainingConfig
 from sarah.runs import RunFolder
 from sarah.training import train
+from sarah.workers import Workers
 
 
-def learned(config: TrainingConfig, path: Path) -> tuple[float, ...]:
+def learned(config: TrainingConfig, path: Path, workers: Workers) -> tuple[float, ...]:
     """What a training learned; it is run now unless its folder holds it.
 
     :param config: of the training
     :param path: of its run folder
+    :param workers: that simulate
     """
     if not path.exists():
-        return train(config, RunFolder.create(path, config)).parameters
+        return train(config, RunFolder.create(path, config), workers).parameters
     run = RunFolder.open(path)
     if run.config() != config:
         raise SystemExit(f"{path} is a training with other settings: name another folder with --runs")

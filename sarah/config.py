@@ -181,7 +181,8 @@ class TrainingConfig:
     :param algo: what learns: ``naf``, or stable-baselines3's ``td3``, ``sac`` or ``ddpg``
     :param simulations: budget; every simulation is one action of the agent and up to 30 s of the robot
     :param seed: of the training and of all its episodes
-    :param n_envs: episodes simulated side by side, each in a process of its own; another number is another training
+    :param slots: episodes in flight: each action is chosen knowing all outcomes but those of the slots - 1 before
+        it. Another number is another training; the number of workers is not
     :param episode: settings of the episodes
     """
 
@@ -189,7 +190,7 @@ class TrainingConfig:
     algo: str = "naf"
     simulations: int = 100
     seed: int = 0
-    n_envs: int = 2
+    slots: int = 4
     episode: EpisodeConfig = EpisodeConfig()
 
     def __post_init__(self) -> None:
@@ -200,8 +201,8 @@ class TrainingConfig:
             raise ConfigurationError(unknown_name("algo", self.algo, ALGORITHMS))
         if self.simulations < 1:
             raise ConfigurationError(f"simulations must be at least 1, not {self.simulations!r}")
-        if self.n_envs < 1:
-            raise ConfigurationError(f"n_envs must be at least 1, not {self.n_envs!r}")
+        if self.slots < 1:
+            raise ConfigurationError(f"slots must be at least 1, not {self.slots!r}")
         if not 0 <= self.seed < 2**31:
             raise ConfigurationError(f"seed must be between 0 and {2**31 - 1}, not {self.seed!r}")
 

@@ -61,7 +61,7 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         """
         super().reset(seed=seed)
         self.close()
-        self._seed = int(self.np_random.integers(FIRST_TRAINING_SEED, 2**32))
+        self._seed = draw_seed(self.np_random)
         self._episode = Episode(self.config, self._seed, self.task)
         return observation_from(self._episode.stand()), {"seed": self._seed}
 
@@ -89,6 +89,14 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         if self._episode is not None:
             self._episode.close()
             self._episode = None
+
+
+def draw_seed(generator: np.random.Generator) -> int:
+    """Draw the seed of a training's next episode.
+
+    :param generator: of the environment
+    """
+    return int(generator.integers(FIRST_TRAINING_SEED, 2**32))
 
 
 def observation_from(reading: SensorReading) -> np.ndarray:

@@ -127,6 +127,8 @@ class Episode:
 
     generator: PatternGenerator
     """Of the joint targets, from :meth:`start` on."""
+    standing: list[SensorReading]
+    """What was sensed during the first second."""
 
     def __init__(
         self,
@@ -155,7 +157,7 @@ class Episode:
             conditions.sensor_seed,
             self._dt,
         )
-        self._standing: list[SensorReading] = []
+        self.standing = []
         self._first = self._last = self.simulation.torso_state()
         self._gait = GaitRecord(config.physics.control_rate)
         self._motion = MotionRecord(config.physics.control_rate)
@@ -169,7 +171,7 @@ class Episode:
         :return: the last reading of that second: the observation that the agent acts on
         """
         for _ in range(round(STAND_SECONDS / self._dt)):
-            self._standing.append(self._sense())
+            self.standing.append(self._sense())
             self.simulation.advance()
         return self.last_reading
 
@@ -197,7 +199,7 @@ class Episode:
             self._dt,
             HipLaw(BalanceParameters(*balance), self._dt) if balance else None,
         )
-        for reading in self._standing:
+        for reading in self.standing:
             self.generator.sense(reading)
 
     def tick(self) -> None:

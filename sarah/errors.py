@@ -22,6 +22,10 @@ class RunFolderError(SarahError, OSError):
     """A run folder is missing, not empty, or does not hold what it should."""
 
 
+class WorkersError(SarahError, RuntimeError):
+    """Workers that were asked for cannot be reached, or die again and again."""
+
+
 def unknown_name(kind: str, name: str, allowed: Iterable[str]) -> str:
     """Say that a name is unknown, which one was probably meant, and which there are.
 

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterable, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Iterable
 from dataclasses import dataclass
-from multiprocessing import get_context
 from statistics import mean, median, pstdev
 
-from sarah.episode import EpisodeResult, EpisodeSpec, simulate
+from sarah.episode import EpisodeResult
 
 SMALLEST_EVENT_SHARE = 0.9
 """Share of SHIFT and of LIFT phases that sensors end, below which a gait is a clock."""
@@ -18,20 +15,6 @@ SMALLEST_CLEARANCE = 0.010
 
 LARGEST_ACCELERATION_RATIO = 1.5
 """How much more the torso may accelerate above 20 Hz than with V1 to V4 at zero, before that counts as chatter."""
-
-
-def simulate_all(specs: Sequence[EpisodeSpec], processes: int | None = None) -> list[EpisodeResult]:
-    """Simulate many episodes on this machine's cores.
-
-    :param specs: of the episodes
-    :param processes: to use; as many as there are cores by default
-    :return: their results, in the same order
-    """
-    processes = min(processes or os.cpu_count() or 1, len(specs))
-    if processes <= 1:
-        return [simulate(spec) for spec in specs]
-    with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
-        return list(pool.map(simulate, specs))
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ from statistics import median
 
 from sarah.config import EpisodeConfig
 from sarah.episode import EpisodeResult, EpisodeSpec
-from sarah.evaluation import simulate_all
 from sarah.randomisation import draw_push
 from sarah.tasks import BALANCE
+from sarah.workers import Workers
 
 FORCES = (25.0, 50.0, 75.0, 100.0, 125.0, 150.0)
 """Of the pushes, in N."""
@@ -75,6 +75,7 @@ class Robustness:
 def push_many(
     controllers: Sequence[tuple[float, ...]],
     config: EpisodeConfig,
+    workers: Workers,
     forces: Sequence[float] = FORCES,
     episodes: int = 100,
     first_seed: int = 0,
@@ -83,6 +84,7 @@ def push_many(
 
     :param controllers: V1 to V4 of each
     :param config: settings of the episodes; time limit, and force and time of the push, are replaced
+    :param workers: that simulate them
     :param forces: in N
     :param episodes: of each force
     :param first_seed: of the episodes; each force meets the same seeds, and so the same directions and times
@@ -94,7 +96,7 @@ def push_many(
         limit = PUSHED_BETWEEN[1] + push.duration + SECONDS_AFTER
         settings[newtons] = dataclasses.replace(config, push=push, time_limit=limit)
     pushes = [(newtons, first_seed + index) for newtons in forces for index in range(episodes)]
-    results = simulate_all(
+    results = workers.simulate_all(
         [EpisodeSpec(v, seed, BALANCE.name, settings[newtons]) for v in controllers for newtons, seed in pushes]
     )
     pushed = []

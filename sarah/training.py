@@ -12,22 +12,25 @@ import numpy as np
 import torch
 from stable_baselines3 import DDPG, SAC, TD3
 from stable_baselines3.common.callbacks import BaseCallback
-from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.logger import configure
 from stable_baselines3.common.noise import NormalActionNoise
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
-from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv, VecEnv
+from stable_baselines3.common.vec_env import VecEnv
 
 from sarah.agents.naf import NAF, PRESETS
 from sarah.config import Randomisation, TrainingConfig
-from sarah.envs import FIRST_TRAINING_SEED, SarahEnv, observation_from, parameters_from
+from sarah.envs import FIRST_TRAINING_SEED, observation_from, parameters_from
 from sarah.episode import Episode, EpisodeSpec
-from sarah.evaluation import Evaluation, simulate_all, summarise
+from sarah.evaluation import Evaluation, summarise
 from sarah.recommendation import SIMULATIONS_PER_CANDIDATE, Parameters, candidate_count, candidates, merit
 from sarah.runs import RunFolder
 from sarah.tasks import BALANCE, TASKS, Task
+from sarah.vec_env import EpisodeVecEnv, LateRankReplayBuffer, LateReplayBuffer
+from sarah.workers import Workers
 
 UPDATES_PER_SIMULATION = 5
+WARM_UP = 40
+"""Simulations before the agent learns; more if more are in flight."""
 SUMMARY_EPISODES = 10
 """Episodes on unseen seeds that the closing summary's score is the median of."""
 LOGGED_FIELDS = (
@@ -51,11 +54,19 @@ def make_algorithm(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
     """
     # stable-baselines3 gives environment i the seed + i; spread out, neighbouring trainings share no episode.
     seed = int(np.random.SeedSequence(config.seed).generate_state(1)[0]) // 2
-    common: dict[str, Any] = dict(seed=seed, gradient_steps=UPDATES_PER_SIMULATION * env.num_envs)
+    common: dict[str, Any] = dict(
+        seed=seed, gradient_steps=UPDATES_PER_SIMULATION, learning_starts=max(WARM_UP, config.slots)
+    )
     if config.algo == "naf":
-        return NAF("MlpPolicy", env, **{**PRESETS["one-step"], **common})
+        return NAF("MlpPolicy", env, **{**PRESETS["one-step"], "replay_buffer_class": LateRankReplayBuffer, **common})
     # Their defaults are for long episodes of small rewards; here the reward is the return.
-    settings = dict(learning_starts=40, batch_size=64, gamma=0.0, policy_kwargs=dict(net_arch=[64, 64]), **common)
+    settings = dict(
+        batch_size=64,
+        gamma=0.0,
+        policy_kwargs=dict(net_arch=[64, 64]),
+        replay_buffer_class=LateReplayBuffer,
+        **common,
+    )
     if config.algo == "sac":
         return SAC("MlpPolicy", env, **settings)
     dimensions = len(TASKS[config.task].parameter_names)
@@ -78,7 +89,8 @@ class EpisodeRecorder(BaseCallback):
 
     def _on_step(self) -> bool:
         for info in self.locals["infos"]:
-            self.record(info)
+            if "pending" not in info:
+                self.record(info)
         return True
 
     def record(self, info: dict[str, Any]) -> None:
@@ -111,11 +123,14 @@ class Learned:
     without: Evaluation | None
 
 
-def train(config: TrainingConfig, run: RunFolder, progress_bar: bool = False) -> Learned:
+def train(
+    config: TrainingConfig, run: RunFolder, workers: Workers | None = None, progress_bar: bool = False
+) -> Learned:
     """Train, and write the run folder.
 
     :param config: of the training
     :param run: a new run folder
+    :param workers: that simulate; by default this process does. What is learned does not depend on them
     :param progress_bar: whether to show one
     :return: what was learned
     """
@@ -123,18 +138,17 @@ def train(config: TrainingConfig, run: RunFolder, progress_bar: bool = False) ->
     torch.set_num_threads(1)
     count = candidate_count(config.simulations)
     compared = count * SIMULATIONS_PER_CANDIDATE if count > 1 else 0
-    # Environments side by side take simulations n_envs at a time; what that leaves over goes to the comparison.
-    learned_from = (config.simulations - compared) // config.n_envs * config.n_envs
+    workers = workers or Workers()
     recorder = EpisodeRecorder(run, TASKS[config.task])
-    model = _learn(config, learned_from, run, recorder, progress_bar)
+    model = _learn(config, config.simulations - compared, run, recorder, workers, progress_bar)
     model.save(run.model_path)
     rivals = candidates(chosen_parameters(model, config), recorder.tried, count)
-    parameters = _compare(rivals, config.simulations - learned_from, config, recorder)
+    parameters = _compare(rivals, compared, config, recorder, workers)
     model.logger.close()
     task = TASKS[config.task]
     seeds = range(SUMMARY_EPISODES)
-    evaluation = evaluate(parameters, config, seeds)
-    without = None if task.neutral is None else evaluate(task.neutral, config, seeds)
+    evaluation = evaluate(parameters, config, seeds, workers)
+    without = None if task.neutral is None else evaluate(task.neutral, config, seeds, workers)
     run.write_parameters(
         {
             "task": config.task,
@@ -152,21 +166,23 @@ def train(config: TrainingConfig, run: RunFolder, progress_bar: bool = False) ->
 
 
 def _learn(
-    config: TrainingConfig, simulations: int, run: RunFolder, recorder: EpisodeRecorder, progress_bar: bool
+    config: TrainingConfig,
+    simulations: int,
+    run: RunFolder,
+    recorder: EpisodeRecorder,
+    workers: Workers,
+    progress_bar: bool,
 ) -> OffPolicyAlgorithm:
-    env = make_vec_env(
-        SarahEnv,
-        config.n_envs,
-        env_kwargs={"task": config.task, "config": config.episode},
-        vec_env_cls=DummyVecEnv if config.n_envs == 1 else SubprocVecEnv,
+    env = EpisodeVecEnv(config.task, config.episode, simulations, config.slots, workers)
+    model = make_algorithm(config, env)
+    model.set_logger(configure(str(run.path), ["csv", "tensorboard"]))
+    # The recorder logs every simulation; stable-baselines3's own averages are left out.
+    model.learn(
+        simulations + config.slots - 1,
+        callback=recorder,
+        log_interval=None,  # type: ignore[arg-type]
+        progress_bar=progress_bar,
     )
-    try:
-        model = make_algorithm(config, env)
-        model.set_logger(configure(str(run.path), ["csv", "tensorboard"]))
-        # The recorder logs every simulation; stable-baselines3's own averages are left out.
-        model.learn(simulations, callback=recorder, log_interval=None, progress_bar=progress_bar)  # type: ignore[arg-type]
-    finally:
-        env.close()
     return model
 
 
@@ -189,7 +205,7 @@ def chosen_parameters(model: OffPolicyAlgorithm, config: TrainingConfig) -> Para
 
 
 def _compare(
-    rivals: list[Parameters], simulations: int, config: TrainingConfig, recorder: EpisodeRecorder
+    rivals: list[Parameters], simulations: int, config: TrainingConfig, recorder: EpisodeRecorder, workers: Workers
 ) -> Parameters:
     """Simulate the candidates in turn, each round on one seed for all, and return the one of the best mean merit."""
     generator = random.Random(config.seed)
@@ -198,18 +214,21 @@ def _compare(
         seed = generator.randrange(FIRST_TRAINING_SEED, 2**32)
         specs += [EpisodeSpec(rival, seed, config.task, config.episode) for rival in rivals]
     merits: dict[Parameters, list[float]] = {rival: [] for rival in rivals}
-    specs = specs[:simulations]
-    for spec, result in zip(specs, simulate_all(specs, config.n_envs), strict=True):
+    for spec, result in zip(specs, workers.simulate_all(specs), strict=True):
         recorder.record({**result.fields(), "seed": spec.seed, "parameters": spec.parameters})
         merits[spec.parameters].append(recorder.tried[-1][1])
     return max(rivals, key=lambda rival: mean(merits[rival] or [0.0]))
 
 
-def evaluate(parameters: Parameters, config: TrainingConfig, seeds: range) -> Evaluation:
+def evaluate(
+    parameters: Parameters, config: TrainingConfig, seeds: range, workers: Workers | None = None
+) -> Evaluation:
     """Simulate parameters on some seeds.
 
     :param parameters: of the pattern generator
     :param config: of the training they come from
     :param seeds: of the episodes; those below 2^31 are in no training
+    :param workers: that simulate; by default this process does
     """
-    return summarise(simulate_all([EpisodeSpec(parameters, seed, config.task, config.episode) for seed in seeds]))
+    specs = [EpisodeSpec(parameters, seed, config.task, config.episode) for seed in seeds]
+    return summarise((workers or Workers()).simulate_all(specs))

@@ -13,7 +13,7 @@ from sarah.config import EpisodeConfig, Physics
 from sarah.tasks import STEPPING
 
 BIN = Path(sys.executable).parent
-SHORT = ("--episode.time-limit", "1.5", "--n-envs", "1")
+SHORT = ("--episode.time-limit", "1.5", "--slots", "1")
 
 
 def run(command: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
@@ -129,7 +129,7 @@ def test_eval_takes_parameters_without_a_run(tmp_path: Path) -> None:
 
 
 def test_training_is_configured_by_a_file_and_overridden_by_options(tmp_path: Path) -> None:
-    (tmp_path / "mine.yaml").write_text("algo: td3\nsimulations: 2\nn_envs: 1\nepisode: {time_limit: 1.5}\n")
+    (tmp_path / "mine.yaml").write_text("algo: td3\nsimulations: 2\nslots: 1\nepisode: {time_limit: 1.5}\n")
     process = run("sarah-train", "--config", "mine.yaml", "--simulations", "3", "--run-dir", "out", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     config = (tmp_path / "out" / "config.yaml").read_text()

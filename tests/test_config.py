@@ -44,7 +44,7 @@ def test_what_a_file_does_not_name_keeps_its_default(tmp_path: Path) -> None:
         ("simulations: 0", "simulations must be at least 1, not 0"),
         ("simulations: -3", "simulations must be at least 1, not -3"),
         ("seed: -1", "seed must be between 0 and 2147483647, not -1"),
-        ("n_envs: 0", "n_envs must be at least 1, not 0"),
+        ("slots: 0", "slots must be at least 1, not 0"),
         ("task: walking", "unknown task 'walking'"),
         ("algo: td33", "unknown algo 'td33', did you mean 'td3'"),
         ("algo: 3", "algo must be a text, not 3"),

@@ -13,6 +13,7 @@ from sarah.cli import eval as eval_command
 from sarah.config import EpisodeConfig
 from sarah.episode import EpisodeResult, EpisodeSpec, simulate
 from sarah.robustness import PushedEpisode, push_many, robustness_table, survival_by_direction, wilson_interval
+from sarah.workers import Workers
 
 RESULT = EpisodeResult(0.8, 4.0, 3.0, 30, 14.15, "time_limit", (0.03, 0.04, 0.84), 0.02, 1.0, 1.0, 9.0, 15.0, 0.5, 0.6)
 FALL = dataclasses.replace(RESULT, score=0.1, termination="left_box", final_position=(0.3, 0.0, 0.8))
@@ -24,7 +25,9 @@ def pushed(degrees: float, result: EpisodeResult = RESULT, newtons: float = 100.
 
 def test_controllers_meet_the_same_pushes_and_can_be_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(robustness, "SECONDS_AFTER", 0.1)
-    still, moving = push_many([(0.0,) * 4, (1.0, 0.0, 1.0, 0.0)], EpisodeConfig(), forces=(40.0, 80.0), episodes=2)
+    still, moving = push_many(
+        [(0.0,) * 4, (1.0, 0.0, 1.0, 0.0)], EpisodeConfig(), Workers(), forces=(40.0, 80.0), episodes=2
+    )
     assert [e.newtons for e in still] == [40.0, 40.0, 80.0, 80.0]
     assert [e.radians for e in still] == [e.radians for e in moving]
     assert still[0].radians == pytest.approx(still[2].radians) != still[1].radians

@@ -1,22 +1,31 @@
 """What the README says of the paper's parameters and of clocks, over many seeds: minutes of simulation."""
 
 import dataclasses
+import os
 import random
+from collections.abc import Iterator
 
 import pytest
 
 from sarah.config import PHYSICS, EpisodeConfig, Push, Randomisation
 from sarah.episode import EpisodeSpec
-from sarah.evaluation import SMALLEST_EVENT_SHARE, simulate_all, summarise
+from sarah.evaluation import SMALLEST_EVENT_SHARE, summarise
 from sarah.pattern_generator import PAPER_PARAMETERS
+from sarah.workers import Workers
 
 pytestmark = pytest.mark.slow
 
 
+@pytest.fixture(scope="module")
+def workers() -> Iterator[Workers]:
+    with Workers(os.cpu_count() or 1) as started:
+        yield started
+
+
 @pytest.mark.parametrize(("randomised", "survivors"), [(True, 19), (False, 20)])
-def test_papers_parameters_step_on_20_seeds(randomised: bool, survivors: int) -> None:
+def test_papers_parameters_step_on_20_seeds(workers: Workers, randomised: bool, survivors: int) -> None:
     config = EpisodeConfig(randomisation=Randomisation(enabled=randomised))
-    results = simulate_all([EpisodeSpec(PAPER_PARAMETERS, seed, config=config) for seed in range(20)])
+    results = list(workers.simulate_all([EpisodeSpec(PAPER_PARAMETERS, seed, config=config) for seed in range(20)]))
     evaluation = summarise(results)
     assert sum(result.survived for result in results) >= survivors
     assert all(2.3 <= result.steps_per_second <= 3.5 for result in results if result.survived)
@@ -24,10 +33,10 @@ def test_papers_parameters_step_on_20_seeds(randomised: bool, survivors: int) ->
     assert evaluation.score_median >= 0.78
 
 
-def test_papers_parameters_keep_their_score_at_the_reference_physics() -> None:
+def test_papers_parameters_keep_their_score_at_the_reference_physics(workers: Workers) -> None:
     standard, reference = (
         summarise(
-            simulate_all(
+            workers.simulate_all(
                 [EpisodeSpec(PAPER_PARAMETERS, seed, config=EpisodeConfig(physics=physics)) for seed in range(5)]
             )
         )
@@ -36,10 +45,10 @@ def test_papers_parameters_keep_their_score_at_the_reference_physics() -> None:
     assert reference.score_median >= 0.95 * standard.score_median
 
 
-def test_no_clock_among_random_parameters_pays() -> None:
+def test_no_clock_among_random_parameters_pays(workers: Workers) -> None:
     generator = random.Random(0)
     drawn = [tuple(generator.uniform(0.0, 2.0) for _ in range(5)) for _ in range(60)]
-    results = simulate_all([EpisodeSpec(parameters, seed) for seed, parameters in enumerate(drawn)])
+    results = workers.simulate_all([EpisodeSpec(parameters, seed) for seed, parameters in enumerate(drawn)])
     clocks = [
         result.score
         for result in results
@@ -49,7 +58,7 @@ def test_no_clock_among_random_parameters_pays() -> None:
     assert max(clocks) < 0.6
 
 
-def test_v1_saves_the_robot_from_pushes_to_the_side() -> None:
+def test_v1_saves_the_robot_from_pushes_to_the_side(workers: Workers) -> None:
     """Forty pushes of 100 N from the sides: at V = 0 about 6 in 10 survive, with V1 = 1 nearly all."""
     push = Push(newtons=(100.0, 100.0), at_seconds=(2.0, 4.0))
     survived = {}
@@ -59,5 +68,5 @@ def test_v1_saves_the_robot_from_pushes_to_the_side() -> None:
             side = (0.0, 0.0) if seed % 2 else (180.0, 180.0)
             config = EpisodeConfig(push=dataclasses.replace(push, degrees=side), time_limit=8.0)
             specs.append(EpisodeSpec((v1, 0.0, 0.0, 0.0), seed, "balance", config))
-        survived[v1] = sum(result.survived for result in simulate_all(specs))
+        survived[v1] = sum(result.survived for result in workers.simulate_all(specs))
     assert survived[1.0] >= 38 and survived[1.0] >= survived[0.0] + 8

@@ -22,7 +22,7 @@ from sarah.tasks import BALANCE, STEPPING
 from sarah.training import train
 
 # Longer than the 40 simulations of warm-up, on episodes of one second of stepping.
-SHORT = TrainingConfig(simulations=44, n_envs=1, seed=3, episode=EpisodeConfig(time_limit=2.0))
+SHORT = TrainingConfig(simulations=44, slots=1, seed=3, episode=EpisodeConfig(time_limit=2.0))
 
 
 @pytest.fixture(scope="module")
@@ -92,7 +92,7 @@ def test_training_repeats_from_its_seed(run: RunFolder, tmp_path: Path) -> None:
 def test_second_training_learns_v_with_the_legs_of_the_first(tmp_path: Path) -> None:
     stepping = (0.35, 0.6, 0.2, 1.0, 1.0)
     episode = EpisodeConfig(time_limit=2.0, stepping=stepping)
-    config = TrainingConfig(task="balance", simulations=42, n_envs=1, episode=episode)
+    config = TrainingConfig(task="balance", simulations=42, slots=1, episode=episode)
     run = RunFolder.create(tmp_path / "run", config)
     learned = train(config, run)
     row = list(run.episodes())[41]
@@ -109,7 +109,7 @@ def test_second_training_learns_v_with_the_legs_of_the_first(tmp_path: Path) -> 
 
 @pytest.mark.parametrize(("algo", "algorithm"), [("td3", TD3), ("sac", SAC), ("ddpg", DDPG)])
 def test_other_algorithms_run_the_same_path(algo: str, algorithm: type[BaseAlgorithm], tmp_path: Path) -> None:
-    config = TrainingConfig(algo=algo, simulations=42, n_envs=1, episode=EpisodeConfig(time_limit=1.5))
+    config = TrainingConfig(algo=algo, simulations=42, slots=1, episode=EpisodeConfig(time_limit=1.5))
     run = RunFolder.create(tmp_path / algo, config)
     learned = train(config, run)
     assert isinstance(algorithm.load(run.model_path), algorithm)
@@ -118,7 +118,7 @@ def test_other_algorithms_run_the_same_path(algo: str, algorithm: type[BaseAlgor
 
 
 def test_budget_is_kept_with_environments_side_by_side(tmp_path: Path) -> None:
-    config = TrainingConfig(simulations=5, n_envs=2, episode=EpisodeConfig(time_limit=1.5))
+    config = TrainingConfig(simulations=5, slots=2, episode=EpisodeConfig(time_limit=1.5))
     run = RunFolder.create(tmp_path / "run", config)
     train(config, run)
     rows = list(run.episodes())
@@ -128,7 +128,7 @@ def test_budget_is_kept_with_environments_side_by_side(tmp_path: Path) -> None:
 def test_trainings_of_neighbouring_seeds_share_no_episode(tmp_path: Path) -> None:
     seeds = []
     for seed in (0, 1):
-        config = TrainingConfig(simulations=6, n_envs=2, seed=seed, episode=EpisodeConfig(time_limit=1.2))
+        config = TrainingConfig(simulations=6, slots=2, seed=seed, episode=EpisodeConfig(time_limit=1.2))
         run = RunFolder.create(tmp_path / str(seed), config)
         train(config, run)
         seeds += [row["seed"] for row in run.episodes()]
@@ -139,7 +139,7 @@ def test_candidates_are_compared_on_the_same_seeds_within_the_budget(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(training, "candidate_count", lambda simulations: 2)
-    config = TrainingConfig(simulations=16, n_envs=1, episode=EpisodeConfig(time_limit=2.0))
+    config = TrainingConfig(simulations=16, slots=1, episode=EpisodeConfig(time_limit=2.0))
     run = RunFolder.create(tmp_path / "run", config)
     parameters = train(config, run).parameters
     rows = list(run.episodes())

@@ -18,6 +18,7 @@ from sarah.tasks import BALANCE, STEPPING, TASKS
 
 if TYPE_CHECKING:
     from sarah.evaluation import Evaluation
+    from sarah.workers import Workers
 
 COMMAND = "sarah-eval"
 
@@ -38,6 +39,8 @@ class EvalOptions:
     :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default the run's own
     :param randomisation: whether friction, masses, sensors and so on vary from seed to seed
     :param json: print one JSON object
+    :param workers: processes that simulate, on this machine; with none, this process does. They change no result
+    :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
     """
 
     run: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN")] = None
@@ -51,6 +54,8 @@ class EvalOptions:
     physics: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
     randomisation: bool = True
     json: bool = False
+    workers: int = 0
+    scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
 
     def __post_init__(self) -> None:
         """Refuse unknown names and impossible numbers."""
@@ -77,12 +82,15 @@ def _evaluate(arguments: Sequence[str]) -> None:
     options = parse_options(EvalOptions, COMMAND, arguments, EvalOptions())
     task, algorithm, parameters, config = _subject(options)
     config = _changed(config, options, task)
-    if options.robustness is not None:
-        _show_robustness(parameters, config, options)
-        return
-    evaluation = _evaluation(task, parameters, config, options)
-    neutral = TASKS[task].neutral
-    without = None if neutral is None else _evaluation(task, neutral, config, options)
+    from sarah.workers import Workers
+
+    with Workers(options.workers, options.scheduler) as workers:
+        if options.robustness is not None:
+            _show_robustness(parameters, config, options, workers)
+            return
+        evaluation = _evaluation(task, parameters, config, options, workers)
+        neutral = TASKS[task].neutral
+        without = None if neutral is None else _evaluation(task, neutral, config, options, workers)
     named = dict(zip(TASKS[task].parameter_names, parameters, strict=True))
     if options.json:
         content = {"task": task, "algorithm": algorithm, "parameters": named, **vars(evaluation)}
@@ -97,12 +105,14 @@ def _evaluate(arguments: Sequence[str]) -> None:
             print(f"{label:17}{text}")
 
 
-def _evaluation(task: str, parameters: tuple[float, ...], config: EpisodeConfig, options: EvalOptions) -> Evaluation:
+def _evaluation(
+    task: str, parameters: tuple[float, ...], config: EpisodeConfig, options: EvalOptions, workers: Workers
+) -> Evaluation:
     from sarah.episode import EpisodeSpec
-    from sarah.evaluation import simulate_all, summarise
+    from sarah.evaluation import summarise
 
     seeds = range(options.first_seed, options.first_seed + options.episodes)
-    return summarise(simulate_all([EpisodeSpec(parameters, seed, task, config) for seed in seeds]))
+    return summarise(workers.simulate_all([EpisodeSpec(parameters, seed, task, config) for seed in seeds]))
 
 
 def _subject(options: EvalOptions) -> tuple[str, str | None, tuple[float, ...], EpisodeConfig]:
@@ -189,7 +199,9 @@ def _comparison(evaluation: Evaluation, without: Evaluation) -> list[tuple[str, 
     ]
 
 
-def _show_robustness(parameters: tuple[float, ...], config: EpisodeConfig, options: EvalOptions) -> None:
+def _show_robustness(
+    parameters: tuple[float, ...], config: EpisodeConfig, options: EvalOptions, workers: Workers
+) -> None:
     """Print the table as Markdown, and write it and the polar plot."""
     from sarah.figures import draw_survival
     from sarah.robustness import FORCES, push_many, robustness_table
@@ -202,7 +214,7 @@ def _show_robustness(parameters: tuple[float, ...], config: EpisodeConfig, optio
         raise ConfigurationError(f"cannot write folder {folder}: {error.strerror}") from error
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
     forces = FORCES if options.push_newtons is None else (options.push_newtons,)
-    pushed = push_many((neutral, parameters), config, forces, options.episodes, options.first_seed)
+    pushed = push_many((neutral, parameters), config, workers, forces, options.episodes, options.first_seed)
     head = "".join(f" {name}: survival | score | drift | vibration |" for name in names)
     lines = [f"| push | direction | episodes |{head}", "|---" * (3 + 4 * len(names)) + "|"]
     for rows in zip(*map(robustness_table, pushed), strict=True):

@@ -34,12 +34,16 @@ class TrainOptions:
     :param run_dir: folder of the run, new or empty; by default a new one, runs/<task>/<algo>-s<seed>
     :param config: YAML file of settings, like the config.yaml of any run
     :param from_run: balance with P1 to P5 and the robot of this First Training's run folder
+    :param workers: processes that simulate, on this machine; with none, this process does. They change no result
+    :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
     """
 
     training: Annotated[TrainingConfig, tyro.conf.arg(name="")] = TrainingConfig()
     run_dir: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     config: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     from_run: Annotated[Path | None, tyro.conf.arg(name="from", metavar="RUN")] = None
+    workers: int = 0
+    scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
 
 
 def main() -> None:
@@ -56,12 +60,15 @@ def _train(arguments: Sequence[str]) -> None:
 
     describe_robot(config.episode.dimensions)  # a bad dimension is refused before anything is written
     from sarah.runs import RunFolder, new_run_path
+    from sarah.workers import Workers
 
-    run = RunFolder.create(options.run_dir or new_run_path(config.task, config.algo, config.seed), config)
-    print(f"training {config.algo} on {config.task}: {config.simulations} simulations into {run.path}", flush=True)
-    from sarah.training import train
+    with Workers(options.workers, options.scheduler) as workers:
+        run = RunFolder.create(options.run_dir or new_run_path(config.task, config.algo, config.seed), config)
+        print(f"training {config.algo} on {config.task}: {config.simulations} simulations into {run.path}", flush=True)
+        from sarah.training import train
 
-    _summarise(config.task, train(config, run, progress_bar=True), run.path)
+        learned = train(config, run, workers, progress_bar=True)
+    _summarise(config.task, learned, run.path)
 
 
 def _defaults(arguments: Sequence[str]) -> TrainOptions:

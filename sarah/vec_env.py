@@ -1,0 +1,165 @@
+"""Many episodes at once, as one environment of stable-baselines3 that answers in the order it was asked.
+
+Stepping many environments side by side waits for the slowest of each round, and episodes last from 2 to 30 s. Here a
+fixed number of episodes is in flight instead: a step hands one more in, and waits only for the oldest. What it returns
+is therefore the outcome of an action some steps before, and :class:`LateReplayBuffer` and :class:`LateRankReplayBuffer`
+store it with that action. The order of the outcomes, and so the training, does not depend on who simulates them.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any, NamedTuple
+
+import gymnasium
+import numpy as np
+from stable_baselines3.common.buffers import ReplayBuffer
+from stable_baselines3.common.vec_env import VecEnv
+from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices
+
+from sarah.agents.buffers import RankReplayBuffer
+from sarah.config import EpisodeConfig
+from sarah.envs import SarahEnv, draw_seed, observation_from, parameters_from
+from sarah.episode import EpisodeSpec
+from sarah.tasks import TASKS
+from sarah.workers import Job, Workers, run, stand
+
+
+class _Running(NamedTuple):
+    spec: EpisodeSpec
+    observation: np.ndarray
+    action: np.ndarray
+    job: Job
+
+
+class EpisodeVecEnv(VecEnv):
+    """Episodes of one :class:`~sarah.envs.SarahEnv`, several of them in flight.
+
+    Step k hands in the episode of its action and returns the outcome of step ``k - slots + 1``: its return is the
+    reward, and ``info["transition"]`` holds its observation, action and last observation. The first ``slots - 1``
+    steps have no outcome: their ``info`` says ``"pending"``. The last ``slots - 1`` steps hand nothing in.
+
+    :param task: ``"stepping"`` or ``"balance"``
+    :param config: settings of the episodes
+    :param episodes: how many there are; they take ``episodes + slots - 1`` steps
+    :param slots: how many are in flight
+    :param workers: that simulate them
+    """
+
+    def __init__(self, task: str, config: EpisodeConfig, episodes: int, slots: int, workers: Workers) -> None:
+        self._env = SarahEnv(task, config)
+        super().__init__(1, self._env.observation_space, self._env.action_space)
+        self._task = task
+        self._config = config
+        self._episodes = episodes
+        self._slots = slots
+        self._workers = workers
+        self._running: deque[_Running] = deque()
+        self._standing: deque[tuple[int, Job]] = deque()
+
+    def reset(self) -> np.ndarray:
+        """Begin anew, with the episodes that follow from the seed of :meth:`seed`.
+
+        :return: the observation of the first, of shape (1, 16)
+        """
+        # Seeds of episodes are drawn as SarahEnv draws them.
+        self._env.np_random = np.random.default_rng(self._seeds[0])
+        self._reset_seeds()
+        self._running.clear()
+        self._standing.clear()
+        self._steps = self._begun = 0
+        for _ in range(self._slots):
+            self._stand_another()
+        self._observe()
+        return self._observation[None]
+
+    def step_async(self, actions: np.ndarray) -> None:
+        """Hand in the episode of an action, unless there have been enough.
+
+        :param actions: one action, of shape (1, number of parameters)
+        """
+        self._steps += 1
+        if self._steps > self._episodes:
+            return
+        self._stand_another()
+        seed, standing = self._standing.popleft()
+        spec = self._spec(seed, parameters_from(actions[0], TASKS[self._task]))
+        job = self._workers.submit(run, spec, near=standing.worker)
+        self._running.append(_Running(spec, self._observation, actions[0].copy(), job))
+
+    def step_wait(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
+        """Wait for the oldest episode in flight, if there are as many as there are slots, and for the next to stand."""
+        reward, info = 0.0, {"pending": True}
+        if self._steps >= self._slots:
+            reward, info = self._oldest_outcome()
+        self._observe()
+        return self._observation[None], np.array([reward], np.float32), np.array([True]), [info]
+
+    def _stand_another(self) -> None:
+        if self._begun == self._episodes:
+            return
+        self._begun += 1
+        seed = draw_seed(self._env.np_random)
+        # Any parameters do: only those of the run matter.
+        anything = (0.0,) * len(TASKS[self._task].parameter_names)
+        self._standing.append((seed, self._workers.submit(stand, self._spec(seed, anything))))
+
+    def _observe(self) -> None:
+        """See how the next episode stands; after the last one the observation stays."""
+        if self._standing:
+            self._observation = observation_from(self._standing[0][1].result())
+
+    def _oldest_outcome(self) -> tuple[float, dict[str, Any]]:
+        spec, observation, action, job = self._running.popleft()
+        result, reading = job.result()
+        transition = (observation, action, observation_from(reading))
+        info = {"seed": spec.seed, "parameters": spec.parameters, "transition": transition, **result.fields()}
+        return result.episode_return, info
+
+    def _spec(self, seed: int, parameters: tuple[float, ...]) -> EpisodeSpec:
+        return EpisodeSpec(parameters, seed, self._task, self._config)
+
+    def close(self) -> None:
+        """Nothing is left open: the workers belong to whoever made them."""
+
+    def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
+        """An attribute of the environment, as a list of one."""
+        return [getattr(self._env, attr_name)]
+
+    def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
+        """Refused: an episode's settings are those of its specification."""
+        raise NotImplementedError("episodes are simulated elsewhere: make another environment instead")
+
+    def env_method(self, method_name: str, *args: Any, indices: VecEnvIndices = None, **kwargs: Any) -> list[Any]:
+        """Refused, as :meth:`set_attr`."""
+        raise NotImplementedError("episodes are simulated elsewhere: there is no environment to call")
+
+    def env_is_wrapped(self, wrapper_class: type[gymnasium.Wrapper], indices: VecEnvIndices = None) -> list[bool]:
+        """No wrapper is around the episodes."""
+        return [False]
+
+
+class _LateTransitions:
+    """Stores what :class:`EpisodeVecEnv` returns with the action that it came from."""
+
+    def add(
+        self,
+        obs: np.ndarray,
+        next_obs: np.ndarray,
+        action: np.ndarray,
+        reward: np.ndarray,
+        done: np.ndarray,
+        infos: list[dict[str, Any]],
+    ) -> None:
+        """Add the transition that ``infos`` names; none while the first episodes are in flight."""
+        if "transition" in infos[0]:
+            obs, action, next_obs = (part[None] for part in infos[0]["transition"])
+            super().add(obs, next_obs, action, reward, done, infos)  # type: ignore[misc]  # of the replay buffer
+
+
+class LateReplayBuffer(_LateTransitions, ReplayBuffer):
+    """stable-baselines3's replay buffer for :class:`EpisodeVecEnv`."""
+
+
+class LateRankReplayBuffer(_LateTransitions, RankReplayBuffer):
+    """The replay buffer of local NAF for :class:`EpisodeVecEnv`."""
