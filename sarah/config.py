@@ -36,7 +36,7 @@ class Physics:
     """
 
     rate: int = 300
-    solver_iterations: int = 30
+    solver_iterations: int = 40
     control_rate: int = 100
 
     def __post_init__(self) -> None:

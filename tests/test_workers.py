@@ -1,0 +1,133 @@
+"""Who simulates changes nothing: the same training in this process, on workers that die, and on a cluster."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from sarah import workers as workers_module
+from sarah.config import EpisodeConfig, TrainingConfig
+from sarah.episode import EpisodeSpec, simulate
+from sarah.errors import ConfigurationError, WorkersError
+from sarah.runs import RunFolder
+from sarah.training import train
+from sarah.workers import Workers, run, stand
+
+# Longer than the 40 simulations of warm-up; some episodes fall, most last a second of stepping.
+TRAINING = TrainingConfig(simulations=48, slots=4, seed=5, episode=EpisodeConfig(time_limit=2.0))
+SPEC = EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), seed=1, config=EpisodeConfig(time_limit=2.0))
+
+
+def train_in(folder: Path, workers: Workers | None) -> RunFolder:
+    run_folder = RunFolder.create(folder, TRAINING)
+    train(TRAINING, run_folder, workers)
+    return run_folder
+
+
+def learned_bytes(run_folder: RunFolder) -> dict[str, bytes]:
+    """What must not depend on who simulated."""
+    weights = zipfile.ZipFile(run_folder.model_path).read("policy.pth")
+    texts = {name: (run_folder.path / name).read_bytes() for name in ("episodes.csv", "parameters.json")}
+    return {**texts, "weights": weights}
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    return learned_bytes(train_in(tmp_path_factory.mktemp("alone"), None))
+
+
+@pytest.mark.parametrize("count", [1, 2, 4])
+def test_training_does_not_depend_on_the_number_of_workers(count: int, alone: dict[str, bytes], tmp_path: Path) -> None:
+    with Workers(count) as workers:
+        assert learned_bytes(train_in(tmp_path, workers)) == alone
+
+
+def test_training_survives_the_death_of_workers(alone: dict[str, bytes], tmp_path: Path) -> None:
+    killed: list[int] = []
+
+    def kill_when_rows(workers: Workers, counts: list[int]) -> None:
+        for count in counts:
+            while not (tmp_path / "episodes.csv").exists() or len(list(RunFolder(tmp_path).episodes())) < count:
+                time.sleep(0.01)
+            assert workers._client is not None
+            pid = next(iter(workers._client.run(os.getpid, on_error="ignore").values()))
+            os.kill(pid, signal.SIGKILL)
+            killed.append(pid)
+
+    with Workers(2) as workers:
+        killer = threading.Thread(target=kill_when_rows, args=(workers, [3, 20]), daemon=True)
+        killer.start()
+        survived = learned_bytes(train_in(tmp_path, workers))
+        killer.join(timeout=30.0)
+    assert len(set(killed)) == 2
+    assert survived == alone
+
+
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[str]:
+    """A scheduler and two workers, started as on a cluster; yields the scheduler's address."""
+    file = tmp_path / "scheduler.json"
+    scheduler = ["scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file)]
+    worker = ["worker", "--nthreads", "1", "--no-dashboard", "--scheduler-file", str(file), "--death-timeout", "60"]
+    processes = [
+        subprocess.Popen([sys.executable, "-m", "dask", *arguments], stderr=subprocess.DEVNULL, cwd=tmp_path)
+        for arguments in (scheduler, worker, worker)
+    ]
+    try:
+        while not file.exists():
+            assert processes[0].poll() is None
+            time.sleep(0.1)
+        yield json.loads(file.read_text())["address"]
+    finally:
+        for process in processes:
+            process.terminate()
+        for process in processes:
+            process.wait(timeout=30)
+
+
+def test_training_on_a_cluster_is_the_same(cluster: str, alone: dict[str, bytes], tmp_path: Path) -> None:
+    with Workers(scheduler=cluster) as workers:
+        assert learned_bytes(train_in(tmp_path / "run", workers)) == alone
+
+
+def test_results_come_in_the_order_of_the_specifications() -> None:
+    specs = [EpisodeSpec(SPEC.parameters, seed, config=SPEC.config) for seed in range(6)]
+    with Workers(2) as workers:
+        assert list(workers.simulate_all(specs)) == [simulate(spec) for spec in specs]
+
+
+def test_an_episode_continues_where_it_stands_or_begins_anew() -> None:
+    expected = simulate(SPEC)
+    stand(SPEC)
+    assert run(SPEC).result == expected
+    assert run(SPEC).result == expected  # that stands nowhere
+
+
+def test_standing_episodes_are_bounded_and_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(workers_module, "KEPT_STANDING", 2)
+    with Workers():
+        for seed in range(4):
+            stand(EpisodeSpec(SPEC.parameters, seed, config=SPEC.config))
+        assert len(workers_module._standing) == 2
+    assert not workers_module._standing
+
+
+def test_bad_workers_are_refused() -> None:
+    with pytest.raises(ConfigurationError, match="workers must be 0 or more, not -1"):
+        Workers(-1)
+    with pytest.raises(ConfigurationError, match="give one of the two"):
+        Workers(2, "tcp://127.0.0.1:1")
+
+
+def test_a_scheduler_that_does_not_answer_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(workers_module, "SCHEDULER_SECONDS", 1)
+    with pytest.raises(WorkersError, match=r"no Dask scheduler answers at 'tcp://127.0.0.1:9'"):
+        Workers(scheduler="tcp://127.0.0.1:9").__enter__()
