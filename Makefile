@@ -11,7 +11,7 @@ WORKERS ?= $(shell nproc)
 SEED ?= 0
 RUN ?= runs/$(shell date +%Y%m%d-%H%M%S)
 
-.PHONY: help install train test test-slow lint format bench clean
+.PHONY: help install train test test-slow lint format bench tables clean
 
 help:  ## show what can be made
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
@@ -50,7 +50,10 @@ format: install  ## put the style right
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-bench: install  ## the tables of the README and docs: hours of simulation
+bench: install  ## how fast it is: simulation, workers, learner; minutes
+	$(BIN)/python benchmarks/throughput.py
+
+tables: install  ## the tables of the README and docs: hours of simulation
 	$(BIN)/python benchmarks/paper_parameters.py
 	$(BIN)/python benchmarks/landscape.py
 	$(BIN)/python benchmarks/clock.py

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 from sarah.errors import ConfigurationError, unknown_name
-from sarah.tasks import STEPPING, TASKS
+from sarah.tasks import BALANCE, STEPPING, TASKS
 
 STAND_SECONDS = 1.0
 """How long the robot stands before the pattern generator starts; the paper's."""
@@ -205,6 +205,13 @@ class TrainingConfig:
             raise ConfigurationError(f"slots must be at least 1, not {self.slots!r}")
         if not 0 <= self.seed < 2**31:
             raise ConfigurationError(f"seed must be between 0 and {2**31 - 1}, not {self.seed!r}")
+        push, limit = self.episode.push, self.episode.time_limit
+        if self.task != BALANCE.name and push != Push():
+            raise ConfigurationError(f"episode.push is for task {BALANCE.name!r}: {self.task!r} has no push")
+        if self.task == BALANCE.name and push.at_seconds[0] >= limit:
+            raise ConfigurationError(
+                f"episode.push.at_seconds must begin before the time_limit of {limit:g} s, not {push.at_seconds!r}"
+            )
 
 
 def read_config(config_type: type[ConfigType], path: Path) -> ConfigType:

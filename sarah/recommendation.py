@@ -19,10 +19,10 @@ Parameters = tuple[float, ...]
 SIMULATIONS_PER_CANDIDATE = 5
 BUDGET_PER_CANDIDATE = 50
 """Simulations of the whole training for each candidate: a tenth of them goes into the comparison."""
-NEIGHBOURHOOD = 0.15
-"""Distance over which one episode says something of another's parameters."""
-DISTINCT = 0.2
-"""Smallest distance between candidates."""
+NEIGHBOURHOOD = 0.075
+"""Distance over which one episode says something of another's parameters, as a share of their box's width."""
+DISTINCT = 0.1
+"""Smallest distance between candidates, as such a share."""
 DOUBT = 0.25
 """Episodes without merit that every neighbourhood is thought to hold, so that single lucky ones do not win."""
 
@@ -44,25 +44,29 @@ def candidate_count(simulations: int) -> int:
     return max(1, simulations // BUDGET_PER_CANDIDATE)
 
 
-def candidates(choice: Parameters, tried: Sequence[tuple[Parameters, float]], count: int) -> list[Parameters]:
+def candidates(
+    choice: Parameters, tried: Sequence[tuple[Parameters, float]], count: int, width: float
+) -> list[Parameters]:
     """What is worth simulating again.
 
     :param choice: the agent's own, always the first candidate
     :param tried: parameters and merit of every episode so far
     :param count: how many candidates
+    :param width: of the parameters' box
     :return: the agent's choice, then the tried parameters whose neighbourhoods did best, not too close together
     """
     chosen = [choice]
-    by_merit = sorted(tried, key=lambda episode: _neighbourhood_merit(episode[0], tried), reverse=True)
+    by_merit = sorted(tried, key=lambda episode: _neighbourhood_merit(episode[0], tried, width), reverse=True)
     for parameters, _ in by_merit:
         if len(chosen) == count:
             break
-        if all(math.dist(parameters, other) >= DISTINCT for other in chosen):
+        if all(math.dist(parameters, other) >= DISTINCT * width for other in chosen):
             chosen.append(parameters)
     return chosen
 
 
-def _neighbourhood_merit(parameters: Parameters, tried: Sequence[tuple[Parameters, float]]) -> float:
-    weights = [math.exp(-(math.dist(parameters, other) ** 2) / (2 * NEIGHBOURHOOD**2)) for other, _ in tried]
+def _neighbourhood_merit(parameters: Parameters, tried: Sequence[tuple[Parameters, float]], width: float) -> float:
+    scale = 2.0 * (NEIGHBOURHOOD * width) ** 2
+    weights = [math.exp(-(math.dist(parameters, other) ** 2) / scale) for other, _ in tried]
     total = sum(weight * merit for weight, (_, merit) in zip(weights, tried, strict=True))
     return total / (sum(weights) + DOUBT)

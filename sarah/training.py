@@ -139,13 +139,13 @@ def train(
     count = candidate_count(config.simulations)
     compared = count * SIMULATIONS_PER_CANDIDATE if count > 1 else 0
     workers = workers or Workers()
-    recorder = EpisodeRecorder(run, TASKS[config.task])
+    task = TASKS[config.task]
+    recorder = EpisodeRecorder(run, task)
     model = _learn(config, config.simulations - compared, run, recorder, workers, progress_bar)
     model.save(run.model_path)
-    rivals = candidates(chosen_parameters(model, config), recorder.tried, count)
+    rivals = candidates(chosen_parameters(model, config), recorder.tried, count, task.high - task.low)
     parameters = _compare(rivals, compared, config, recorder, workers)
     model.logger.close()
-    task = TASKS[config.task]
     seeds = range(SUMMARY_EPISODES)
     evaluation = evaluate(parameters, config, seeds, workers)
     without = None if task.neutral is None else evaluate(task.neutral, config, seeds, workers)

@@ -63,6 +63,8 @@ def test_what_a_file_does_not_name_keeps_its_default(tmp_path: Path) -> None:
         ("episode: {randomisation: {enabled: 1}}", "enabled must be true or false, not 1"),
         ("episode: {dimensions: [0.3]}", "dimensions must hold names and values"),
         ("episode: {dimensions: {thigh_length: long}}", "dimensions.thigh_length must be a number, not 'long'"),
+        ("episode: {push: {newtons: [50, 60]}}", "episode.push is for task 'balance': 'stepping' has no push"),
+        ("{task: balance, episode: {time_limit: 3, push: {at_seconds: [3, 4]}}}", "before the time_limit of 3 s"),
         ("a: [", "is not YAML"),
     ],
 )

@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 from sarah.recommendation import DISTINCT, candidate_count, candidates, merit
 
 CHOICE = (1.0, 1.0, 1.0, 1.0, 1.0)
+WIDTH = 2.0
 
 
 def around(*centre: float, offset: float = 0.0) -> tuple[float, ...]:
@@ -13,30 +14,39 @@ def around(*centre: float, offset: float = 0.0) -> tuple[float, ...]:
 
 
 def test_the_agents_choice_comes_first() -> None:
-    assert candidates(CHOICE, [], 3) == [CHOICE]
-    assert candidates(CHOICE, [(around(0.5, 0.5, 0.5, 0.5, 0.5), 0.9)], 1) == [CHOICE]
+    assert candidates(CHOICE, [], 3, WIDTH) == [CHOICE]
+    assert candidates(CHOICE, [(around(0.5, 0.5, 0.5, 0.5, 0.5), 0.9)], 1, WIDTH) == [CHOICE]
 
 
 def test_a_good_neighbourhood_beats_one_lucky_episode() -> None:
     lucky = (around(0.2, 0.2, 0.2, 0.2, 0.2), 0.92)
     good = [(around(1.6, 1.6, 1.6, 1.6, 1.6, offset=0.01 * step), 0.85) for step in range(5)]
     unlucky = (around(0.2, 0.2, 0.2, 0.2, 0.25), 0.1)
-    second = candidates(CHOICE, [lucky, unlucky, *good], 2)[1]
+    second = candidates(CHOICE, [lucky, unlucky, *good], 2, WIDTH)[1]
     assert second in [parameters for parameters, _ in good]
 
 
 def test_candidates_keep_their_distance() -> None:
     near = [(around(1.6, 1.6, 1.6, 1.6, 1.6, offset=0.001 * step), 0.9) for step in range(5)]
     far = (around(0.3, 0.3, 0.3, 0.3, 0.3), 0.5)
-    assert candidates(CHOICE, [*near, far], 3)[2] == far[0]
+    assert candidates(CHOICE, [*near, far], 3, WIDTH)[2] == far[0]
+
+
+def test_distances_are_shares_of_the_box() -> None:
+    tried = [(around(0.2, 0.5, 1.1, 0.3, 1.6, offset=0.02 * step), 0.1 * step) for step in range(8)]
+    wider = [(tuple(2.0 * value for value in parameters), merit) for parameters, merit in tried]
+    chosen = candidates(CHOICE, tried, 4, WIDTH)
+    assert candidates(tuple(2.0 * value for value in CHOICE), wider, 4, 2.0 * WIDTH) == [
+        tuple(2.0 * value for value in parameters) for parameters in chosen
+    ]
 
 
 @given(st.lists(st.tuples(st.tuples(*[st.floats(0, 2)] * 5), st.floats(0, 1)), max_size=20), st.integers(1, 6))
 def test_there_are_never_more_than_asked_for(tried: list[tuple[tuple[float, ...], float]], count: int) -> None:
-    chosen = candidates(CHOICE, tried, count)
+    chosen = candidates(CHOICE, tried, count, WIDTH)
     assert 1 <= len(chosen) <= count
     assert all(
-        sum((a - b) ** 2 for a, b in zip(first, second, strict=True)) >= DISTINCT**2 - 1e-9
+        sum((a - b) ** 2 for a, b in zip(first, second, strict=True)) >= (DISTINCT * WIDTH) ** 2 - 1e-9
         for index, first in enumerate(chosen)
         for second in chosen[:index]
     )

@@ -1,0 +1,188 @@
+"""How fast episodes are simulated, and where the time goes; figures of one run, as ratios.
+
+The closed loop (sensing, pattern generator, reward, result) against bare physics steps on the same trajectory; the
+standard physics against the reference and against 500 Hz with 30 iterations; a training with two workers against one,
+and against two processes that know nothing of each other; and the learner's share of a training's time.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import pickle
+import subprocess
+import sys
+import tempfile
+import time
+from contextlib import closing
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
+
+from sarah.bullet import pybullet
+from sarah.config import PHYSICS, TRAINED_STEPPING, EpisodeConfig, Physics, TrainingConfig
+from sarah.episode import Episode, EpisodeSpec
+from sarah.runs import RunFolder
+from sarah.tasks import STEPPING
+from sarah.training import train
+from sarah.vec_env import EpisodeVecEnv
+from sarah.workers import Workers
+
+FORMER_START = Physics(500, 30)
+"""What most prototypes of this robot ran at."""
+
+
+def started(physics: Physics, limit: float) -> Episode:
+    """An episode that has stood for its second; the caller closes it."""
+    episode = Episode(EpisodeConfig(physics, time_limit=limit), seed=0)
+    episode.stand()
+    episode.start(TRAINED_STEPPING)
+    return episode
+
+
+def commands(physics: Physics, limit: float) -> list[tuple[float, ...]]:
+    """What the pattern generator commands at every tick."""
+    targets = []
+    with closing(started(physics, limit)) as episode:
+        while episode.termination is None:
+            episode.tick()
+            targets.append(episode.generator.targets)
+    return targets
+
+
+def closed_loop(physics: Physics, limit: float) -> float:
+    """Simulated seconds per second of an episode's ticks."""
+    with closing(started(physics, limit)) as episode:
+        start = time.perf_counter()
+        while episode.termination is None:
+            episode.tick()
+        episode.result()
+        return (limit - 1.0) / (time.perf_counter() - start)
+
+
+def bare_loop(physics: Physics, limit: float, targets: list[tuple[float, ...]]) -> float:
+    """Simulated seconds per second of physics steps alone, on the trajectory of the same targets."""
+    with closing(started(physics, limit)) as episode:
+        simulation, client = episode.simulation, episode.simulation._client
+        start = time.perf_counter()
+        for command in targets:
+            simulation.set_targets(command)
+            pybullet.stepSimulation(physicsClientId=client)
+        return (limit - 1.0) / (time.perf_counter() - start)
+
+
+def loops(limit: float, rounds: int) -> dict[str, float]:
+    """Every round measures everything once; ratios are medians of the rounds' ratios."""
+    targets = commands(Physics(), limit)
+    measured = [
+        {
+            "closed": closed_loop(Physics(), limit),
+            "bare": bare_loop(Physics(), limit, targets),
+            "reference": closed_loop(PHYSICS["reference"], limit),
+            "former": closed_loop(FORMER_START, limit),
+        }
+        for _ in range(rounds)
+    ]
+
+    def ratio(upper: str, lower: str) -> float:
+        return median(one[upper] / one[lower] for one in measured)
+
+    return {
+        "closed_loop_times_real_time": median(one["closed"] for one in measured),
+        "bare_times_real_time": median(one["bare"] for one in measured),
+        "reference_times_real_time": median(one["reference"] for one in measured),
+        "closed_loop_over_bare": ratio("closed", "bare"),
+        "default_over_reference": ratio("closed", "reference"),
+        "default_over_500_hz_30_iterations": ratio("closed", "former"),
+    }
+
+
+def training_seconds(config: TrainingConfig, workers: Workers, folder: Path) -> tuple[float, float]:
+    """Seconds of a training from its first step to its last, and how many of them the learner took."""
+    learner = waited = 0.0
+    learn, wait = OffPolicyAlgorithm.learn, EpisodeVecEnv.step_wait
+
+    def timed_wait(env: EpisodeVecEnv) -> Any:
+        nonlocal waited
+        start = time.perf_counter()
+        try:
+            return wait(env)
+        finally:
+            waited += time.perf_counter() - start
+
+    def timed_learn(model: Any, *arguments: Any, **named: Any) -> Any:
+        nonlocal learner
+        start = time.perf_counter()
+        try:
+            return learn(model, *arguments, **named)
+        finally:
+            learner += time.perf_counter() - start
+
+    EpisodeVecEnv.step_wait = timed_wait  # type: ignore[method-assign]
+    OffPolicyAlgorithm.learn = timed_learn  # type: ignore[method-assign]
+    try:
+        train(config, RunFolder.create(folder, config), workers)
+    finally:
+        EpisodeVecEnv.step_wait = wait  # type: ignore[method-assign]
+        OffPolicyAlgorithm.learn = learn  # type: ignore[method-assign]
+    return learner, learner - waited
+
+
+def independent_processes(specs: list[EpisodeSpec], folder: Path) -> float:
+    """Seconds that two processes take for half of the episodes each, without their start."""
+    code = (
+        "import pickle, sys, time; from sarah.episode import simulate; specs = pickle.load(open(sys.argv[1], 'rb'));"
+        "simulate(specs[0]); start = time.perf_counter(); [simulate(spec) for spec in specs];"
+        "print(time.perf_counter() - start)"
+    )
+    children = []
+    for index in range(2):
+        file = folder / f"specs{index}.pickle"
+        file.write_bytes(pickle.dumps(specs[index::2]))
+        children.append(subprocess.Popen([sys.executable, "-c", code, str(file)], stdout=subprocess.PIPE, text=True))
+    return max(float(child.communicate()[0]) for child in children)
+
+
+def trainings(simulations: int, folder: Path) -> dict[str, float]:
+    config = TrainingConfig(simulations=simulations)
+    taken, share = {}, 0.0
+    for count in (1, 2):
+        with Workers(count) as workers:
+            list(workers.simulate_all([EpisodeSpec(TRAINED_STEPPING, seed) for seed in range(2 * count)]))  # warm up
+            taken[count], learner = training_seconds(config, workers, folder / f"workers-{count}")
+            share = learner / taken[count]
+    specs = []  # the same episodes, without learner or scheduler
+    for row in RunFolder(folder / "workers-1").episodes():
+        specs.append(EpisodeSpec(tuple(float(row[name]) for name in STEPPING.parameter_names), int(row["seed"])))
+    independent = independent_processes(specs, folder)
+    return {
+        "episodes_per_second_1_worker": len(specs) / taken[1],
+        "episodes_per_second_2_workers": len(specs) / taken[2],
+        "two_workers_over_one": taken[1] / taken[2],
+        "two_workers_over_independent_processes": independent / taken[2],
+        "learner_share": share,
+    }
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    parser.add_argument("--rounds", type=int, default=5, help="of the loops")
+    parser.add_argument("--seconds", type=float, default=11.0, help="of each loop's episode")
+    parser.add_argument(
+        "--simulations", type=int, default=60, help="of each training; below 100, which has no closing comparison"
+    )
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        figures = {**loops(options.seconds, options.rounds), **trainings(options.simulations, Path(folder))}
+    if options.json:
+        print(json.dumps(figures))
+        return
+    for name, value in figures.items():
+        print(f"{name:42}{value:8.3f}")
+
+
+if __name__ == "__main__":
+    main()
