@@ -203,7 +203,7 @@ def _start(count: int) -> tuple[Any, Client]:
             n_workers=count,
             threads_per_worker=1,
             host="127.0.0.1",
-            dashboard_address=None,
+            dashboard_address="127.0.0.1:0",  # any free port; otherwise 8787, which another may hold
             memory_limit=0,
             silence_logs=logging.CRITICAL,
         )

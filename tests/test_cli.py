@@ -42,6 +42,22 @@ def test_train_shows_its_progress(trained: tuple[Path, subprocess.CompletedProce
     assert "4/4" in process.stdout + process.stderr
 
 
+def test_workers_train_and_evaluate_the_same(
+    trained: tuple[Path, subprocess.CompletedProcess[str]], tmp_path: Path
+) -> None:
+    alone, _ = trained
+    arguments = ("--simulations", "4", "--seed", "1", "--workers", "2", "--run-dir", "mine")
+    process = run("sarah-train", *arguments, *SHORT, cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    assert "Warning" not in process.stderr
+    assert (tmp_path / "mine" / "episodes.csv").read_bytes() == (alone / "episodes.csv").read_bytes()
+    tables = [
+        run("sarah-eval", str(alone), "--episodes", "3", *workers, cwd=tmp_path).stdout
+        for workers in ((), ("--workers", "2"))
+    ]
+    assert "score" in tables[0] and tables[0] == tables[1]
+
+
 def test_eval_summarises_a_run(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
     folder, _ = trained
     process = run("sarah-eval", str(folder), "--episodes", "2", cwd=folder)
@@ -139,7 +155,10 @@ def test_training_is_configured_by_a_file_and_overridden_by_options(tmp_path: Pa
 @pytest.mark.parametrize(
     ("command", "options"),
     [
-        ("sarah-train", ("--task", "--algo", "--simulations", "--seed", "--run-dir", "--config")),
+        (
+            "sarah-train",
+            ("--task", "--algo", "--simulations", "--seed", "--run-dir", "--config", "--workers", "--scheduler"),
+        ),
         ("sarah-figures", ("RUN", "--out")),
         ("sarah-eval", ("RUN", "--episodes", "--first-seed", "--json", "--parameters", "--task")),
     ],
@@ -188,6 +207,10 @@ def test_help_loads_nothing_slow(command: str) -> None:
         ("sarah-train --simulations -5", "simulations must be at least 1, not -5"),
         ("sarah-train --simulations many", "--simulations must be a whole number, not 'many'"),
         ("sarah-train --seed -1", "seed must be between 0"),
+        ("sarah-train --workers -1", "workers must be 0 or more, not -1"),
+        ("sarah-train --workers 1 --scheduler tcp://127.0.0.1:9", "give one of the two"),
+        ("sarah-train --scheduler nonsense", "no Dask scheduler answers at 'nonsense'"),
+        ("sarah-train --slots 0", "slots must be at least 1, not 0"),
         ("sarah-train --config nothing.yaml", "cannot read nothing.yaml"),
         ("sarah-train --config", "--config"),
         ("sarah-train --run-dir full", "run folder full is not empty"),
@@ -206,6 +229,8 @@ def test_help_loads_nothing_slow(command: str) -> None:
             "push.duration must be at least a control tick, 0.01 s, not 0.004",
         ),
         ("sarah-train --episode.physics.control-rate 5", "physics.control_rate must be between 50 and 1000 Hz, not 5"),
+        ("sarah-train --task stepping --episode.push.newtons 50 60", "episode.push is for task 'balance'"),
+        ("sarah-train --task balance --episode.time-limit 1.5 --episode.push.at-seconds 2 3", "before the time_limit"),
         ("sarah-eval --task balance --parameters 1,0,1", "must be 4 numbers (V1 to V4), not 3"),
         ("sarah-eval --task balance --parameters 1,0,1,-3", "V4 must be between -2 and 2, not -3.0"),
         (

@@ -11,6 +11,7 @@ import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
+import psutil
 import pytest
 
 from sarah import workers as workers_module
@@ -118,6 +119,18 @@ def test_standing_episodes_are_bounded_and_forgotten(monkeypatch: pytest.MonkeyP
             stand(EpisodeSpec(SPEC.parameters, seed, config=SPEC.config))
         assert len(workers_module._standing) == 2
     assert not workers_module._standing
+
+
+def test_workers_listen_to_this_machine_only() -> None:
+    with Workers(1):
+        here = psutil.Process()
+        listening = [
+            connection.laddr.ip
+            for process in (here, *here.children(recursive=True))
+            for connection in process.net_connections()
+            if connection.status == psutil.CONN_LISTEN
+        ]
+    assert listening and set(listening) == {"127.0.0.1"}
 
 
 def test_bad_workers_are_refused() -> None:
