@@ -21,7 +21,11 @@ SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE = 50, 1000
 TRAINED_STEPPING = (0.41, 0.52, 0.62, 1.17, 1.37)
 """P1 to P5 that the balance task keeps unless others are given: what NAF learned from seed 1, to two digits."""
 
-ALGORITHMS = ("naf", "td3", "sac", "ddpg")
+AGENTS = ("naf", "td3", "sac", "ddpg")
+"""Learn by reinforcement, with networks."""
+SEARCHERS = ("cma-es", "gp", "tpe", "random")
+"""Black-box optimisers."""
+ALGORITHMS = AGENTS + SEARCHERS
 RewardForm = Literal["symmetric", "printed"]
 ConfigType = TypeVar("ConfigType")
 
@@ -178,7 +182,8 @@ class TrainingConfig:
 
     :param task: what to learn: ``stepping`` is the paper's first training, P1 to P5, and ``balance`` its
         second, V1 to V4
-    :param algo: what learns: ``naf``, or stable-baselines3's ``td3``, ``sac`` or ``ddpg``
+    :param algo: what learns: ``naf``, stable-baselines3's ``td3``, ``sac`` or ``ddpg``, or an optimiser that only sees
+        returns: ``cma-es``, ``gp`` (Gaussian process), ``tpe`` or ``random``
     :param simulations: budget; every simulation is one action of the agent and up to 30 s of the robot
     :param seed: of the training and of all its episodes
     :param slots: episodes in flight: each action is chosen knowing all outcomes but those of the slots - 1 before

@@ -34,7 +34,16 @@ WINDOW = 15
 """Simulations that the running median is over."""
 SECTORS = 16
 """Directions that survival is shown by."""
-COLOURS = {"naf": "#0072B2", "td3": "#D55E00", "sac": "#009E73", "ddpg": "#CC79A7"}
+COLOURS = {
+    "naf": "#0072B2",
+    "td3": "#D55E00",
+    "sac": "#009E73",
+    "ddpg": "#CC79A7",
+    "cma-es": "#E69F00",
+    "gp": "#56B4E9",
+    "tpe": "#F0E442",
+    "random": "#000000",
+}
 """Of each algorithm; told apart by the colour-blind (Okabe and Ito)."""
 STYLE: dict[Any, Any] = {
     "font.size": 8,

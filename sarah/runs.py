@@ -3,7 +3,7 @@
     config.yaml  command.txt  versions.txt     what was run, how, and with which versions
     episodes.csv                               one row per simulation; any row can be simulated again
     progress.csv  events.out.tfevents.*        the learning curves, for tables and for TensorBoard
-    model.zip                                  the agent, in stable-baselines3's format
+    model.zip                                  the agent, in stable-baselines3's format; optimisers have none
     parameters.json                            the learned parameters: what a robot would be sent
     figures/                                   what sarah-figures draws of this run
 

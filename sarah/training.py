@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import random
+from collections import deque
 from dataclasses import dataclass
 from statistics import mean
 from typing import Any
@@ -12,21 +13,23 @@ import numpy as np
 import torch
 from stable_baselines3 import DDPG, SAC, TD3
 from stable_baselines3.common.callbacks import BaseCallback
-from stable_baselines3.common.logger import configure
+from stable_baselines3.common.logger import Logger, configure
 from stable_baselines3.common.noise import NormalActionNoise
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from stable_baselines3.common.vec_env import VecEnv
+from tqdm import tqdm
 
 from sarah.agents.naf import NAF, PRESETS
-from sarah.config import Randomisation, TrainingConfig
-from sarah.envs import FIRST_TRAINING_SEED, observation_from, parameters_from
-from sarah.episode import Episode, EpisodeSpec
+from sarah.config import SEARCHERS, Randomisation, TrainingConfig
+from sarah.envs import FIRST_TRAINING_SEED, draw_seed, observation_from, parameters_from
+from sarah.episode import Episode, EpisodeSpec, simulate
 from sarah.evaluation import Evaluation, summarise
 from sarah.recommendation import SIMULATIONS_PER_CANDIDATE, Parameters, candidate_count, candidates, merit
 from sarah.runs import RunFolder
+from sarah.search import Searcher, make_searcher
 from sarah.tasks import BALANCE, TASKS, Task
 from sarah.vec_env import EpisodeVecEnv, LateRankReplayBuffer, LateReplayBuffer
-from sarah.workers import Workers
+from sarah.workers import Job, Workers
 
 UPDATES_PER_SIMULATION = 5
 WARM_UP = 40
@@ -46,16 +49,19 @@ LOGGED_FIELDS = (
 """Fields of a result that are logged under their own names."""
 
 
-def make_algorithm(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
-    """Make the agent that a configuration names, with the settings that suit one action per episode.
+def spread_seed(config: TrainingConfig) -> int:
+    """The seed of what learns and of its episodes: from neighbouring seeds come trainings that share no episode."""
+    return int(np.random.SeedSequence(config.seed).generate_state(1)[0]) // 2
+
+
+def make_agent(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
+    """Make the reinforcement learner that a configuration names, with the settings that suit one action per episode.
 
     :param config: of the training
     :param env: to learn from
     """
-    # stable-baselines3 gives environment i the seed + i; spread out, neighbouring trainings share no episode.
-    seed = int(np.random.SeedSequence(config.seed).generate_state(1)[0]) // 2
     common: dict[str, Any] = dict(
-        seed=seed, gradient_steps=UPDATES_PER_SIMULATION, learning_starts=max(WARM_UP, config.slots)
+        seed=spread_seed(config), gradient_steps=UPDATES_PER_SIMULATION, learning_starts=max(WARM_UP, config.slots)
     )
     if config.algo == "naf":
         return NAF("MlpPolicy", env, **{**PRESETS["one-step"], "replay_buffer_class": LateRankReplayBuffer, **common})
@@ -79,10 +85,12 @@ class EpisodeRecorder(BaseCallback):
 
     :param run: where to
     :param task: whose parameters they are
+    :param log: where to as well
     """
 
-    def __init__(self, run: RunFolder, task: Task) -> None:
+    def __init__(self, run: RunFolder, task: Task, log: Logger) -> None:
         super().__init__()
+        self.log = log
         self._names = task.parameter_names
         self.tried: list[tuple[Parameters, float]] = []
         self._run = run
@@ -103,10 +111,10 @@ class EpisodeRecorder(BaseCallback):
         x, y, _ = info["final_position"]
         shown = {"return": info["episode_return"], "x": x, "y": y, **{name: info[name] for name in LOGGED_FIELDS}}
         for name, value in shown.items():
-            self.logger.record(f"episode/{name}", value)
+            self.log.record(f"episode/{name}", value)
         for name, value in zip(self._names, info["parameters"], strict=True):
-            self.logger.record(f"parameters/{name}", value)
-        self.logger.dump(len(self.tried))
+            self.log.record(f"parameters/{name}", value)
+        self.log.dump(len(self.tried))
 
 
 @dataclass(frozen=True)
@@ -140,12 +148,15 @@ def train(
     compared = count * SIMULATIONS_PER_CANDIDATE if count > 1 else 0
     workers = workers or Workers()
     task = TASKS[config.task]
-    recorder = EpisodeRecorder(run, task)
-    model = _learn(config, config.simulations - compared, run, recorder, workers, progress_bar)
-    model.save(run.model_path)
-    rivals = candidates(chosen_parameters(model, config), recorder.tried, count, task.high - task.low)
+    log = configure(str(run.path), ["csv", "tensorboard"])
+    recorder = EpisodeRecorder(run, task, log)
+    if config.algo in SEARCHERS:
+        choice = _search(config, config.simulations - compared, recorder, workers, progress_bar)
+    else:
+        choice = _learn(config, config.simulations - compared, run, recorder, workers, progress_bar)
+    rivals = candidates(choice, recorder.tried, count, task.high - task.low)
     parameters = _compare(rivals, compared, config, recorder, workers)
-    model.logger.close()
+    log.close()
     seeds = range(SUMMARY_EPISODES)
     evaluation = evaluate(parameters, config, seeds, workers)
     without = None if task.neutral is None else evaluate(task.neutral, config, seeds, workers)
@@ -172,10 +183,11 @@ def _learn(
     recorder: EpisodeRecorder,
     workers: Workers,
     progress_bar: bool,
-) -> OffPolicyAlgorithm:
+) -> Parameters:
+    """Train an agent and save it; its choice is returned."""
     env = EpisodeVecEnv(config.task, config.episode, simulations, config.slots, workers)
-    model = make_algorithm(config, env)
-    model.set_logger(configure(str(run.path), ["csv", "tensorboard"]))
+    model = make_agent(config, env)
+    model.set_logger(recorder.log)
     # The recorder logs every simulation; stable-baselines3's own averages are left out.
     model.learn(
         simulations + config.slots - 1,
@@ -183,7 +195,36 @@ def _learn(
         log_interval=None,  # type: ignore[arg-type]
         progress_bar=progress_bar,
     )
-    return model
+    model.save(run.model_path)
+    return chosen_parameters(model, config)
+
+
+def _search(
+    config: TrainingConfig, simulations: int, recorder: EpisodeRecorder, workers: Workers, progress_bar: bool
+) -> Parameters:
+    """Let a black-box optimiser try parameters, as many in flight as there are slots; its choice is returned."""
+    task = TASKS[config.task]
+    searcher = make_searcher(config.algo, len(task.parameter_names), spread_seed(config))
+    generator = np.random.default_rng(spread_seed(config))
+    running: deque[tuple[np.ndarray, EpisodeSpec, Job]] = deque()
+    for _ in tqdm(range(simulations), disable=not progress_bar):
+        while len(running) == config.slots or not searcher.ready():
+            _tell_oldest(running, searcher, recorder)
+        action = searcher.ask()
+        spec = EpisodeSpec(parameters_from(action, task), draw_seed(generator), config.task, config.episode)
+        running.append((action, spec, workers.submit(simulate, spec)))
+    while running:
+        _tell_oldest(running, searcher, recorder)
+    return parameters_from(searcher.choice(), task)
+
+
+def _tell_oldest(
+    running: deque[tuple[np.ndarray, EpisodeSpec, Job]], searcher: Searcher, recorder: EpisodeRecorder
+) -> None:
+    action, spec, job = running.popleft()
+    result = job.result()
+    searcher.tell(action, result.episode_return)
+    recorder.record({**result.fields(), "seed": spec.seed, "parameters": spec.parameters})
 
 
 def chosen_parameters(model: OffPolicyAlgorithm, config: TrainingConfig) -> Parameters:

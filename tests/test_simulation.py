@@ -101,9 +101,9 @@ def test_standing_pads_carry_a_steady_and_symmetric_load(build: BuildSimulation)
     total = pads.sum(axis=1)
     weight = 30.0 * GRAVITY
     assert (0.75 * weight < total).all() and (total < weight).all()
-    assert np.ptp(total) < 0.1 * weight
+    assert np.ptp(total) < 0.05 * weight
     left, right = pads[:, :2].sum(axis=1).mean(), pads[:, 2:].sum(axis=1).mean()
-    assert abs(left - right) < 0.1 * weight
+    assert abs(left - right) < 0.03 * weight
     assert (pads > 0.15 * weight).all()
 
 

@@ -13,7 +13,7 @@ from tensorboard.backend.event_processing.event_accumulator import EventAccumula
 
 from sarah import training
 from sarah.agents.naf import NAF
-from sarah.config import EpisodeConfig, TrainingConfig
+from sarah.config import SEARCHERS, EpisodeConfig, TrainingConfig
 from sarah.envs import FIRST_TRAINING_SEED
 from sarah.episode import EpisodeSpec, simulate
 from sarah.errors import RunFolderError
@@ -115,6 +115,16 @@ def test_other_algorithms_run_the_same_path(algo: str, algorithm: type[BaseAlgor
     assert isinstance(algorithm.load(run.model_path), algorithm)
     assert len(list(run.episodes())) == 42 and len(learned.parameters) == 5
     assert math.isfinite(learned.evaluation.score_mean)
+
+
+@pytest.mark.parametrize("algo", SEARCHERS)
+def test_optimisers_write_the_same_run_folder(algo: str, tmp_path: Path) -> None:
+    config = TrainingConfig(algo=algo, simulations=20, slots=3, episode=EpisodeConfig(time_limit=1.2))
+    run = RunFolder.create(tmp_path / algo, config)
+    learned = train(config, run)
+    assert len(list(run.episodes())) == 20 and len({row["seed"] for row in run.episodes()}) == 20
+    assert RunFolder.open(run.path).parameters() == learned.parameters
+    assert (run.path / "progress.csv").is_file() and not run.model_path.exists()
 
 
 def test_budget_is_kept_with_environments_side_by_side(tmp_path: Path) -> None:

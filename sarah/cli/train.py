@@ -60,7 +60,10 @@ def _train(arguments: Sequence[str]) -> None:
 
     describe_robot(config.episode.dimensions)  # a bad dimension is refused before anything is written
     from sarah.runs import RunFolder, new_run_path
+    from sarah.search import check_installed
     from sarah.workers import Workers
+
+    check_installed(config.algo)
 
     with Workers(options.workers, options.scheduler) as workers:
         run = RunFolder.create(options.run_dir or new_run_path(config.task, config.algo, config.seed), config)

@@ -1,0 +1,174 @@
+"""What many would take for a few numbers and costly trials: black-box optimisers, behind the same training command.
+
+They see no observation: they are asked for an action, a task's parameters scaled to [-1, 1], and told its return.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from importlib.util import find_spec
+from typing import Any, Protocol
+
+import numpy as np
+
+from sarah.errors import ConfigurationError
+
+PACKAGES = {"cma-es": "cma", "gp": "optuna", "tpe": "optuna"}
+"""Which package an optimiser comes from; the extra ``compare`` installs them."""
+CMA_DEVIATION = 0.6
+"""CMA-ES' first standard deviation, in scaled actions."""
+CMA_POPULATION = 8
+
+
+class Searcher(Protocol):
+    """An optimiser that is asked and told, in the same order, with several trials in between."""
+
+    def ready(self) -> bool:
+        """Whether it can be asked before it is told more."""
+
+    def ask(self) -> np.ndarray:
+        """The next action to try."""
+
+    def tell(self, action: np.ndarray, episode_return: float) -> None:
+        """What came of the oldest action that it was asked for.
+
+        :param action: that action
+        :param episode_return: its return
+        """
+
+    def choice(self) -> np.ndarray:
+        """The action that it would recommend now."""
+
+
+class RandomSearch:
+    """Actions drawn uniformly; it recommends the best one.
+
+    :param dimensions: of an action
+    :param seed: of the draws
+    """
+
+    def __init__(self, dimensions: int, seed: int) -> None:
+        self._generator = np.random.default_rng(seed)
+        self._best = np.zeros(dimensions)
+        self._best_return = -np.inf
+
+    def ready(self) -> bool:
+        """Always."""
+        return True
+
+    def ask(self) -> np.ndarray:
+        """Draw an action."""
+        return self._generator.uniform(-1.0, 1.0, self._best.shape)
+
+    def tell(self, action: np.ndarray, episode_return: float) -> None:
+        """Keep the action if it is the best so far."""
+        if episode_return > self._best_return:
+            self._best, self._best_return = action, episode_return
+
+    def choice(self) -> np.ndarray:
+        """The best single trial's."""
+        return self._best
+
+
+class EvolutionStrategy:
+    """CMA-ES (Hansen and Ostermeier 2001) from the package ``cma``; it recommends its mean.
+
+    A generation is asked for together, and the next one only when all of it has been told.
+
+    :param dimensions: of an action
+    :param seed: of the draws
+    """
+
+    def __init__(self, dimensions: int, seed: int) -> None:
+        import cma
+
+        # The package takes a seed of 0 for the time of day.
+        options = {"bounds": [-1.0, 1.0], "popsize": CMA_POPULATION, "seed": seed % 2**31 + 1, "verbose": -9}
+        self._strategy = cma.CMAEvolutionStrategy(np.zeros(dimensions), CMA_DEVIATION, options)
+        self._unasked: deque[np.ndarray] = deque()
+        self._told: list[tuple[np.ndarray, float]] = []
+        self._generation: list[np.ndarray] = []
+
+    def ready(self) -> bool:
+        """Not while the last of a generation are being tried."""
+        return bool(self._unasked) or len(self._told) == len(self._generation)
+
+    def ask(self) -> np.ndarray:
+        """The next of the generation, or the first of a new one."""
+        if not self._unasked:
+            self._generation, self._told = self._strategy.ask(), []
+            self._unasked.extend(self._generation)
+        return self._unasked.popleft()
+
+    def tell(self, action: np.ndarray, episode_return: float) -> None:
+        """Note a return, and update the distribution once the generation is complete."""
+        self._told.append((action, -episode_return))
+        if len(self._told) == len(self._generation):
+            self._strategy.tell(*zip(*self._told, strict=True))
+
+    def choice(self) -> np.ndarray:
+        """The mean of the distribution."""
+        return np.asarray(self._strategy.result.xfavorite)
+
+
+class OptunaSearch:
+    """One of Optuna's samplers; it recommends the best single trial.
+
+    :param dimensions: of an action
+    :param sampler: that chooses the actions
+    """
+
+    def __init__(self, dimensions: int, sampler: Any) -> None:
+        import optuna
+
+        optuna.logging.set_verbosity(optuna.logging.ERROR)
+        self._study = optuna.create_study(direction="maximize", sampler=sampler)
+        self._box: dict[str, Any] = {
+            str(index): optuna.distributions.FloatDistribution(-1.0, 1.0) for index in range(dimensions)
+        }
+        self._asked: deque[Any] = deque()
+
+    def ready(self) -> bool:
+        """Always: the samplers know of trials that are under way."""
+        return True
+
+    def ask(self) -> np.ndarray:
+        """Begin a trial."""
+        trial = self._study.ask(self._box)
+        self._asked.append(trial)
+        return np.array([trial.params[name] for name in self._box])
+
+    def tell(self, action: np.ndarray, episode_return: float) -> None:
+        """End the oldest trial."""
+        self._study.tell(self._asked.popleft(), episode_return)
+
+    def choice(self) -> np.ndarray:
+        """The best single trial's."""
+        return np.array([self._study.best_params[name] for name in self._box])
+
+
+def make_searcher(algo: str, dimensions: int, seed: int) -> Searcher:
+    """Make an optimiser by name.
+
+    :param algo: ``"cma-es"``, ``"gp"`` (Gaussian process), ``"tpe"`` (tree-structured Parzen estimator), ``"random"``
+    :param dimensions: of an action
+    :param seed: of everything that it draws
+    """
+    if algo == "random":
+        return RandomSearch(dimensions, seed)
+    if algo == "cma-es":
+        return EvolutionStrategy(dimensions, seed)
+    from optuna.samplers import GPSampler, TPESampler
+
+    return OptunaSearch(dimensions, GPSampler(seed=seed) if algo == "gp" else TPESampler(seed=seed))
+
+
+def check_installed(algo: str) -> None:
+    """Refuse an optimiser whose package is not installed.
+
+    :param algo: any algorithm's name
+    :raises ConfigurationError: naming the package and how to install it
+    """
+    package = PACKAGES.get(algo)
+    if package is not None and find_spec(package) is None:
+        raise ConfigurationError(f"algo {algo!r} needs the package {package}: pip install 'sarah[compare]'")
