@@ -1,9 +1,9 @@
 """Which parameters a training recommends: a few candidates, simulated again side by side.
 
 An agent's own choice stops at the edge of a flat crest, the best single episode was lucky, and the reward does not see
-a robot that steps to a clock or drags its feet: what is no gait has no merit here, whatever its score. So the last
-simulations of the budget compare the agent's choice with what did well around it in the episodes so far, each candidate
-on the same new seeds.
+a robot that steps to a clock or drags its feet: what falls short of a gait has less merit here than its score. So the
+last simulations of the budget compare the agent's choice with what did well around it in the episodes so far, each
+candidate on the same new seeds.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sarah.evaluation import is_gait
+from sarah.evaluation import SMALLEST_CLEARANCE, SMALLEST_EVENT_SHARE
 
 Parameters = tuple[float, ...]
 
@@ -28,12 +28,15 @@ DOUBT = 0.25
 
 
 def merit(info: Mapping[str, Any]) -> float:
-    """What an episode says for its parameters: its score, or nothing if the robot did not really step.
+    """What an episode says for its parameters: its score, less in proportion as the robot did not really step.
 
     :param info: the fields of its result
     """
-    steps = is_gait(info["event_driven_shift"], info["event_driven_lift"], info["sole_clearance"])
-    return float(info["score"]) if steps else 0.0
+    shares = (info["event_driven_shift"], info["event_driven_lift"])
+    merit = float(info["score"]) * min(1.0, info["sole_clearance"] / SMALLEST_CLEARANCE)
+    for share in shares:
+        merit *= min(1.0, share / SMALLEST_EVENT_SHARE)
+    return merit
 
 
 def candidate_count(simulations: int) -> int:
