@@ -19,15 +19,15 @@ from sarah.training import train
 from sarah.workers import Workers
 
 
-def kill_every(seconds: float, workers: Workers, done: threading.Event, killed: list[int]) -> None:
+def kill_every(seconds: float | None, workers: Workers, done: threading.Event, killed: list[int]) -> None:
     """Kill the workers in turn."""
     client = workers._client
     assert client is not None
     while not done.wait(seconds):
         pids = sorted(client.run(os.getpid, on_error="ignore").values())
-        pid = pids[len(killed) % len(pids)]
-        os.kill(pid, signal.SIGKILL)
-        killed.append(pid)
+        if pids:  # not all of them are restarting
+            killed.append(pids[len(killed) % len(pids)])
+            os.kill(killed[-1], signal.SIGKILL)
 
 
 def trained(config: TrainingConfig, folder: Path, seconds: float | None) -> tuple[float, list[bytes], int]:
@@ -36,13 +36,16 @@ def trained(config: TrainingConfig, folder: Path, seconds: float | None) -> tupl
     done = threading.Event()
     with Workers(2) as workers:
         list(workers.simulate_all([EpisodeSpec(PAPER_PARAMETERS, seed) for seed in range(4)]))  # warm up
+        killer = threading.Thread(target=kill_every, args=(seconds, workers, done, killed), daemon=True)
         if seconds is not None:
-            threading.Thread(target=kill_every, args=(seconds, workers, done, killed), daemon=True).start()
+            killer.start()
         start = time.perf_counter()
         run = RunFolder.create(folder, config)
         train(config, run, workers)
         elapsed = time.perf_counter() - start
         done.set()
+        if seconds is not None:
+            killer.join()
     weights = zipfile.ZipFile(run.model_path).read("policy.pth")
     files = [(folder / name).read_bytes() for name in ("episodes.csv", "parameters.json")]
     return elapsed, [weights, *files], len(killed)

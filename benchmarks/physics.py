@@ -42,7 +42,7 @@ def main() -> None:
     if options.settings:
         settings = tuple(tuple(map(int, text.split(","))) for text in options.settings)
     further = [tuple(map(float, text.split(","))) for text in options.sets]
-    sets = [parameters for parameters in (*STEPPING_SETS, *BALANCE_SETS, *further)]
+    sets = [*STEPPING_SETS, *BALANCE_SETS, *further]
     print("| Hz, iterations |", " | ".join(", ".join(f"{v:g}" for v in s) for s in sets), "| x real time |")
     print("|---" * (len(sets) + 2) + "|")
     finest: list[float] = []

@@ -17,14 +17,13 @@ from sarah.workers import Workers
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--slots", type=int, nargs="+", default=[1, 4, 16, 64])
+    parser.add_argument("--slots", type=int, nargs="+", default=[1, 4, 8, 32])
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--simulations", type=int, default=99, help="below 100, which has no closing comparison")
     parser.add_argument("--seconds", type=float, default=10.0, help="of each episode")
     parser.add_argument("--runs", type=Path, default=Path("runs/slots"))
     options = parser.parse_args()
-    print(f"| slots | score of simulations {WARM_UP} to {options.simulations} | of the agent's choice | lowest seed |")
-    print("|---|---|---|---|")
+    print("| slots | score while learning | of the agent's choice | lowest seed |\n|---|---|---|---|")
     with Workers(os.cpu_count() or 1) as workers:
         for slots in options.slots:
             learning, final = [], []
@@ -33,7 +32,9 @@ def main() -> None:
                 config = TrainingConfig(simulations=options.simulations, seed=seed, slots=slots, episode=episode)
                 path = options.runs / f"slots{slots}-s{seed}"
                 parameters = learned(config, path, workers)
-                learning.append(mean(float(row["score"]) for row in list(RunFolder(path).episodes())[WARM_UP:]))
+                learning.append(
+                    mean(float(row["score"]) for row in list(RunFolder(path).episodes())[max(WARM_UP, 2 * slots) :])
+                )
                 final.append(evaluate(parameters, config, range(10), workers).score_median)
             print(f"| {slots} | {median(learning):.3f} | {median(final):.3f} | {min(final):.3f} |", flush=True)
 

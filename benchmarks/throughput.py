@@ -22,7 +22,7 @@ from typing import Any
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
 from sarah.bullet import pybullet
-from sarah.config import PHYSICS, TRAINED_STEPPING, EpisodeConfig, Physics, TrainingConfig
+from sarah.config import PHYSICS, STAND_SECONDS, TRAINED_STEPPING, EpisodeConfig, Physics, TrainingConfig
 from sarah.episode import Episode, EpisodeSpec
 from sarah.runs import RunFolder
 from sarah.tasks import STEPPING
@@ -58,8 +58,8 @@ def closed_loop(physics: Physics, limit: float) -> float:
         start = time.perf_counter()
         while episode.termination is None:
             episode.tick()
-        episode.result()
-        return (limit - 1.0) / (time.perf_counter() - start)
+        simulated = episode.result().duration - STAND_SECONDS
+        return simulated / (time.perf_counter() - start)
 
 
 def bare_loop(physics: Physics, limit: float, targets: list[tuple[float, ...]]) -> float:
@@ -70,7 +70,7 @@ def bare_loop(physics: Physics, limit: float, targets: list[tuple[float, ...]]) 
         for command in targets:
             simulation.set_targets(command)
             pybullet.stepSimulation(physicsClientId=client)
-        return (limit - 1.0) / (time.perf_counter() - start)
+        return len(targets) * physics.control_dt / (time.perf_counter() - start)
 
 
 def loops(limit: float, rounds: int) -> dict[str, float]:
@@ -101,7 +101,7 @@ def loops(limit: float, rounds: int) -> dict[str, float]:
 
 def training_seconds(config: TrainingConfig, workers: Workers, folder: Path) -> tuple[float, float]:
     """Seconds of a training from its first step to its last, and how many of them the learner took."""
-    learner = waited = 0.0
+    total = waited = 0.0
     learn, wait = OffPolicyAlgorithm.learn, EpisodeVecEnv.step_wait
 
     def timed_wait(env: EpisodeVecEnv) -> Any:
@@ -113,12 +113,12 @@ def training_seconds(config: TrainingConfig, workers: Workers, folder: Path) -> 
             waited += time.perf_counter() - start
 
     def timed_learn(model: Any, *arguments: Any, **named: Any) -> Any:
-        nonlocal learner
+        nonlocal total
         start = time.perf_counter()
         try:
             return learn(model, *arguments, **named)
         finally:
-            learner += time.perf_counter() - start
+            total += time.perf_counter() - start
 
     EpisodeVecEnv.step_wait = timed_wait  # type: ignore[method-assign]
     OffPolicyAlgorithm.learn = timed_learn  # type: ignore[method-assign]
@@ -127,7 +127,7 @@ def training_seconds(config: TrainingConfig, workers: Workers, folder: Path) -> 
     finally:
         EpisodeVecEnv.step_wait = wait  # type: ignore[method-assign]
         OffPolicyAlgorithm.learn = learn  # type: ignore[method-assign]
-    return learner, learner - waited
+    return total, total - waited
 
 
 def independent_processes(specs: list[EpisodeSpec], folder: Path) -> float:

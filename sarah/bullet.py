@@ -7,6 +7,8 @@ import tempfile
 from importlib import import_module
 from types import ModuleType
 
+from sarah.errors import SimulationError
+
 
 def _import_pybullet() -> ModuleType:
     """Import PyBullet without the build time that it writes to the process's standard error."""
@@ -35,13 +37,13 @@ def take_client() -> int:
     and costs 20 ms less.
 
     :return: PyBullet's number of the client
-    :raises RuntimeError: if there is none left
+    :raises SimulationError: if there is none left
     """
     if _spare_clients:
         return _spare_clients.pop()
     client: int = pybullet.connect(pybullet.DIRECT)
     if client < 0:
-        raise RuntimeError("PyBullet has no free client: close simulations that are done")
+        raise SimulationError("PyBullet has no free client: close simulations that are done")
     return client
 
 

@@ -51,9 +51,19 @@ class Physics:
                 f"not {self.control_rate!r}"
             )
         if self.rate < self.control_rate or self.rate % self.control_rate:
-            raise ConfigurationError(f"physics.rate must be a multiple of {self.control_rate} Hz, not {self.rate!r}")
+            raise ConfigurationError(
+                f"physics.rate must be a multiple of the control rate, {self.control_rate} Hz, not {self.rate!r}"
+            )
         if self.solver_iterations < 1:
             raise ConfigurationError(f"physics.solver_iterations must be at least 1, not {self.solver_iterations!r}")
+
+    def at_control_rate(self, control_rate: int) -> Physics:
+        """The same physics for another control rate; its own rate is raised to the next multiple of that.
+
+        :param control_rate: control ticks per second
+        """
+        multiple = -(-self.rate // control_rate)
+        return Physics(multiple * control_rate, self.solver_iterations, control_rate)
 
     @property
     def control_dt(self) -> float:

@@ -22,6 +22,10 @@ class RunFolderError(SarahError, OSError):
     """A run folder is missing, not empty, or does not hold what it should."""
 
 
+class SimulationError(SarahError, RuntimeError):
+    """The physics engine cannot do what is asked of it."""
+
+
 class WorkersError(SarahError, RuntimeError):
     """Workers that were asked for cannot be reached, or die again and again."""
 

@@ -20,9 +20,13 @@ class Renderer:
 
     def __init__(self, robot: RobotDescription) -> None:
         self._client = take_client()
-        shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self._client)
-        pybullet.createMultiBody(0.0, shape, physicsClientId=self._client)
-        self._body, self._indices = load_robot(self._client, robot.urdf, robot.standing_height, flags=0)
+        try:
+            shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self._client)
+            pybullet.createMultiBody(0.0, shape, physicsClientId=self._client)
+            self._body, self._indices = load_robot(self._client, robot.urdf, robot.standing_height, flags=0)
+        except BaseException:
+            self.close()
+            raise
 
     def draw(
         self,

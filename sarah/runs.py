@@ -15,19 +15,17 @@ from __future__ import annotations
 import csv
 import json
 import os
-import platform
 import shlex
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 from sarah.config import TrainingConfig, read_config, write_config
 from sarah.errors import RunFolderError
 from sarah.tasks import TASKS
+from sarah.versions import versions
 
-PACKAGES = ("sarah", "pybullet", "stable-baselines3", "gymnasium", "torch", "numpy")
 EPISODE_FIELDS = (
     "return",
     "score",
@@ -89,7 +87,8 @@ class RunFolder:
             run = cls(path)
             write_config(config, run._config_path)
             (path / "command.txt").write_text(shlex.join(sys.argv) + "\n", encoding="utf-8")
-            (path / "versions.txt").write_text(_versions(), encoding="utf-8")
+            lines = (f"{name} {version}\n" for name, version in versions().items())
+            (path / "versions.txt").write_text("".join(lines), encoding="utf-8")
         except RunFolderError:
             raise
         except OSError as error:
@@ -169,13 +168,3 @@ class RunFolder:
             return tuple(float(learned[name]) for name in names)
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise RunFolderError(f"{self._parameters_path} does not hold learned parameters: {error}") from error
-
-
-def _versions() -> str:
-    lines = [f"python {platform.python_version()}"]
-    for package in PACKAGES:
-        try:
-            lines.append(f"{package} {version(package)}")
-        except PackageNotFoundError:
-            lines.append(f"{package} not installed as a distribution")
-    return "\n".join(lines) + "\n"

@@ -33,7 +33,7 @@ from sarah.workers import Job, Workers
 
 UPDATES_PER_SIMULATION = 5
 WARM_UP = 40
-"""Simulations before the agent learns; more if more are in flight."""
+"""Simulations before the agent learns; twice the slots, if that is more, so that it begins with as many outcomes."""
 SUMMARY_EPISODES = 10
 """Episodes on unseen seeds that the closing summary's score is the median of."""
 LOGGED_FIELDS = (
@@ -61,7 +61,7 @@ def make_agent(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
     :param env: to learn from
     """
     common: dict[str, Any] = dict(
-        seed=spread_seed(config), gradient_steps=UPDATES_PER_SIMULATION, learning_starts=max(WARM_UP, config.slots)
+        seed=spread_seed(config), gradient_steps=UPDATES_PER_SIMULATION, learning_starts=max(WARM_UP, 2 * config.slots)
     )
     if config.algo == "naf":
         return NAF("MlpPolicy", env, **{**PRESETS["one-step"], "replay_buffer_class": LateRankReplayBuffer, **common})
@@ -97,7 +97,7 @@ class EpisodeRecorder(BaseCallback):
 
     def _on_step(self) -> bool:
         for info in self.locals["infos"]:
-            if "pending" not in info:
+            if info:  # the first steps only fill the slots
                 self.record(info)
         return True
 
@@ -255,6 +255,7 @@ def _compare(
         seed = generator.randrange(FIRST_TRAINING_SEED, 2**32)
         specs += [EpisodeSpec(rival, seed, config.task, config.episode) for rival in rivals]
     merits: dict[Parameters, list[float]] = {rival: [] for rival in rivals}
+    specs = specs[:simulations]
     for spec, result in zip(specs, workers.simulate_all(specs), strict=True):
         recorder.record({**result.fields(), "seed": spec.seed, "parameters": spec.parameters})
         merits[spec.parameters].append(recorder.tried[-1][1])

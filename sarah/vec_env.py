@@ -37,7 +37,7 @@ class EpisodeVecEnv(VecEnv):
 
     Step k hands in the episode of its action and returns the outcome of step ``k - slots + 1``: its return is the
     reward, and ``info["transition"]`` holds its observation, action and last observation. The first ``slots - 1``
-    steps have no outcome: their ``info`` says ``"pending"``. The last ``slots - 1`` steps hand nothing in.
+    steps have no outcome, and an empty ``info``. The last ``slots - 1`` steps hand nothing in.
 
     :param task: ``"stepping"`` or ``"balance"``
     :param config: settings of the episodes
@@ -62,8 +62,8 @@ class EpisodeVecEnv(VecEnv):
 
         :return: the observation of the first, of shape (1, 16)
         """
-        # Seeds of episodes are drawn as SarahEnv draws them.
-        self._env.np_random = np.random.default_rng(self._seeds[0])
+        if self._seeds[0] is not None:  # as SarahEnv: without a new seed its generator goes on
+            self._env.np_random = np.random.default_rng(self._seeds[0])
         self._reset_seeds()
         self._running.clear()
         self._standing.clear()
@@ -82,14 +82,14 @@ class EpisodeVecEnv(VecEnv):
         if self._steps > self._episodes:
             return
         self._stand_another()
-        seed, standing = self._standing.popleft()
+        seed, _ = self._standing.popleft()
         spec = self._spec(seed, parameters_from(actions[0], TASKS[self._task]))
-        job = self._workers.submit(run, spec, near=standing.worker)
+        job = self._workers.submit(run, spec)
         self._running.append(_Running(spec, self._observation, actions[0].copy(), job))
 
     def step_wait(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
         """Wait for the oldest episode in flight, if there are as many as there are slots, and for the next to stand."""
-        reward, info = 0.0, {"pending": True}
+        reward, info = 0.0, dict[str, Any]()
         if self._steps >= self._slots:
             reward, info = self._oldest_outcome()
         self._observe()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import logging
+import signal
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Sequence
 from types import TracebackType
@@ -17,16 +18,17 @@ from sarah.episode import Episode, EpisodeResult, EpisodeSpec, simulate
 from sarah.errors import ConfigurationError, WorkersError
 from sarah.sensors import SensorReading
 from sarah.tasks import TASKS
+from sarah.versions import SIMULATING, versions
 
 if TYPE_CHECKING:
-    from distributed import Client
+    from distributed import Client, LocalCluster
 
 KEPT_STANDING = 64
 """Episodes that a process keeps standing, waiting for their parameters."""
 SCHEDULER_SECONDS = 10
-"""How long to wait for a scheduler to answer."""
-DEATHS_PER_EPISODE = 1000
-"""How many workers may die over one episode before it is taken for the episode's fault."""
+"""How long to wait for a connection to a scheduler."""
+ATTEMPTS = 20
+"""How often an episode is handed in: a scheduler gives it up after the deaths of a few workers."""
 
 _standing: OrderedDict[tuple[Any, ...], Episode] = OrderedDict()
 
@@ -45,9 +47,6 @@ class Outcome(NamedTuple):
 class Job(Protocol):
     """Something that is simulated, now or later, here or elsewhere."""
 
-    worker: str | None
-    """Address of the worker that did it, once it is done; ``None`` for this process."""
-
     def result(self) -> Any:
         """What came of it; waits for it."""
 
@@ -58,12 +57,14 @@ def stand(spec: EpisodeSpec) -> SensorReading:
     :param spec: of the episode; its parameters do not matter
     :return: the sensors' last reading, which the agent acts on
     """
-    episode = Episode(spec.config, spec.seed, TASKS[spec.task])
-    reading = episode.stand()
+    episode = _stood(spec)
+    before = _standing.pop(_key(spec), None)
+    if before is not None:  # whoever asked for it never let it run
+        before.close()
     _standing[_key(spec)] = episode
     if len(_standing) > KEPT_STANDING:
         _standing.popitem(last=False)[1].close()
-    return reading
+    return episode.last_reading
 
 
 def run(spec: EpisodeSpec) -> Outcome:
@@ -71,14 +72,21 @@ def run(spec: EpisodeSpec) -> Outcome:
 
     :param spec: of the episode
     """
-    episode = _standing.pop(_key(spec), None)
-    if episode is None:
-        episode = Episode(spec.config, spec.seed, TASKS[spec.task])
-        episode.stand()
+    episode = _standing.pop(_key(spec), None) or _stood(spec)
     try:
         return Outcome(episode.run(spec.parameters), episode.last_reading)
     finally:
         episode.close()
+
+
+def _stood(spec: EpisodeSpec) -> Episode:
+    episode = Episode(spec.config, spec.seed, TASKS[spec.task])
+    try:
+        episode.stand()
+    except BaseException:
+        episode.close()
+        raise
+    return episode
 
 
 def forget_standing() -> None:
@@ -93,6 +101,8 @@ def _key(spec: EpisodeSpec) -> tuple[Any, ...]:
 
 class Workers:
     """A context in which episodes are simulated.
+
+    Worker processes import the main module: a script that starts some does it under ``if __name__ == "__main__":``.
 
     :param count: worker processes to start on this machine; with none, episodes run in this process, when they are
         asked for
@@ -109,7 +119,7 @@ class Workers:
         self._count = count
         self._scheduler = scheduler
         self._client: Client | None = None
-        self._cluster: Any = None
+        self._cluster: LocalCluster | None = None
 
     def __enter__(self) -> Workers:
         """Start the workers, or find them."""
@@ -129,16 +139,15 @@ class Workers:
         if self._cluster is not None:
             self._cluster.close()
 
-    def submit(self, function: Callable[[EpisodeSpec], Any], spec: EpisodeSpec, near: str | None = None) -> Job:
+    def submit(self, function: Callable[[EpisodeSpec], Any], spec: EpisodeSpec) -> Job:
         """Have something simulated.
 
         :param function: :func:`stand`, :func:`run` or :func:`sarah.simulate`
         :param spec: of the episode
-        :param near: address of the worker that had better do it
         """
         if self._client is None:
             return _LocalJob(function, spec)
-        return _RemoteJob(self._client, function, spec, near)
+        return _RemoteJob(functools.partial(self._client.submit, function, spec, pure=False))
 
     def simulate_all(self, specs: Sequence[EpisodeSpec]) -> Iterator[EpisodeResult]:
         """Simulate many episodes.
@@ -151,60 +160,67 @@ class Workers:
 
 
 class _LocalJob:
-    worker: str | None = None
-
     def __init__(self, function: Callable[[EpisodeSpec], Any], spec: EpisodeSpec) -> None:
         self.result = functools.partial(function, spec)
 
 
 class _RemoteJob:
-    worker: str | None = None
-
-    def __init__(
-        self, client: Client, function: Callable[[EpisodeSpec], Any], spec: EpisodeSpec, near: str | None
-    ) -> None:
-        self._submit = functools.partial(client.submit, _with_address, function, spec, pure=False)
-        self._future = self._submit(workers=[near], allow_other_workers=True) if near else self._submit()
+    def __init__(self, submit: Callable[[], Any]) -> None:
+        self._submit = submit
+        self._future = submit()
 
     def result(self) -> Any:
+        from concurrent.futures import CancelledError
+
         from distributed.scheduler import KilledWorker
 
-        for _ in range(DEATHS_PER_EPISODE):
+        for _ in range(ATTEMPTS):
             try:
-                self.worker, outcome = self._future.result()
-                return outcome
+                return self._future.result()
             except KilledWorker:  # a scheduler gives up after a few deaths, which a pure function need not
                 self._future = self._submit()
-        raise WorkersError(f"an episode was begun {DEATHS_PER_EPISODE} times, and each time its worker died")
-
-
-def _with_address(function: Callable[[EpisodeSpec], Any], spec: EpisodeSpec) -> tuple[str, Any]:
-    """What runs on a Dask worker."""
-    from distributed import get_worker
-
-    return get_worker().address, function(spec)
+            except CancelledError as error:
+                raise WorkersError(f"the connection to the scheduler is lost: {error}") from error
+        raise WorkersError(f"an episode was handed in {ATTEMPTS} times, and each time its workers died")
 
 
 def _connect(address: str) -> Client:
     from distributed import Client
 
     try:
-        return Client(address, timeout=SCHEDULER_SECONDS)
-    except (OSError, ValueError) as error:
+        client = Client(address, timeout=SCHEDULER_SECONDS)
+    except (OSError, ValueError, TypeError, RuntimeError) as error:
         raise WorkersError(f"no Dask scheduler answers at {address!r}: {error}") from error
+    here = versions(SIMULATING)
+    for worker, there in client.run(versions, SIMULATING).items():
+        if there != here:
+            client.close()
+            raise WorkersError(f"worker {worker} has {there}, and results would differ: here is {here}")
+    return client
 
 
-def _start(count: int) -> tuple[Any, Client]:
-    import dask
-    from distributed import Client, LocalCluster
+def _start(count: int) -> tuple[LocalCluster, Client]:
+    from distributed import Client, LocalCluster, WorkerPlugin
 
-    with dask.config.set({"distributed.scheduler.allowed-failures": DEATHS_PER_EPISODE}):
-        cluster = LocalCluster(
-            n_workers=count,
-            threads_per_worker=1,
-            host="127.0.0.1",
-            dashboard_address="127.0.0.1:0",  # any free port; otherwise 8787, which another may hold
-            memory_limit=0,
-            silence_logs=logging.CRITICAL,
-        )
-    return cluster, Client(cluster)
+    class IgnoreInterrupts(WorkerPlugin):
+        """Ctrl-C at a terminal reaches workers too; it is for the training to stop them."""
+
+        def setup(self, worker: Any) -> None:
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    cluster = LocalCluster(
+        n_workers=count,
+        threads_per_worker=1,
+        host="127.0.0.1",
+        dashboard_address="127.0.0.1:0",  # any free port; otherwise 8787, which another may hold
+        security=True,  # others on this machine reach the ports too
+        memory_limit=0,
+        silence_logs=logging.CRITICAL,
+    )
+    try:
+        client = Client(cluster)
+        client.register_plugin(IgnoreInterrupts())
+    except BaseException:
+        cluster.close()
+        raise
+    return cluster, client

@@ -218,7 +218,7 @@ def test_help_loads_nothing_slow(command: str) -> None:
         ("sarah-train --episode.dimensions tigh_length 0.3", "did you mean 'thigh_length'?"),
         ("sarah-train --episode.dimensions thigh_length nan", "must be a finite positive number"),
         ("sarah-train --episode.dimensions thigh_mass 9", "must weigh 10 kg"),
-        ("sarah-train --episode.physics.rate 250", "physics.rate must be a multiple of 100 Hz"),
+        ("sarah-train --episode.physics.rate 250", "physics.rate must be a multiple of the control rate, 100 Hz"),
         ("sarah-train --from nowhere --task balance", "run folder nowhere does not exist"),
         ("sarah-train --task balance --from full", "not the folder of a finished training"),
         ("sarah-train --task balance --episode.stepping 1 1 1 1 3", "parameter P5 must be between 0 and 2, not 3.0"),

@@ -53,7 +53,7 @@ def test_what_a_file_does_not_name_keeps_its_default(tmp_path: Path) -> None:
         ("episode: {time_limit: .inf}", "time_limit must be finite and above 1 s, not inf"),
         ("episode: {time_limit: 1}", "time_limit must be finite and above 1 s, not 1.0"),
         ("episode: {reward_form: printd}", "unknown reward_form 'printd', did you mean 'printed'"),
-        ("episode: {physics: {rate: 333}}", "physics.rate must be a multiple of 100 Hz, not 333"),
+        ("episode: {physics: {rate: 333}}", "physics.rate must be a multiple of the control rate, 100 Hz, not 333"),
         ("episode: {physics: {solver_iterations: 0}}", "physics.solver_iterations must be at least 1, not 0"),
         ("episode: {randomisation: {friction: 0.9}}", "friction must be a list of 2 values, not 0.9"),
         ("episode: {randomisation: {friction: [1.0, 0.7]}}", "friction must be finite, not negative and in rising"),

@@ -127,7 +127,7 @@ def test_optimisers_write_the_same_run_folder(algo: str, tmp_path: Path) -> None
     assert (run.path / "progress.csv").is_file() and not run.model_path.exists()
 
 
-def test_budget_is_kept_with_environments_side_by_side(tmp_path: Path) -> None:
+def test_budget_is_kept_with_episodes_in_flight(tmp_path: Path) -> None:
     config = TrainingConfig(simulations=5, slots=2, episode=EpisodeConfig(time_limit=1.5))
     run = RunFolder.create(tmp_path / "run", config)
     train(config, run)

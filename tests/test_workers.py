@@ -11,13 +11,15 @@ import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
+import dask
 import psutil
 import pytest
 
+from sarah import bullet
 from sarah import workers as workers_module
 from sarah.config import EpisodeConfig, TrainingConfig
 from sarah.episode import EpisodeSpec, simulate
-from sarah.errors import ConfigurationError, WorkersError
+from sarah.errors import ConfigurationError, DescriptionError, WorkersError
 from sarah.runs import RunFolder
 from sarah.training import train
 from sarah.workers import Workers, run, stand
@@ -59,7 +61,10 @@ def test_training_survives_the_death_of_workers(alone: dict[str, bytes], tmp_pat
             while not (tmp_path / "episodes.csv").exists() or len(list(RunFolder(tmp_path).episodes())) < count:
                 time.sleep(0.01)
             assert workers._client is not None
-            pid = next(iter(workers._client.run(os.getpid, on_error="ignore").values()))
+            pids: list[int] = []
+            while not pids:  # while they all restart
+                pids = list(workers._client.run(os.getpid, on_error="ignore").values())
+            pid = pids[0]
             os.kill(pid, signal.SIGKILL)
             killed.append(pid)
 
@@ -108,8 +113,49 @@ def test_results_come_in_the_order_of_the_specifications() -> None:
 def test_an_episode_continues_where_it_stands_or_begins_anew() -> None:
     expected = simulate(SPEC)
     stand(SPEC)
+    assert len(workers_module._standing) == 1
     assert run(SPEC).result == expected
+    assert not workers_module._standing
     assert run(SPEC).result == expected  # that stands nowhere
+
+
+def test_whoever_stands_twice_keeps_one_world() -> None:
+    with Workers():
+        stand(SPEC)
+        worlds = len(bullet._spare_clients)
+        for _ in range(3):
+            stand(SPEC)
+        assert len(workers_module._standing) == 1
+        assert len(bullet._spare_clients) <= worlds + 1  # two at a time, while one takes the other's place
+
+
+def test_an_error_on_a_worker_is_raised_here() -> None:
+    bad = EpisodeSpec(SPEC.parameters, 0, config=EpisodeConfig(dimensions={"thigh_mass": 9.0}))
+    with Workers(1) as workers, pytest.raises(DescriptionError, match="must weigh 10 kg"):
+        list(workers.simulate_all([bad]))
+
+
+def die_twice(folder: str) -> str:
+    attempts = Path(folder) / "attempts"
+    with attempts.open("a") as file:
+        file.write("x")
+    if attempts.stat().st_size <= 2:
+        os._exit(1)
+    return attempts.read_text()
+
+
+def test_what_a_scheduler_gives_up_is_handed_in_again(tmp_path: Path) -> None:
+    with dask.config.set({"distributed.scheduler.allowed-failures": 0}), Workers(1) as workers:
+        assert workers.submit(die_twice, str(tmp_path)).result() == "xxx"  # type: ignore[arg-type]
+
+
+def test_workers_are_left_alone_by_an_interrupt() -> None:
+    with Workers(1) as workers:
+        assert workers._client is not None
+        (pid,) = workers._client.run(os.getpid).values()
+        os.kill(pid, signal.SIGINT)
+        assert list(workers.simulate_all([SPEC])) == [simulate(SPEC)]
+        assert list(workers._client.run(os.getpid).values()) == [pid]
 
 
 def test_standing_episodes_are_bounded_and_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:

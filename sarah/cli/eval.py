@@ -137,7 +137,7 @@ def _changed(config: EpisodeConfig, options: EvalOptions, task: str) -> EpisodeC
         if task == STEPPING.name and getattr(options, name) is not None:
             raise ConfigurationError(f"--{name.replace('_', '-')} is for --task balance")
     if options.physics is not None:
-        physics = dataclasses.replace(PHYSICS[options.physics], control_rate=config.physics.control_rate)
+        physics = PHYSICS[options.physics].at_control_rate(config.physics.control_rate)
         config = dataclasses.replace(config, physics=physics)
     if not options.randomisation:
         config = dataclasses.replace(config, randomisation=dataclasses.replace(config.randomisation, enabled=False))

@@ -1,0 +1,24 @@
+"""Which versions of what results depend on are installed here."""
+
+from __future__ import annotations
+
+import platform
+from importlib.metadata import PackageNotFoundError, version
+
+PACKAGES = ("sarah", "pybullet", "numpy", "stable-baselines3", "gymnasium", "torch", "distributed")
+SIMULATING = ("sarah", "pybullet", "numpy")
+"""Those that an episode's bytes depend on."""
+
+
+def versions(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
+    """Versions by name, Python's first.
+
+    :param packages: names of distributions
+    """
+    found = {"python": platform.python_version()}
+    for package in packages:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            found[package] = "not installed as a distribution"
+    return found
