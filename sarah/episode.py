@@ -284,7 +284,7 @@ class Episode:
         (x, y, z), (start_x, start_y, start_z) = torso.position, self._first.position
         if max(abs(x - start_x), abs(y - start_y), abs(z - start_z)) > BOX_HALF_WIDTH:
             return "left_box"
-        if torso.tilt > LARGEST_TILT:
+        if torso.upright < math.cos(LARGEST_TILT):
             return "fell"
         half_tick = self._dt / 2
         if steps < OSCILLATION_STEPS and time > OSCILLATION_SECONDS - half_tick:

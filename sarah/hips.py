@@ -50,6 +50,8 @@ class Side(Enum):
     LEFT = -1
     RIGHT = 1
 
+    __hash__ = object.__hash__  # Enum's own is slow, and every tick looks legs up
+
     @property
     def other(self) -> Side:
         """The opposite leg."""

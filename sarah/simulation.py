@@ -78,10 +78,14 @@ class Simulation:
             | pybullet.URDF_USE_SELF_COLLISION_INCLUDE_PARENT,
         )
         self._joints = [self._links[name] for name in ACTUATED_JOINTS]
-        self._pads = {
-            (self._links[f"{side}_shank"], self._links[f"{side}_{plate}"]): index
-            for index, (side, plate) in enumerate(product(SIDES, PLATES))
-        }
+        self._pads: dict[tuple[int, int], int] = {}
+        for index, (side, plate) in enumerate(product(SIDES, PLATES)):
+            shank, foot = self._links[f"{side}_shank"], self._links[f"{side}_{plate}"]
+            self._pads[shank, foot] = self._pads[foot, shank] = index
+        self._feet = {}
+        for side in SIDES:
+            plates = [f"{side}_{plate}" for plate in PLATES]
+            self._feet[side] = ([self._links[name] for name in plates], [self.robot.soles[name] for name in plates])
         self._keep_only_pad_contacts()
         self._apply_conditions(conditions)
         # A servo's share of the way in one physics step, so that it is the same first-order lag at every rate.
@@ -189,7 +193,7 @@ class Simulation:
             rotate_to_body(torso.orientation, specific_force),
             rotate_to_body(torso.orientation, torso.angular_velocity),
             self._pressures(),
-            tuple(state[0] for state in self._joint_states),  # type: ignore[arg-type]  # six of them
+            tuple([state[0] for state in self._joint_states]),  # type: ignore[arg-type]  # six of them
         )
 
     def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
@@ -205,7 +209,7 @@ class Simulation:
         """Speeds (rad/s, m/s) and efforts (Nm, N) of the actuators, in the order of ``ACTUATED_JOINTS``."""
         states = self._joint_states
         # As with contacts, PyBullet reports the impulse of the last substep over the whole tick.
-        return tuple(state[1] for state in states), tuple(state[3] * self._substeps for state in states)
+        return tuple([state[1] for state in states]), tuple([state[3] * self._substeps for state in states])
 
     def _actuator_states(self) -> tuple[tuple[float, ...], ...]:
         """PyBullet's position, speed, reaction and effort of each actuator."""
@@ -215,10 +219,8 @@ class Simulation:
     def _pressures(self) -> tuple[float, float, float, float]:
         loads = [0.0, 0.0, 0.0, 0.0]
         for contact in pybullet.getContactPoints(self._body, self._body, physicsClientId=self._client):
-            pad = self._pads.get((contact[3], contact[4]), self._pads.get((contact[4], contact[3])))
-            if pad is not None:
-                # PyBullet reports the impulse of the last substep over the whole tick.
-                loads[pad] += contact[9] * self._substeps
+            # PyBullet reports the impulse of the last substep over the whole tick.
+            loads[self._pads[contact[3], contact[4]]] += contact[9] * self._substeps
         return (loads[0], loads[1], loads[2], loads[3])
 
     def sole_height(self, side: str) -> float:
@@ -227,12 +229,11 @@ class Simulation:
         :param side: ``"left"`` or ``"right"``
         """
         lowest = math.inf
-        for plate in (f"{side}_forefoot", f"{side}_hindfoot"):
-            state = pybullet.getLinkState(
-                self._body, self._links[plate], computeForwardKinematics=1, physicsClientId=self._client
-            )
+        links, soles = self._feet[side]
+        states = pybullet.getLinkStates(self._body, links, computeForwardKinematics=1, physicsClientId=self._client)
+        for state, contacts in zip(states, soles, strict=True):
             frame_height, (x, y, z, w) = state[4][2], state[5]
-            for sole_x, sole_y, sole_z in self.robot.soles[plate]:
+            for sole_x, sole_y, sole_z in contacts:
                 height = frame_height + (
                     2.0 * (x * z - w * y) * sole_x
                     + 2.0 * (y * z + w * x) * sole_y

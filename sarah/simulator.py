@@ -28,10 +28,15 @@ class TorsoState(NamedTuple):
     angular_velocity: Vector
 
     @property
+    def upright(self) -> float:
+        """Cosine of the angle between the torso's axis and the vertical."""
+        x, y, _, _ = self.orientation
+        return 1.0 - 2.0 * (x * x + y * y)
+
+    @property
     def tilt(self) -> float:
         """Angle between the torso's axis and the vertical, in rad."""
-        x, y, _, _ = self.orientation
-        return math.acos(max(-1.0, min(1.0, 1.0 - 2.0 * (x * x + y * y))))
+        return math.acos(max(-1.0, min(1.0, self.upright)))
 
     @property
     def is_finite(self) -> bool:
