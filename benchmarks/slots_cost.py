@@ -10,8 +10,9 @@ from statistics import mean, median
 from trainings import learned
 
 from sarah.config import EpisodeConfig, TrainingConfig
+from sarah.learning import WARM_UP
 from sarah.runs import RunFolder
-from sarah.training import WARM_UP, evaluate
+from sarah.training import evaluate
 from sarah.workers import Workers
 
 

@@ -2,6 +2,7 @@
 
     config.yaml  command.txt  versions.txt     what was run, how, and with which versions
     episodes.csv                               one row per simulation; any row can be simulated again
+    choices.csv                                what would have been chosen, every five simulations
     progress.csv  events.out.tfevents.*        the learning curves, for tables and for TensorBoard
     model.zip                                  the agent, in stable-baselines3's format; optimisers have none
     parameters.json                            the learned parameters: what a robot would be sent
@@ -70,6 +71,7 @@ class RunFolder:
         self.figures_path = path / "figures"
         self._config_path = path / "config.yaml"
         self._episodes_path = path / "episodes.csv"
+        self._choices_path = path / "choices.csv"
         self._parameters_path = path / "parameters.json"
 
     @classmethod
@@ -132,19 +134,25 @@ class RunFolder:
             "y": y,
             **dict(zip(parameter_names, info["parameters"], strict=True)),
         }
-        is_new = not self._episodes_path.exists()
-        with self._episodes_path.open("a", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, fields)
-            if is_new:
-                writer.writeheader()
-            writer.writerow(row)
+        _append_row(self._episodes_path, fields, row)
 
     def episodes(self) -> Iterator[dict[str, str]]:
         """Read ``episodes.csv``, row by row, as text; nothing if nothing has been simulated yet."""
-        if not self._episodes_path.exists():
-            return
-        with self._episodes_path.open(newline="", encoding="utf-8") as file:
-            yield from csv.DictReader(file)
+        return _rows(self._episodes_path)
+
+    def append_choice(self, simulations: int, parameter_names: Sequence[str], parameters: Sequence[float]) -> None:
+        """Add a row to ``choices.csv``.
+
+        :param simulations: that the choice knows of
+        :param parameter_names: column names of the parameters
+        :param parameters: that would be chosen
+        """
+        row = {"simulations": simulations, **dict(zip(parameter_names, parameters, strict=True))}
+        _append_row(self._choices_path, ("simulations", *parameter_names), row)
+
+    def choices(self) -> Iterator[dict[str, str]]:
+        """Read ``choices.csv``, row by row, as text."""
+        return _rows(self._choices_path)
 
     def write_parameters(self, content: Mapping[str, Any]) -> None:
         """Write ``parameters.json``.
@@ -168,3 +176,19 @@ class RunFolder:
             return tuple(float(learned[name]) for name in names)
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise RunFolderError(f"{self._parameters_path} does not hold learned parameters: {error}") from error
+
+
+def _append_row(path: Path, fields: Sequence[str], row: Mapping[str, Any]) -> None:
+    is_new = not path.exists()
+    with path.open("a", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, fields)
+        if is_new:
+            writer.writeheader()
+        writer.writerow(row)
+
+
+def _rows(path: Path) -> Iterator[dict[str, str]]:
+    if not path.exists():
+        return
+    with path.open(newline="", encoding="utf-8") as file:
+        yield from csv.DictReader(file)

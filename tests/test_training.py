@@ -34,7 +34,15 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
 
 def test_run_folder_holds_what_it_should(run: RunFolder) -> None:
     names = {path.name for path in run.path.iterdir()}
-    expected = {"config.yaml", "command.txt", "versions.txt", "episodes.csv", "progress.csv", "model.zip"}
+    expected = {
+        "config.yaml",
+        "command.txt",
+        "versions.txt",
+        "episodes.csv",
+        "choices.csv",
+        "progress.csv",
+        "model.zip",
+    }
     assert expected | {"parameters.json"} <= names
     assert any(name.startswith("events.out.tfevents") for name in names)
     assert run.config() == SHORT
@@ -50,6 +58,13 @@ def test_every_simulation_has_its_row_and_can_be_repeated(run: RunFolder) -> Non
     assert float(row["return"]) == result.episode_return
     assert (float(row["x"]), float(row["y"])) == result.final_position[:2]
     assert row["termination"] == result.termination
+
+
+def test_what_would_be_chosen_is_noted_every_five_simulations(run: RunFolder) -> None:
+    choices = list(run.choices())
+    assert [int(row["simulations"]) for row in choices] == list(range(5, 45, 5))
+    parameters = [tuple(float(row[name]) for name in STEPPING.parameter_names) for row in choices]
+    assert set(parameters) == {(1.0,) * 5}  # the centre of the box, until it has learned
 
 
 def test_tensorboard_shows_the_episodes_the_parameters_and_the_learning(run: RunFolder) -> None:

@@ -1,0 +1,150 @@
+"""How parameters are learned: by an agent of stable-baselines3's kind, or by a black-box optimiser."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections import deque
+from typing import Any
+
+import numpy as np
+from stable_baselines3 import DDPG, SAC, TD3
+from stable_baselines3.common.noise import NormalActionNoise
+from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
+from stable_baselines3.common.vec_env import VecEnv
+from tqdm import tqdm
+
+from sarah.agents.naf import NAF, PRESETS
+from sarah.config import SEARCHERS, Randomisation, TrainingConfig
+from sarah.envs import draw_seed, observation_from, parameters_from
+from sarah.episode import Episode, EpisodeSpec, simulate
+from sarah.recommendation import Parameters
+from sarah.recorder import EpisodeRecorder
+from sarah.runs import RunFolder
+from sarah.search import Searcher, make_searcher
+from sarah.tasks import TASKS, Task
+from sarah.vec_env import EpisodeVecEnv, LateRankReplayBuffer, LateReplayBuffer
+from sarah.workers import Job, Workers
+
+UPDATES_PER_SIMULATION = 5
+WARM_UP = 40
+"""Simulations before the agent learns; twice the slots, if that is more, so that it begins with as many outcomes."""
+
+
+def learn(
+    config: TrainingConfig,
+    simulations: int,
+    run: RunFolder,
+    recorder: EpisodeRecorder,
+    workers: Workers,
+    progress_bar: bool,
+) -> Parameters:
+    """Learn by what the configuration names.
+
+    :param config: of the training
+    :param simulations: to learn from
+    :param run: where an agent is saved
+    :param recorder: of the simulations
+    :param workers: that simulate
+    :param progress_bar: whether to show one
+    :return: the choice in the end
+    """
+    if config.algo in SEARCHERS:
+        return _search(config, simulations, recorder, workers, progress_bar)
+    env = EpisodeVecEnv(config.task, config.episode, simulations, config.slots, workers)
+    model = make_agent(config, env)
+    model.set_logger(recorder.log)
+    standing = nominal_observation(config)
+    recorder.choose = lambda: chosen_parameters(model, standing, TASKS[config.task])
+    # The recorder logs every simulation; stable-baselines3's own averages are left out.
+    model.learn(
+        simulations + config.slots - 1,
+        callback=recorder,
+        log_interval=None,  # type: ignore[arg-type]
+        progress_bar=progress_bar,
+    )
+    model.save(run.model_path)
+    return recorder.choose()
+
+
+def spread_seed(config: TrainingConfig) -> int:
+    """The seed of what learns and of its episodes: from neighbouring seeds come trainings that share no episode."""
+    return int(np.random.SeedSequence(config.seed).generate_state(1)[0]) // 2
+
+
+def make_agent(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
+    """Make the reinforcement learner that a configuration names, with the settings that suit one action per episode.
+
+    :param config: of the training
+    :param env: to learn from
+    """
+    common: dict[str, Any] = dict(
+        seed=spread_seed(config), gradient_steps=UPDATES_PER_SIMULATION, learning_starts=max(WARM_UP, 2 * config.slots)
+    )
+    if config.algo == "naf":
+        return NAF("MlpPolicy", env, **{**PRESETS["one-step"], "replay_buffer_class": LateRankReplayBuffer, **common})
+    # Their defaults are for long episodes of small rewards; here the reward is the return.
+    settings = dict(
+        batch_size=64,
+        gamma=0.0,
+        policy_kwargs=dict(net_arch=[64, 64]),
+        replay_buffer_class=LateReplayBuffer,
+        **common,
+    )
+    if config.algo == "sac":
+        return SAC("MlpPolicy", env, **settings)
+    dimensions = len(TASKS[config.task].parameter_names)
+    noise = NormalActionNoise(np.zeros(dimensions), np.full(dimensions, 0.2))
+    return {"td3": TD3, "ddpg": DDPG}[config.algo]("MlpPolicy", env, action_noise=noise, **settings)
+
+
+def nominal_observation(config: TrainingConfig) -> np.ndarray:
+    """What the agent sees when the robot as designed stands before it.
+
+    :param config: of the training; the randomisation is left out
+    """
+    nominal = dataclasses.replace(config.episode, randomisation=Randomisation(enabled=False, start_speed=0.0))
+    episode = Episode(nominal, 0, TASKS[config.task])
+    try:
+        return observation_from(episode.stand())
+    finally:
+        episode.close()
+
+
+def chosen_parameters(model: OffPolicyAlgorithm, observation: np.ndarray, task: Task) -> Parameters:
+    """What the agent does, without exploration.
+
+    :param model: the agent
+    :param observation: that it acts on
+    :param task: whose parameters they are
+    """
+    action, _ = model.predict(observation, deterministic=True)
+    return parameters_from(action, task)
+
+
+def _search(
+    config: TrainingConfig, simulations: int, recorder: EpisodeRecorder, workers: Workers, progress_bar: bool
+) -> Parameters:
+    """Let a black-box optimiser try parameters, as many in flight as there are slots; its choice is returned."""
+    task = TASKS[config.task]
+    searcher = make_searcher(config.algo, len(task.parameter_names), spread_seed(config))
+    generator = np.random.default_rng(spread_seed(config))
+    recorder.choose = lambda: parameters_from(searcher.choice(), task)
+    running: deque[tuple[np.ndarray, EpisodeSpec, Job]] = deque()
+    for _ in tqdm(range(simulations), disable=not progress_bar):
+        while len(running) == config.slots or not searcher.ready():
+            _tell_oldest(running, searcher, recorder)
+        action = searcher.ask()
+        spec = EpisodeSpec(parameters_from(action, task), draw_seed(generator), config.task, config.episode)
+        running.append((action, spec, workers.submit(simulate, spec)))
+    while running:
+        _tell_oldest(running, searcher, recorder)
+    return recorder.choose()
+
+
+def _tell_oldest(
+    running: deque[tuple[np.ndarray, EpisodeSpec, Job]], searcher: Searcher, recorder: EpisodeRecorder
+) -> None:
+    action, spec, job = running.popleft()
+    result = job.result()
+    searcher.tell(action, result.episode_return)
+    recorder.record({**result.fields(), "seed": spec.seed, "parameters": spec.parameters})
