@@ -11,7 +11,7 @@ import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import matplotlib
 
@@ -27,6 +27,9 @@ from sarah.errors import RunFolderError
 from sarah.robustness import PushedEpisode, survival_by_direction
 from sarah.runs import RunFolder
 from sarah.tasks import BALANCE, STEPPING, Task
+
+if TYPE_CHECKING:  # it brings the trainings with it
+    from sarah.comparison import Curve
 
 COLUMN_WIDTH = 3.5
 """Of a two-column page, in inches."""
@@ -161,6 +164,27 @@ def running_median(values: np.ndarray) -> np.ndarray:
     """
     half = WINDOW // 2
     return np.array([np.median(values[max(0, i - half) : i + half + 1]) for i in range(len(values))])
+
+
+def draw_race(curves: Sequence[Curve], path: Path) -> list[Path]:
+    """Draw the score of what each algorithm would choose against simulations: median and quartiles over its runs.
+
+    :param curves: of all trainings
+    :param path: of the picture, without suffix
+    :return: the files, PNG and PDF
+    """
+    with plt.rc_context(STYLE):
+        figure, axis = plt.subplots(figsize=(COLUMN_WIDTH, 0.8 * COLUMN_WIDTH), layout="constrained")
+        for algo in dict.fromkeys(curve.algo for curve in curves):
+            runs = [curve for curve in curves if curve.algo == algo]
+            simulations = runs[0].simulations
+            low, middle, high = np.quantile([run.scores for run in runs], (0.25, 0.5, 0.75), axis=0)
+            axis.fill_between(simulations, low, high, color=COLOURS[algo], alpha=0.15, linewidth=0)
+            axis.plot(simulations, middle, color=COLOURS[algo], linewidth=1.2, label=f"{algo.upper()} ({len(runs)})")
+        axis.set_xlabel("simulations")
+        axis.set_ylabel("score on unseen seeds")
+        figure.legend(loc="outside upper center", ncols=4)
+        return _save(figure, path)
 
 
 def draw_survival(controllers: Mapping[str, Sequence[PushedEpisode]], path: Path) -> list[Path]:

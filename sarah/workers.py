@@ -139,15 +139,15 @@ class Workers:
         if self._cluster is not None:
             self._cluster.close()
 
-    def submit(self, function: Callable[[EpisodeSpec], Any], spec: EpisodeSpec) -> Job:
-        """Have something simulated.
+    def submit(self, function: Callable[[Any], Any], subject: Any) -> Job:
+        """Have something done: simulated, or trained.
 
-        :param function: :func:`stand`, :func:`run` or :func:`sarah.simulate`
-        :param spec: of the episode
+        :param function: :func:`stand`, :func:`run`, :func:`sarah.simulate`, or another one of a module
+        :param subject: of the function: an episode's specification, or what else it takes
         """
         if self._client is None:
-            return _LocalJob(function, spec)
-        return _RemoteJob(functools.partial(self._client.submit, function, spec, pure=False))
+            return _LocalJob(function, subject)
+        return _RemoteJob(functools.partial(self._client.submit, function, subject, pure=False))
 
     def simulate_all(self, specs: Sequence[EpisodeSpec]) -> Iterator[EpisodeResult]:
         """Simulate many episodes.
@@ -160,8 +160,8 @@ class Workers:
 
 
 class _LocalJob:
-    def __init__(self, function: Callable[[EpisodeSpec], Any], spec: EpisodeSpec) -> None:
-        self.result = functools.partial(function, spec)
+    def __init__(self, function: Callable[[Any], Any], subject: Any) -> None:
+        self.result = functools.partial(function, subject)
 
 
 class _RemoteJob:

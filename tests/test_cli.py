@@ -58,6 +58,15 @@ def test_workers_train_and_evaluate_the_same(
     assert "score" in tables[0] and tables[0] == tables[1]
 
 
+def test_compare_ends_with_table_and_plot(tmp_path: Path) -> None:
+    arguments = ("--algorithms", "naf", "random", "--seeds", "1", "--simulations", "6", "--episodes", "1")
+    process = run("sarah-compare", "race", *arguments, *SHORT, "--workers", "2", cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    assert "| naf | 1 |" in process.stdout and "| random | 1 |" in process.stdout
+    names = {path.name for path in (tmp_path / "race").iterdir()}
+    assert names == {"naf-s0", "random-s0", "race.md", "race.csv", "race.png", "race.pdf"}
+
+
 def test_eval_summarises_a_run(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
     folder, _ = trained
     process = run("sarah-eval", str(folder), "--episodes", "2", cwd=folder)
@@ -160,6 +169,7 @@ def test_training_is_configured_by_a_file_and_overridden_by_options(tmp_path: Pa
             ("--task", "--algo", "--simulations", "--seed", "--run-dir", "--config", "--workers", "--scheduler"),
         ),
         ("sarah-figures", ("RUN", "--out")),
+        ("sarah-compare", ("DIR", "--algorithms", "--seeds", "--simulations", "--best-known", "--workers")),
         ("sarah-eval", ("RUN", "--episodes", "--first-seed", "--json", "--parameters", "--task")),
     ],
 )
@@ -186,7 +196,7 @@ def test_a_reader_who_has_had_enough_is_no_error(tmp_path: Path) -> None:
     assert process.stderr == ""
 
 
-@pytest.mark.parametrize("command", ["train", "eval", "figures"])
+@pytest.mark.parametrize("command", ["train", "eval", "figures", "compare"])
 def test_help_loads_nothing_slow(command: str) -> None:
     program = (
         f"import sys\nfrom sarah.cli.{command} import main\nsys.argv = ['command', '--help']\n"
@@ -247,6 +257,9 @@ def test_help_loads_nothing_slow(command: str) -> None:
         ("sarah-eval --task balance --parameters 1,0,1,0 --robustness x --push-newtons 0", "must be above 0"),
         ("sarah-eval --task balance --parameters 1,0,1,0 --robustness full/precious.txt", "cannot write folder full/"),
         ("sarah-figures", "give at least one run folder"),
+        ("sarah-compare", "give a folder for the race"),
+        ("sarah-compare race --algorithms nafff", "unknown algo 'nafff', did you mean 'naf'?"),
+        ("sarah-compare race --seeds 0", "seeds must be at least 1, not 0"),
         ("sarah-figures full full", "several runs need a folder for their figures: --out DIR"),
         ("sarah-figures full", "not the folder of a finished training"),
         ("sarah-eval", "give either a run folder or --parameters"),

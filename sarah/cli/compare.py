@@ -1,0 +1,88 @@
+"""``sarah-compare``: a race of algorithms."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from sarah.cli.options import parse_options, run_command
+from sarah.config import ALGORITHMS, EpisodeConfig, TrainingConfig
+from sarah.errors import ConfigurationError
+
+COMMAND = "sarah-compare"
+
+
+@dataclass(frozen=True)
+class CompareOptions:
+    """Train several algorithms with several seeds each, and see which needs the fewest simulations.
+
+    What a training would have chosen after every five simulations is evaluated on unseen seeds. The table says after
+    how many simulations 90 % and 95 % of the best known score are reached and held over three evaluations, and the
+    final score; it is printed, and written to the folder with a plot. A race that was interrupted goes on where it was.
+
+    :param out: folder of the race; its run folders go there too
+    :param algorithms: to compare
+    :param seeds: how many trainings of each
+    :param first_seed: of the trainings
+    :param task: what to learn: ``stepping`` or ``balance``
+    :param simulations: budget of each training
+    :param slots: episodes in flight in each training
+    :param episode: settings of the episodes
+    :param episodes: unseen seeds that every choice is evaluated on
+    :param best_known: score that shares are taken of; by default the best final one of the race
+    :param workers: processes that train, on this machine, one training each; with none, this process does
+    :param scheduler: address of a Dask scheduler whose workers train instead; they must share the folder
+    """
+
+    out: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="DIR")] = None
+    algorithms: tuple[str, ...] = ALGORITHMS
+    seeds: int = 5
+    first_seed: int = 0
+    task: str = "stepping"
+    simulations: int = 100
+    slots: int = 1
+    episode: EpisodeConfig = EpisodeConfig()
+    episodes: int = 10
+    best_known: Annotated[float | None, tyro.conf.arg(metavar="FLOAT")] = None
+    workers: int = 0
+    scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
+
+
+def main() -> None:
+    """Run the command with the arguments of the process."""
+    run_command(COMMAND, _compare)
+
+
+def _compare(arguments: Sequence[str]) -> None:
+    options = parse_options(CompareOptions, COMMAND, arguments, CompareOptions())
+    if options.out is None:
+        raise ConfigurationError("give a folder for the race")
+    for name, value in (("seeds", options.seeds), ("episodes", options.episodes), ("algorithms", options.algorithms)):
+        if not value or (isinstance(value, int) and value < 1):
+            raise ConfigurationError(f"{name} must be at least 1, not {value!r}")
+    base = TrainingConfig(
+        task=options.task, simulations=options.simulations, slots=options.slots, episode=options.episode
+    )
+    from sarah.search import check_installed
+
+    for algo in options.algorithms:
+        check_installed(algo)
+    from sarah.comparison import as_markdown, entries_of, race, standings, write_csv
+    from sarah.figures import draw_race
+    from sarah.workers import Workers
+
+    seeds = range(options.first_seed, options.first_seed + options.seeds)
+    entries = entries_of(options.algorithms, seeds, base, options.episodes, options.out)
+    options.out.mkdir(parents=True, exist_ok=True)
+    with Workers(options.workers, options.scheduler) as workers:
+        curves = race(entries, workers)
+    table = standings(curves, options.best_known)
+    print(as_markdown(table))
+    (options.out / "race.md").write_text(as_markdown(table) + "\n", encoding="utf-8")
+    write_csv(table, options.out / "race.csv")
+    for file in draw_race(curves, options.out / "race"):
+        print(file)
