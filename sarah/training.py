@@ -12,10 +12,10 @@ from stable_baselines3.common.logger import configure
 
 from sarah.config import TrainingConfig
 from sarah.envs import FIRST_TRAINING_SEED
-from sarah.episode import EpisodeSpec
+from sarah.episode import EpisodeResult, EpisodeSpec
 from sarah.evaluation import Evaluation, summarise
 from sarah.learning import learn
-from sarah.recommendation import SIMULATIONS_PER_CANDIDATE, Parameters, candidate_count, candidates
+from sarah.recommendation import SIMULATIONS_PER_CANDIDATE, Parameters, candidate_count, candidates, merit
 from sarah.recorder import EpisodeRecorder
 from sarah.runs import RunFolder
 from sarah.tasks import BALANCE, TASKS
@@ -61,11 +61,11 @@ def train(
     choice = learn(config, config.simulations - compared, run, recorder, workers, progress_bar)
     recorder.choose = None
     rivals = candidates(choice, recorder.tried, count, task.high - task.low)
-    parameters = _compare(rivals, compared, config, recorder, workers)
-    log.close()
     seeds = range(SUMMARY_EPISODES)
-    evaluation = evaluate(parameters, config, seeds, workers)
     without = None if task.neutral is None else evaluate(task.neutral, config, seeds, workers)
+    parameters = _compare(rivals, compared, config, recorder, workers, without)
+    log.close()
+    evaluation = evaluate(parameters, config, seeds, workers)
     run.write_parameters(
         {
             "task": config.task,
@@ -83,20 +83,34 @@ def train(
 
 
 def _compare(
-    rivals: list[Parameters], simulations: int, config: TrainingConfig, recorder: EpisodeRecorder, workers: Workers
+    rivals: list[Parameters],
+    simulations: int,
+    config: TrainingConfig,
+    recorder: EpisodeRecorder,
+    workers: Workers,
+    without: Evaluation | None,
 ) -> Parameters:
-    """Simulate the candidates in turn, each round on one seed for all, and return the one of the best mean merit."""
+    """Simulate the candidates in turn, each round on one seed for all, and return the best."""
     generator = random.Random(config.seed)
     specs: list[EpisodeSpec] = []
     while len(specs) < simulations:
         seed = generator.randrange(FIRST_TRAINING_SEED, 2**32)
         specs += [EpisodeSpec(rival, seed, config.task, config.episode) for rival in rivals]
-    merits: dict[Parameters, list[float]] = {rival: [] for rival in rivals}
+    results: dict[Parameters, list[EpisodeResult]] = {rival: [] for rival in rivals}
     specs = specs[:simulations]
     for spec, result in zip(specs, workers.simulate_all(specs), strict=True):
         recorder.record({**result.fields(), "seed": spec.seed, "parameters": spec.parameters})
-        merits[spec.parameters].append(recorder.tried[-1][1])
-    return max(rivals, key=lambda rival: mean(merits[rival] or [0.0]))
+        results[spec.parameters].append(result)
+    return max(rivals, key=lambda rival: _rank(results[rival], without))
+
+
+def _rank(results: list[EpisodeResult], without: Evaluation | None) -> tuple[bool, float]:
+    """What is a gait and does not chatter comes first, and among equals the best mean merit."""
+    if not results:
+        return (False, 0.0)
+    evaluation = summarise(results)
+    chatters = without is not None and evaluation.chatters(without)
+    return (evaluation.is_gait and not chatters, mean(merit(result.fields()) for result in results))
 
 
 def evaluate(

@@ -1,6 +1,7 @@
 """A short training in this process: the run folder it leaves, and that it repeats."""
 
 import csv
+import dataclasses
 import json
 import math
 from pathlib import Path
@@ -17,6 +18,8 @@ from sarah.config import SEARCHERS, EpisodeConfig, TrainingConfig
 from sarah.envs import FIRST_TRAINING_SEED
 from sarah.episode import EpisodeSpec, simulate
 from sarah.errors import RunFolderError
+from sarah.evaluation import summarise
+from sarah.pattern_generator import PAPER_PARAMETERS
 from sarah.runs import RunFolder, new_run_path
 from sarah.tasks import BALANCE, STEPPING
 from sarah.training import train
@@ -213,3 +216,14 @@ def test_parameters_are_read_by_name_whatever_their_order(tmp_path: Path) -> Non
     run = RunFolder.create(tmp_path / "run", SHORT)
     run.write_parameters({"parameters": {"P5": 5, "P2": 2, "P1": 1, "P4": 4, "P3": 3}})
     assert run.parameters() == (1, 2, 3, 4, 5)
+
+
+def test_what_chatters_or_is_no_gait_comes_last() -> None:
+    walking = simulate(EpisodeSpec(PAPER_PARAMETERS, 0, config=EpisodeConfig(time_limit=4.0)))
+    without = summarise([walking])
+    dragging = dataclasses.replace(walking, score=0.95, sole_clearance=0.0099)
+    chattering = dataclasses.replace(walking, score=0.95, vibration=2.5 * walking.vibration)
+    ranks = [training._rank([result], without) for result in (walking, dragging, chattering)]
+    assert max(ranks) == ranks[0]
+    assert training._rank([chattering], None) > ranks[0]  # where there is nothing to chatter against
+    assert training._rank([], without) < ranks[1]
