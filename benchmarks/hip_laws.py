@@ -29,9 +29,9 @@ SCALES = {"acceleration": 0.05, "angle": 0.5, "pitch": 2.5, "rate": 0.15}
 LEGS = ("both", "swing", "support", "held", "sampled")
 SETTINGS = {
     "100 Hz, 300 Hz x 40": Physics(300, 40, 100),
-    "100 Hz, 1 kHz x 50": Physics(1000, 50, 100),
+    "100 Hz, 600 Hz x 60": Physics(600, 60, 100),
     "200 Hz, 400 Hz x 40": Physics(400, 40, 200),
-    "200 Hz, 1 kHz x 50": Physics(1000, 50, 200),
+    "200 Hz, 600 Hz x 60": Physics(600, 60, 200),
 }
 """Control rate, and physics steps and solver iterations."""
 
