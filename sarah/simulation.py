@@ -91,7 +91,8 @@ class Simulation:
         # A servo's share of the way in one physics step, so that it is the same first-order lag at every rate.
         gain = 1.0 - math.exp(-conditions.actuator_bandwidth / physics.rate)
         self._gains = [gain] * len(self._joints)
-        self._efforts = [self.robot.efforts[name] for name in ACTUATED_JOINTS]
+        # PyBullet takes them as impulses over the whole tick, and lets every substep spend all of it.
+        self._efforts = [self.robot.efforts[name] / self._substeps for name in ACTUATED_JOINTS]
         self._torso = self._torso_state()
         self._velocity_before = self._torso.velocity
         self._joint_states = self._actuator_states()

@@ -310,3 +310,15 @@ def test_standing_legs_push_with_the_weight_that_they_carry(build: BuildSimulati
     speeds, efforts = simulation.actuator_motion()
     assert [-effort for effort in efforts[4:]] == pytest.approx([10.0 * GRAVITY] * 2, rel=0.05)
     assert max(map(abs, speeds)) < 0.01
+
+
+@pytest.mark.parametrize("rate", [100, 300, 1000])
+def test_actuators_push_no_harder_than_they_can(rate: int) -> None:
+    """Legs of 60 N cannot hold the torso's weight, and sink with all their force, whatever the substeps."""
+    simulation = Simulation(describe_robot({"leg_effort": 60.0}), Physics(rate=rate, solver_iterations=50))
+    efforts = []
+    for _ in range(SECOND // 5):
+        simulation.advance()
+        efforts.append(max(map(abs, simulation.actuator_motion()[1][4:])))
+    simulation.close()
+    assert max(efforts) == pytest.approx(60.0, rel=1e-3)
