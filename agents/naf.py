@@ -41,7 +41,9 @@ PRESETS: dict[str, dict[str, Any]] = {
         exploration_std=LinearSchedule(0.3, 0.05, end_fraction=0.8),
         warmup_std=0.4,
         locality=0.4,
-        policy_kwargs=dict(net_arch=[32, 32], activation_fn=nn.Tanh, lower_sees_action=True),
+        policy_kwargs=dict(
+            net_arch=dict(V=[32, 32], mu=[32, 32], L=[32, 32]), activation_fn=nn.Tanh, lower_sees_action=True
+        ),
     ),
     # The networks of Kouppas et al., literally. Their bias of 1 at the output of mu is the centre
     # of Box(0, 2), which in scaled actions is 0. On episodes of one step they hardly learn.
@@ -260,13 +262,13 @@ class NAF(OffPolicyAlgorithm):
 
             # Get current Q-values estimates
             current_q_values, mu = self.q_net(replay_data.observations, replay_data.actions)
-            mean_q_values.append(current_q_values.mean().item())
+            mean_q_values.append(current_q_values.detach().mean())
 
             squared_errors = (current_q_values - target_q_values).square()
             if self.locality is not None:
                 squared_errors *= locality_weights(replay_data.actions, mu.detach(), self.locality)
             loss = squared_errors.mean()
-            losses.append(loss.item())
+            losses.append(loss.detach())
 
             # Optimize the policy
             self.policy.optimizer.zero_grad()
@@ -283,8 +285,8 @@ class NAF(OffPolicyAlgorithm):
         self._n_updates += gradient_steps
 
         self.logger.record("train/n_updates", self._n_updates, exclude="tensorboard")
-        self.logger.record("train/loss", np.mean(losses))
-        self.logger.record("train/q", np.mean(mean_q_values))
+        self.logger.record("train/loss", th.stack(losses).mean().item())
+        self.logger.record("train/q", th.stack(mean_q_values).mean().item())
 
     def learn(
         self: SelfNAF,

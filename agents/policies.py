@@ -19,6 +19,7 @@ from torch import nn
 
 LOG_DIAGONAL_MIN = -5.0
 LOG_DIAGONAL_MAX = 5.0
+PARTS = ("shared", "V", "mu", "L")
 
 
 class QuadraticCritic(BaseModel):
@@ -28,16 +29,17 @@ class QuadraticCritic(BaseModel):
     .. math:: Q(s, u) = V(s) - \frac{1}{2} (u - \mu(s))^T L(s) L(s)^T (u - \mu(s))
 
     ``L`` is lower triangular with a positive diagonal, so ``L L^T`` is positive definite: ``mu`` is the best
-    action and ``V`` its value, without a search. The three heads are separate networks on one features
-    extractor. Actions are scaled to [-1, 1]. The output layer of ``mu`` starts at zero: an untrained critic
-    proposes the centre of the action space whatever it observes.
+    action and ``V`` its value, without a search. The three heads are networks of their own behind shared layers.
+    Actions are scaled to [-1, 1]. The output layer of ``mu`` starts at zero: an untrained critic proposes the
+    centre of the action space whatever it observes.
 
     :param observation_space: Observation space
     :param action_space: Action space
     :param features_extractor: Network to extract features
         (a CNN when using images, a nn.Flatten() layer otherwise)
     :param features_dim: Number of features
-    :param net_arch: Hidden layers of each head, by name: ``V``, ``mu`` and ``L``
+    :param net_arch: Hidden layers that the heads share and those of each head, by name:
+        ``shared``, ``V``, ``mu`` and ``L``
     :param activation_fn: Activation function
     :param normalize_images: Whether to normalize images or not,
          dividing by 255.0 (True by default)
@@ -76,9 +78,11 @@ class QuadraticCritic(BaseModel):
         self.register_buffer("triangle", rows * action_dim + columns, persistent=False)
         self.register_buffer("is_diagonal", rows == columns, persistent=False)
 
-        lower_input_dim = features_dim + action_dim * lower_sees_action
-        self.value_net = nn.Sequential(*create_mlp(features_dim, 1, net_arch["V"], activation_fn))
-        self.mu_net = nn.Sequential(*create_mlp(features_dim, action_dim, net_arch["mu"], activation_fn, squash_mu))
+        self.shared_net = nn.Sequential(*create_mlp(features_dim, -1, net_arch["shared"], activation_fn))
+        latent_dim = net_arch["shared"][-1] if net_arch["shared"] else features_dim
+        lower_input_dim = latent_dim + action_dim * lower_sees_action
+        self.value_net = nn.Sequential(*create_mlp(latent_dim, 1, net_arch["V"], activation_fn))
+        self.mu_net = nn.Sequential(*create_mlp(latent_dim, action_dim, net_arch["mu"], activation_fn, squash_mu))
         self.lower_net = nn.Sequential(*create_mlp(lower_input_dim, len(rows), net_arch["L"], activation_fn))
 
         mu_output = [layer for layer in self.mu_net if isinstance(layer, nn.Linear)][-1]
@@ -93,13 +97,13 @@ class QuadraticCritic(BaseModel):
         :param actions: Actions, scaled to [-1, 1], of shape (batch, action dim)
         :return: ``Q`` of shape (batch, 1) and ``mu`` of shape (batch, action dim)
         """
-        features = self.extract_features(obs, self.features_extractor)
-        mu = self.mu_net(features)
+        latent = self._latent(obs)
+        mu = self.mu_net(latent)
         difference = (actions - mu).unsqueeze(1)
         # (u - mu)^T L L^T (u - mu) is the squared length of the row (u - mu)^T L
-        projected = th.bmm(difference, self._lower(features, actions)).squeeze(1)
+        projected = th.bmm(difference, self._lower(latent, actions)).squeeze(1)
         advantage = -0.5 * projected.square().sum(dim=1, keepdim=True)
-        return self.value_net(features) + advantage, mu
+        return self.value_net(latent) + advantage, mu
 
     def value(self, obs: PyTorchObs) -> th.Tensor:
         """
@@ -108,7 +112,7 @@ class QuadraticCritic(BaseModel):
         :param obs: Observations
         :return: ``V`` of shape (batch, 1)
         """
-        return self.value_net(self.extract_features(obs, self.features_extractor))
+        return self.value_net(self._latent(obs))
 
     def mu(self, obs: PyTorchObs) -> th.Tensor:
         """
@@ -117,7 +121,7 @@ class QuadraticCritic(BaseModel):
         :param obs: Observations
         :return: ``mu`` of shape (batch, action dim), scaled so that the action space is [-1, 1]
         """
-        return self.mu_net(self.extract_features(obs, self.features_extractor))
+        return self.mu_net(self._latent(obs))
 
     def lower(self, obs: PyTorchObs, actions: th.Tensor) -> th.Tensor:
         """
@@ -127,11 +131,14 @@ class QuadraticCritic(BaseModel):
         :param actions: Scaled actions, which count only if ``lower_sees_action``
         :return: ``L`` of shape (batch, action dim, action dim)
         """
-        return self._lower(self.extract_features(obs, self.features_extractor), actions)
+        return self._lower(self._latent(obs), actions)
 
-    def _lower(self, features: th.Tensor, actions: th.Tensor) -> th.Tensor:
+    def _latent(self, obs: PyTorchObs) -> th.Tensor:
+        return self.shared_net(self.extract_features(obs, self.features_extractor))
+
+    def _lower(self, latent: th.Tensor, actions: th.Tensor) -> th.Tensor:
         action_dim = actions.shape[1]
-        inputs = th.cat([features, actions], dim=1) if self.lower_sees_action else features
+        inputs = th.cat([latent, actions], dim=1) if self.lower_sees_action else latent
         outputs = self.lower_net(inputs)
         entries = th.where(self.is_diagonal, outputs.clamp(LOG_DIAGONAL_MIN, LOG_DIAGONAL_MAX).exp(), outputs)
         flat = entries.new_zeros(len(entries), action_dim * action_dim).index_copy(1, self.triangle, entries)
@@ -145,8 +152,9 @@ class NAFPolicy(BasePolicy):
     :param observation_space: Observation space
     :param action_space: Action space
     :param lr_schedule: Learning rate schedule (could be constant)
-    :param net_arch: Hidden layers, one list for all three heads (``[64, 64]`` by default)
-        or one list each, ``dict(V=[...], mu=[...], L=[...])``
+    :param net_arch: Hidden layers. A list (``[64, 64]`` by default) is shared by all three heads, which are then
+        linear; ``dict(shared=[...], V=[...], mu=[...], L=[...])`` gives each head layers of its own behind
+        the shared ones, and what it leaves out is empty.
     :param activation_fn: Activation function (ReLU by default). Tanh suits smooth tasks of one step,
         but fails where values are large; with sigmoid, deeper networks hardly learn.
     :param features_extractor_class: Features extractor to use.
@@ -200,9 +208,11 @@ class NAFPolicy(BasePolicy):
         if net_arch is None:
             net_arch = [64, 64]
         if not isinstance(net_arch, dict):
-            net_arch = dict.fromkeys(("V", "mu", "L"), net_arch)
-        if set(net_arch) != {"V", "mu", "L"}:
-            raise ValueError(f"net_arch must be a list or have the keys V, mu and L, not {sorted(net_arch)}")
+            net_arch = dict(shared=net_arch)
+        unknown = set(net_arch) - set(PARTS)
+        if unknown:
+            raise ValueError(f"net_arch must be a list or have keys of {', '.join(PARTS)}, not {sorted(unknown)}")
+        net_arch = {part: list(net_arch.get(part, [])) for part in PARTS}
 
         self.net_args: dict[str, Any] = {
             "observation_space": self.observation_space,

@@ -1,5 +1,7 @@
 """What the networks are trained towards: targets computed by hand, the loss, the target network."""
 
+from copy import deepcopy
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -146,3 +148,47 @@ def test_schedules_and_logs():
     with th.no_grad():
         q_values = model.q_net(batch.observations, batch.actions)[0]
     assert model.logger.name_to_value["train/q"] == pytest.approx(q_values.mean().item(), rel=1e-5)
+
+
+def test_fast_updates_are_the_plain_ones():
+    """Fused Adam, averaging in one call and the scattered L change nothing but rounding: here all of it in loops."""
+    env = Corridor()
+    env.action_space = spaces.Box(-1, 1, (3,))
+    model = NAF("MlpPolicy", env, gamma=GAMMA, learning_starts=40, gradient_steps=0, seed=0)
+    model.learn(60)
+    q_net, target = deepcopy(model.q_net), deepcopy(model.q_net_target)
+    optimizer = th.optim.Adam(q_net.parameters(), lr=model.learning_rate, foreach=False)
+    batches, sample = [], model.replay_buffer.sample
+    model.replay_buffer.sample = lambda *args, **kwargs: batches.append(sample(*args, **kwargs)) or batches[-1]
+    model.train(10, 32)
+
+    for batch in batches:
+        loss = 0.0
+        for n in range(32):
+            obs, next_obs = batch.observations[n : n + 1], batch.next_observations[n : n + 1]
+            with th.no_grad():
+                wanted = batch.rewards[n, 0] + GAMMA * (1 - batch.dones[n, 0]) * target.value(next_obs)[0, 0]
+            latent = q_net.shared_net(obs)
+            difference = batch.actions[n] - q_net.mu_net(latent)[0]
+            outputs = q_net.lower_net(latent)[0]
+            advantage, k = 0.0, 0
+            lower = {}
+            for i in range(len(difference)):
+                for j in range(i + 1):
+                    lower[i, j] = outputs[k].clamp(-5, 5).exp() if i == j else outputs[k]
+                    k += 1
+            for j in range(len(difference)):
+                advantage -= 0.5 * sum(difference[i] * lower[i, j] for i in range(j, len(difference))) ** 2
+            loss += (q_net.value_net(latent)[0, 0] + advantage - wanted) ** 2 / 32
+        optimizer.zero_grad()
+        loss.backward()
+        norm = sum(parameter.grad.square().sum() for parameter in q_net.parameters()).sqrt()
+        for parameter in q_net.parameters():
+            parameter.grad *= min(1.0, model.max_grad_norm / (norm + 1e-6))
+        optimizer.step()
+        for old, new in zip(target.parameters(), q_net.parameters(), strict=True):
+            old.data = (1 - model.tau) * old.data + model.tau * new.data
+
+    for plain, fast in ((q_net, model.q_net), (target, model.q_net_target)):
+        for expected, found in zip(plain.parameters(), fast.parameters(), strict=True):
+            th.testing.assert_close(found, expected, rtol=1e-4, atol=1e-5)
