@@ -49,7 +49,9 @@ class QuadraticCritic(BaseModel):
 
     action_space: spaces.Box
     features_extractor: BaseFeaturesExtractor
-    triangle: th.Tensor
+    rows: th.Tensor
+    columns: th.Tensor
+    in_column: th.Tensor
     is_diagonal: th.Tensor
 
     def __init__(
@@ -74,8 +76,10 @@ class QuadraticCritic(BaseModel):
 
         action_dim = get_action_dim(action_space)
         rows, columns = th.tril_indices(action_dim, action_dim)
-        # Places of the outputs of L in the flattened matrix, row by row
-        self.register_buffer("triangle", rows * action_dim + columns, persistent=False)
+        # Where in L its entries are, row by row
+        self.register_buffer("rows", rows, persistent=False)
+        self.register_buffer("columns", columns, persistent=False)
+        self.register_buffer("in_column", nn.functional.one_hot(columns, action_dim).float(), persistent=False)
         self.register_buffer("is_diagonal", rows == columns, persistent=False)
 
         self.shared_net = nn.Sequential(*create_mlp(features_dim, -1, net_arch["shared"], activation_fn))
@@ -99,9 +103,8 @@ class QuadraticCritic(BaseModel):
         """
         latent = self._latent(obs)
         mu = self.mu_net(latent)
-        difference = (actions - mu).unsqueeze(1)
-        # (u - mu)^T L L^T (u - mu) is the squared length of the row (u - mu)^T L
-        projected = th.bmm(difference, self._lower(latent, actions)).squeeze(1)
+        # (u - mu)^T L L^T (u - mu) is the squared length of the row (u - mu)^T L, summed without building L
+        projected = ((actions - mu).index_select(1, self.rows) * self._entries(latent, actions)) @ self.in_column
         advantage = -0.5 * projected.square().sum(dim=1, keepdim=True)
         return self.value_net(latent) + advantage, mu
 
@@ -131,18 +134,17 @@ class QuadraticCritic(BaseModel):
         :param actions: Scaled actions, which count only if ``lower_sees_action``
         :return: ``L`` of shape (batch, action dim, action dim)
         """
-        return self._lower(self._latent(obs), actions)
+        lower = actions.new_zeros(*actions.shape, actions.shape[1])
+        lower[:, self.rows, self.columns] = self._entries(self._latent(obs), actions)
+        return lower
 
     def _latent(self, obs: PyTorchObs) -> th.Tensor:
         return self.shared_net(self.extract_features(obs, self.features_extractor))
 
-    def _lower(self, latent: th.Tensor, actions: th.Tensor) -> th.Tensor:
-        action_dim = actions.shape[1]
+    def _entries(self, latent: th.Tensor, actions: th.Tensor) -> th.Tensor:
         inputs = th.cat([latent, actions], dim=1) if self.lower_sees_action else latent
         outputs = self.lower_net(inputs)
-        entries = th.where(self.is_diagonal, outputs.clamp(LOG_DIAGONAL_MIN, LOG_DIAGONAL_MAX).exp(), outputs)
-        flat = entries.new_zeros(len(entries), action_dim * action_dim).index_copy(1, self.triangle, entries)
-        return flat.view(-1, action_dim, action_dim)
+        return th.where(self.is_diagonal, outputs.clamp(LOG_DIAGONAL_MIN, LOG_DIAGONAL_MAX).exp(), outputs)
 
 
 class NAFPolicy(BasePolicy):
@@ -152,9 +154,9 @@ class NAFPolicy(BasePolicy):
     :param observation_space: Observation space
     :param action_space: Action space
     :param lr_schedule: Learning rate schedule (could be constant)
-    :param net_arch: Hidden layers. A list (``[64, 64]`` by default) is shared by all three heads, which are then
-        linear; ``dict(shared=[...], V=[...], mu=[...], L=[...])`` gives each head layers of its own behind
-        the shared ones, and what it leaves out is empty.
+    :param net_arch: Hidden layers. Of a list (``[64, 64]`` by default) the last layer is ``V``'s and ``mu``'s own,
+        the ones before it are shared, and ``L`` is linear on those;
+        ``dict(shared=[...], V=[...], mu=[...], L=[...])`` says each, and what it leaves out is empty.
     :param activation_fn: Activation function (ReLU by default). Tanh suits smooth tasks of one step,
         but fails where values are large; with sigmoid, deeper networks hardly learn.
     :param features_extractor_class: Features extractor to use.
@@ -208,7 +210,7 @@ class NAFPolicy(BasePolicy):
         if net_arch is None:
             net_arch = [64, 64]
         if not isinstance(net_arch, dict):
-            net_arch = dict(shared=net_arch)
+            net_arch = dict(shared=net_arch[:-1], V=net_arch[-1:], mu=net_arch[-1:])
         unknown = set(net_arch) - set(PARTS)
         if unknown:
             raise ValueError(f"net_arch must be a list or have keys of {', '.join(PARTS)}, not {sorted(unknown)}")

@@ -150,7 +150,7 @@ def test_locality_weights():
     np.testing.assert_allclose(weights[:, 0].numpy(), raw / raw.mean(), rtol=1e-6)
 
 
-def test_heads_take_their_own_sizes_and_a_list_is_shared():
+def test_heads_take_their_own_sizes_and_share_what_a_list_begins_with():
     spaces_ = spaces.Box(-1, 1, (OBS_DIM,)), spaces.Box(-1, 1, (2,))
 
     def sizes(net_arch):
@@ -160,6 +160,7 @@ def test_heads_take_their_own_sizes_and_a_list_is_shared():
 
     assert sizes(dict(V=[7, 8], mu=[], L=[5])) == [[], [7, 8, 1], [2], [5, 3]]
     assert sizes(dict(shared=[9], L=[5])) == [[9], [1], [2], [5, 3]]
-    assert sizes([6, 4]) == [[6, 4], [1], [2], [3]]
+    assert sizes([6, 5, 4]) == [[6, 5], [4, 1], [4, 2], [3]]
+    assert sizes([]) == [[], [1], [2], [3]]
     with pytest.raises(ValueError, match="shared, V, mu, L, not .'pi'"):
         sizes(dict(pi=[4]))
