@@ -14,6 +14,7 @@ from sarah.config import TRAINED_STEPPING, EpisodeConfig, Randomisation
 from sarah.episode import Episode
 from sarah.pattern_generator import Phase, Side
 from sarah.simulator import Camera
+from sarah.trace import Trace
 
 PARAMETERS = TRAINED_STEPPING
 FROM_SECONDS, TO_SECONDS = 8.0, 8.75
@@ -51,28 +52,28 @@ def draw_steps(whole: np.ndarray, closeups: dict[Phase, np.ndarray]) -> None:
     figure.savefig(HERE / "stepping.png", dpi=100)
 
 
-def draw_cycle(trace: dict[str, np.ndarray]) -> None:
-    shown = (trace["time"] >= FROM_SECONDS) & (trace["time"] <= TO_SECONDS)
-    time = trace["time"][shown]
+def draw_cycle(trace: Trace) -> None:
+    shown = (trace.time >= FROM_SECONDS) & (trace.time <= TO_SECONDS)
+    time = trace.time[shown]
     figure, axes = plt.subplots(4, 1, sharex=True, figsize=(8, 8))
-    axes[0].plot(time, trace["stable_x"][shown], color="black")
+    axes[0].plot(time, trace.stable_x[shown], color="black")
     axes[0].set_ylabel("stable_x (m/s²)")
-    axes[1].plot(time, trace["angular_rate"][shown][:, 1], color="black")
+    axes[1].plot(time, trace.angular_rate[shown][:, 1], color="black")
     for sign in (-1, 1):
         axes[1].axhline(sign * PARAMETERS[0], color="grey", linestyle="--", linewidth=0.8)
     axes[1].set_ylabel("rate about y (rad/s)\n(dashed: P1)")
-    pads = trace["pressures"][shown]
+    pads = trace.pressures[shown]
     axes[2].plot(time, pads[:, 0] + pads[:, 1], color="#2173b3", label="left")
     axes[2].plot(time, pads[:, 2] + pads[:, 3], color="#bf4033", label="right")
     axes[2].set_ylim(0, 600)
     axes[2].set_ylabel("pad load (N)")
     axes[2].legend(loc="upper right")
-    axes[3].plot(time, 1000 * trace["joints"][shown][:, 4], color="#2173b3")
-    axes[3].plot(time, 1000 * trace["joints"][shown][:, 5], color="#bf4033")
+    axes[3].plot(time, 1000 * trace.joints[shown][:, 4], color="#2173b3")
+    axes[3].plot(time, 1000 * trace.joints[shown][:, 5], color="#bf4033")
     axes[3].set_ylabel("leg retraction (mm)")
     axes[3].set_xlabel("time (s)")
     colours = {"shift": "#dddddd", "lift": "#ffe08a", "land": "#bfe3c0"}
-    phases = trace["phase"][shown]
+    phases = trace.phase[shown]
     for axis in axes:
         for begin, end, phase in zip(time[:-1], time[1:], phases[:-1], strict=True):
             axis.axvspan(begin, end, color=colours[phase], linewidth=0)
