@@ -38,6 +38,7 @@ class Overlay:
         self._view = view
         self._caption = caption
         self._unit = view.height / 40
+        self._dt = (trace.time[-1] - trace.time[0]) / max(1, len(trace) - 1)
         forces = np.linalg.norm(trace.push, axis=1)
         self._push_tick = int(np.argmax(forces > 0.0)) if forces.any() else None
 
@@ -79,7 +80,7 @@ class Overlay:
         begin, end, top = 3.0 * unit, 16.5 * unit, 20.5 * unit
         shown = slice(trace.tick_at(trace.time[tick] - STRIP_SECONDS) + 1, tick + 1)
         ends = end + (trace.time[shown] - trace.time[tick]) / STRIP_SECONDS * (end - begin)
-        tick_width = (trace.time[1] - trace.time[0]) / STRIP_SECONDS * (end - begin)
+        tick_width = self._dt / STRIP_SECONDS * (end - begin)
         for row, side in enumerate(Side):
             y = top + 2.2 * unit * row
             colour = LEFT if side is Side.LEFT else RIGHT
@@ -109,7 +110,7 @@ class Overlay:
         neck = tip - min(1.6 * unit, 0.7 * length) * along
         pen.line((*end, *neck), fill=PUSH, width=round(0.6 * unit))
         pen.polygon([tuple(tip), tuple(neck + 0.9 * unit * across), tuple(neck - 0.9 * unit * across)], fill=PUSH)
-        label = self._view.pixels([head + LABEL_OFFSET @ self._view.axes])[0]
+        label = self._view.pixels(head + (LABEL_OFFSET @ self._view.axes)[None])[0]
         where = "forward" if force[1] > abs(force[0]) else "backward" if force[1] < -abs(force[0]) else "sideways"
         text = f"push of {math.hypot(*force):.0f} N\n{where}"
         pen.multiline_text(tuple(label), text, font=_font(1.2 * unit, bold=True), fill=PUSH, spacing=0.3 * unit)

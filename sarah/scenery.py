@@ -101,9 +101,17 @@ def shaded(picture: np.ndarray, outlines: list[np.ndarray]) -> np.ndarray:
     :return: uint8 array of the same shape
     """
     height, width, _ = picture.shape
-    mask = Image.new("L", (width, height))
+    blur = SHADOW_BLUR * height
+    corners = np.concatenate(outlines)
+    left, top = np.clip(np.floor(corners.min(axis=0) - 3 * blur), 0, (width, height)).astype(int)
+    right, bottom = np.clip(np.ceil(corners.max(axis=0) + 3 * blur), 0, (width, height)).astype(int)
+    if left >= right or top >= bottom:
+        return picture
+    mask = Image.new("L", (right - left, bottom - top))
     draw = ImageDraw.Draw(mask)
     for outline in outlines:
-        draw.polygon([tuple(corner) for corner in outline], fill=round(255 * SHADOW))
-    blurred = np.asarray(mask.filter(ImageFilter.GaussianBlur(SHADOW_BLUR * height)), dtype=np.uint16)
-    return (picture * (255 - blurred)[..., None] // 255).astype(np.uint8)
+        draw.polygon([tuple(corner) for corner in outline - (left, top)], fill=round(255 * SHADOW))
+    light = 255 - np.asarray(mask.filter(ImageFilter.GaussianBlur(blur)), dtype=np.uint16)
+    dark = picture.copy()
+    dark[top:bottom, left:right] = dark[top:bottom, left:right] * light[..., None] // 255
+    return dark

@@ -20,9 +20,9 @@ from sarah.trace import Trace
 SUFFIXES = (".mp4", ".gif")
 WIDTH, HEIGHT = 1280, 720
 FEET_CAMERA = Camera(height=0.11, distance=0.85, yaw=180.0, pitch=-4.0)
-FEET_WIDTH, FEET_HEIGHT, FEET_MARGIN = 400, 250, 24
+FEET_WIDTH, FEET_HEIGHT, FEET_MARGIN = 340, 200, 24
 """Of the close look at the feet, in the lower right corner, in pixels."""
-FRAMES_PER_SECOND = {".mp4": 30.0, ".gif": 20.0}
+FRAMES_PER_SECOND = {".mp4": 25.0, ".gif": 20.0}
 GIF_SHRINKING = 2
 """Of width and height: a GIF is big."""
 GIF_COLOURS = 64
@@ -108,7 +108,7 @@ def _write_mp4(pictures: Iterable[Image.Image], path: Path) -> None:
     from imageio_ffmpeg import write_frames
 
     fps = FRAMES_PER_SECOND[".mp4"]
-    options = ["-preset", "veryfast", "-tune", "animation", "-movflags", "+faststart", "-threads", "1"]
+    options = ["-preset", "superfast", "-tune", "animation", "-movflags", "+faststart", "-threads", "1"]
     writer = write_frames(path, (WIDTH, HEIGHT), fps=fps, codec="libx264", quality=6, output_params=options)
     writer.send(None)
     try:
