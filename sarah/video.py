@@ -108,7 +108,7 @@ def _write_mp4(pictures: Iterable[Image.Image], path: Path) -> None:
     from imageio_ffmpeg import write_frames
 
     fps = FRAMES_PER_SECOND[".mp4"]
-    options = ["-preset", "superfast", "-tune", "animation", "-movflags", "+faststart", "-threads", "1"]
+    options = ["-preset", "veryfast", "-tune", "animation", "-movflags", "+faststart", "-threads", "1"]
     writer = write_frames(path, (WIDTH, HEIGHT), fps=fps, codec="libx264", quality=6, output_params=options)
     writer.send(None)
     try:
