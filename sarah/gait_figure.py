@@ -73,8 +73,10 @@ def draw_gait_cycle(trace: Trace, parameters: SteppingParameters, path: Path) ->
         length.set_ylabel("leg\nretraction\n(mm)")
         if has_hips:
             _both(axes[4], time, np.degrees(joints[:, 2]), np.degrees(joints[:, 3]))
-            axes[4].plot(time, np.degrees(joints[:, :2].mean(axis=1)), color="black", linewidth=1.0, label="abduction")
-            axes[4].set_ylabel("hip flexion\n(degrees)")
+            axes[4].plot(
+                time, np.degrees(joints[:, :2].mean(axis=1)), color="black", linewidth=1.0, label="abduction of both"
+            )
+            axes[4].set_ylabel("hip angle\n(degrees)")
             axes[4].legend(loc="upper right")
         axes[-1].set_xlabel("time (s)")
         axes[-1].set_xlim(time[0], time[-1])

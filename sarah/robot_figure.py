@@ -82,7 +82,7 @@ def labels_of(robot: RobotDescription) -> list[Label]:
         Label(f"(c) left leg\n{kilograms['left leg']}", at("left_thigh", 0.01, 0.04, 0.62 * thigh), 0.54, False, LEFT),
         Label(_joint(robot, "left_leg_length"), at("left_shank", 0.0, 0.03, 0.2 * thigh), 0.43, False),
         Label(_joint(robot, "left_hindfoot"), at("left_hindfoot", 0.03, -0.65 * sole_y), 0.28, False),
-        Label(_joint(robot, "left_forefoot"), at("left_forefoot", -0.04, 0.6 * sole_y), 0.16, False),
+        Label(_joint(robot, "left_forefoot"), at("left_forefoot", 0.03, 0.75 * sole_y), 0.16, False),
     ]
 
 

@@ -7,8 +7,9 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageColor
 
+from sarah.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.description import ACTUATED_JOINTS, PASSIVE_JOINTS, RobotDescription
 from sarah.errors import ConfigurationError
 from sarah.overlay import Overlay
@@ -25,7 +26,7 @@ FEET_WIDTH, FEET_HEIGHT, FEET_MARGIN = 340, 200, 24
 FRAMES_PER_SECOND = {".mp4": 25.0, ".gif": 20.0}
 GIF_SHRINKING = 2
 """Of width and height: a GIF is big."""
-GIF_COLOURS = 64
+GIF_COLOURS = 200
 
 
 def frame_times(begin: float, end: float, frames_per_second: float, speed: float = 1.0) -> np.ndarray:
@@ -119,7 +120,21 @@ def _write_mp4(pictures: Iterable[Image.Image], path: Path) -> None:
 
 
 def _write_gif(pictures: Iterable[Image.Image], path: Path) -> None:
-    first, *others = (picture.reduce(GIF_SHRINKING) for picture in pictures)
-    palette = first.quantize(GIF_COLOURS)
-    first, *others = (p.quantize(palette=palette, dither=Image.Dither.NONE) for p in (first, *others))
+    shrunk = [picture.reduce(GIF_SHRINKING) for picture in pictures]
+    palette = _palette(shrunk)
+    first, *others = (picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in shrunk)
     first.save(path, save_all=True, append_images=others, duration=round(1000 / FRAMES_PER_SECOND[".gif"]), loop=0)
+
+
+def _palette(pictures: list[Image.Image]) -> Image.Image:
+    """One palette for all frames, which would flicker otherwise: colours of some, and all that mean something."""
+    samples = pictures[:: max(1, len(pictures) // 6)]
+    width, height = samples[0].size
+    sheet = Image.new("RGB", (width, (len(samples) + 1) * height))
+    for index, sample in enumerate(samples):
+        sheet.paste(sample, (0, index * height))
+    colours = (LEFT, RIGHT, PUSH, *PHASE_COLOURS.values())
+    for index, colour in enumerate(colours):
+        box = (index * width // len(colours), len(samples) * height, width, sheet.height)
+        sheet.paste(ImageColor.getrgb(colour), box)
+    return sheet.quantize(GIF_COLOURS)
