@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 
@@ -38,7 +40,6 @@ class Overlay:
         self._view = view
         self._caption = caption
         self._unit = view.height / 40
-        self._dt = (trace.time[-1] - trace.time[0]) / max(1, len(trace) - 1)
         forces = np.linalg.norm(trace.push, axis=1)
         self._push_tick = int(np.argmax(forces > 0.0)) if forces.any() else None
 
@@ -76,19 +77,17 @@ class Overlay:
 
     def _draw_phases(self, pen: ImageDraw.ImageDraw, tick: int) -> None:
         """The phases of the last seconds, which of the two legs swings in each of them, and their colours' names."""
-        trace, unit = self._trace, self._unit
+        unit = self._unit
         begin, end, top = 3.0 * unit, 16.5 * unit, 20.5 * unit
-        shown = slice(trace.tick_at(trace.time[tick] - STRIP_SECONDS) + 1, tick + 1)
-        ends = end + (trace.time[shown] - trace.time[tick]) / STRIP_SECONDS * (end - begin)
-        tick_width = self._dt / STRIP_SECONDS * (end - begin)
         for row, side in enumerate(Side):
             y = top + 2.2 * unit * row
             colour = LEFT if side is Side.LEFT else RIGHT
             pen.text((1.5 * unit, y + 0.8 * unit), side.name[0], font=_font(unit, bold=True), fill=colour, anchor="lm")
             pen.rectangle((begin, y, end, y + 1.6 * unit), fill="#F1F3F5")
-            for x, phase, support in zip(ends, trace.phase[shown], trace.support[shown], strict=True):
-                if support != side.value:
-                    pen.rectangle((x - tick_width, y, x, y + 1.6 * unit), fill=PHASE_COLOURS[phase])
+            for ages, phase, swing in self._past_phases(tick):
+                if swing is side:
+                    left, right = (end - age / STRIP_SECONDS * (end - begin) for age in ages)
+                    pen.rectangle((left, y, right, y + 1.6 * unit), fill=PHASE_COLOURS[phase])
         x, y = begin, top + 4.8 * unit
         for phase, colour in PHASE_COLOURS.items():
             pen.rectangle((x, y, x + 0.9 * unit, y + 0.9 * unit), fill=colour)
@@ -96,6 +95,17 @@ class Overlay:
             x += 4.2 * unit
         note = f"swing leg, last {STRIP_SECONDS:g} s"
         pen.text((begin, y + 1.5 * unit), note, font=_font(0.85 * unit), fill=PALE_INK)
+
+    def _past_phases(self, tick: int) -> Iterator[tuple[tuple[float, float], str, Side]]:
+        """Each phase of the last seconds: how long ago it began and ended, its name, and its swing leg."""
+        trace = self._trace
+        now = trace.time[tick]
+        rows = slice(trace.tick_at(now - STRIP_SECONDS), tick + 1)
+        ages, phase, support = now - trace.time[rows], trace.phase[rows], trace.support[rows]
+        changes = np.flatnonzero((phase[1:] != phase[:-1]) | (support[1:] != support[:-1])) + 1
+        for begin, end in itertools.pairwise([0, *changes, len(ages) - 1]):
+            began = min(STRIP_SECONDS, ages[begin])
+            yield (began, ages[end]), str(phase[begin]), Side(int(support[begin])).other
 
     def _draw_push(self, pen: ImageDraw.ImageDraw, tick: int, force: np.ndarray) -> None:
         """An arrow that ends at the torso's centre, with the force in newtons."""

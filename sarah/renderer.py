@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from itertools import product
 
 import numpy as np
+from PIL import Image
 
 from sarah.bullet import give_back_client, load_robot, pybullet, take_client
 from sarah.description import PLATES, SIDES, RobotDescription
@@ -125,19 +126,13 @@ class Renderer:
             renderer=pybullet.ER_TINY_RENDERER,
             physicsClientId=self._client,
         )
-        is_robot = (np.reshape(np.asarray(image[4]), (rows, columns)) >= 0).astype(np.uint16)
-        colours = np.reshape(np.asarray(image[2], dtype=np.uint8), (rows, columns, 4))[..., :3] * is_robot[..., None]
-        share = _sums(is_robot, samples)[..., None]
-        return ((_sums(colours, samples) + (samples**2 - share) * behind) // samples**2).astype(np.uint8)
+        is_robot = np.reshape(image[4], (rows, columns, 1)) >= 0
+        colours = np.reshape(image[2], (rows, columns, 4))[..., :3]
+        finer = behind.repeat(samples, axis=0).repeat(samples, axis=1)
+        return np.asarray(Image.fromarray(np.where(is_robot, colours, finer)).reduce(samples))
 
     def close(self) -> None:
         """Give PyBullet's client back; nothing can be drawn any more."""
         if self._client >= 0:
             give_back_client(self._client)
             self._client = -1
-
-
-def _sums(values: np.ndarray, samples: int) -> np.ndarray:
-    """Over the samples of each pixel."""
-    parts = [values[row::samples, column::samples] for row, column in product(range(samples), repeat=2)]
-    return np.asarray(sum(parts[1:], start=parts[0]))

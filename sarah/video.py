@@ -19,13 +19,13 @@ from sarah.simulator import STANDARD_CAMERA, Camera
 from sarah.trace import Trace
 
 SUFFIXES = (".mp4", ".gif")
-WIDTH, HEIGHT = 1280, 720
+WIDTH, HEIGHT = 1024, 576
 FEET_CAMERA = Camera(height=0.11, distance=0.85, yaw=180.0, pitch=-4.0)
-FEET_WIDTH, FEET_HEIGHT, FEET_MARGIN = 340, 200, 24
+FEET_WIDTH, FEET_HEIGHT, FEET_MARGIN = 280, 165, 20
 """Of the close look at the feet, in the lower right corner, in pixels."""
 FRAMES_PER_SECOND = {".mp4": 25.0, ".gif": 20.0}
-GIF_SHRINKING = 2
-"""Of width and height: a GIF is big."""
+GIF_SIZE = (640, 360)
+"""Smaller, for a GIF is big."""
 GIF_COLOURS = 200
 
 
@@ -48,7 +48,7 @@ def frames(trace: Trace, robot: RobotDescription, times: Iterable[float], captio
     :param robot: that was simulated
     :param times: of the frames, in s
     :param caption: to write below
-    :return: RGB pictures of 1280 x 720 pixels
+    :return: RGB pictures of 1024 x 576 pixels
     """
     renderer = Renderer(robot, samples=1)
     try:
@@ -90,11 +90,11 @@ def check_path(path: Path) -> None:
 
 
 def write_video(pictures: Iterable[Image.Image], path: Path) -> None:
-    """Write frames as MP4 (H.264) or as GIF that repeats, which is half as wide and high.
+    """Write frames as MP4 (H.264) or as GIF that repeats, which is smaller.
 
     The file appears when it is complete.
 
-    :param pictures: of 1280 x 720 pixels, as many per second as :data:`FRAMES_PER_SECOND` says
+    :param pictures: of 1024 x 576 pixels, as many per second as :data:`FRAMES_PER_SECOND` says
     :param path: of the file
     """
     unfinished = path.with_name(f".{path.stem}.unfinished{path.suffix}")
@@ -120,7 +120,7 @@ def _write_mp4(pictures: Iterable[Image.Image], path: Path) -> None:
 
 
 def _write_gif(pictures: Iterable[Image.Image], path: Path) -> None:
-    shrunk = [picture.reduce(GIF_SHRINKING) for picture in pictures]
+    shrunk = [picture.resize(GIF_SIZE, Image.Resampling.LANCZOS) for picture in pictures]
     palette = _palette(shrunk)
     first, *others = (picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in shrunk)
     first.save(path, save_all=True, append_images=others, duration=round(1000 / FRAMES_PER_SECOND[".gif"]), loop=0)

@@ -15,7 +15,7 @@ from sarah.description import describe_robot
 from sarah.episode import EpisodeSpec, simulate
 from sarah.errors import ConfigurationError
 from sarah.trace import Trace
-from sarah.video import HEIGHT, WIDTH, check_path, frame_times, frames
+from sarah.video import GIF_SIZE, HEIGHT, WIDTH, check_path, frame_times, frames
 
 BIN = Path(sys.executable).parent
 PUSHED = EpisodeConfig(time_limit=2.5, push=Push((100.0, 100.0), (180.0, 180.0), (1.5, 1.5)))
@@ -103,7 +103,7 @@ def test_command_films_any_episode_of_a_run(run_folder: Path, tmp_path: Path) ->
         process = run(str(run_folder), "a.gif", "--episode", episode, "--seconds", "1.2", "1.3", cwd=tmp_path)
         assert process.returncode == 0, process.stderr
         with Image.open(tmp_path / "a.gif") as film:
-            assert film.size == (WIDTH // 2, HEIGHT // 2) and film.n_frames == 3 and film.info["loop"] == 0
+            assert film.size == GIF_SIZE and film.n_frames == 3 and film.info["loop"] == 0
             pictures[episode] = film.convert("RGB").tobytes()
     assert len(set(pictures.values())) == 3
     assert json.loads((run_folder / "parameters.json").read_text())["parameters"]

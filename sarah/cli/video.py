@@ -25,7 +25,7 @@ class VideoOptions:
     """Film an episode: the robot from its front, a close look at its feet, phase, steps per second, score and push.
 
     :param subject: folder of a run, or numbers separated by commas: P1 to P5, or V1 to V4, to balance pushes with
-    :param out: file to write: MP4, which needs the extra ``video``, or GIF, which is half as wide and high
+    :param out: file to write: MP4, which needs the extra ``video``, or GIF, which is smaller
     :param episode: of a run: ``learned`` for its learned parameters, ``best``, or the index of a simulation in its
         episodes.csv; by default what it learned
     :param seed: of the episode: robot, sensors and push vary with it; by default the simulation's own, or 0
