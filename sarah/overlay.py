@@ -21,8 +21,9 @@ METRES_PER_NEWTON = 0.005
 """Length of a push's arrow."""
 PUSH_SHOWN_SECONDS = 0.6
 """How long the arrow stays, from the push's begin on: the push itself is over before the eye has found it."""
-LABEL_OFFSET = np.array((0.26, 0.08, 0.0))
+LABEL_OFFSET = np.array((0.26, 0.20, 0.0))
 """Of the arrow's label from the torso's centre: to the right, upward and ahead as the camera sees it, in m."""
+DIRECTIONS = ("to its right", "forward", "to its left", "backward")
 STRIP_SECONDS = 2.0
 """Of the past that the strip of phases shows."""
 
@@ -121,7 +122,7 @@ class Overlay:
         pen.line((*end, *neck), fill=PUSH, width=round(0.6 * unit))
         pen.polygon([tuple(tip), tuple(neck + 0.9 * unit * across), tuple(neck - 0.9 * unit * across)], fill=PUSH)
         label = self._view.pixels(head + (LABEL_OFFSET @ self._view.axes)[None])[0]
-        where = "forward" if force[1] > abs(force[0]) else "backward" if force[1] < -abs(force[0]) else "sideways"
+        where = DIRECTIONS[round(math.atan2(force[1], force[0]) / (math.pi / 2)) % 4]
         text = f"push of {math.hypot(*force):.0f} N\n{where}"
         pen.multiline_text(tuple(label), text, font=_font(1.2 * unit, bold=True), fill=PUSH, spacing=0.3 * unit)
 
