@@ -9,15 +9,15 @@ from pathlib import Path
 from sarah.config import TRAINED_STEPPING, EpisodeConfig, Randomisation
 from sarah.description import describe_robot
 from sarah.episode import EpisodeSpec, simulate
-from sarah.gait_figure import draw_gait_cycle
+from sarah.gait_figure import draw_gait_cycle, gait_cycle
 from sarah.pattern_generator import SteppingParameters
 from sarah.robot_figure import draw_robot
 from sarah.state_machine_figure import draw_state_machine
 from sarah.video import FRAMES_PER_SECOND, frame_times, frames, write_video
 
 HERE = Path(__file__).parent
-FROM_SECONDS, TO_SECONDS = 8.14, 10.66
-"""Of the video: whole gait cycles, so that it repeats without a jump."""
+CYCLES = 4
+"""Of the gait in the video, which so repeats without a jump."""
 
 
 def main() -> None:
@@ -25,7 +25,9 @@ def main() -> None:
     config = EpisodeConfig(time_limit=12.0, randomisation=Randomisation(enabled=False))
     trace = simulate(EpisodeSpec(TRAINED_STEPPING, 0, config=config), record_trace=True).trace
     assert trace is not None
-    times = frame_times(FROM_SECONDS, TO_SECONDS, FRAMES_PER_SECOND[".gif"])
+    begin, *_, end = trace.time[gait_cycle(trace)]
+    rate = FRAMES_PER_SECOND[".gif"]
+    times = frame_times(begin, begin + CYCLES * (end - begin) - 1.0 / rate, rate)
     write_video(frames(trace, robot, times, "SARAH stepping in place"), HERE / "stepping.gif")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
