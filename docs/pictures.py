@@ -22,7 +22,7 @@ CYCLES = 4
 
 def main() -> None:
     robot = describe_robot()
-    config = EpisodeConfig(time_limit=12.0, randomisation=Randomisation(enabled=False))
+    config = EpisodeConfig(randomisation=Randomisation(enabled=False))
     trace = simulate(EpisodeSpec(TRAINED_STEPPING, 0, config=config), record_trace=True).trace
     assert trace is not None
     begin, *_, end = trace.time[gait_cycle(trace)]
