@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.options import changed_episodes, numbers, parse_options, run_command
-from sarah.config import PHYSICS, EpisodeConfig
+from sarah.config import EpisodeConfig
 from sarah.errors import ConfigurationError, unknown_name
 from sarah.tasks import BALANCE, STEPPING, TASKS
 
@@ -68,8 +68,6 @@ class EvalOptions:
             raise ConfigurationError("--robustness prints a table, not JSON: leave --json out")
         if self.robustness is not None and self.push_newtons == 0:
             raise ConfigurationError("--robustness needs a push: --push-newtons must be above 0")
-        if self.physics is not None and self.physics not in PHYSICS:
-            raise ConfigurationError(unknown_name("physics", self.physics, PHYSICS))
 
 
 def main() -> None:
