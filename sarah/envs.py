@@ -79,7 +79,10 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         return observation_from(self._episode.last_reading), result.episode_return, True, False, info
 
     def render(self) -> np.ndarray | None:
-        """Draw the robot as it stands now: uint8 of shape (480, 640, 3)."""
+        """Draw the robot as it stands now: uint8 of shape (480, 640, 3).
+
+        The picture of :mod:`sarah.video` without what is written over it, so that others can write their own.
+        """
         if self.render_mode is None or self._episode is None:
             return None
         return self._episode.simulation.render()

@@ -8,8 +8,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
 from sarah.config import STAND_SECONDS, EpisodeConfig, Physics
 from sarah.description import PASSIVE_JOINTS, RobotDescription, describe_robot
 from sarah.errors import ConfigurationError, unknown_name
@@ -19,10 +17,11 @@ from sarah.motion import MotionRecord
 from sarah.pattern_generator import PatternGenerator, Phase, SteppingParameters
 from sarah.randomisation import Conditions, DrawnPush, draw_conditions, draw_push
 from sarah.reward import highest_return, reward_rate
-from sarah.sensors import ImperfectSensors, SensorReading
+from sarah.sensors import ImperfectSensors, SensorReading, Vector
 from sarah.simulation import Simulation
 from sarah.simulator import Simulator, TorsoState
 from sarah.tasks import BALANCE, STEPPING, TASKS, Task
+from sarah.trace import Trace
 
 BOX_HALF_WIDTH = 0.25
 """Displacement of the torso along any axis at which an episode ends, in m; the paper's second criterion."""
@@ -78,7 +77,7 @@ class EpisodeResult:
     :param actuator_power: mean mechanical power of the six actuators together, in W
     :param peak_hip_rate: fastest hip motion, in rad/s
     :param peak_leg_speed: fastest change of a leg's length, in m/s
-    :param trace: per control tick, on request: see :func:`simulate`
+    :param trace: what happened in every control tick, on request
     """
 
     score: float
@@ -95,7 +94,7 @@ class EpisodeResult:
     actuator_power: float
     peak_hip_rate: float
     peak_leg_speed: float
-    trace: dict[str, np.ndarray] | None = field(default=None, repr=False, compare=False)
+    trace: Trace | None = field(default=None, repr=False, compare=False)
 
     def fields(self) -> dict[str, Any]:
         """Every field but the trace, by name."""
@@ -163,7 +162,8 @@ class Episode:
         self._motion = MotionRecord(config.physics.control_rate)
         self._ticks = 0
         self._return = 0.0
-        self._trace: dict[str, list[Any]] | None = {} if record_trace else None
+        self._highest_return = highest_return(self.robot.standing_height, config.time_limit - STAND_SECONDS)
+        self._trace: list[dict[str, Any]] | None = [] if record_trace else None
 
     def stand(self) -> SensorReading:
         """Stand for the first second.
@@ -213,9 +213,11 @@ class Episode:
         if change is not None:
             gait.phase_change(self._ticks, change)
         simulation.set_targets(generator.targets)
-        self._push()
+        force = self._push_now()
+        if force is not None:
+            simulation.push(force)
         if self._trace is not None:
-            self._record(reading)
+            self._record(reading, force or (0.0, 0.0, 0.0))
         simulation.advance()
         self._ticks += 1
         self._judge()
@@ -223,12 +225,8 @@ class Episode:
     def result(self) -> EpisodeResult:
         """What has come out of the episode so far; of an episode that goes on, its ``termination`` is empty."""
         elapsed = self._ticks * self._dt
-        ceiling = highest_return(self.robot.standing_height, self.config.time_limit - STAND_SECONDS)
-        trace = None
-        if self._trace is not None:
-            trace = {name: np.array(values) for name, values in self._trace.items()}
         return EpisodeResult(
-            score=self._return / ceiling,
+            score=self._return / self._highest_return,
             episode_return=self._return,
             steps_per_second=self._gait.steps / elapsed if elapsed else 0.0,
             steps=self._gait.steps,
@@ -242,7 +240,7 @@ class Episode:
             actuator_power=self._motion.actuator_power,
             peak_hip_rate=self._motion.peak_hip_rate,
             peak_leg_speed=self._motion.peak_leg_speed,
-            trace=trace,
+            trace=None if self._trace is None else Trace.of(self._trace),
         )
 
     def close(self) -> None:
@@ -254,13 +252,13 @@ class Episode:
         self.last_reading = self._sensors(self._truth)
         return self.last_reading
 
-    def _push(self) -> None:
-        """Push during this tick, if the push's time has come."""
+    def _push_now(self) -> Vector | None:
+        """The push's force in N, if its time has come."""
         if self.push is None:
-            return
+            return None
         since_begin = STAND_SECONDS + self._ticks * self._dt - self.push.begin
-        if -self._dt / 2 <= since_begin < self.push.duration - self._dt / 2:
-            self.simulation.push(self.push.force)
+        is_now = -self._dt / 2 <= since_begin < self.push.duration - self._dt / 2
+        return self.push.force if is_now else None
 
     def _judge(self) -> None:
         """Add this tick's reward, and see whether the episode ends."""
@@ -291,39 +289,37 @@ class Episode:
             return "no_oscillation"
         return "time_limit" if time > self.config.time_limit - half_tick else None
 
-    def _record(self, reading: SensorReading) -> None:
+    def _record(self, reading: SensorReading, push: Vector) -> None:
         assert self._trace is not None
-        generator = self.generator
-        torso = self.simulation.torso_state()
-        row = {
-            "time": STAND_SECONDS + self._ticks * self._dt,
-            "position": torso.position,
-            "orientation": torso.orientation,
-            "acceleration": reading.acceleration,
-            "angular_rate": reading.angular_rate,
-            "pressures": reading.pressures,
-            "joints": reading.joints,
-            "ankles": self.simulation.joint_positions(PASSIVE_JOINTS),
-            "targets": generator.targets,
-            "phase": generator.phase.value,
-            "support": generator.support.value,
-            "stable_x": generator.stable_x,
-            "tilt": generator.tilt,
-            "rate": generator.rate,
-            "steps_per_second": self._gait.steps_per_second(self._ticks),
-        }
-        for name, value in row.items():
-            self._trace.setdefault(name, []).append(value)
+        generator, torso = self.generator, self.simulation.torso_state()
+        self._trace.append(
+            {
+                "time": STAND_SECONDS + self._ticks * self._dt,
+                "position": torso.position,
+                "orientation": torso.orientation,
+                "joints": self._truth.joints,
+                "ankles": self.simulation.joint_positions(PASSIVE_JOINTS),
+                "targets": generator.targets,
+                "pressures": reading.pressures,
+                "acceleration": reading.acceleration,
+                "angular_rate": reading.angular_rate,
+                "phase": generator.phase.value,
+                "support": generator.support.value,
+                "stable_x": generator.stable_x,
+                "tilt": generator.tilt,
+                "rate": generator.rate,
+                "steps_per_second": self._gait.steps_per_second(self._ticks),
+                "push": push,
+                "score": self._return / self._highest_return,
+            }
+        )
 
 
 def simulate(spec: EpisodeSpec, record_trace: bool = False) -> EpisodeResult:
     """Simulate one episode, from a fresh world to its end.
 
     :param spec: everything that the result depends on; the same spec gives the same bytes in any process
-    :param record_trace: whether to return a trace of every control tick in which the pattern generator ran: a
-        dictionary of arrays whose first axis is time. ``time``, ``position``, ``orientation`` (the torso's, true),
-        ``acceleration``, ``angular_rate``, ``pressures``, ``joints`` (as sensed), ``ankles`` (true), ``targets``,
-        ``phase``, ``support`` (+1 right, -1 left), ``stable_x``, ``tilt``, ``rate`` and ``steps_per_second``
+    :param record_trace: whether the result has a :class:`~sarah.trace.Trace`
     :return: the result
     """
     episode = Episode(spec.config, spec.seed, TASKS[spec.task], record_trace)

@@ -13,17 +13,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import matplotlib
-
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
-from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from sarah.errors import RunFolderError
+from sarah.pattern_generator import PAPER_PARAMETERS
+from sarah.print_style import COLUMN_WIDTH, STYLE, save
 from sarah.robustness import PushedEpisode, survival_by_direction
 from sarah.runs import RunFolder
 from sarah.tasks import BALANCE, STEPPING, Task
@@ -31,8 +29,6 @@ from sarah.tasks import BALANCE, STEPPING, Task
 if TYPE_CHECKING:  # it brings the trainings with it
     from sarah.comparison import Curve
 
-COLUMN_WIDTH = 3.5
-"""Of a two-column page, in inches."""
 WINDOW = 15
 """Simulations that the running median is over."""
 SECTORS = 16
@@ -48,17 +44,6 @@ COLOURS = {
     "random": "#000000",
 }
 """Of each algorithm; told apart by the colour-blind (Okabe and Ito)."""
-STYLE: dict[Any, Any] = {
-    "font.size": 8,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.linewidth": 0.4,
-    "grid.alpha": 0.5,
-    "legend.frameon": False,
-    "pdf.fonttype": 42,  # text stays text
-}
-
 
 Panels = list[tuple[str, str]]
 """Column of ``episodes.csv`` and label of each panel, from top to bottom."""
@@ -66,14 +51,22 @@ RETURN = ("return", "return (m³ s)")
 FIGURES: dict[Task, dict[str, Panels]] = {
     STEPPING: {
         "figure_4_reward_and_frequency": [RETURN, ("steps_per_second", "steps per second")],
-        "figure_5_parameters": [(name, name) for name in STEPPING.parameter_names],
+        "figure_5_parameters": [
+            ("P1", "P1 (rad/s)"),
+            ("P2", "P2 (m/s²)"),
+            ("P3", "P3 (rad/s)"),
+            ("P4", "P4"),
+            ("P5", "P5"),
+        ],
     },
     BALANCE: {
         "figure_6_reward_and_position": [RETURN, ("x", "final x (m)"), ("y", "final y (m)")],
-        "figure_7_parameters": [(name, name) for name in BALANCE.parameter_names],
+        "figure_7_parameters": [("V1", "V1"), ("V2", "V2 (m/s²)"), ("V3", "V3"), ("V4", "V4")],
     },
 }
 """The paper's figures of each training."""
+PAPER = dict(zip(STEPPING.parameter_names[:3], PAPER_PARAMETERS[:3], strict=True))
+"""Where the paper's parameters settled, of those that matter."""
 
 
 @dataclass(frozen=True)
@@ -138,10 +131,13 @@ def _draw(curves: Sequence[Curves], panels: Panels, path: Path) -> list[Path]:
     for axis, (column, label) in zip(axes[:, 0], panels, strict=True):
         for curve in curves:
             _draw_panel(axis, curve.columns[column], curve.algorithm)
+        if column in PAPER:
+            axis.axhline(PAPER[column], color="black", linewidth=0.8, linestyle=":", label="paper")
         axis.set_ylabel(label)
     axes[-1, 0].set_xlabel("training steps (simulations)")
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper right", ncols=len(curves))
-    return _save(figure, path)
+    figure.align_ylabels()
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper right", ncols=len(curves) + 1)
+    return save(figure, path)
 
 
 def _draw_panel(axis: Axes, values: np.ndarray, algorithm: str) -> None:
@@ -184,7 +180,7 @@ def draw_race(curves: Sequence[Curve], path: Path) -> list[Path]:
         axis.set_xlabel("simulations")
         axis.set_ylabel("score on unseen seeds")
         figure.legend(loc="outside upper center", ncols=4)
-        return _save(figure, path)
+        return save(figure, path)
 
 
 def draw_survival(controllers: Mapping[str, Sequence[PushedEpisode]], path: Path) -> list[Path]:
@@ -207,7 +203,7 @@ def draw_survival(controllers: Mapping[str, Sequence[PushedEpisode]], path: Path
             mesh = _draw_survival(axis, survival_by_direction(episodes, SECTORS))
             axis.set_title(name)
         figure.colorbar(mesh, ax=axes, label="survival", orientation="horizontal", shrink=0.6)
-        return _save(figure, path)
+        return save(figure, path)
 
 
 def _draw_survival(axis: Any, survival: Mapping[float, Sequence[float | None]]) -> QuadMesh:
@@ -223,11 +219,3 @@ def _draw_survival(axis: Any, survival: Mapping[float, Sequence[float | None]]) 
         label.set_path_effects([withStroke(linewidth=2, foreground="white")])
     axis.set_thetagrids((0, 90, 180, 270), ("right", "forward", "left", "back"))
     return mesh
-
-
-def _save(figure: Figure, path: Path) -> list[Path]:
-    files = [path.with_suffix(suffix) for suffix in (".png", ".pdf")]
-    for file in files:
-        figure.savefig(file, dpi=200)
-    plt.close(figure)
-    return files

@@ -3,27 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import product
 
 import numpy as np
+from PIL import Image
 
 from sarah.bullet import give_back_client, load_robot, pybullet, take_client
-from sarah.description import RobotDescription
+from sarah.description import PLATES, SIDES, RobotDescription
+from sarah.scenery import View, floor, shaded
 from sarah.sensors import Vector
 from sarah.simulator import STANDARD_CAMERA, Camera
+
+MARGIN = 0.05
+"""Around the corners of torso and feet, in m, within which all of the robot lies; nothing else is drawn."""
+SHOE_MARGIN = 1.2
+"""Length and width of a shoe, in those of its sole contacts."""
+NEAR, FAR = 0.05, 10.0
+LIGHT = (-1.5, 2.5, 3.0)
+"""Direction towards the light, in the world."""
 
 
 class Renderer:
     """Draws a robot in any pose, by PyBullet's software renderer.
 
     :param robot: the checked robot
+    :param samples: of the robot along each side of a pixel: more smooth its edges, and cost time with their square
     """
 
-    def __init__(self, robot: RobotDescription) -> None:
+    def __init__(self, robot: RobotDescription, samples: int = 2) -> None:
+        self._robot = robot
+        self._samples = samples
         self._client = take_client()
         try:
-            shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self._client)
-            pybullet.createMultiBody(0.0, shape, physicsClientId=self._client)
             self._body, self._indices = load_robot(self._client, robot.urdf, robot.standing_height, flags=0)
+            self._torso = self._torso_corners()
         except BaseException:
             self.close()
             raise
@@ -51,15 +64,72 @@ class Renderer:
         pybullet.resetBasePositionAndOrientation(self._body, position, orientation, physicsClientId=client)
         for name, value in joints.items():
             pybullet.resetJointState(self._body, self._indices[name], value, physicsClientId=client)
-        x, y, _ = position
-        view = pybullet.computeViewMatrixFromYawPitchRoll(
-            (x, y, camera.height), camera.distance, camera.yaw, camera.pitch, roll=0.0, upAxisIndex=2
+        view = View(width, height, camera)
+        soles = [self._soles(side) for side in SIDES]
+        torso = [pybullet.multiplyTransforms(position, orientation, corner, (0, 0, 0, 1))[0] for corner in self._torso]
+        left, top, right, bottom = rectangle = view.rectangle(np.concatenate((torso, *soles)), MARGIN)
+        picture = floor(width, height, camera).copy()
+        if left < right and top < bottom:
+            shadows = [view.pixels(outline * (1.0, 1.0, 0.0)) - (left, top) for outline in soles]
+            behind = shaded(picture[top:bottom, left:right], shadows)
+            picture[top:bottom, left:right] = self._over(behind, view, rectangle)
+        return picture
+
+    def _torso_corners(self) -> np.ndarray:
+        """Of a box around the torso, in its frame."""
+        shapes = pybullet.getVisualShapeData(self._body, physicsClientId=self._client)
+        boxes = [shape for shape in shapes if shape[1] == -1 and shape[2] == pybullet.GEOM_BOX]
+        reach = np.max([np.abs(box[5]) + np.array(box[3]) / 2 for box in boxes], axis=0)
+        return np.array(list(product((-1, 1), repeat=3))) * reach
+
+    def _soles(self, side: str) -> np.ndarray:
+        """Corners of a foot's sole in the world, in order around it."""
+        corners = []
+        for plate, order in zip(PLATES, (1, -1), strict=True):
+            name = f"{side}_{plate}"
+            state = pybullet.getLinkState(
+                self._body, self._indices[name], computeForwardKinematics=1, physicsClientId=self._client
+            )
+            for sole in self._robot.soles[name][::order]:
+                corners.append(pybullet.multiplyTransforms(state[4], state[5], sole, (0, 0, 0, 1))[0])
+        contacts = np.array(corners)
+        middle = contacts.mean(axis=0)
+        return np.asarray(middle + SHOE_MARGIN * (contacts - middle))
+
+    def _over(self, behind: np.ndarray, view: View, rectangle: tuple[int, int, int, int]) -> np.ndarray:
+        """Draw the robot over a part of the picture."""
+        left, top, right, bottom = rectangle
+        rotation = view.axes * [[1], [1], [-1]]  # OpenGL looks along its negative z axis
+        matrix = np.eye(4)
+        matrix[:3, :3], matrix[:3, 3] = rotation, -rotation @ view.position
+        scale = NEAR / view.focal_length
+        projection = pybullet.computeProjectionMatrix(
+            scale * (left - view.width / 2),
+            scale * (right - view.width / 2),
+            scale * (view.height / 2 - bottom),
+            scale * (view.height / 2 - top),
+            NEAR,
+            FAR,
         )
-        projection = pybullet.computeProjectionMatrixFOV(fov=45.0, aspect=width / height, nearVal=0.05, farVal=10.0)
+        samples = self._samples
+        rows, columns = samples * (bottom - top), samples * (right - left)
         image = pybullet.getCameraImage(
-            width, height, view, projection, renderer=pybullet.ER_TINY_RENDERER, physicsClientId=client
+            columns,
+            rows,
+            matrix.T.flatten().tolist(),
+            projection,
+            lightDirection=LIGHT,
+            shadow=0,
+            lightAmbientCoeff=0.55,
+            lightDiffuseCoeff=0.45,
+            lightSpecularCoeff=0.1,
+            renderer=pybullet.ER_TINY_RENDERER,
+            physicsClientId=self._client,
         )
-        return np.reshape(np.asarray(image[2], dtype=np.uint8), (height, width, 4))[:, :, :3]
+        is_robot = np.reshape(image[4], (rows, columns, 1)) >= 0
+        colours = np.reshape(image[2], (rows, columns, 4))[..., :3]
+        finer = behind.repeat(samples, axis=0).repeat(samples, axis=1)
+        return np.asarray(Image.fromarray(np.where(is_robot, colours, finer)).reduce(samples))
 
     def close(self) -> None:
         """Give PyBullet's client back; nothing can be drawn any more."""

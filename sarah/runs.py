@@ -98,19 +98,26 @@ class RunFolder:
         return run
 
     @classmethod
-    def open(cls, path: Path) -> RunFolder:
-        """Open the folder of a finished training.
+    def open(cls, path: Path, unfinished: bool = False) -> RunFolder:
+        """Open the folder of a training.
 
         :param path: of the folder
+        :param unfinished: whether one without learned parameters will do
         :raises RunFolderError: if it is not there, or has no learned parameters
         """
         run = cls(path)
         if not path.is_dir():
             raise RunFolderError(f"run folder {path} does not exist")
-        for file in (run._config_path, run._parameters_path):
+        kind = "training" if unfinished else "finished training"
+        for file in (run._config_path,) if unfinished else (run._config_path, run._parameters_path):
             if not file.is_file():
-                raise RunFolderError(f"{path} is not the folder of a finished training: it has no {file.name}")
+                raise RunFolderError(f"{path} is not the folder of a {kind}: it has no {file.name}")
         return run
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether the training has ended, with learned parameters."""
+        return self._parameters_path.is_file()
 
     def config(self) -> TrainingConfig:
         """Read the training's configuration."""

@@ -45,18 +45,18 @@ class TorsoState(NamedTuple):
 
 
 class Camera(NamedTuple):
-    """Where a picture is taken from: a point over the floor below the torso, seen from a distance.
+    """Where a picture is taken from: it looks at a point above where the robot starts, and stands still.
 
-    :param height: of the point, in m
+    :param height: of the point over the floor, in m
     :param distance: from it, in m
     :param yaw: in degrees; 180 looks at the robot from its front
     :param pitch: in degrees; negative looks down
     """
 
-    height: float = 0.47
-    distance: float = 1.6
-    yaw: float = 155.0
-    pitch: float = -12.0
+    height: float = 0.48
+    distance: float = 2.0
+    yaw: float = 162.0
+    pitch: float = -7.0
 
 
 STANDARD_CAMERA = Camera()

@@ -136,7 +136,10 @@ def test_figures_of_both_trainings(balanced: Path) -> None:
     process = run("sarah-figures", "mine", "second", "--out", "figures", cwd=balanced.parent)
     assert process.returncode == 0, process.stderr
     files = process.stdout.split()
-    assert len(files) == 8 and all((balanced.parent / file).stat().st_size > 5000 for file in files)
+    names = {Path(file).stem for file in files}
+    assert {"figure_2_robot", "figure_3_pattern_generator", "figure_4_reward_and_frequency"} <= names
+    assert len(files) == 12 and all((balanced.parent / file).stat().st_size > 5000 for file in files)
+    assert "no gait cycle of mine" in process.stderr  # in half a second there is none
     alone = run("sarah-figures", "second", cwd=balanced.parent)
     assert sorted(path.name for path in (balanced / "figures").iterdir()) == sorted(
         Path(file).name for file in alone.stdout.split()
@@ -169,6 +172,7 @@ def test_training_is_configured_by_a_file_and_overridden_by_options(tmp_path: Pa
             ("--task", "--algo", "--simulations", "--seed", "--run-dir", "--config", "--workers", "--scheduler"),
         ),
         ("sarah-figures", ("RUN", "--out")),
+        ("sarah-video", ("RUN|NUMBERS", "OUT", "--episode", "--seed", "--push-newtons", "--seconds", "--speed")),
         ("sarah-compare", ("DIR", "--algorithms", "--seeds", "--simulations", "--best-known", "--workers")),
         ("sarah-eval", ("RUN", "--episodes", "--first-seed", "--json", "--parameters", "--task")),
     ],
@@ -196,7 +200,7 @@ def test_a_reader_who_has_had_enough_is_no_error(tmp_path: Path) -> None:
     assert process.stderr == ""
 
 
-@pytest.mark.parametrize("command", ["train", "eval", "figures", "compare"])
+@pytest.mark.parametrize("command", ["train", "eval", "figures", "compare", "video"])
 def test_help_loads_nothing_slow(command: str) -> None:
     program = (
         f"import sys\nfrom sarah.cli.{command} import main\nsys.argv = ['command', '--help']\n"
@@ -262,6 +266,19 @@ def test_help_loads_nothing_slow(command: str) -> None:
         ("sarah-compare race --seeds 0", "seeds must be at least 1, not 0"),
         ("sarah-figures full full", "several runs need a folder for their figures: --out DIR"),
         ("sarah-figures full", "not the folder of a finished training"),
+        ("sarah-video", "give a run folder or parameters, and the file to write"),
+        ("sarah-video full", "give a run folder or parameters, and the file to write"),
+        ("sarah-video full a.avi", "must end in .mp4 or .gif, not 'a.avi'"),
+        ("sarah-video full nowhere/a.gif", "folder nowhere does not exist"),
+        ("sarah-video full a.gif", "full is not the folder of a training"),
+        ("sarah-video nowhere a.gif", "nowhere is neither a run folder nor numbers separated by commas"),
+        ("sarah-video 1,1,1 a.gif", "must be 5 numbers (P1 to P5) or 4 numbers (V1 to V4), not 3"),
+        ("sarah-video 1,1,1,1,1 a.gif --push-newtons 50", "--push-newtons is for V1 to V4"),
+        ("sarah-video 1,1,1,1,1 a.gif --episode best", "--episode is for a run folder"),
+        ("sarah-video 1,1,1,1,1 a.gif --speed 0", "speed must be between 0.01 and 10, not 0.0"),
+        ("sarah-video 1,1,1,1,1 a.gif --seconds 3 2", "seconds must be in rising order"),
+        ("sarah-video 1,1,1,1,1 a.gif --seed -1", "seed must be a whole number from 0, not -1"),
+        ("sarah-video 1,1,1,1,1 a.gif --seconds 40 41", "nothing to film"),
         ("sarah-eval", "give either a run folder or --parameters"),
         ("sarah-eval nowhere", "run folder nowhere does not exist"),
         ("sarah-eval full", "not the folder of a finished training"),

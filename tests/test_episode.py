@@ -44,9 +44,9 @@ def test_papers_parameters_step_in_place_for_30_seconds(paper_episode: EpisodeRe
 def test_return_is_equation_2_integrated_over_the_trace(paper_episode: EpisodeResult) -> None:
     trace = paper_episode.trace
     assert trace is not None
-    start = trace["position"][0]
-    moved = trace["position"] - [start[0], start[1], 0.0]
-    rewards = [reward_rate(*position, f) for position, f in zip(moved, trace["steps_per_second"], strict=True)]
+    start = trace.position[0]
+    moved = trace.position - [start[0], start[1], 0.0]
+    rewards = [reward_rate(*position, f) for position, f in zip(moved, trace.steps_per_second, strict=True)]
     # The trace holds the state before each tick and the reward the one after it, hence the tolerance.
     assert sum(rewards) * CONTROL_DT == pytest.approx(paper_episode.episode_return, rel=0.01)
     ceiling = highest_return(describe_robot().standing_height, 29.0)
@@ -56,10 +56,34 @@ def test_return_is_equation_2_integrated_over_the_trace(paper_episode: EpisodeRe
 def test_trace_has_a_row_for_every_tick(paper_episode: EpisodeResult) -> None:
     trace = paper_episode.trace
     assert trace is not None
-    assert {len(values) for values in trace.values()} == {2900}
-    assert np.allclose(np.diff(trace["time"]), CONTROL_DT)
-    assert set(trace["phase"]) == {"shift", "lift", "land"}
-    assert trace["joints"].shape == (2900, 6) and trace["ankles"].shape == (2900, 4)
+    assert len(trace) == 2900 and {len(values) for values in vars(trace).values()} == {2900}
+    assert np.allclose(np.diff(trace.time), CONTROL_DT)
+    assert set(trace.phase) == {"shift", "lift", "land"}
+    assert trace.joints.shape == (2900, 6) and trace.ankles.shape == (2900, 4)
+    assert not trace.push.any()
+
+
+def test_trace_finds_the_tick_of_a_time(paper_episode: EpisodeResult) -> None:
+    trace = paper_episode.trace
+    assert trace is not None
+    assert [trace.tick_at(time) for time in (0.0, 1.0, 1.013, 2.0, 99.0)] == [0, 0, 1, 100, 2899]
+    assert all(trace.tick_at(time) == tick for tick, time in enumerate(trace.time))
+
+
+def test_trace_follows_the_score(paper_episode: EpisodeResult) -> None:
+    trace = paper_episode.trace
+    assert trace is not None
+    assert trace.score[0] == 0.0 and (np.diff(trace.score) >= 0.0).all()
+    assert trace.score[-1] == pytest.approx(paper_episode.score, rel=0.001)
+
+
+def test_trace_shows_the_push() -> None:
+    push = Push(newtons=(60.0, 60.0), degrees=(90.0, 90.0), at_seconds=(2.0, 2.0), duration=0.15)
+    spec = EpisodeSpec((0.0,) * 4, 0, "balance", dataclasses.replace(SHORT, push=push))
+    trace = simulate(spec, record_trace=True).trace
+    assert trace is not None
+    assert trace.time[trace.push.any(axis=1)] == pytest.approx(np.arange(2.0, 2.145, CONTROL_DT))
+    assert trace.push[trace.tick_at(2.1)] == pytest.approx([0.0, 60.0, 0.0])
 
 
 def test_trace_does_not_change_the_result(paper_episode: EpisodeResult) -> None:
@@ -69,7 +93,7 @@ def test_trace_does_not_change_the_result(paper_episode: EpisodeResult) -> None:
 def test_steps_of_the_trace_alternate_between_the_feet(paper_episode: EpisodeResult) -> None:
     trace = paper_episode.trace
     assert trace is not None
-    swaps = np.flatnonzero(np.diff(trace["support"]))
+    swaps = np.flatnonzero(np.diff(trace.support))
     assert len(swaps) >= paper_episode.steps
     assert np.median(np.diff(swaps)) * CONTROL_DT == pytest.approx(1 / paper_episode.steps_per_second, rel=0.1)
 
@@ -346,7 +370,7 @@ def test_episode_runs_at_another_control_rate() -> None:
     config = EpisodeConfig(physics=Physics(rate=400, control_rate=200), time_limit=6.0)
     result = simulate(EpisodeSpec(PAPER_PARAMETERS, 0, config=config), record_trace=True)
     assert result.survived and result.steps > 5 and result.trace is not None
-    assert np.allclose(np.diff(result.trace["time"]), 0.005)
+    assert np.allclose(np.diff(result.trace.time), 0.005)
 
 
 def shaken_by(amplitude: float) -> Evaluation:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json as json_format
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.options import parse_options, run_command
-from sarah.config import PHYSICS, EpisodeConfig
+from sarah.cli.options import changed_episodes, numbers, parse_options, run_command
+from sarah.config import EpisodeConfig
 from sarah.errors import ConfigurationError, unknown_name
 from sarah.tasks import BALANCE, STEPPING, TASKS
 
@@ -69,8 +68,6 @@ class EvalOptions:
             raise ConfigurationError("--robustness prints a table, not JSON: leave --json out")
         if self.robustness is not None and self.push_newtons == 0:
             raise ConfigurationError("--robustness needs a push: --push-newtons must be above 0")
-        if self.physics is not None and self.physics not in PHYSICS:
-            raise ConfigurationError(unknown_name("physics", self.physics, PHYSICS))
 
 
 def main() -> None:
@@ -128,7 +125,7 @@ def _subject(options: EvalOptions) -> tuple[str, str | None, tuple[float, ...], 
             raise ConfigurationError(f"task is {options.task!r}, but {options.run} learned {training.task!r}")
         return training.task, training.algo, run.parameters(), training.episode
     task = options.task or STEPPING.name
-    return task, None, TASKS[task].checked(_numbers("parameters", str(options.parameters))), EpisodeConfig()
+    return task, None, TASKS[task].checked(numbers("parameters", str(options.parameters))), EpisodeConfig()
 
 
 def _changed(config: EpisodeConfig, options: EvalOptions, task: str) -> EpisodeConfig:
@@ -136,25 +133,7 @@ def _changed(config: EpisodeConfig, options: EvalOptions, task: str) -> EpisodeC
     for name in ("stepping", "push_newtons", "robustness"):
         if task == STEPPING.name and getattr(options, name) is not None:
             raise ConfigurationError(f"--{name.replace('_', '-')} is for --task balance")
-    if options.physics is not None:
-        physics = PHYSICS[options.physics].at_control_rate(config.physics.control_rate)
-        config = dataclasses.replace(config, physics=physics)
-    if not options.randomisation:
-        config = dataclasses.replace(config, randomisation=dataclasses.replace(config.randomisation, enabled=False))
-    if options.stepping is not None:
-        stepping = STEPPING.checked(_numbers("stepping", options.stepping), "stepping")
-        config = dataclasses.replace(config, stepping=stepping)  # type: ignore[arg-type]  # five of them
-    if options.push_newtons is not None:
-        force = (options.push_newtons, options.push_newtons)
-        config = dataclasses.replace(config, push=dataclasses.replace(config.push, newtons=force))
-    return config
-
-
-def _numbers(name: str, text: str) -> tuple[float, ...]:
-    try:
-        return tuple(float(value) for value in text.split(","))
-    except ValueError:
-        raise ConfigurationError(f"{name} must be numbers separated by commas, not {text!r}") from None
+    return changed_episodes(config, options.stepping, options.push_newtons, options.physics, options.randomisation)
 
 
 def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[str, str]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import io
 import os
 import re
@@ -12,7 +13,9 @@ from typing import NoReturn, TypeVar
 
 import tyro
 
-from sarah.errors import SarahError
+from sarah.config import PHYSICS, EpisodeConfig
+from sarah.errors import ConfigurationError, SarahError, unknown_name
+from sarah.tasks import STEPPING
 
 OptionsType = TypeVar("OptionsType")
 USAGE_ERROR = 2
@@ -89,3 +92,48 @@ def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
     except KeyboardInterrupt:
         print(f"\n{command}: interrupted", file=sys.stderr)
         raise SystemExit(130) from None
+
+
+def numbers(name: str, text: str) -> tuple[float, ...]:
+    """Read numbers that are separated by commas.
+
+    :param name: what the message calls them
+    :param text: as a user gave it
+    :raises ConfigurationError: if one of them is none
+    """
+    try:
+        return tuple(float(value) for value in text.split(","))
+    except ValueError:
+        raise ConfigurationError(f"{name} must be numbers separated by commas, not {text!r}") from None
+
+
+def changed_episodes(
+    config: EpisodeConfig,
+    stepping: str | None,
+    push_newtons: float | None,
+    physics: str | None,
+    randomisation: bool,
+) -> EpisodeConfig:
+    """Episode settings as options change them.
+
+    :param config: the settings
+    :param stepping: P1 to P5 of the balance task, separated by commas
+    :param push_newtons: force of every push
+    :param physics: name of a setting in :data:`~sarah.config.PHYSICS`
+    :param randomisation: whether to leave it on
+    :raises ConfigurationError: if one of them is not allowed
+    """
+    if physics is not None:
+        if physics not in PHYSICS:
+            raise ConfigurationError(unknown_name("physics", physics, PHYSICS))
+        finer = PHYSICS[physics].at_control_rate(config.physics.control_rate)
+        config = dataclasses.replace(config, physics=finer)
+    if not randomisation:
+        config = dataclasses.replace(config, randomisation=dataclasses.replace(config.randomisation, enabled=False))
+    if stepping is not None:
+        values = STEPPING.checked(numbers("stepping", stepping), "stepping")
+        config = dataclasses.replace(config, stepping=values)  # type: ignore[arg-type]  # five of them
+    if push_newtons is not None:
+        force = (push_newtons, push_newtons)
+        config = dataclasses.replace(config, push=dataclasses.replace(config.push, newtons=force))
+    return config

@@ -1,0 +1,83 @@
+"""Which episodes there are to choose from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sarah.episode import EpisodeSpec
+from sarah.errors import ConfigurationError, RunFolderError
+from sarah.runs import RunFolder
+from sarah.tasks import TASKS
+
+ENDINGS = {
+    "time_limit": "ran to the end",
+    "left_box": "left its place",
+    "no_oscillation": "did not step",
+    "fell": "fell",
+    "diverged": "diverged",
+}
+"""What the page says of each of :data:`sarah.episode.TERMINATIONS`."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """An episode to choose.
+
+    :param name: what ``--episode`` calls it
+    :param label: what the page's list calls it
+    :param spec: the episode
+    :param score: that the run noted, if it has been simulated there
+    """
+
+    name: str
+    label: str
+    spec: EpisodeSpec
+    score: float | None = None
+
+
+def choices_of_run(run: RunFolder) -> list[Choice]:
+    """A run's learned parameters, its best simulation, and then all of them.
+
+    :param run: of a training, which need not be finished
+    :raises RunFolderError: if a row of ``episodes.csv`` cannot be read, or there is nothing at all
+    """
+    training = run.config()
+    task = TASKS[training.task]
+    simulated = []
+    for row in run.episodes():
+        try:
+            parameters = tuple(float(row[name]) for name in task.parameter_names)
+            spec = EpisodeSpec(parameters, int(row["seed"]), task.name, training.episode)
+            score, ending = float(row["score"]), ENDINGS[row["termination"]]
+            label = f"simulation {row['index']} · score {score:.2f} · {ending}"
+            simulated.append(Choice(row["index"], label, spec, score))
+        except (KeyError, TypeError, ValueError) as error:
+            raise RunFolderError(f"the simulations of {run.path} cannot be read: {error!r}") from error
+    choices = []
+    if run.is_finished:
+        spec = EpisodeSpec(run.parameters(), 0, task.name, training.episode)
+        choices.append(Choice("learned", "learned parameters · seed 0", spec))
+    if simulated:
+        best = max(simulated, key=lambda choice: choice.score or 0.0)
+        choices.append(Choice("best", f"best: {best.label}", best.spec, best.score))
+    if not choices:
+        raise RunFolderError(f"{run.path} has no simulations to show yet")
+    return choices + simulated
+
+
+def choose(choices: list[Choice], name: str | None) -> Choice:
+    """Find an episode by its name.
+
+    :param choices: to choose from
+    :param name: ``learned``, ``best`` or the index of a simulation; the first choice if there is none
+    :raises ConfigurationError: if there is no such episode
+    """
+    if name is None:
+        return choices[0]
+    for choice in choices:
+        if choice.name == name:
+            return choice
+    words = [choice.name for choice in choices if not choice.name.isdigit()]
+    simulated = [choice.name for choice in choices if choice.name.isdigit()]
+    numbers = [f"{simulated[0]} to {simulated[-1]}"] if simulated else []
+    raise ConfigurationError(f"unknown episode {name!r} (allowed: {', '.join(words + numbers)})")

@@ -1,0 +1,133 @@
+"""``sarah-video``: an episode as MP4 or GIF."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+from sarah.cli.options import changed_episodes, numbers, parse_options, run_command
+from sarah.errors import ConfigurationError
+from sarah.tasks import STEPPING, TASKS
+
+if TYPE_CHECKING:
+    from sarah.episode import EpisodeResult, EpisodeSpec
+
+COMMAND = "sarah-video"
+
+
+@dataclass(frozen=True)
+class VideoOptions:
+    """Film an episode: the robot from its front, a close look at its feet, phase, steps per second, score and push.
+
+    :param subject: folder of a run, or numbers separated by commas: P1 to P5, or V1 to V4, to balance pushes with
+    :param out: file to write: MP4, which needs the extra ``video``, or GIF, which is smaller
+    :param episode: of a run: ``learned`` for its learned parameters, ``best``, or the index of a simulation in its
+        episodes.csv; by default what it learned
+    :param seed: of the episode: robot, sensors and push vary with it; by default the simulation's own, or 0
+    :param stepping: P1 to P5 to balance with, separated by commas; by default the run's own, or trained ones
+    :param push_newtons: force of the push; by default as in the run, or 0 to 100 N
+    :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default the run's own
+    :param randomisation: whether friction, masses, sensors and so on vary from seed to seed
+    :param seconds: simulated time at which the video begins and ends; by default all of it
+    :param speed: 0.25 shows everything four times as slow
+    """
+
+    subject: Annotated[str | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN|NUMBERS")] = None
+    out: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="OUT")] = None
+    episode: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
+    seed: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
+    stepping: Annotated[str | None, tyro.conf.arg(metavar="P1,P2,P3,P4,P5")] = None
+    push_newtons: Annotated[float | None, tyro.conf.arg(metavar="FLOAT")] = None
+    physics: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
+    randomisation: bool = True
+    seconds: Annotated[tuple[float, float] | None, tyro.conf.arg(metavar="BEGIN END")] = None
+    speed: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Refuse impossible numbers."""
+        if not 0.01 <= self.speed <= 10.0:
+            raise ConfigurationError(f"speed must be between 0.01 and 10, not {self.speed!r}")
+        if self.seconds is not None and not self.seconds[0] < self.seconds[1]:
+            raise ConfigurationError(f"seconds must be in rising order, not {self.seconds!r}")
+
+
+def main() -> None:
+    """Run the command with the arguments of the process."""
+    run_command(COMMAND, _film)
+
+
+def _film(arguments: Sequence[str]) -> None:
+    options = parse_options(VideoOptions, COMMAND, arguments, VideoOptions())
+    if options.subject is None or options.out is None:
+        raise ConfigurationError("give a run folder or parameters, and the file to write")
+    from sarah.video import FRAMES_PER_SECOND, check_path, frame_times, frames, write_video
+
+    check_path(options.out)
+    spec = _spec(options, options.subject)
+    from tqdm import tqdm
+
+    from sarah.description import describe_robot
+    from sarah.episode import simulate
+
+    result = simulate(spec, record_trace=True)
+    assert result.trace is not None
+    begin, end = options.seconds or (result.trace.time[0], result.trace.time[-1])
+    begin, end = max(begin, result.trace.time[0]), min(end, result.trace.time[-1])
+    if begin > end:
+        raise ConfigurationError(f"nothing to film: the episode runs from {end:g} to {result.duration:g} s")
+    times = frame_times(begin, end, FRAMES_PER_SECOND[options.out.suffix], options.speed)
+    robot = describe_robot(spec.config.dimensions)
+    pictures = frames(result.trace, robot, tqdm(times, desc="filming", unit=" frames"), _caption(spec, result))
+    write_video(pictures, options.out)
+    print(options.out)
+
+
+def _spec(options: VideoOptions, subject: str) -> EpisodeSpec:
+    """The episode to film."""
+
+    if Path(subject).is_dir():
+        from sarah.choices import choices_of_run, choose
+        from sarah.runs import RunFolder
+
+        spec = choose(choices_of_run(RunFolder.open(Path(subject), unfinished=True)), options.episode).spec
+    else:
+        if not subject.strip("+-.")[:1].isdigit():
+            raise ConfigurationError(f"{subject} is neither a run folder nor numbers separated by commas")
+        if options.episode is not None:
+            raise ConfigurationError("--episode is for a run folder")
+        spec = _spec_of_numbers(numbers("parameters", subject))
+    for name in ("stepping", "push_newtons"):
+        if spec.task == STEPPING.name and getattr(options, name) is not None:
+            raise ConfigurationError(f"--{name.replace('_', '-')} is for V1 to V4")
+    config = changed_episodes(
+        spec.config, options.stepping, options.push_newtons, options.physics, options.randomisation
+    )
+    return dataclasses.replace(spec, config=config, seed=spec.seed if options.seed is None else options.seed)
+
+
+def _spec_of_numbers(values: tuple[float, ...]) -> EpisodeSpec:
+    from sarah.episode import EpisodeSpec
+
+    for task in TASKS.values():
+        if len(values) == len(task.parameter_names):
+            return EpisodeSpec(values, 0, task.name)
+    counts = " or ".join(
+        f"{len(task.parameter_names)} numbers ({task.parameter_names[0]} to {task.parameter_names[-1]})"
+        for task in TASKS.values()
+    )
+    raise ConfigurationError(f"parameters must be {counts}, not {len(values)}")
+
+
+def _caption(spec: EpisodeSpec, result: EpisodeResult) -> str:
+    """What is filmed, in one line."""
+    from sarah.choices import ENDINGS
+
+    names = TASKS[spec.task].parameter_names
+    learned = ", ".join(f"{name} {value:.2f}" for name, value in zip(names, spec.parameters, strict=True))
+    ending = ENDINGS[result.termination]
+    return f"{spec.task}: {learned}   ·   seed {spec.seed}   ·   score {result.score:.2f}, {ending}"

@@ -1,0 +1,117 @@
+"""What is around the robot in a picture: the camera's view, a tiled floor, and the feet's shadows on it."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFilter
+
+from sarah.simulator import Camera
+
+FIELD_OF_VIEW = math.radians(35.0)
+"""Of the camera, from the picture's lower to its upper edge."""
+TILE = 0.25
+"""Length of the floor's tiles, in m: a torso that moves by one of them from its start has left the episode's box."""
+LIGHT_TILE, DARK_TILE = np.array((243.0, 245.0, 247.0)), np.array((214.0, 221.0, 229.0))
+SKY = np.array((252.0, 252.0, 253.0))
+FADING_DISTANCE = 3.0
+"""From the camera, in m, over which the floor fades to 1/e into the sky."""
+SHADOW = 0.45
+"""Share of the light that a shadow takes."""
+SHADOW_BLUR = 0.004
+"""Of a picture's height."""
+SAMPLES = 2
+"""Of the floor, along each side of a pixel."""
+
+
+class View:
+    """How a camera that stands still sees the world.
+
+    :param width: of the picture, in pixels
+    :param height: of the picture, in pixels
+    :param camera: where it stands
+    """
+
+    def __init__(self, width: int, height: int, camera: Camera) -> None:
+        self.width, self.height = width, height
+        self.focal_length = height / 2 / math.tan(FIELD_OF_VIEW / 2)
+        """In pixels."""
+        yaw, pitch = math.radians(camera.yaw), math.radians(camera.pitch)
+        right = (math.cos(yaw), math.sin(yaw), 0.0)
+        ahead = (-math.sin(yaw) * math.cos(pitch), math.cos(yaw) * math.cos(pitch), math.sin(pitch))
+        self.axes = np.array((right, np.cross(right, ahead), ahead))
+        """Unit vectors to the right, upward and ahead, as rows."""
+        self.position = np.array((0.0, 0.0, camera.height)) - camera.distance * self.axes[2]
+
+    def pixels(self, points: np.ndarray) -> np.ndarray:
+        """Where points of the world appear.
+
+        :param points: in m, of shape (n, 3), before the camera
+        :return: pixels to the right and down from the picture's upper left corner, of shape (n, 2)
+        """
+        right, up, ahead = self.axes @ (np.asarray(points) - self.position).T
+        scale = self.focal_length / ahead
+        return np.stack((self.width / 2 + scale * right, self.height / 2 - scale * up), axis=1)
+
+    def rectangle(self, points: np.ndarray, margin: float) -> tuple[int, int, int, int]:
+        """The part of the picture in which points of the world appear.
+
+        :param points: in m, of shape (n, 3), before the camera
+        :param margin: around them, in m
+        :return: left, top, right and bottom in pixels, right and bottom not included; empty if they are out of it
+        """
+        around = np.concatenate([points + margin * sign * axis for axis in self.axes[:2] for sign in (-1, 1)])
+        pixels, corner = self.pixels(around), (self.width, self.height)
+        left, top = np.clip(np.floor(pixels.min(axis=0)), 0, corner).astype(int)
+        right, bottom = np.clip(np.ceil(pixels.max(axis=0)), 0, corner).astype(int)
+        return int(left), int(top), int(right), int(bottom)
+
+
+@lru_cache(maxsize=4)
+def floor(width: int, height: int, camera: Camera) -> np.ndarray:
+    """Draw the tiled floor, up to where it fades into the sky.
+
+    :param width: of the picture, in pixels
+    :param height: of the picture, in pixels
+    :param camera: where to look from
+    :return: uint8 array of shape (height, width, 3) that must not be changed
+    """
+    view = View(width, height, camera)
+    right = ((np.arange(SAMPLES * width) + 0.5) / SAMPLES - width / 2) / view.focal_length
+    up = (height / 2 - (np.arange(SAMPLES * height) + 0.5) / SAMPLES)[:, None] / view.focal_length
+    ray_x, ray_y, ray_z = (right * view.axes[0, i] + up * view.axes[1, i] + view.axes[2, i] for i in range(3))
+    length = view.position[2] / np.maximum(-ray_z, 1e-6)  # of the ray, down to the floor
+    x, y = length * ray_x, length * ray_y
+    nearness = np.exp(-(x**2 + y**2) / FADING_DISTANCE**2)
+    is_dark = (np.floor((view.position[0] + x) / TILE) + np.floor((view.position[1] + y) / TILE)) % 2
+    shape = (height, SAMPLES, width, SAMPLES)
+    light, dark = ((nearness * tile).reshape(shape).mean(axis=(1, 3))[..., None] for tile in (1.0 - is_dark, is_dark))
+    picture = (SKY + light * (LIGHT_TILE - SKY) + dark * (DARK_TILE - SKY)).astype(np.uint8)
+    picture.flags.writeable = False
+    return picture
+
+
+def shaded(picture: np.ndarray, outlines: list[np.ndarray]) -> np.ndarray:
+    """Darken what lies in the shadow.
+
+    :param picture: uint8 array of shape (height, width, 3)
+    :param outlines: of the shadows, in pixels, each of shape (corners, 2)
+    :return: uint8 array of the same shape
+    """
+    height, width, _ = picture.shape
+    blur = SHADOW_BLUR * height
+    corners = np.concatenate(outlines)
+    left, top = np.clip(np.floor(corners.min(axis=0) - 3 * blur), 0, (width, height)).astype(int)
+    right, bottom = np.clip(np.ceil(corners.max(axis=0) + 3 * blur), 0, (width, height)).astype(int)
+    if left >= right or top >= bottom:
+        return picture
+    mask = Image.new("L", (right - left, bottom - top))
+    draw = ImageDraw.Draw(mask)
+    for outline in outlines:
+        draw.polygon([tuple(corner) for corner in outline - (left, top)], fill=round(255 * SHADOW))
+    light = 255 - np.asarray(mask.filter(ImageFilter.GaussianBlur(blur)), dtype=np.uint16)
+    dark = picture.copy()
+    dark[top:bottom, left:right] = dark[top:bottom, left:right] * light[..., None] // 255
+    return dark
