@@ -154,9 +154,9 @@ class NAFPolicy(BasePolicy):
     :param observation_space: Observation space
     :param action_space: Action space
     :param lr_schedule: Learning rate schedule (could be constant)
-    :param net_arch: Hidden layers. Of a list (``[64, 64]`` by default) the last layer is ``V``'s and ``mu``'s own,
-        the ones before it are shared, and ``L`` is linear on those;
-        ``dict(shared=[...], V=[...], mu=[...], L=[...])`` says each, and what it leaves out is empty.
+    :param net_arch: Hidden layers. Of a list (``[64, 64]`` by default) the last layer is each head's own, and the
+        ones before it are shared; ``dict(shared=[...], V=[...], mu=[...], L=[...])`` says each, and what it
+        leaves out is empty. Heads without a layer of their own fail on some seeds of Pendulum.
     :param activation_fn: Activation function (ReLU by default). Tanh suits smooth tasks of one step,
         but fails where values are large; with sigmoid, deeper networks hardly learn.
     :param features_extractor_class: Features extractor to use.
@@ -210,7 +210,7 @@ class NAFPolicy(BasePolicy):
         if net_arch is None:
             net_arch = [64, 64]
         if not isinstance(net_arch, dict):
-            net_arch = dict(shared=net_arch[:-1], V=net_arch[-1:], mu=net_arch[-1:])
+            net_arch = dict(shared=net_arch[:-1], **dict.fromkeys(("V", "mu", "L"), net_arch[-1:]))
         unknown = set(net_arch) - set(PARTS)
         if unknown:
             raise ValueError(f"net_arch must be a list or have keys of {', '.join(PARTS)}, not {sorted(unknown)}")

@@ -1,9 +1,9 @@
-"""Which parameters a training recommends: a few candidates, simulated again side by side.
+"""Which parameters a training recommends: those whose neighbourhood did best, and a few simulated again side by side.
 
 An agent's own choice stops at the edge of a flat crest, the best single episode was lucky, and the reward does not see
-a robot that steps to a clock or drags its feet: what falls short of a gait has less merit here than its score. So the
-last simulations of the budget compare the agent's choice with what did well around it in the episodes so far, each
-candidate on the same new seeds.
+a robot that steps to a clock or drags its feet: what falls short of a gait has less merit here than its score. So
+parameters are judged by the episodes around them, whatever learns; and the last simulations of a budget compare the
+best few, each on the same new seeds.
 """
 
 from __future__ import annotations
@@ -11,6 +11,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
+
+import numpy as np
 
 from sarah.evaluation import SMALLEST_CLEARANCE, SMALLEST_EVENT_SHARE
 
@@ -52,24 +54,30 @@ def candidates(
 ) -> list[Parameters]:
     """What is worth simulating again.
 
-    :param choice: the agent's own, always the first candidate
+    :param choice: the algorithm's own
     :param tried: parameters and merit of every episode so far
     :param count: how many candidates
     :param width: of the parameters' box
-    :return: the agent's choice, then the tried parameters whose neighbourhoods did best, not too close together
+    :return: of the choice and the tried parameters those whose neighbourhoods did best, the best one first, not too
+        close together
     """
-    chosen = [choice]
-    by_merit = sorted(tried, key=lambda episode: _neighbourhood_merit(episode[0], tried, width), reverse=True)
-    for parameters, _ in by_merit:
+    parameters = [choice, *(tried_parameters for tried_parameters, _ in tried)]
+    chosen: list[Parameters] = []
+    for index in np.argsort(-_neighbourhood_merits(parameters, tried, width), kind="stable"):
         if len(chosen) == count:
             break
-        if all(math.dist(parameters, other) >= DISTINCT * width for other in chosen):
-            chosen.append(parameters)
+        if all(math.dist(parameters[index], other) >= DISTINCT * width for other in chosen):
+            chosen.append(parameters[index])
     return chosen
 
 
-def _neighbourhood_merit(parameters: Parameters, tried: Sequence[tuple[Parameters, float]], width: float) -> float:
-    scale = 2.0 * (NEIGHBOURHOOD * width) ** 2
-    weights = [math.exp(-(math.dist(parameters, other) ** 2) / scale) for other, _ in tried]
-    total = sum(weight * merit for weight, (_, merit) in zip(weights, tried, strict=True))
-    return total / (sum(weights) + DOUBT)
+def _neighbourhood_merits(
+    parameters: Sequence[Parameters], tried: Sequence[tuple[Parameters, float]], width: float
+) -> np.ndarray:
+    if not tried:
+        return np.zeros(len(parameters))
+    places, merits = zip(*tried, strict=True)
+    differences = np.asarray(parameters)[:, None] - np.asarray(places)
+    weights = np.exp(-np.square(differences).sum(axis=2) / (2.0 * (NEIGHBOURHOOD * width) ** 2))
+    found: np.ndarray = weights @ np.asarray(merits) / (weights.sum(axis=1) + DOUBT)
+    return found

@@ -14,23 +14,26 @@ def around(*centre: float, offset: float = 0.0) -> tuple[float, ...]:
     return tuple(value + offset for value in centre)
 
 
-def test_the_agents_choice_comes_first() -> None:
+def test_the_choice_is_judged_by_the_episodes_around_it() -> None:
     assert candidates(CHOICE, [], 3, WIDTH) == [CHOICE]
-    assert candidates(CHOICE, [(around(0.5, 0.5, 0.5, 0.5, 0.5), 0.9)], 1, WIDTH) == [CHOICE]
+    elsewhere, beside = around(0.5, 0.5, 0.5, 0.5, 0.5), around(*CHOICE, offset=0.01)
+    assert candidates(CHOICE, [(elsewhere, 0.9)], 2, WIDTH) == [elsewhere, CHOICE]
+    tried = [(elsewhere, 0.5), (beside, 0.9), (around(*CHOICE, offset=-0.01), 0.9)]
+    assert candidates(CHOICE, tried, 2, WIDTH) == [CHOICE, elsewhere]
 
 
 def test_a_good_neighbourhood_beats_one_lucky_episode() -> None:
     lucky = (around(0.2, 0.2, 0.2, 0.2, 0.2), 0.92)
     good = [(around(1.6, 1.6, 1.6, 1.6, 1.6, offset=0.01 * step), 0.85) for step in range(5)]
     unlucky = (around(0.2, 0.2, 0.2, 0.2, 0.25), 0.1)
-    second = candidates(CHOICE, [lucky, unlucky, *good], 2, WIDTH)[1]
-    assert second in [parameters for parameters, _ in good]
+    (best,) = candidates(CHOICE, [lucky, unlucky, *good], 1, WIDTH)
+    assert best in [parameters for parameters, _ in good]
 
 
 def test_candidates_keep_their_distance() -> None:
     near = [(around(1.6, 1.6, 1.6, 1.6, 1.6, offset=0.001 * step), 0.9) for step in range(5)]
     far = (around(0.3, 0.3, 0.3, 0.3, 0.3), 0.5)
-    assert candidates(CHOICE, [*near, far], 3, WIDTH)[2] == far[0]
+    assert candidates(CHOICE, [*near, far], 2, WIDTH)[1] == far[0]
 
 
 def test_distances_are_shares_of_the_box() -> None:

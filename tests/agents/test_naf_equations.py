@@ -160,7 +160,7 @@ def test_heads_take_their_own_sizes_and_share_what_a_list_begins_with():
 
     assert sizes(dict(V=[7, 8], mu=[], L=[5])) == [[], [7, 8, 1], [2], [5, 3]]
     assert sizes(dict(shared=[9], L=[5])) == [[9], [1], [2], [5, 3]]
-    assert sizes([6, 5, 4]) == [[6, 5], [4, 1], [4, 2], [3]]
+    assert sizes([6, 5, 4]) == [[6, 5], [4, 1], [4, 2], [4, 3]]
     assert sizes([]) == [[], [1], [2], [3]]
     with pytest.raises(ValueError, match="shared, V, mu, L, not .'pi'"):
         sizes(dict(pi=[4]))
