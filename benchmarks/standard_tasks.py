@@ -1,6 +1,6 @@
 """NAF on standard tasks, against stable-baselines3's TD3, SAC and DDPG: mean return of evaluation episodes at the end.
 
-Everybody runs with the defaults of its class; TD3 and DDPG with the Gaussian noise of 0.1 that their documentation adds.
+Everybody runs with the defaults of its class; TD3 and DDPG with the Gaussian noise that their documentation adds.
 """
 
 from __future__ import annotations

@@ -96,7 +96,9 @@ def main() -> None:
             }
             for run in runs.values():
                 run(20)
-            rounds = [{name: seconds(run, options.updates) for name, run in runs.items()} for _ in range(options.rounds)]
+            rounds = [
+                {name: seconds(run, options.updates) for name, run in runs.items()} for _ in range(options.rounds)
+            ]
             times = {name: median(one[name] for one in rounds) for name in runs}
             print(
                 f"| {' x '.join(map(str, layers))} | {dimensions[0]}, {dimensions[1]} | {1 / times['naf']:.0f} "

@@ -162,5 +162,5 @@ def test_heads_take_their_own_sizes_and_share_what_a_list_begins_with():
     assert sizes(dict(shared=[9], L=[5])) == [[9], [1], [2], [5, 3]]
     assert sizes([6, 5, 4]) == [[6, 5], [4, 1], [4, 2], [4, 3]]
     assert sizes([]) == [[], [1], [2], [3]]
-    with pytest.raises(ValueError, match="shared, V, mu, L, not .'pi'"):
+    with pytest.raises(ValueError, match=r"shared, V, mu, L, not \['pi'\]"):
         sizes(dict(pi=[4]))
