@@ -41,9 +41,7 @@ PRESETS: dict[str, dict[str, Any]] = {
         exploration_std=LinearSchedule(0.3, 0.05, end_fraction=0.8),
         warmup_std=0.4,
         locality=0.4,
-        policy_kwargs=dict(
-            net_arch=dict(V=[32, 32], mu=[32, 32], L=[32, 32]), activation_fn=nn.Tanh, lower_sees_action=True
-        ),
+        policy_kwargs=dict(net_arch=[32, 32], activation_fn=nn.Tanh, lower_sees_action=True),
     ),
     # The networks of Kouppas et al., literally. Their bias of 1 at the output of mu is the centre
     # of Box(0, 2), which in scaled actions is 0. On episodes of one step they hardly learn.

@@ -19,7 +19,6 @@ from torch import nn
 
 LOG_DIAGONAL_MIN = -5.0
 LOG_DIAGONAL_MAX = 5.0
-PARTS = ("shared", "V", "mu", "L")
 
 
 class QuadraticCritic(BaseModel):
@@ -29,17 +28,16 @@ class QuadraticCritic(BaseModel):
     .. math:: Q(s, u) = V(s) - \frac{1}{2} (u - \mu(s))^T L(s) L(s)^T (u - \mu(s))
 
     ``L`` is lower triangular with a positive diagonal, so ``L L^T`` is positive definite: ``mu`` is the best
-    action and ``V`` its value, without a search. The three heads are networks of their own behind shared layers.
-    Actions are scaled to [-1, 1]. The output layer of ``mu`` starts at zero: an untrained critic proposes the
-    centre of the action space whatever it observes.
+    action and ``V`` its value, without a search. The three heads are separate networks on one features
+    extractor: with layers that they share, some seeds of Pendulum fail. Actions are scaled to [-1, 1]. The output
+    layer of ``mu`` starts at zero: an untrained critic proposes the centre of the action space whatever it observes.
 
     :param observation_space: Observation space
     :param action_space: Action space
     :param features_extractor: Network to extract features
         (a CNN when using images, a nn.Flatten() layer otherwise)
     :param features_dim: Number of features
-    :param net_arch: Hidden layers that the heads share and those of each head, by name:
-        ``shared``, ``V``, ``mu`` and ``L``
+    :param net_arch: Hidden layers of each head, by name: ``V``, ``mu`` and ``L``
     :param activation_fn: Activation function
     :param normalize_images: Whether to normalize images or not,
          dividing by 255.0 (True by default)
@@ -82,11 +80,9 @@ class QuadraticCritic(BaseModel):
         self.register_buffer("in_column", nn.functional.one_hot(columns, action_dim).float(), persistent=False)
         self.register_buffer("is_diagonal", rows == columns, persistent=False)
 
-        self.shared_net = nn.Sequential(*create_mlp(features_dim, -1, net_arch["shared"], activation_fn))
-        latent_dim = net_arch["shared"][-1] if net_arch["shared"] else features_dim
-        lower_input_dim = latent_dim + action_dim * lower_sees_action
-        self.value_net = nn.Sequential(*create_mlp(latent_dim, 1, net_arch["V"], activation_fn))
-        self.mu_net = nn.Sequential(*create_mlp(latent_dim, action_dim, net_arch["mu"], activation_fn, squash_mu))
+        lower_input_dim = features_dim + action_dim * lower_sees_action
+        self.value_net = nn.Sequential(*create_mlp(features_dim, 1, net_arch["V"], activation_fn))
+        self.mu_net = nn.Sequential(*create_mlp(features_dim, action_dim, net_arch["mu"], activation_fn, squash_mu))
         self.lower_net = nn.Sequential(*create_mlp(lower_input_dim, len(rows), net_arch["L"], activation_fn))
 
         mu_output = [layer for layer in self.mu_net if isinstance(layer, nn.Linear)][-1]
@@ -101,12 +97,12 @@ class QuadraticCritic(BaseModel):
         :param actions: Actions, scaled to [-1, 1], of shape (batch, action dim)
         :return: ``Q`` of shape (batch, 1) and ``mu`` of shape (batch, action dim)
         """
-        latent = self._latent(obs)
-        mu = self.mu_net(latent)
+        features = self.extract_features(obs, self.features_extractor)
+        mu = self.mu_net(features)
         # (u - mu)^T L L^T (u - mu) is the squared length of the row (u - mu)^T L, summed without building L
-        projected = ((actions - mu).index_select(1, self.rows) * self._entries(latent, actions)) @ self.in_column
+        projected = ((actions - mu).index_select(1, self.rows) * self._entries(features, actions)) @ self.in_column
         advantage = -0.5 * projected.square().sum(dim=1, keepdim=True)
-        return self.value_net(latent) + advantage, mu
+        return self.value_net(features) + advantage, mu
 
     def value(self, obs: PyTorchObs) -> th.Tensor:
         """
@@ -115,7 +111,7 @@ class QuadraticCritic(BaseModel):
         :param obs: Observations
         :return: ``V`` of shape (batch, 1)
         """
-        return self.value_net(self._latent(obs))
+        return self.value_net(self.extract_features(obs, self.features_extractor))
 
     def mu(self, obs: PyTorchObs) -> th.Tensor:
         """
@@ -124,7 +120,7 @@ class QuadraticCritic(BaseModel):
         :param obs: Observations
         :return: ``mu`` of shape (batch, action dim), scaled so that the action space is [-1, 1]
         """
-        return self.mu_net(self._latent(obs))
+        return self.mu_net(self.extract_features(obs, self.features_extractor))
 
     def lower(self, obs: PyTorchObs, actions: th.Tensor) -> th.Tensor:
         """
@@ -135,14 +131,12 @@ class QuadraticCritic(BaseModel):
         :return: ``L`` of shape (batch, action dim, action dim)
         """
         lower = actions.new_zeros(*actions.shape, actions.shape[1])
-        lower[:, self.rows, self.columns] = self._entries(self._latent(obs), actions)
+        features = self.extract_features(obs, self.features_extractor)
+        lower[:, self.rows, self.columns] = self._entries(features, actions)
         return lower
 
-    def _latent(self, obs: PyTorchObs) -> th.Tensor:
-        return self.shared_net(self.extract_features(obs, self.features_extractor))
-
-    def _entries(self, latent: th.Tensor, actions: th.Tensor) -> th.Tensor:
-        inputs = th.cat([latent, actions], dim=1) if self.lower_sees_action else latent
+    def _entries(self, features: th.Tensor, actions: th.Tensor) -> th.Tensor:
+        inputs = th.cat([features, actions], dim=1) if self.lower_sees_action else features
         outputs = self.lower_net(inputs)
         return th.where(self.is_diagonal, outputs.clamp(LOG_DIAGONAL_MIN, LOG_DIAGONAL_MAX).exp(), outputs)
 
@@ -154,9 +148,8 @@ class NAFPolicy(BasePolicy):
     :param observation_space: Observation space
     :param action_space: Action space
     :param lr_schedule: Learning rate schedule (could be constant)
-    :param net_arch: Hidden layers. Of a list (``[64, 64]`` by default) the last layer is each head's own, and the
-        ones before it are shared; ``dict(shared=[...], V=[...], mu=[...], L=[...])`` says each, and what it
-        leaves out is empty. Heads without a layer of their own fail on some seeds of Pendulum.
+    :param net_arch: Hidden layers, one list for all three heads (``[64, 64]`` by default)
+        or one list each, ``dict(V=[...], mu=[...], L=[...])``
     :param activation_fn: Activation function (ReLU by default). Tanh suits smooth tasks of one step,
         but fails where values are large; with sigmoid, deeper networks hardly learn.
     :param features_extractor_class: Features extractor to use.
@@ -210,11 +203,9 @@ class NAFPolicy(BasePolicy):
         if net_arch is None:
             net_arch = [64, 64]
         if not isinstance(net_arch, dict):
-            net_arch = dict(shared=net_arch[:-1], **dict.fromkeys(("V", "mu", "L"), net_arch[-1:]))
-        unknown = set(net_arch) - set(PARTS)
-        if unknown:
-            raise ValueError(f"net_arch must be a list or have keys of {', '.join(PARTS)}, not {sorted(unknown)}")
-        net_arch = {part: list(net_arch.get(part, [])) for part in PARTS}
+            net_arch = dict.fromkeys(("V", "mu", "L"), net_arch)
+        if set(net_arch) != {"V", "mu", "L"}:
+            raise ValueError(f"net_arch must be a list or have the keys V, mu and L, not {sorted(net_arch)}")
 
         self.net_args: dict[str, Any] = {
             "observation_space": self.observation_space,

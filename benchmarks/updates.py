@@ -46,7 +46,7 @@ def filled(model: OffPolicyAlgorithm, transitions: int = 2000) -> OffPolicyAlgor
 def products(model: NAF, batch_size: int) -> Callable[[int], None]:
     """The matrix products of updates: all layers on a batch with their gradients, and the target's V."""
     layers = [layer for layer in model.q_net.modules() if isinstance(layer, torch.nn.Linear)]
-    target = [layer for net in (model.q_net.shared_net, model.q_net.value_net) for layer in net if layer in layers]
+    target = [layer for layer in model.q_net.value_net if layer in layers]
     weights = {layer: torch.randn(layer.weight.shape) for layer in layers}
     inputs = {layer: torch.randn(batch_size, layer.in_features) for layer in layers}
     outputs = {layer: torch.randn(batch_size, layer.out_features) for layer in layers}
@@ -57,7 +57,7 @@ def products(model: NAF, batch_size: int) -> Callable[[int], None]:
                 for layer in layers:
                     torch.mm(inputs[layer], weights[layer].t())
                     torch.mm(outputs[layer].t(), inputs[layer])
-                    if layer is not layers[0]:  # nothing learns from the gradient of the observations
+                    if layer.in_features != model.observation_space.shape[0]:  # nothing learns from its gradient
                         torch.mm(outputs[layer], weights[layer])
                 for layer in target:
                     torch.mm(inputs[layer], weights[layer].t())

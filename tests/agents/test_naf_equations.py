@@ -54,10 +54,9 @@ def test_q_is_equation_3(action_dim, lower_sees_action):
     obs, actions = draw(action_dim)
     with th.no_grad():
         q_values, mu = critic(obs, actions)
-        latent = critic.shared_net(obs)
-        inputs = th.cat([latent, actions], dim=1) if lower_sees_action else latent
+        inputs = th.cat([obs, actions], dim=1) if lower_sees_action else obs
         outputs = critic.lower_net(inputs).double().numpy()
-        values = critic.value_net(latent).double().numpy()
+        values = critic.value_net(obs).double().numpy()
         lowers = critic.lower(obs, actions).numpy()
     assert q_values.shape == (7, 1)
     for n in range(7):
@@ -150,17 +149,15 @@ def test_locality_weights():
     np.testing.assert_allclose(weights[:, 0].numpy(), raw / raw.mean(), rtol=1e-6)
 
 
-def test_heads_take_their_own_sizes_and_share_what_a_list_begins_with():
+def test_heads_take_their_own_sizes():
     spaces_ = spaces.Box(-1, 1, (OBS_DIM,)), spaces.Box(-1, 1, (2,))
 
     def sizes(net_arch):
         q_net = MlpPolicy(*spaces_, ConstantSchedule(1e-3), net_arch=net_arch).q_net
-        nets = (q_net.shared_net, q_net.value_net, q_net.mu_net, q_net.lower_net)
+        nets = (q_net.value_net, q_net.mu_net, q_net.lower_net)
         return [[layer.out_features for layer in net if isinstance(layer, nn.Linear)] for net in nets]
 
-    assert sizes(dict(V=[7, 8], mu=[], L=[5])) == [[], [7, 8, 1], [2], [5, 3]]
-    assert sizes(dict(shared=[9], L=[5])) == [[9], [1], [2], [5, 3]]
-    assert sizes([6, 5, 4]) == [[6, 5], [4, 1], [4, 2], [4, 3]]
-    assert sizes([]) == [[], [1], [2], [3]]
-    with pytest.raises(ValueError, match=r"shared, V, mu, L, not \['pi'\]"):
+    assert sizes(dict(V=[7, 8], mu=[], L=[5])) == [[7, 8, 1], [2], [5, 3]]
+    assert sizes([6, 4]) == [[6, 4, 1], [6, 4, 2], [6, 4, 3]]
+    with pytest.raises(ValueError, match=r"V, mu and L, not \['pi'\]"):
         sizes(dict(pi=[4]))

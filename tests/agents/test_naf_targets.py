@@ -168,9 +168,8 @@ def test_fast_updates_are_the_plain_ones():
             obs, next_obs = batch.observations[n : n + 1], batch.next_observations[n : n + 1]
             with th.no_grad():
                 wanted = batch.rewards[n, 0] + GAMMA * (1 - batch.dones[n, 0]) * target.value(next_obs)[0, 0]
-            latent = q_net.shared_net(obs)
-            difference = batch.actions[n] - q_net.mu_net(latent)[0]
-            outputs = q_net.lower_net(latent)[0]
+            difference = batch.actions[n] - q_net.mu_net(obs)[0]
+            outputs = q_net.lower_net(obs)[0]
             advantage, k = 0.0, 0
             lower = {}
             for i in range(len(difference)):
@@ -179,7 +178,7 @@ def test_fast_updates_are_the_plain_ones():
                     k += 1
             for j in range(len(difference)):
                 advantage -= 0.5 * sum(difference[i] * lower[i, j] for i in range(j, len(difference))) ** 2
-            loss += (q_net.value_net(latent)[0, 0] + advantage - wanted) ** 2 / 32
+            loss += (q_net.value_net(obs)[0, 0] + advantage - wanted) ** 2 / 32
         optimizer.zero_grad()
         loss.backward()
         norm = sum(parameter.grad.square().sum() for parameter in q_net.parameters()).sqrt()
