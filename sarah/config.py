@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 from sarah.errors import ConfigurationError, unknown_name
+from sarah.files import replace_text
 from sarah.tasks import BALANCE, STEPPING, TASKS
 
 STAND_SECONDS = 1.0
@@ -229,6 +230,24 @@ class TrainingConfig:
             )
 
 
+def first_difference(config: Any, other: Any, key: str = "") -> tuple[str, Any, Any] | None:
+    """Where two configurations of a kind differ.
+
+    :param config: a dataclass of this module
+    :param other: another one
+    :param key: what the names begin with
+    :return: the key and both values; nothing if they are equal
+    """
+    for item in fields(config):
+        value, there = getattr(config, item.name), getattr(other, item.name)
+        if value == there:
+            continue
+        if dataclasses.is_dataclass(value):
+            return first_difference(value, there, f"{key}{item.name}.")
+        return key + item.name, value, there
+    return None
+
+
 def read_config(config_type: type[ConfigType], path: Path) -> ConfigType:
     """Read a configuration from a YAML file. What the file does not name keeps its default.
 
@@ -258,7 +277,7 @@ def write_config(config: Any, path: Path) -> None:
     """
     import yaml
 
-    path.write_text(yaml.safe_dump(_to_plain(dataclasses.asdict(config)), sort_keys=False), encoding="utf-8")
+    replace_text(path, yaml.safe_dump(_to_plain(dataclasses.asdict(config)), sort_keys=False))
 
 
 def _to_plain(value: Any) -> Any:

@@ -30,6 +30,14 @@ class WorkersError(SarahError, RuntimeError):
     """Workers that were asked for cannot be reached, or die again and again."""
 
 
+class LearningError(SarahError, RuntimeError):
+    """What learns no longer returns numbers."""
+
+
+class TrainingInterruptedError(SarahError):
+    """A training was asked to stop, and has; it can be resumed."""
+
+
 def unknown_name(kind: str, name: str, allowed: Iterable[str]) -> str:
     """Say that a name is unknown, which one was probably meant, and which there are.
 

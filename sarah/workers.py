@@ -9,6 +9,7 @@ from __future__ import annotations
 import functools
 import logging
 import signal
+from abc import ABC, abstractmethod
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Sequence
 from types import TracebackType
@@ -99,7 +100,28 @@ def _key(spec: EpisodeSpec) -> tuple[Any, ...]:
     return (spec.task, spec.seed, repr(spec.config))
 
 
-class Workers:
+class Executor(ABC):
+    """Whoever has things simulated."""
+
+    @abstractmethod
+    def submit(self, function: Callable[[Any], Any], subject: Any) -> Job:
+        """Have something done.
+
+        :param function: :func:`stand`, :func:`run`, :func:`sarah.simulate`, or another one of a module
+        :param subject: of the function: an episode's specification, or what else it takes
+        """
+
+    def simulate_all(self, specs: Sequence[EpisodeSpec]) -> Iterator[EpisodeResult]:
+        """Simulate many episodes.
+
+        :param specs: of the episodes
+        :return: their results, in the same order
+        """
+        jobs = [self.submit(simulate, spec) for spec in specs]
+        return (job.result() for job in jobs)
+
+
+class Workers(Executor):
     """A context in which episodes are simulated.
 
     Worker processes import the main module: a script that starts some does it under ``if __name__ == "__main__":``.
@@ -148,15 +170,6 @@ class Workers:
         if self._client is None:
             return _LocalJob(function, subject)
         return _RemoteJob(functools.partial(self._client.submit, function, subject, pure=False))
-
-    def simulate_all(self, specs: Sequence[EpisodeSpec]) -> Iterator[EpisodeResult]:
-        """Simulate many episodes.
-
-        :param specs: of the episodes
-        :return: their results, in the same order
-        """
-        jobs = [self.submit(simulate, spec) for spec in specs]
-        return (job.result() for job in jobs)
 
 
 class _LocalJob:
