@@ -62,8 +62,10 @@ class EpisodeRecorder(BaseCallback):
         self._curves: LearningCurves | None = None
         self._held: list[Callable[[], None]] = []
 
-    def _on_step(self) -> bool:
+    def _on_rollout_start(self) -> None:
         check_weights(self.model)
+
+    def _on_step(self) -> bool:
         for info in self.locals["infos"]:
             if info:  # the first steps only fill the slots
                 self.record(info)
