@@ -48,6 +48,8 @@ class EpisodeRecorder(BaseCallback):
     """Of the learning curves, which the agent writes to as well."""
     tried: list[tuple[Parameters, float]]
     """Parameters and merit of every simulation so far."""
+    diverged: int
+    """Simulations so far that ended because no number came back."""
     choose: Callable[[], Parameters] | None
     """Tells what would be chosen now; while there is such a thing, it is noted in ``choices.csv``."""
 
@@ -55,6 +57,7 @@ class EpisodeRecorder(BaseCallback):
         super().__init__()
         self.log = Logger(folder=None, output_formats=[_CurveWriter(self)])
         self.tried = []
+        self.diverged = 0
         self.choose = None
         self._names = task.parameter_names
         self._run = run
@@ -78,6 +81,7 @@ class EpisodeRecorder(BaseCallback):
         """
         self._write(partial(self._run.append_episode, len(self.tried), self._names, info))
         self.tried.append((info["parameters"], merit(info)))
+        self.diverged += info["termination"] == "diverged"
         x, y, _ = info["final_position"]
         shown = {"return": info["episode_return"], "x": x, "y": y, **{name: info[name] for name in LOGGED_FIELDS}}
         for name, value in shown.items():

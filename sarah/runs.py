@@ -24,7 +24,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from sarah.config import TrainingConfig, read_config, write_config
+from sarah.config import TrainingConfig
+from sarah.config_files import read_config, write_config
 from sarah.errors import RunFolderError
 from sarah.files import replace_text
 from sarah.tasks import TASKS
@@ -231,13 +232,14 @@ class RunFolder:
 
         :raises RunFolderError: if the file does not hold exactly these
         """
-        names = TASKS[self.config().task].parameter_names
+        task = TASKS[self.config().task]
+        names = task.parameter_names
         try:
             learned = json.loads(self._parameters_path.read_text(encoding="utf-8"))["parameters"]
             if set(learned) != set(names):
                 raise ValueError(f"it names {', '.join(map(str, learned)) or 'none'} instead of {', '.join(names)}")
-            return tuple(float(learned[name]) for name in names)
-        except (OSError, ValueError, KeyError, TypeError) as error:
+            return task.checked([learned[name] for name in names])
+        except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
             raise RunFolderError(f"{self._parameters_path} does not hold learned parameters: {error}") from error
 
 
@@ -253,5 +255,8 @@ def _append_row(path: Path, fields: Sequence[str], row: Mapping[str, Any]) -> No
 def _rows(path: Path) -> Iterator[dict[str, str]]:
     if not path.exists():
         return
-    with path.open(newline="", encoding="utf-8") as file:
-        yield from csv.DictReader(file)
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            yield from csv.DictReader(file)
+    except (csv.Error, UnicodeDecodeError) as error:
+        raise RunFolderError(f"{path} cannot be read: {error}") from error

@@ -33,11 +33,13 @@ class Learned:
     :param parameters: the learned ones
     :param evaluation: how they do on unseen seeds
     :param without: how the task's neutral parameters do on the same seeds, if it has some
+    :param diverged: how many of the training's simulations no longer returned numbers
     """
 
     parameters: Parameters
     evaluation: Evaluation
     without: Evaluation | None
+    diverged: int
 
 
 def train(
@@ -84,6 +86,7 @@ def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_ba
             "algorithm": config.algo,
             "seed": config.seed,
             "simulations": config.simulations,
+            "diverged": recorder.diverged,
             "parameters": dict(zip(task.parameter_names, parameters, strict=True)),
             "stepping": config.episode.stepping if task == BALANCE else None,
             "evaluation": dataclasses.asdict(evaluation),
@@ -91,7 +94,7 @@ def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_ba
             "chatters": without and evaluation.chatters(without),
         }
     )
-    return Learned(parameters, evaluation, without)
+    return Learned(parameters, evaluation, without, recorder.diverged)
 
 
 def _compare(

@@ -16,7 +16,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from sarah.episode import Episode, EpisodeResult, EpisodeSpec, simulate
-from sarah.errors import ConfigurationError, WorkersError
+from sarah.errors import ConfigurationError, WorkersError, check_range
 from sarah.sensors import SensorReading
 from sarah.tasks import TASKS
 from sarah.versions import SIMULATING, versions
@@ -28,6 +28,8 @@ KEPT_STANDING = 64
 """Episodes that a process keeps standing, waiting for their parameters."""
 SCHEDULER_SECONDS = 10
 """How long to wait for a connection to a scheduler."""
+MOST_WORKERS = 1000
+"""On one machine."""
 ATTEMPTS = 20
 """How often an episode is handed in: a scheduler gives it up after the deaths of a few workers."""
 
@@ -129,13 +131,12 @@ class Workers(Executor):
     :param count: worker processes to start on this machine; with none, episodes run in this process, when they are
         asked for
     :param scheduler: address of a Dask scheduler, such as ``tcp://10.0.0.1:8786``, whose workers are used instead
-    :raises ConfigurationError: if the count is negative, or both are given
+    :raises ConfigurationError: if the count is none that a machine can start, or both are given
     :raises WorkersError: on entering, if no scheduler answers
     """
 
     def __init__(self, count: int = 0, scheduler: str | None = None) -> None:
-        if count < 0:
-            raise ConfigurationError(f"workers must be 0 or more, not {count!r}")
+        check_range("workers", count, 0, MOST_WORKERS)
         if count and scheduler is not None:
             raise ConfigurationError("workers are started here, a scheduler has its own: give one of the two")
         self._count = count

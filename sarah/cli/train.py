@@ -16,7 +16,8 @@ import tyro
 
 from sarah.cli.interruption import Interruption
 from sarah.cli.options import parse_options, run_command
-from sarah.config import EpisodeConfig, TrainingConfig, first_difference, read_config
+from sarah.config import EpisodeConfig, TrainingConfig
+from sarah.config_files import first_difference, read_config
 from sarah.errors import ConfigurationError, RunFolderError, SarahError, TrainingInterruptedError
 from sarah.tasks import BALANCE, STEPPING, TASKS
 
@@ -170,6 +171,8 @@ def _summarise(task: str, learned: Learned, path: Path) -> None:
     )
     shares = f"{evaluation.event_driven_shift_mean:.0%} of shifts, {evaluation.event_driven_lift_mean:.0%} of lifts"
     print(f"by sensors  {shares}; sole clearance {1000 * evaluation.sole_clearance_mean:.0f} mm")
+    if learned.diverged:
+        print(f"diverged    {learned.diverged} simulations: no number came back")
     if not evaluation.is_gait:
         print("            not a gait: it steps to a clock, or does not lift its feet")
     if without is not None and evaluation.chatters(without):
