@@ -93,13 +93,15 @@ def main() -> None:
             finished(started(arguments_of(number, whole)))
             seconds = time.perf_counter() - start
             killed = killed_until_finished(number, cut, seconds, generator, options.kills - kills)
-            equal = left_behind(whole) == left_behind(cut)
+            expected, found = left_behind(whole), left_behind(cut)
+            different = [name for name, value in expected.items() if found.get(name) != value]
             print(
                 f"{arguments_of(number, cut)[1]}, {WORKERS[number % 2]} workers: killed {len(killed)} times, after "
-                f"{', '.join(map(str, killed))} finished simulations: {'the same' if equal else 'DIFFERENT'}",
+                f"{', '.join(map(str, killed))} finished simulations: "
+                f"{f'DIFFERENT in {different}' if different else 'the same'}",
                 flush=True,
             )
-            kills, number, same = kills + len(killed), number + 1, same + equal
+            kills, number, same = kills + len(killed), number + 1, same + (not different)
     print(f"{kills} kills, {number} trainings, {same} of them end as without")
 
 
