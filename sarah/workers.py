@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import logging
+import os
 import signal
 from abc import ABC, abstractmethod
 from collections import OrderedDict
@@ -28,6 +29,8 @@ KEPT_STANDING = 64
 """Episodes that a process keeps standing, waiting for their parameters."""
 SCHEDULER_SECONDS = 10
 """How long to wait for a connection to a scheduler."""
+SAFE_PATH = "PYTHONSAFEPATH"
+"""Keeps Python from putting the working folder on its search path, from Python 3.11 on."""
 MOST_WORKERS = 1000
 """On one machine."""
 ATTEMPTS = 20
@@ -143,12 +146,16 @@ class Workers(Executor):
         self._scheduler = scheduler
         self._client: Client | None = None
         self._cluster: LocalCluster | None = None
+        self._safe_path = ""
 
     def __enter__(self) -> Workers:
         """Start the workers, or find them."""
         if self._scheduler is not None:
             self._client = _connect(self._scheduler)
         elif self._count:
+            # Otherwise a new process imports what lies in the working folder, such as a pickle.py in somebody's run.
+            self._safe_path = os.environ.get(SAFE_PATH, "")
+            os.environ[SAFE_PATH] = "1"
             self._cluster, self._client = _start(self._count)
         return self
 
@@ -161,6 +168,7 @@ class Workers(Executor):
             self._client.close()
         if self._cluster is not None:
             self._cluster.close()
+            os.environ[SAFE_PATH] = self._safe_path  # empty is as good as unset
 
     def submit(self, function: Callable[[Any], Any], subject: Any) -> Job:
         """Have something done: simulated, or trained.
