@@ -20,7 +20,7 @@ from tensorboard.backend.event_processing.event_accumulator import EventAccumula
 COMMAND = Path(sys.executable).parent / "sarah-train"
 SIMULATIONS = 60
 """Twenty of them after the warm-up."""
-WORKERS = (0, 2)
+WORKERS = (0, 0, 0, 0, 2)
 ALGORITHMS = ("naf", "cma-es", "td3", "tpe")
 
 
@@ -32,8 +32,9 @@ def started(arguments: list[str]) -> subprocess.Popen[bytes]:
 
 def arguments_of(number: int, folder: Path) -> list[str]:
     algo = ALGORITHMS[number % len(ALGORITHMS)]
-    short = ("--episode.time-limit", "4", "--simulations", str(SIMULATIONS), "--seed", str(number), "--slots", "3")
-    return ["--algo", algo, *short, "--run-dir", str(folder)]
+    short = ("--simulations", str(SIMULATIONS), "--seed", str(number), "--slots", "3", "--episode.time-limit", "4")
+    coarse = ("--episode.physics.rate", "100", "--episode.physics.solver-iterations", "5")
+    return ["--algo", algo, *short, *coarse, "--run-dir", str(folder)]
 
 
 def finished(process: subprocess.Popen[bytes]) -> None:
@@ -67,7 +68,7 @@ def killed_until_finished(number: int, folder: Path, seconds: float, generator: 
     begun = arguments_of(number, folder)
     while True:
         arguments = ["--resume", str(folder)] if (folder / "config.yaml").exists() else begun
-        process = started([*arguments, "--workers", str(WORKERS[number % 2])])
+        process = started([*arguments, "--workers", str(WORKERS[number % len(WORKERS)])])
         if len(kills) < left:
             time.sleep(generator.uniform(0.0, seconds))
             if process.poll() is None:
@@ -96,7 +97,7 @@ def main() -> None:
             expected, found = left_behind(whole), left_behind(cut)
             different = [name for name, value in expected.items() if found.get(name) != value]
             print(
-                f"{arguments_of(number, cut)[1]}, {WORKERS[number % 2]} workers: killed {len(killed)} times, after "
+                f"{arguments_of(number, cut)[1]}, {WORKERS[number % len(WORKERS)]} workers: killed {len(killed)} times, after "
                 f"{', '.join(map(str, killed))} finished simulations: "
                 f"{f'DIFFERENT in {different}' if different else 'the same'}",
                 flush=True,
