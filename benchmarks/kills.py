@@ -96,8 +96,9 @@ def main() -> None:
             killed = killed_until_finished(number, cut, seconds, generator, options.kills - kills)
             expected, found = left_behind(whole), left_behind(cut)
             different = [name for name, value in expected.items() if found.get(name) != value]
+            algo, workers = ALGORITHMS[number % len(ALGORITHMS)], WORKERS[number % len(WORKERS)]
             print(
-                f"{arguments_of(number, cut)[1]}, {WORKERS[number % len(WORKERS)]} workers: killed {len(killed)} times, after "
+                f"{algo}, {workers} workers: killed {len(killed)} times, after "
                 f"{', '.join(map(str, killed))} finished simulations: "
                 f"{f'DIFFERENT in {different}' if different else 'the same'}",
                 flush=True,

@@ -112,6 +112,7 @@ def test_a_journal_cut_at_any_byte_is_enough(
         train(whole.config(), begun)
     assert ("damaged rows: 1" in caplog.text) == (not cut.endswith(b"\n") and bool(cut))
     assert everything(begun) == everything(whole)
+    assert sorted(begun.journal_path.read_bytes().splitlines()) == sorted(content.splitlines())
 
 
 def test_what_is_finished_is_not_simulated_again(whole: RunFolder, tmp_path: Path) -> None:
