@@ -1,15 +1,15 @@
 """Trainings that are killed (SIGKILL) at random moments and resumed, against the same without: the same bytes?
 
-Kills fall anywhere: while Python starts, while the journal is read or written, while files are replaced.
+A training is a process forked from this one, which has everything loaded: so kills fall into the training, while it
+makes its folder, reads or writes the journal, learns, or replaces files.
 """
 
 from __future__ import annotations
 
 import argparse
+import multiprocessing
 import random
-import signal
-import subprocess
-import sys
+import shutil
 import tempfile
 import time
 import zipfile
@@ -17,30 +17,44 @@ from pathlib import Path
 
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
-COMMAND = Path(sys.executable).parent / "sarah-train"
-SIMULATIONS = 60
-"""Twenty of them after the warm-up."""
-WORKERS = (0, 0, 0, 0, 2)
+from sarah.config import EpisodeConfig, Physics, TrainingConfig
+from sarah.runs import RunFolder
+from sarah.training import train
+
+SIMULATIONS = 50
+"""Ten of them after the warm-up."""
+SHORT = EpisodeConfig(time_limit=2.0, physics=Physics(rate=100, solver_iterations=5))
 ALGORITHMS = ("naf", "cma-es", "td3", "tpe")
+FORK = multiprocessing.get_context("fork")
 
 
-def started(arguments: list[str]) -> subprocess.Popen[bytes]:
-    return subprocess.Popen(
-        [COMMAND, *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True
-    )
+def begin_or_resume(config: TrainingConfig, folder: Path) -> None:
+    if (folder / "config.yaml").exists():
+        run = RunFolder.resumable(folder)
+    else:  # killed before there was anything to resume
+        shutil.rmtree(folder, ignore_errors=True)
+        run = RunFolder.create(folder, config)
+    train(config, run)
 
 
-def arguments_of(number: int, folder: Path) -> list[str]:
-    algo = ALGORITHMS[number % len(ALGORITHMS)]
-    short = ("--simulations", str(SIMULATIONS), "--seed", str(number), "--slots", "3", "--episode.time-limit", "4")
-    coarse = ("--episode.physics.rate", "100", "--episode.physics.solver-iterations", "5")
-    return ["--algo", algo, *short, *coarse, "--run-dir", str(folder)]
-
-
-def finished(process: subprocess.Popen[bytes]) -> None:
-    _, errors = process.communicate()
-    if process.returncode:
-        raise SystemExit(errors.decode())
+def killed_until_finished(
+    config: TrainingConfig, folder: Path, seconds: float, generator: random.Random, left: int
+) -> list[int]:
+    """How many simulations each killed process had finished; nothing more is killed after ``left`` kills."""
+    kills: list[int] = []
+    while True:
+        process = FORK.Process(target=begin_or_resume, args=(config, folder))
+        process.start()
+        process.join(generator.uniform(0.0, seconds) if len(kills) < left else None)
+        if process.exitcode is not None:
+            if process.exitcode:
+                raise SystemExit(f"a training failed in {folder}")
+            return kills
+        process.kill()
+        process.join()
+        journal = folder / "journal.jsonl"
+        rows = journal.read_bytes().splitlines() if journal.exists() else []
+        kills.append(sum(b'"kind":"stand"' not in row for row in rows))
 
 
 def left_behind(folder: Path) -> dict[str, object]:
@@ -57,29 +71,6 @@ def left_behind(folder: Path) -> dict[str, object]:
     return found | {tag: [(event.step, event.value) for event in curves.Scalars(tag)] for tag in tags}
 
 
-def simulations_of(folder: Path) -> int:
-    journal = folder / "journal.jsonl"
-    return sum(b'"kind":"stand"' not in line for line in journal.open("rb")) if journal.exists() else 0
-
-
-def killed_until_finished(number: int, folder: Path, seconds: float, generator: random.Random, left: int) -> list[int]:
-    """How many simulations each killed process had finished; nothing more is killed after ``left`` kills."""
-    kills: list[int] = []
-    begun = arguments_of(number, folder)
-    while True:
-        arguments = ["--resume", str(folder)] if (folder / "config.yaml").exists() else begun
-        process = started([*arguments, "--workers", str(WORKERS[number % len(WORKERS)])])
-        if len(kills) < left:
-            time.sleep(generator.uniform(0.0, seconds))
-            if process.poll() is None:
-                process.send_signal(signal.SIGKILL)
-                process.communicate()
-                kills.append(simulations_of(folder))
-                continue
-        finished(process)
-        return kills
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--kills", type=int, default=30)
@@ -89,17 +80,17 @@ def main() -> None:
     kills, number, same = 0, 0, 0
     with tempfile.TemporaryDirectory() as folder:
         while kills < options.kills:
+            algo = ALGORITHMS[number % len(ALGORITHMS)]
+            config = TrainingConfig(algo=algo, simulations=SIMULATIONS, seed=number, slots=3, episode=SHORT)
             whole, cut = Path(folder) / f"{number}-whole", Path(folder) / f"{number}-cut"
             start = time.perf_counter()
-            finished(started(arguments_of(number, whole)))
+            killed_until_finished(config, whole, 0.0, generator, 0)
             seconds = time.perf_counter() - start
-            killed = killed_until_finished(number, cut, seconds, generator, options.kills - kills)
+            killed = killed_until_finished(config, cut, seconds, generator, options.kills - kills)
             expected, found = left_behind(whole), left_behind(cut)
             different = [name for name, value in expected.items() if found.get(name) != value]
-            algo, workers = ALGORITHMS[number % len(ALGORITHMS)], WORKERS[number % len(WORKERS)]
             print(
-                f"{algo}, {workers} workers: killed {len(killed)} times, after "
-                f"{', '.join(map(str, killed))} finished simulations: "
+                f"{algo}: killed {len(killed)} times, after {', '.join(map(str, killed))} finished simulations: "
                 f"{f'DIFFERENT in {different}' if different else 'the same'}",
                 flush=True,
             )

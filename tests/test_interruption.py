@@ -126,3 +126,12 @@ def test_a_folder_that_cannot_be_written_is_one_line(small_disk: Path) -> None:
         "sarah-train: error: cannot write run folder run: Read-only file system\n"
     )
     assert not list(small_disk.iterdir())
+
+
+def test_killed_at_random_moments(tmp_path: Path) -> None:
+    """Fewer than by the command that docs/reliability.md names."""
+    program = Path(__file__).parent.parent / "benchmarks" / "kills.py"
+    process = subprocess.run([sys.executable, program, "--kills", "8"], capture_output=True, text=True, timeout=280)
+    found = re.search(r"8 kills, (\d+) trainings, (\d+) of them end as without", process.stdout)
+    assert found is not None, process.stderr
+    assert found[1] == found[2], process.stdout
