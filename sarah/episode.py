@@ -100,7 +100,9 @@ class EpisodeResult:
     def __post_init__(self) -> None:
         """Refuse numbers that would poison whoever learns from them."""
         for name, value in self.fields().items():
-            if not isinstance(value, str) and not np.isfinite(value).all():
+            if not isinstance(value, str) and not math.isfinite(
+                math.hypot(*value) if isinstance(value, tuple) else value
+            ):
                 raise SimulationError(f"{name} of an episode must be finite, not {value!r}")
 
     def fields(self) -> dict[str, Any]:
@@ -179,8 +181,6 @@ class Episode:
         """
         for _ in range(round(STAND_SECONDS / self._dt)):
             self.standing.append(self._sense())
-            if self.termination is not None:
-                break
             self.simulation.advance()
         return self.last_reading
 

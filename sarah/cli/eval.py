@@ -12,7 +12,7 @@ import tyro
 
 from sarah.cli.options import changed_episodes, numbers, parse_options, run_command
 from sarah.config import EpisodeConfig
-from sarah.errors import ConfigurationError, check_range
+from sarah.errors import ConfigurationError, check_range, unknown_name
 from sarah.tasks import BALANCE, STEPPING, TASKS
 
 if TYPE_CHECKING:
