@@ -25,8 +25,9 @@ from sarah.versions import SIMULATING, versions
 if TYPE_CHECKING:
     from distributed import Client, LocalCluster
 
-KEPT_STANDING = 64
-"""Episodes that a process keeps standing, waiting for their parameters."""
+KEPT_STANDING = 8
+"""Episodes that a process keeps standing, waiting for their parameters. Each takes some 15 MB, and one whose parameters
+went to another process waits in vain; whoever does not stand here stands anew, for a thirtieth of an episode."""
 SCHEDULER_SECONDS = 10
 """How long to wait for a connection to a scheduler."""
 SAFE_PATH = "PYTHONSAFEPATH"
