@@ -32,6 +32,7 @@ COARSE = "--episode.time-limit 1.2 --episode.push.at-seconds 1 1 --episode.physi
 COMMANDS = (
     "sarah-eval {run} --episodes 1",
     "sarah-figures {run} --out figures",
+    "sarah-video {run} out.gif --episode best --seconds 1 1.05",
     "sarah-train --resume {run}",
     f"sarah-train --task balance --simulations 1 --slots 1 --run-dir {{run}}-mine --from {{run}} {COARSE}",
     "sarah-compare {run}-race --algorithms random --seeds 1 --simulations 1 --episodes 1",
