@@ -46,7 +46,7 @@ def rows(run: Path) -> list[bytes]:
 def expected(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     folder = tmp_path_factory.mktemp("expected")
     process = begin(folder, *TRAINING)
-    _, errors = process.communicate(timeout=120)
+    _, errors = process.communicate(timeout=400)
     assert process.returncode == 0, errors
     return {name: (folder / "run" / name).read_bytes() for name in RECORDS}
 
@@ -57,7 +57,7 @@ def test_killed_locked_stopped_and_resumed(expected: dict[str, bytes], tmp_path:
     wait_for_rows(process, run, 6)
     process.send_signal(signal.SIGSTOP)  # so that it is still there when the other has started
     intruder = begin(tmp_path, "--resume", "run")
-    _, errors = intruder.communicate(timeout=60)
+    _, errors = intruder.communicate(timeout=400)
     assert intruder.returncode == 2 and "run folder run is in use by another training" in errors
     assert process.poll() is None
     process.kill()  # its lock dies with it
@@ -67,7 +67,7 @@ def test_killed_locked_stopped_and_resumed(expected: dict[str, bytes], tmp_path:
     process = begin(tmp_path, "--resume", "run")
     wait_for_rows(process, run, len(kept) + 10)
     process.terminate()
-    _, errors = process.communicate(timeout=60)
+    _, errors = process.communicate(timeout=400)
     assert process.returncode == 128 + signal.SIGTERM and "Traceback" not in errors
     assert "sarah-train: interrupted; go on with sarah-train --resume run" in errors
     assert rows(run)[: len(kept)] == kept
@@ -76,18 +76,18 @@ def test_killed_locked_stopped_and_resumed(expected: dict[str, bytes], tmp_path:
     process = begin(tmp_path, "--resume", "run", "--workers", "2")
     wait_for_rows(process, run, len(kept) + 10)
     os.killpg(process.pid, signal.SIGINT)  # as Ctrl-C does, to the workers too
-    _, errors = process.communicate(timeout=60)
+    _, errors = process.communicate(timeout=400)
     assert process.returncode == 128 + signal.SIGINT and "Traceback" not in errors
     assert rows(run)[: len(kept)] == kept
 
     (command,) = re.findall(r"go on with (sarah-train --resume \S+)", errors)
     process = begin(tmp_path, *shlex.split(command)[1:])
-    _, errors = process.communicate(timeout=120)
+    _, errors = process.communicate(timeout=400)
     assert process.returncode == 0, errors
     assert {name: (run / name).read_bytes() for name in RECORDS} == expected
 
     process = begin(tmp_path, "--resume", "run")
-    output, errors = process.communicate(timeout=60)
+    output, errors = process.communicate(timeout=400)
     assert (process.returncode, output, errors) == (0, "run is finished: there is nothing to resume\n", "")
     assert {name: (run / name).read_bytes() for name in RECORDS} == expected
 
@@ -106,13 +106,13 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
 
 def test_a_full_disk_stops_the_training_and_space_lets_it_go_on(expected: dict[str, bytes], small_disk: Path) -> None:
     process = begin(small_disk, *TRAINING)
-    _, errors = process.communicate(timeout=120)
+    _, errors = process.communicate(timeout=400)
     assert process.returncode == 2 and "Traceback" not in errors
     assert re.search(r"sarah-train: error: .*No space left on device.*go on with sarah-train --resume run\n", errors)
     kept = rows(small_disk / "run")
     subprocess.run(["mount", "-o", "remount,size=8m", str(small_disk)], check=True)
     process = begin(small_disk, "--resume", "run")
-    _, errors = process.communicate(timeout=120)
+    _, errors = process.communicate(timeout=400)
     assert process.returncode == 0, errors
     assert {name: (small_disk / "run" / name).read_bytes() for name in RECORDS} == expected
     assert set(kept[:-1]) <= set(rows(small_disk / "run"))  # the last one may be half a row
@@ -121,7 +121,7 @@ def test_a_full_disk_stops_the_training_and_space_lets_it_go_on(expected: dict[s
 def test_a_folder_that_cannot_be_written_is_one_line(small_disk: Path) -> None:
     subprocess.run(["mount", "-o", "remount,ro", str(small_disk)], check=True)
     process = begin(small_disk, *TRAINING)
-    _, errors = process.communicate(timeout=60)
+    _, errors = process.communicate(timeout=400)
     assert process.returncode == 2 and errors == (
         "sarah-train: error: cannot write run folder run: Read-only file system\n"
     )
@@ -131,7 +131,7 @@ def test_a_folder_that_cannot_be_written_is_one_line(small_disk: Path) -> None:
 def test_killed_at_random_moments(tmp_path: Path) -> None:
     """Fewer than by the command that docs/reliability.md names."""
     program = Path(__file__).parent.parent / "benchmarks" / "kills.py"
-    process = subprocess.run([sys.executable, program, "--kills", "8"], capture_output=True, text=True, timeout=280)
+    process = subprocess.run([sys.executable, program, "--kills", "8"], capture_output=True, text=True, timeout=400)
     found = re.search(r"8 kills, (\d+) trainings, (\d+) of them end as without", process.stdout)
     assert found is not None, process.stderr
     assert found[1] == found[2], process.stdout
