@@ -12,6 +12,7 @@ import os
 import shutil
 import time
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import mean, median
@@ -21,6 +22,7 @@ import numpy as np
 from sarah.config import TrainingConfig
 from sarah.episode import EpisodeSpec, simulate
 from sarah.errors import RunFolderError
+from sarah.journal import Journal
 from sarah.runs import RunFolder
 from sarah.tasks import TASKS
 from sarah.training import train
@@ -111,10 +113,13 @@ def run_entry(entry: Entry) -> None:
     """Train, and evaluate every choice, in a folder that gets its name when it is complete.
 
     :param entry: the training
+    :raises RunFolderError: if another race is training it
     """
     unfinished = entry.folder.with_name(f"{entry.folder.name}.unfinished")
-    if unfinished.exists():  # an interrupted race left it
-        shutil.rmtree(unfinished)
+    if unfinished.exists():  # an interrupted race left it, or another one is at it
+        journal = RunFolder(unfinished).journal_path
+        with Journal(journal, Workers()) if journal.exists() else nullcontext():
+            shutil.rmtree(unfinished)
     start = time.perf_counter()
     run = RunFolder.create(unfinished, entry.config)
     learned = train(entry.config, run)

@@ -1,23 +1,45 @@
-"""What an experiment's settings are: plain dataclasses, read from files, written beside every run.
+"""What an experiment's settings are: plain dataclasses.
 
 Light on purpose: commands import it before anything slow.
 """
 
 from __future__ import annotations
 
-import dataclasses
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from pathlib import Path
-from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+from typing import Any, Literal, get_args
 
-from sarah.errors import ConfigurationError, unknown_name
+from sarah.errors import ConfigurationError, check_range, shortened, unknown_name
 from sarah.tasks import BALANCE, STEPPING, TASKS
 
 STAND_SECONDS = 1.0
 """How long the robot stands before the pattern generator starts; the paper's."""
 SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE = 50, 1000
+FASTEST_PHYSICS_RATE = 20_000
+MOST_SOLVER_ITERATIONS = 10_000
+LONGEST_EPISODE = 3600.0
+MOST_SIMULATIONS = 1_000_000
+MOST_SLOTS = 10_000
+SEEDS = 2**31
+"""Seeds of trainings are below; those of their episodes from here on."""
+PLAUSIBLE: dict[str, tuple[float, float, str]] = {
+    "friction": (0.0, 5.0, ""),
+    "mass_deviation": (0.0, 0.9, ""),
+    "actuator_bandwidth": (0.1, 1000.0, "per second"),
+    "pad_threshold": (0.0, 1000.0, "N"),
+    "acceleration_noise": (0.0, 100.0, "m/s^2"),
+    "angular_rate_noise": (0.0, 100.0, "rad/s"),
+    "imu_bandwidth": (0.1, 100_000.0, "Hz"),
+    "pad_noise": (0.0, 1000.0, "N"),
+    "delay_ticks": (0, 100, "ticks"),
+    "start_speed": (0.0, 10.0, "m/s"),
+    "newtons": (0.0, 10_000.0, "N"),
+    "degrees": (0.0, 720.0, "degrees"),
+    "at_seconds": (STAND_SECONDS, LONGEST_EPISODE, "s"),
+    "duration": (0.0, 10.0, "s"),
+}
+"""Of randomisation and push: lowest and highest value that a robot or a push can have, and its unit. Beyond, somebody
+has mistaken the unit."""
 TRAINED_STEPPING = (0.41, 0.52, 0.62, 1.17, 1.37)
 """P1 to P5 that the balance task keeps unless others are given: what NAF learned from seed 1, to two digits."""
 
@@ -27,7 +49,6 @@ SEARCHERS = ("cma-es", "gp", "tpe", "random")
 """Black-box optimisers."""
 ALGORITHMS = AGENTS + SEARCHERS
 RewardForm = Literal["symmetric", "printed"]
-ConfigType = TypeVar("ConfigType")
 
 
 @dataclass(frozen=True)
@@ -45,17 +66,13 @@ class Physics:
 
     def __post_init__(self) -> None:
         """Refuse rates that do not divide into each other."""
-        if not SLOWEST_CONTROL_RATE <= self.control_rate <= FASTEST_CONTROL_RATE:
-            raise ConfigurationError(
-                f"physics.control_rate must be between {SLOWEST_CONTROL_RATE} and {FASTEST_CONTROL_RATE} Hz, "
-                f"not {self.control_rate!r}"
-            )
-        if self.rate < self.control_rate or self.rate % self.control_rate:
+        check_range("physics.control_rate", self.control_rate, SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE, "Hz")
+        check_range("physics.rate", self.rate, self.control_rate, FASTEST_PHYSICS_RATE, "Hz")
+        if self.rate % self.control_rate:
             raise ConfigurationError(
                 f"physics.rate must be a multiple of the control rate, {self.control_rate} Hz, not {self.rate!r}"
             )
-        if self.solver_iterations < 1:
-            raise ConfigurationError(f"physics.solver_iterations must be at least 1, not {self.solver_iterations!r}")
+        check_range("physics.solver_iterations", self.solver_iterations, 1, MOST_SOLVER_ITERATIONS)
 
     def at_control_rate(self, control_rate: int) -> Physics:
         """The same physics for another control rate; its own rate is raised to the next multiple of that.
@@ -109,12 +126,7 @@ class Randomisation:
 
     def __post_init__(self) -> None:
         """Refuse ranges that no robot has."""
-        _refuse_impossible_ranges(self, "randomisation")
-        if self.mass_deviation >= 1.0:
-            raise ConfigurationError(f"randomisation.mass_deviation must be below 1, not {self.mass_deviation!r}")
-        for name, value in (("actuator_bandwidth", self.actuator_bandwidth[0]), ("imu_bandwidth", self.imu_bandwidth)):
-            if value == 0.0:
-                raise ConfigurationError(f"randomisation.{name} must be above 0")
+        _check_plausible(self, "randomisation")
 
 
 @dataclass(frozen=True)
@@ -136,19 +148,13 @@ class Push:
 
     def __post_init__(self) -> None:
         """Refuse what is no push, or comes while the robot is still held to be standing."""
-        _refuse_impossible_ranges(self, "push")
-        if self.at_seconds[0] < STAND_SECONDS:
-            raise ConfigurationError(f"push.at_seconds must be from {STAND_SECONDS:g} s on, not {self.at_seconds!r}")
+        _check_plausible(self, "push")
 
 
-def _refuse_impossible_ranges(config: Any, key: str) -> None:
+def _check_plausible(config: Any, key: str) -> None:
     for item in fields(config):
-        value = getattr(config, item.name)
-        low, high = value if isinstance(value, tuple) else (value, value)
-        if not 0.0 <= low <= high < math.inf:
-            raise ConfigurationError(
-                f"{key}.{item.name} must be finite, not negative and in rising order, not {value!r}"
-            )
+        if item.name in PLAUSIBLE:
+            check_range(f"{key}.{item.name}", getattr(config, item.name), *PLAUSIBLE[item.name])
 
 
 @dataclass(frozen=True)
@@ -174,9 +180,10 @@ class EpisodeConfig:
 
     def __post_init__(self) -> None:
         """Refuse what cannot be simulated."""
-        if not STAND_SECONDS < self.time_limit < math.inf:
+        check_range("time_limit", self.time_limit, STAND_SECONDS, LONGEST_EPISODE, "s")
+        if self.time_limit < STAND_SECONDS + self.physics.control_dt:
             raise ConfigurationError(
-                f"time_limit must be finite and above {STAND_SECONDS:g} s, not {self.time_limit!r}"
+                f"time_limit must be above the {STAND_SECONDS:g} s of standing, not {self.time_limit!r}"
             )
         if self.reward_form not in get_args(RewardForm):
             raise ConfigurationError(unknown_name("reward_form", self.reward_form, get_args(RewardForm)))
@@ -214,12 +221,10 @@ class TrainingConfig:
             raise ConfigurationError(unknown_name("task", self.task, TASKS))
         if self.algo not in ALGORITHMS:
             raise ConfigurationError(unknown_name("algo", self.algo, ALGORITHMS))
-        if self.simulations < 1:
-            raise ConfigurationError(f"simulations must be at least 1, not {self.simulations!r}")
-        if self.slots < 1:
-            raise ConfigurationError(f"slots must be at least 1, not {self.slots!r}")
-        if not 0 <= self.seed < 2**31:
-            raise ConfigurationError(f"seed must be between 0 and {2**31 - 1}, not {self.seed!r}")
+        check_range("simulations", self.simulations, 1, MOST_SIMULATIONS)
+        check_range("slots", self.slots, 1, MOST_SLOTS)
+        if not 0 <= self.seed < SEEDS:
+            raise ConfigurationError(f"seed must be between 0 and {SEEDS - 1}, not {shortened(self.seed)}")
         push, limit = self.episode.push, self.episode.time_limit
         if self.task != BALANCE.name and push != Push():
             raise ConfigurationError(f"episode.push is for task {BALANCE.name!r}: {self.task!r} has no push")
@@ -227,74 +232,3 @@ class TrainingConfig:
             raise ConfigurationError(
                 f"episode.push.at_seconds must begin before the time_limit of {limit:g} s, not {push.at_seconds!r}"
             )
-
-
-def read_config(config_type: type[ConfigType], path: Path) -> ConfigType:
-    """Read a configuration from a YAML file. What the file does not name keeps its default.
-
-    :param config_type: the dataclass to make
-    :param path: of the file
-    :raises ConfigurationError: naming file, key and value, if something in it is not allowed
-    """
-    import yaml
-
-    try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise ConfigurationError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from error
-    except yaml.YAMLError as error:
-        raise ConfigurationError(f"{path} is not YAML: {' '.join(str(error).split())}") from error
-    try:
-        return _from_mapping(config_type, {} if content is None else content, "")
-    except ConfigurationError as error:
-        raise ConfigurationError(f"{path}: {error}") from error
-
-
-def write_config(config: Any, path: Path) -> None:
-    """Write a configuration as YAML, every value spelled out, so that :func:`read_config` gives it back.
-
-    :param config: a dataclass of this module
-    :param path: of the file
-    """
-    import yaml
-
-    path.write_text(yaml.safe_dump(_to_plain(dataclasses.asdict(config)), sort_keys=False), encoding="utf-8")
-
-
-def _to_plain(value: Any) -> Any:
-    """YAML's own types only: safe loaders refuse tuples."""
-    if isinstance(value, Mapping):
-        return {key: _to_plain(item) for key, item in value.items()}
-    return [_to_plain(item) for item in value] if isinstance(value, tuple) else value
-
-
-def _from_mapping(config_type: type[ConfigType], content: Any, key: str) -> ConfigType:
-    if not isinstance(content, Mapping):
-        raise ConfigurationError(f"{key or 'the file'} must hold keys and values, not {content!r}")
-    types = get_type_hints(config_type)
-    values = {}
-    for name, value in content.items():
-        if name not in types:
-            raise ConfigurationError(unknown_name("key", f"{key}{name}", (key + allowed for allowed in types)))
-        values[name] = _converted(types[name], value, key + name)
-    return config_type(**values)
-
-
-def _converted(expected: Any, value: Any, key: str) -> Any:
-    """A value of the expected type, or an error that names the key."""
-    if dataclasses.is_dataclass(expected):
-        return _from_mapping(expected, value, f"{key}.")  # type: ignore[arg-type]
-    if get_origin(expected) is tuple:
-        parts = get_args(expected)
-        if not isinstance(value, (list, tuple)) or len(value) != len(parts):
-            raise ConfigurationError(f"{key} must be a list of {len(parts)} values, not {value!r}")
-        return tuple(_converted(part, item, key) for part, item in zip(parts, value, strict=True))
-    if get_origin(expected) is Mapping:
-        if not isinstance(value, Mapping):
-            raise ConfigurationError(f"{key} must hold names and values, not {value!r}")
-        return {name: _converted(get_args(expected)[1], item, f"{key}.{name}") for name, item in value.items()}
-    allowed = {float: (float, int), int: (int,), bool: (bool,)}.get(expected, (str,))
-    if not isinstance(value, allowed) or (isinstance(value, bool) and expected is not bool):
-        kind = {float: "a number", int: "a whole number", bool: "true or false"}.get(expected, "a text")
-        raise ConfigurationError(f"{key} must be {kind}, not {value!r}")
-    return float(value) if expected is float else value

@@ -16,7 +16,7 @@ from functools import lru_cache
 from importlib import resources
 from typing import Any
 
-from sarah.errors import DescriptionError, unknown_name
+from sarah.errors import DescriptionError, shortened, unknown_name
 
 SIDES = ("left", "right")
 PLATES = ("forefoot", "hindfoot")
@@ -42,6 +42,8 @@ GROUPS = {
 }
 """The paper's three groups of links, of equal mass."""
 GROUP_MASS = 10.0
+DIMENSION_FACTOR = 10.0
+"""How much smaller or larger than its default a dimension may be: beyond, somebody has mistaken the unit."""
 
 _XACRO_NAMESPACE = "{http://www.ros.org/wiki/xacro}"
 _xacro_lock = threading.Lock()  # xacro keeps its state in globals
@@ -86,7 +88,7 @@ def describe_robot(dimensions: Mapping[str, float] | None = None) -> RobotDescri
 
     :param dimensions: values for some of :func:`default_dimensions`; the others keep their defaults
     :return: the checked robot; equal dimensions give the same object
-    :raises DescriptionError: if a dimension is unknown or not a finite positive number, or the robot is refused
+    :raises DescriptionError: if a dimension is unknown or no number near its default, or the robot is refused
     """
     given = dict(dimensions or {})
     check_dimensions(given)
@@ -97,15 +99,17 @@ def check_dimensions(dimensions: Mapping[str, Any]) -> None:
     """Refuse dimensions that the robot does not have.
 
     :param dimensions: names and values, as a user gave them
-    :raises DescriptionError: for an unknown name, or a value that is not a finite positive number
+    :raises DescriptionError: for an unknown name, or a value that is no number near the default
     """
     allowed = default_dimensions()
     for name, value in dimensions.items():
         if name not in allowed:
             raise DescriptionError(unknown_name("robot dimension", str(name), allowed))
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 < value < math.inf:
+        low, high = allowed[name] / DIMENSION_FACTOR, allowed[name] * DIMENSION_FACTOR
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not low <= value <= high:
             raise DescriptionError(
-                f"robot dimension {name!r} must be a finite positive number, not {value!r} (default: {allowed[name]})"
+                f"robot dimension {name!r} must be a number between {low:g} and {high:g}, not {shortened(value)} "
+                f"(default: {allowed[name]:g}; metres, kilograms, seconds and radians)"
             )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from sarah.config import EpisodeConfig
 from sarah.episode import Episode
-from sarah.errors import ConfigurationError, unknown_name
+from sarah.errors import ConfigurationError, SimulationError, unknown_name
 from sarah.sensors import SensorReading
 from sarah.simulator import GRAVITY
 from sarah.tasks import TASKS, Task
@@ -109,6 +109,8 @@ def observation_from(reading: SensorReading) -> np.ndarray:
     :return: float32 of shape (16,), of order 1
     """
     signals = (*reading.acceleration, *reading.angular_rate, *reading.pressures, *reading.joints)
+    if not reading.is_finite:
+        raise SimulationError(f"an observation must be finite, not {reading!r}")
     scaled = np.array(signals) / OBSERVATION_SCALES
     return np.clip(scaled, -OBSERVATION_BOUND, OBSERVATION_BOUND).astype(np.float32)
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from sarah.config import STAND_SECONDS, EpisodeConfig, Physics
 from sarah.description import PASSIVE_JOINTS, RobotDescription, describe_robot
-from sarah.errors import ConfigurationError, unknown_name
+from sarah.errors import ConfigurationError, SimulationError, unknown_name
 from sarah.gait import GaitRecord
 from sarah.hips import BalanceParameters, HipLaw
 from sarah.motion import MotionRecord
@@ -31,7 +31,8 @@ OSCILLATION_STEPS = 2
 """Steps that count as an oscillation: one with each leg."""
 LARGEST_TILT = math.radians(45.0)
 TERMINATIONS = ("time_limit", "left_box", "no_oscillation", "fell", "diverged")
-"""How an episode can end: the paper's three criteria, a tilt beyond 45 degrees, and a state that is not finite."""
+"""How an episode can end: the paper's three criteria, a tilt beyond 45 degrees, and a state or signal that is no
+number or beyond all bounds."""
 
 
 @dataclass(frozen=True)
@@ -95,6 +96,14 @@ class EpisodeResult:
     peak_hip_rate: float
     peak_leg_speed: float
     trace: Trace | None = field(default=None, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Refuse numbers that would poison whoever learns from them."""
+        for name, value in self.fields().items():
+            if not isinstance(value, str) and not math.isfinite(
+                math.hypot(*value) if isinstance(value, tuple) else value
+            ):
+                raise SimulationError(f"{name} of an episode must be finite, not {value!r}")
 
     def fields(self) -> dict[str, Any]:
         """Every field but the trace, by name."""
@@ -206,6 +215,8 @@ class Episode:
         """Sense, decide, act, simulate and judge one control tick."""
         simulation, generator, gait = self.simulation, self.generator, self._gait
         reading = self._sense()
+        if self.termination is not None:
+            return
         self._motion.tick(self._truth.acceleration, *simulation.actuator_motion())
         if generator.phase in (Phase.LIFT, Phase.LAND):
             gait.swing(simulation.sole_height(generator.swing.name.lower()))
@@ -248,8 +259,11 @@ class Episode:
         self.simulation.close()
 
     def _sense(self) -> SensorReading:
-        self._truth = self.simulation.read()
-        self.last_reading = self._sensors(self._truth)
+        truth = self.simulation.read()
+        if truth.is_finite:
+            self._truth, self.last_reading = truth, self._sensors(truth)
+        else:  # what has been sensed stays
+            self.termination = "diverged"
         return self.last_reading
 
     def _push_now(self) -> Vector | None:

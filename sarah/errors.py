@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Iterable
 from difflib import get_close_matches
+
+LONGEST_NAME = 100
+"""For which a nearest one is looked for."""
 
 
 class SarahError(Exception):
@@ -30,6 +34,40 @@ class WorkersError(SarahError, RuntimeError):
     """Workers that were asked for cannot be reached, or die again and again."""
 
 
+class LearningError(SarahError, RuntimeError):
+    """What learns no longer returns numbers."""
+
+
+class TrainingInterruptedError(SarahError):
+    """A training was asked to stop, and has; it can be resumed."""
+
+
+def check_range(key: str, value: float | tuple[float, float], low: float, high: float, unit: str = "") -> None:
+    """Refuse what is out of a range.
+
+    :param key: what the value is of
+    :param value: a number, or the two ends of a range, which must be in rising order
+    :param low: smallest that is allowed
+    :param high: largest that is allowed
+    :param unit: of all of them
+    :raises ConfigurationError: naming key, value and range
+    """
+    first, last = value if isinstance(value, tuple) else (value, value)
+    if not low <= first <= last <= high:
+        order = " and in rising order" if isinstance(value, tuple) else ""
+        raise ConfigurationError(
+            f"{key} must be between {low:g} and {high:g}{unit and f' {unit}'}{order}, not {shortened(value)}"
+        )
+
+
+def shortened(value: object) -> str:
+    """A value as a message shows it: in one line that is not too long.
+
+    :param value: of any kind
+    """
+    return reprlib.repr(value)
+
+
 def unknown_name(kind: str, name: str, allowed: Iterable[str]) -> str:
     """Say that a name is unknown, which one was probably meant, and which there are.
 
@@ -39,6 +77,6 @@ def unknown_name(kind: str, name: str, allowed: Iterable[str]) -> str:
     :return: one line for an exception's message
     """
     names = sorted(allowed)
-    nearest = get_close_matches(name, names, n=1, cutoff=0.5)
+    nearest = get_close_matches(name, names, n=1, cutoff=0.5) if len(name) < LONGEST_NAME else []
     guess = f", did you mean {nearest[0]!r}?" if nearest else ""
-    return f"unknown {kind} {name!r}{guess} (allowed: {', '.join(names)})"
+    return f"unknown {kind} {shortened(name)}{guess} (allowed: {', '.join(names)})"

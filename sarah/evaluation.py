@@ -27,6 +27,7 @@ class Evaluation:
     :param drift_mean: of the torso's horizontal distance from its start at the end, in m; ``_median``, ``_std``,
         ``_max`` likewise
     :param survival_rate: share of the episodes that ran to their time limit
+    :param diverged: how many ended because the simulation no longer returned numbers
     :param event_driven_shift_mean: share of the SHIFT phases that sensors ended
     :param event_driven_lift_mean: the same of the LIFT phases
     :param sole_clearance_mean: in m
@@ -49,6 +50,7 @@ class Evaluation:
     drift_std: float
     drift_max: float
     survival_rate: float
+    diverged: int
     event_driven_shift_mean: float
     event_driven_lift_mean: float
     sole_clearance_mean: float
@@ -104,6 +106,7 @@ def summarise(results: Iterable[EpisodeResult]) -> Evaluation:
         drift_std=pstdev(drifts),
         drift_max=max(drifts),
         survival_rate=mean(result.survived for result in episodes),
+        diverged=sum(result.termination == "diverged" for result in episodes),
         event_driven_shift_mean=mean(result.event_driven_shift for result in episodes),
         event_driven_lift_mean=mean(result.event_driven_lift for result in episodes),
         sole_clearance_mean=mean(result.sole_clearance for result in episodes),

@@ -8,6 +8,7 @@ the runs of that line, and the band between their quartiles.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -107,7 +108,7 @@ def _curves(runs: Sequence[RunFolder], task: Task) -> list[Curves]:
         if not rows:
             raise RunFolderError(f"{run.path} has no simulations to draw")
         try:
-            columns = {name: [float(row[name]) for row in rows] for name in names}
+            columns = {name: [_number(row[name]) for row in rows] for name in names}
         except (KeyError, TypeError, ValueError) as error:
             raise RunFolderError(f"the simulations of {run.path} cannot be read: {error!r}") from error
         by_algorithm.setdefault(run.config().algo, []).append(columns)
@@ -117,6 +118,13 @@ def _curves(runs: Sequence[RunFolder], task: Task) -> list[Curves]:
         stacked = {name: np.array([table[name][:shortest] for table in tables]) for name in names}
         curves.append(Curves(algorithm, stacked))
     return curves
+
+
+def _number(text: str) -> float:
+    number = float(text)
+    if not math.isfinite(number):
+        raise ValueError(f"{text} where a number must be")
+    return number
 
 
 def _draw(curves: Sequence[Curves], panels: Panels, path: Path) -> list[Path]:

@@ -17,13 +17,14 @@ from sarah.agents.naf import NAF, PRESETS
 from sarah.config import SEARCHERS, Randomisation, TrainingConfig
 from sarah.envs import draw_seed, observation_from, parameters_from
 from sarah.episode import Episode, EpisodeSpec, simulate
+from sarah.files import replacing
 from sarah.recommendation import Parameters
-from sarah.recorder import EpisodeRecorder
+from sarah.recorder import EpisodeRecorder, check_weights
 from sarah.runs import RunFolder
 from sarah.search import Searcher, make_searcher
 from sarah.tasks import TASKS, Task
 from sarah.vec_env import EpisodeVecEnv, LateRankReplayBuffer, LateReplayBuffer
-from sarah.workers import Job, Workers
+from sarah.workers import Executor, Job
 
 UPDATES_PER_SIMULATION = 5
 WARM_UP = 40
@@ -35,7 +36,7 @@ def learn(
     simulations: int,
     run: RunFolder,
     recorder: EpisodeRecorder,
-    workers: Workers,
+    workers: Executor,
     progress_bar: bool,
 ) -> Parameters:
     """Learn by what the configuration names.
@@ -62,7 +63,9 @@ def learn(
         log_interval=None,  # type: ignore[arg-type]
         progress_bar=progress_bar,
     )
-    model.save(run.model_path)
+    check_weights(model)
+    with replacing(run.model_path) as file:
+        model.save(file)  # type: ignore[arg-type]  # any file will do
     return recorder.choose()
 
 
@@ -122,7 +125,7 @@ def chosen_parameters(model: OffPolicyAlgorithm, observation: np.ndarray, task: 
 
 
 def _search(
-    config: TrainingConfig, simulations: int, recorder: EpisodeRecorder, workers: Workers, progress_bar: bool
+    config: TrainingConfig, simulations: int, recorder: EpisodeRecorder, workers: Executor, progress_bar: bool
 ) -> Parameters:
     """Let a black-box optimiser try parameters, as many in flight as there are slots; its choice is returned."""
     task = TASKS[config.task]

@@ -134,7 +134,9 @@ class PatternGenerator:
         return self.support.value * self._rate_y.value
 
     def sense(self, reading: SensorReading) -> None:
-        """Filter one reading without acting on it, as while standing."""
+        """Filter one reading without acting on it, as while standing. One that is not finite is passed over."""
+        if not reading.is_finite:
+            return
         self._stable_x(max(-LARGEST_ACCELERATION, min(LARGEST_ACCELERATION, reading.acceleration[0])))
         self._rate_y(reading.angular_rate[1])
         left_fore, left_hind, right_fore, right_hind = reading.pressures

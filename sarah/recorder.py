@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
+import torch
+from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.callbacks import BaseCallback
-from stable_baselines3.common.logger import Logger
+from stable_baselines3.common.logger import KVWriter, Logger
 
+from sarah.curves import LearningCurves
+from sarah.errors import LearningError
+from sarah.journal import Journal
 from sarah.recommendation import Parameters, merit
 from sarah.runs import RunFolder
 from sarah.tasks import Task
@@ -28,25 +34,39 @@ SIMULATIONS_PER_CHOICE = 5
 
 
 class EpisodeRecorder(BaseCallback):
-    """Writes every simulation to ``episodes.csv`` and to the logger.
+    """Writes every simulation to ``episodes.csv`` and to the learning curves.
+
+    While a resumed training replays what it knows, nothing is written; once it goes on, all files are written anew, so
+    that they hold what they would without the interruption.
 
     :param run: where to
     :param task: whose parameters they are
-    :param log: where to as well
+    :param journal: of the training
     """
 
+    log: Logger
+    """Of the learning curves, which the agent writes to as well."""
     tried: list[tuple[Parameters, float]]
     """Parameters and merit of every simulation so far."""
+    diverged: int
+    """Simulations so far that ended because no number came back."""
     choose: Callable[[], Parameters] | None
     """Tells what would be chosen now; while there is such a thing, it is noted in ``choices.csv``."""
 
-    def __init__(self, run: RunFolder, task: Task, log: Logger) -> None:
+    def __init__(self, run: RunFolder, task: Task, journal: Journal) -> None:
         super().__init__()
-        self.log = log
+        self.log = Logger(folder=None, output_formats=[_CurveWriter(self)])
         self.tried = []
+        self.diverged = 0
         self.choose = None
         self._names = task.parameter_names
         self._run = run
+        self._journal = journal
+        self._curves: LearningCurves | None = None
+        self._held: list[Callable[[], None]] = []
+
+    def _on_rollout_start(self) -> None:
+        check_weights(self.model)
 
     def _on_step(self) -> bool:
         for info in self.locals["infos"]:
@@ -59,8 +79,9 @@ class EpisodeRecorder(BaseCallback):
 
         :param info: what the environment's step returned
         """
-        self._run.append_episode(len(self.tried), self._names, info)
+        self._write(partial(self._run.append_episode, len(self.tried), self._names, info))
         self.tried.append((info["parameters"], merit(info)))
+        self.diverged += info["termination"] == "diverged"
         x, y, _ = info["final_position"]
         shown = {"return": info["episode_return"], "x": x, "y": y, **{name: info[name] for name in LOGGED_FIELDS}}
         for name, value in shown.items():
@@ -69,4 +90,59 @@ class EpisodeRecorder(BaseCallback):
             self.log.record(f"parameters/{name}", value)
         self.log.dump(len(self.tried))
         if self.choose is not None and len(self.tried) % SIMULATIONS_PER_CHOICE == 0:
-            self._run.append_choice(len(self.tried), self._names, self.choose())
+            self._write(partial(self._run.append_choice, len(self.tried), self._names, self.choose()))
+
+    def write_curves(self, values: dict[str, Any], excluded: dict[str, tuple[str, ...]], step: int) -> None:
+        """Write a point of each learning curve.
+
+        :param values: by name
+        :param excluded: by name: where a value is not wanted
+        :param step: simulations so far
+        """
+        self._write(lambda: self._open_curves().write(values, excluded, step))
+
+    def close(self) -> None:
+        """Write what is held back, and close the learning curves."""
+        self._write_held()
+        self._open_curves().close()
+
+    def _write(self, action: Callable[[], None]) -> None:
+        self._held.append(action)
+        if not self._journal.replaying:
+            self._write_held()
+
+    def _write_held(self) -> None:
+        held, self._held = self._held, []
+        self._open_curves()
+        for action in held:
+            action()
+
+    def _open_curves(self) -> LearningCurves:
+        if self._curves is None:
+            self._run.remove_records()
+            self._curves = LearningCurves(self._run)
+        return self._curves
+
+
+class _CurveWriter(KVWriter):
+    """What a logger of stable-baselines3 writes to."""
+
+    def __init__(self, recorder: EpisodeRecorder) -> None:
+        self._recorder = recorder
+
+    def write(self, key_values: dict[str, Any], key_excluded: dict[str, tuple[str, ...]], step: int = 0) -> None:
+        # The logger empties both when this returns.
+        self._recorder.write_curves(dict(key_values), dict(key_excluded), step)
+
+
+def check_weights(model: BaseAlgorithm) -> None:
+    """Stop a training that learns nothing any more.
+
+    :param model: the agent
+    :raises LearningError: if one of its weights is not finite
+    """
+    norms = torch._foreach_norm(list(model.policy.parameters()))
+    if not torch.isfinite(torch.stack(norms)).all():
+        raise LearningError(
+            f"the agent's weights are no longer finite after {model.num_timesteps} simulations: it learns nothing more"
+        )

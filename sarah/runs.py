@@ -1,6 +1,7 @@
 """The run folder: the only file that knows its layout.
 
     config.yaml  command.txt  versions.txt     what was run, how, and with which versions
+    journal.jsonl                              what came of every simulation, in full: what a training is resumed from
     episodes.csv                               one row per simulation; any row can be simulated again
     choices.csv                                what would have been chosen, every five simulations
     progress.csv  events.out.tfevents.*        the learning curves, for tables and for TensorBoard
@@ -8,25 +9,30 @@
     parameters.json                            the learned parameters: what a robot would be sent
     figures/                                   what sarah-figures draws of this run
 
-Everything but the model is read without unpickling: opening somebody's run executes none of its code.
+Everything but the model is read without unpickling, and no command reads the model: opening somebody's run executes
+none of its code.
 """
 
 from __future__ import annotations
 
 import csv
+import io
 import json
-import os
 import shlex
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from sarah.config import TrainingConfig, read_config, write_config
+from sarah.config import TrainingConfig
+from sarah.config_files import read_config, write_config
 from sarah.errors import RunFolderError
+from sarah.files import replace_text
 from sarah.tasks import TASKS
 from sarah.versions import versions
 
+EVENTS = "events.out.tfevents."
+"""What the names of TensorBoard's files begin with."""
 EPISODE_FIELDS = (
     "return",
     "score",
@@ -69,6 +75,9 @@ class RunFolder:
         self.path = path
         self.model_path = path / "model.zip"
         self.figures_path = path / "figures"
+        self.journal_path = path / "journal.jsonl"
+        self._versions_path = path / "versions.txt"
+        self._progress_path = path / "progress.csv"
         self._config_path = path / "config.yaml"
         self._episodes_path = path / "episodes.csv"
         self._choices_path = path / "choices.csv"
@@ -87,12 +96,15 @@ class RunFolder:
             if any(path.iterdir()):
                 raise RunFolderError(f"run folder {path} is not empty: name another with --run-dir")
             run = cls(path)
-            write_config(config, run._config_path)
-            (path / "command.txt").write_text(shlex.join(sys.argv) + "\n", encoding="utf-8")
+            run.journal_path.touch(exist_ok=False)
+            replace_text(path / "command.txt", shlex.join(sys.argv) + "\n")
             lines = (f"{name} {version}\n" for name, version in versions().items())
-            (path / "versions.txt").write_text("".join(lines), encoding="utf-8")
+            replace_text(run._versions_path, "".join(lines))
+            write_config(config, run._config_path)  # last: what has one can be resumed
         except RunFolderError:
             raise
+        except FileExistsError:
+            raise RunFolderError(f"run folder {path} is not empty: name another with --run-dir") from None
         except OSError as error:
             raise RunFolderError(f"cannot write run folder {path}: {error.strerror or error}") from error
         return run
@@ -114,10 +126,33 @@ class RunFolder:
                 raise RunFolderError(f"{path} is not the folder of a {kind}: it has no {file.name}")
         return run
 
+    @classmethod
+    def resumable(cls, path: Path) -> RunFolder:
+        """Open the folder of a training that was interrupted, or is finished.
+
+        :param path: of the folder
+        :raises RunFolderError: if it is not there, or lacks what a training is resumed from
+        """
+        run = cls(path)
+        if not path.is_dir():
+            raise RunFolderError(f"run folder {path} does not exist")
+        for file in (run._config_path, run.journal_path):
+            if not file.is_file():
+                raise RunFolderError(f"{path} cannot be resumed: it has no {file.name}")
+        return run
+
     @property
     def is_finished(self) -> bool:
         """Whether the training has ended, with learned parameters."""
         return self._parameters_path.is_file()
+
+    def versions(self) -> dict[str, str]:
+        """Read which versions the training began with, by name."""
+        try:
+            lines = self._versions_path.read_text(encoding="utf-8").splitlines()
+        except (OSError, UnicodeDecodeError) as error:
+            raise RunFolderError(f"cannot read {self._versions_path}: {error}") from error
+        return {name: version for name, _, version in (line.partition(" ") for line in lines)}
 
     def config(self) -> TrainingConfig:
         """Read the training's configuration."""
@@ -161,27 +196,50 @@ class RunFolder:
         """Read ``choices.csv``, row by row, as text."""
         return _rows(self._choices_path)
 
+    def append_progress(self, columns: Sequence[str], values: Mapping[str, Any]) -> None:
+        """Add a row to ``progress.csv``.
+
+        :param columns: of the file
+        :param values: by column; those that are not named stay empty
+        """
+        _append_row(self._progress_path, columns, values)
+
+    def widen_progress(self, columns: Sequence[str]) -> None:
+        """Give ``progress.csv`` more columns.
+
+        :param columns: those that it has, and new ones
+        """
+        text = io.StringIO(newline="")
+        writer = csv.DictWriter(text, columns)
+        writer.writeheader()
+        writer.writerows(_rows(self._progress_path))
+        replace_text(self._progress_path, text.getvalue())
+
+    def remove_records(self) -> None:
+        """Remove what is written along with the simulations: a resumed training writes all of it anew."""
+        for path in (self._episodes_path, self._choices_path, self._progress_path, *self.path.glob(f"{EVENTS}*")):
+            path.unlink(missing_ok=True)
+
     def write_parameters(self, content: Mapping[str, Any]) -> None:
         """Write ``parameters.json``.
 
         :param content: with at least the learned ``parameters`` by name
         """
-        unfinished = self._parameters_path.with_suffix(".json.new")
-        unfinished.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
-        os.replace(unfinished, self._parameters_path)
+        replace_text(self._parameters_path, json.dumps(content, indent=2) + "\n")
 
     def parameters(self) -> tuple[float, ...]:
         """Read the learned parameters, in the order of the task.
 
         :raises RunFolderError: if the file does not hold exactly these
         """
-        names = TASKS[self.config().task].parameter_names
+        task = TASKS[self.config().task]
+        names = task.parameter_names
         try:
             learned = json.loads(self._parameters_path.read_text(encoding="utf-8"))["parameters"]
             if set(learned) != set(names):
                 raise ValueError(f"it names {', '.join(map(str, learned)) or 'none'} instead of {', '.join(names)}")
-            return tuple(float(learned[name]) for name in names)
-        except (OSError, ValueError, KeyError, TypeError) as error:
+            return task.checked([learned[name] for name in names])
+        except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
             raise RunFolderError(f"{self._parameters_path} does not hold learned parameters: {error}") from error
 
 
@@ -197,5 +255,8 @@ def _append_row(path: Path, fields: Sequence[str], row: Mapping[str, Any]) -> No
 def _rows(path: Path) -> Iterator[dict[str, str]]:
     if not path.exists():
         return
-    with path.open(newline="", encoding="utf-8") as file:
-        yield from csv.DictReader(file)
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            yield from csv.DictReader(file)
+    except (csv.Error, UnicodeDecodeError) as error:
+        raise RunFolderError(f"{path} cannot be read: {error}") from error

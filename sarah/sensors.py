@@ -12,6 +12,8 @@ import numpy as np
 from sarah.filters import LowPass
 
 Vector = tuple[float, float, float]
+LARGEST_SIGNAL = 1e6
+"""In any SI unit: what is beyond comes from no sensor, but from a simulation that diverges."""
 TICKS_AT_ONCE = 256
 """For which noise is drawn ahead."""
 
@@ -31,6 +33,12 @@ class SensorReading(NamedTuple):
     angular_rate: Vector
     pressures: tuple[float, float, float, float]
     joints: tuple[float, float, float, float, float, float]
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether all signals are numbers that a sensor can return."""
+        acceleration, angular_rate, pressures, joints = self
+        return math.hypot(*acceleration, *angular_rate, *pressures, *joints) < LARGEST_SIGNAL
 
 
 class ImperfectSensors:

@@ -11,6 +11,8 @@ from sarah.sensors import SensorReading, Vector
 
 GRAVITY = 9.81
 """In m/s^2."""
+LARGEST_STATE = 1e3
+"""In any SI unit: a torso that is farther away, or faster, is in a simulation that diverges."""
 
 
 class TorsoState(NamedTuple):
@@ -40,8 +42,9 @@ class TorsoState(NamedTuple):
 
     @property
     def is_finite(self) -> bool:
-        """Whether the physics engine still returns numbers."""
-        return math.isfinite(sum(map(sum, self)))  # a sum with one that is not finite is not finite
+        """Whether the physics engine still returns numbers that a robot's state can have."""
+        position, orientation, velocity, angular_velocity = self
+        return math.hypot(*position, *orientation, *velocity, *angular_velocity) < LARGEST_STATE
 
 
 class Camera(NamedTuple):

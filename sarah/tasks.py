@@ -5,9 +5,9 @@ Light on purpose: commands import it before anything slow.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from numbers import Real
 
 from sarah.errors import ConfigurationError
 
@@ -42,7 +42,7 @@ class Task:
                 f"{name} must be {len(names)} numbers ({names[0]} to {names[-1]}), not {len(values)}"
             )
         for parameter, value in zip(names, values, strict=True):
-            if not (math.isfinite(value) and self.low <= value <= self.high):
+            if not isinstance(value, Real) or isinstance(value, bool) or not self.low <= value <= self.high:
                 raise ConfigurationError(
                     f"parameter {parameter} must be between {self.low:g} and {self.high:g}, not {value!r}"
                 )

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import dataclasses
 import random
+from collections.abc import Callable
 from dataclasses import dataclass
 from statistics import mean
 
 import torch
-from stable_baselines3.common.logger import configure
 
 from sarah.config import TrainingConfig
 from sarah.envs import FIRST_TRAINING_SEED
 from sarah.episode import EpisodeResult, EpisodeSpec
 from sarah.evaluation import Evaluation, summarise
+from sarah.journal import Journal
 from sarah.learning import learn
 from sarah.recommendation import SIMULATIONS_PER_CANDIDATE, Parameters, candidate_count, candidates, merit
 from sarah.recorder import EpisodeRecorder
 from sarah.runs import RunFolder
 from sarah.tasks import BALANCE, TASKS
-from sarah.workers import Workers
+from sarah.workers import Executor, Workers
 
 SUMMARY_EPISODES = 10
 """Episodes on unseen seeds that the closing summary's score is the median of."""
@@ -32,46 +33,60 @@ class Learned:
     :param parameters: the learned ones
     :param evaluation: how they do on unseen seeds
     :param without: how the task's neutral parameters do on the same seeds, if it has some
+    :param diverged: how many of the training's simulations no longer returned numbers
     """
 
     parameters: Parameters
     evaluation: Evaluation
     without: Evaluation | None
+    diverged: int
 
 
 def train(
-    config: TrainingConfig, run: RunFolder, workers: Workers | None = None, progress_bar: bool = False
+    config: TrainingConfig,
+    run: RunFolder,
+    workers: Executor | None = None,
+    progress_bar: bool = False,
+    interrupted: Callable[[], bool] = lambda: False,
 ) -> Learned:
-    """Train, and write the run folder.
+    """Train, and write the run folder. What the run folder's journal knows already is not simulated again.
 
     :param config: of the training
-    :param run: a new run folder
+    :param run: a new run folder, or that of the same training, which was interrupted and goes on
     :param workers: that simulate; by default this process does. What is learned does not depend on them
     :param progress_bar: whether to show one
+    :param interrupted: asked after every simulation whether to stop
     :return: what was learned
+    :raises RunFolderError: if another training uses the run folder, or it cannot be resumed here
+    :raises LearningError: if what learns no longer returns numbers
+    :raises TrainingInterruptedError: if ``interrupted`` says so
     """
+    with Journal(run.journal_path, workers or Workers(), interrupted) as journal:
+        return _train(config, run, journal, progress_bar)
+
+
+def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_bar: bool) -> Learned:
     # The networks are small: more threads only wait for each other.
     torch.set_num_threads(1)
     count = candidate_count(config.simulations)
     compared = count * SIMULATIONS_PER_CANDIDATE if count > 1 else 0
-    workers = workers or Workers()
     task = TASKS[config.task]
-    log = configure(str(run.path), ["csv", "tensorboard"])
-    recorder = EpisodeRecorder(run, task, log)
-    choice = learn(config, config.simulations - compared, run, recorder, workers, progress_bar)
+    recorder = EpisodeRecorder(run, task, journal)
+    choice = learn(config, config.simulations - compared, run, recorder, journal, progress_bar)
     recorder.choose = None
     rivals = candidates(choice, recorder.tried, count, task.high - task.low)
     seeds = range(SUMMARY_EPISODES)
-    without = None if task.neutral is None else evaluate(task.neutral, config, seeds, workers)
-    parameters = _compare(rivals, compared, config, recorder, workers, without)
-    log.close()
-    evaluation = evaluate(parameters, config, seeds, workers)
+    without = None if task.neutral is None else evaluate(task.neutral, config, seeds, journal)
+    parameters = _compare(rivals, compared, config, recorder, journal, without)
+    recorder.close()
+    evaluation = evaluate(parameters, config, seeds, journal)
     run.write_parameters(
         {
             "task": config.task,
             "algorithm": config.algo,
             "seed": config.seed,
             "simulations": config.simulations,
+            "diverged": recorder.diverged,
             "parameters": dict(zip(task.parameter_names, parameters, strict=True)),
             "stepping": config.episode.stepping if task == BALANCE else None,
             "evaluation": dataclasses.asdict(evaluation),
@@ -79,7 +94,7 @@ def train(
             "chatters": without and evaluation.chatters(without),
         }
     )
-    return Learned(parameters, evaluation, without)
+    return Learned(parameters, evaluation, without, recorder.diverged)
 
 
 def _compare(
@@ -87,7 +102,7 @@ def _compare(
     simulations: int,
     config: TrainingConfig,
     recorder: EpisodeRecorder,
-    workers: Workers,
+    workers: Executor,
     without: Evaluation | None,
 ) -> Parameters:
     """Simulate the candidates in turn, each round on one seed for all, and return the best."""
@@ -114,7 +129,7 @@ def _rank(results: list[EpisodeResult], without: Evaluation | None) -> tuple[boo
 
 
 def evaluate(
-    parameters: Parameters, config: TrainingConfig, seeds: range, workers: Workers | None = None
+    parameters: Parameters, config: TrainingConfig, seeds: range, workers: Executor | None = None
 ) -> Evaluation:
     """Simulate parameters on some seeds.
 

@@ -22,7 +22,7 @@ from sarah.config import EpisodeConfig
 from sarah.envs import SarahEnv, draw_seed, observation_from, parameters_from
 from sarah.episode import EpisodeSpec
 from sarah.tasks import TASKS
-from sarah.workers import Job, Workers, run, stand
+from sarah.workers import Executor, Job, run, stand
 
 
 class _Running(NamedTuple):
@@ -46,7 +46,7 @@ class EpisodeVecEnv(VecEnv):
     :param workers: that simulate them
     """
 
-    def __init__(self, task: str, config: EpisodeConfig, episodes: int, slots: int, workers: Workers) -> None:
+    def __init__(self, task: str, config: EpisodeConfig, episodes: int, slots: int, workers: Executor) -> None:
         self._env = SarahEnv(task, config)
         super().__init__(1, self._env.observation_space, self._env.action_space)
         self._task = task

@@ -8,14 +8,16 @@ from __future__ import annotations
 
 import functools
 import logging
+import os
 import signal
+from abc import ABC, abstractmethod
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from sarah.episode import Episode, EpisodeResult, EpisodeSpec, simulate
-from sarah.errors import ConfigurationError, WorkersError
+from sarah.errors import ConfigurationError, WorkersError, check_range
 from sarah.sensors import SensorReading
 from sarah.tasks import TASKS
 from sarah.versions import SIMULATING, versions
@@ -23,10 +25,15 @@ from sarah.versions import SIMULATING, versions
 if TYPE_CHECKING:
     from distributed import Client, LocalCluster
 
-KEPT_STANDING = 64
-"""Episodes that a process keeps standing, waiting for their parameters."""
+KEPT_STANDING = 8
+"""Episodes that a process keeps standing, waiting for their parameters. Each takes some 15 MB, and one whose parameters
+went to another process waits in vain; whoever does not stand here stands anew, for a thirtieth of an episode."""
 SCHEDULER_SECONDS = 10
 """How long to wait for a connection to a scheduler."""
+SAFE_PATH = "PYTHONSAFEPATH"
+"""Keeps Python from putting the working folder on its search path, from Python 3.11 on."""
+MOST_WORKERS = 1000
+"""On one machine."""
 ATTEMPTS = 20
 """How often an episode is handed in: a scheduler gives it up after the deaths of a few workers."""
 
@@ -99,7 +106,28 @@ def _key(spec: EpisodeSpec) -> tuple[Any, ...]:
     return (spec.task, spec.seed, repr(spec.config))
 
 
-class Workers:
+class Executor(ABC):
+    """Whoever has things simulated."""
+
+    @abstractmethod
+    def submit(self, function: Callable[[Any], Any], subject: Any) -> Job:
+        """Have something done.
+
+        :param function: :func:`stand`, :func:`run`, :func:`sarah.simulate`, or another one of a module
+        :param subject: of the function: an episode's specification, or what else it takes
+        """
+
+    def simulate_all(self, specs: Sequence[EpisodeSpec]) -> Iterator[EpisodeResult]:
+        """Simulate many episodes.
+
+        :param specs: of the episodes
+        :return: their results, in the same order
+        """
+        jobs = [self.submit(simulate, spec) for spec in specs]
+        return (job.result() for job in jobs)
+
+
+class Workers(Executor):
     """A context in which episodes are simulated.
 
     Worker processes import the main module: a script that starts some does it under ``if __name__ == "__main__":``.
@@ -107,25 +135,28 @@ class Workers:
     :param count: worker processes to start on this machine; with none, episodes run in this process, when they are
         asked for
     :param scheduler: address of a Dask scheduler, such as ``tcp://10.0.0.1:8786``, whose workers are used instead
-    :raises ConfigurationError: if the count is negative, or both are given
+    :raises ConfigurationError: if the count is none that a machine can start, or both are given
     :raises WorkersError: on entering, if no scheduler answers
     """
 
     def __init__(self, count: int = 0, scheduler: str | None = None) -> None:
-        if count < 0:
-            raise ConfigurationError(f"workers must be 0 or more, not {count!r}")
+        check_range("workers", count, 0, MOST_WORKERS)
         if count and scheduler is not None:
             raise ConfigurationError("workers are started here, a scheduler has its own: give one of the two")
         self._count = count
         self._scheduler = scheduler
         self._client: Client | None = None
         self._cluster: LocalCluster | None = None
+        self._safe_path = ""
 
     def __enter__(self) -> Workers:
         """Start the workers, or find them."""
         if self._scheduler is not None:
             self._client = _connect(self._scheduler)
         elif self._count:
+            # Otherwise a new process imports what lies in the working folder, such as a pickle.py in somebody's run.
+            self._safe_path = os.environ.get(SAFE_PATH, "")
+            os.environ[SAFE_PATH] = "1"
             self._cluster, self._client = _start(self._count)
         return self
 
@@ -138,6 +169,7 @@ class Workers:
             self._client.close()
         if self._cluster is not None:
             self._cluster.close()
+            os.environ[SAFE_PATH] = self._safe_path  # empty is as good as unset
 
     def submit(self, function: Callable[[Any], Any], subject: Any) -> Job:
         """Have something done: simulated, or trained.
@@ -148,15 +180,6 @@ class Workers:
         if self._client is None:
             return _LocalJob(function, subject)
         return _RemoteJob(functools.partial(self._client.submit, function, subject, pure=False))
-
-    def simulate_all(self, specs: Sequence[EpisodeSpec]) -> Iterator[EpisodeResult]:
-        """Simulate many episodes.
-
-        :param specs: of the episodes
-        :return: their results, in the same order
-        """
-        jobs = [self.submit(simulate, spec) for spec in specs]
-        return (job.result() for job in jobs)
 
 
 class _LocalJob:

@@ -14,12 +14,14 @@ from sarah.comparison import (
     interquartile_mean,
     is_run,
     race,
+    run_entry,
     simulations_until,
     standings,
 )
 from sarah.config import EpisodeConfig, TrainingConfig
 from sarah.episode import EpisodeSpec, simulate
 from sarah.errors import RunFolderError
+from sarah.journal import Journal
 from sarah.runs import RunFolder
 from sarah.workers import Workers
 
@@ -81,3 +83,14 @@ def test_a_race_removes_nobody_elses_run(tmp_path: Path) -> None:
     with pytest.raises(RunFolderError, match="is not of a race"):
         race(entries_of(("naf",), range(1), TINY, 1, tmp_path), Workers())
     assert precious.read_text() == "{}"
+
+
+def test_a_race_leaves_a_training_alone_that_another_is_at(tmp_path: Path) -> None:
+    (entry,) = entries_of(("random",), range(1), TINY, 1, tmp_path)
+    begun = RunFolder.create(tmp_path / "random-s0.unfinished", entry.config)
+    with (
+        Journal(begun.journal_path, Workers()),
+        pytest.raises(RunFolderError, match="in use by another training"),
+    ):
+        run_entry(entry)
+    assert begun.config() == entry.config

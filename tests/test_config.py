@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from sarah.config import EpisodeConfig, Physics, Randomisation, TrainingConfig, read_config, write_config
+from sarah.config import EpisodeConfig, Physics, Randomisation, TrainingConfig
+from sarah.config_files import read_config, write_config
 from sarah.errors import ConfigurationError
 
 
@@ -41,25 +42,28 @@ def test_what_a_file_does_not_name_keeps_its_default(tmp_path: Path) -> None:
         ("simulations: many", "simulations must be a whole number, not 'many'"),
         ("simulations: 2.5", "simulations must be a whole number, not 2.5"),
         ("simulations: true", "simulations must be a whole number, not True"),
-        ("simulations: 0", "simulations must be at least 1, not 0"),
-        ("simulations: -3", "simulations must be at least 1, not -3"),
+        ("simulations: 0", "simulations must be between 1 and 1e+06, not 0"),
+        ("simulations: -3", "simulations must be between 1 and 1e+06, not -3"),
         ("seed: -1", "seed must be between 0 and 2147483647, not -1"),
-        ("slots: 0", "slots must be at least 1, not 0"),
+        ("slots: 0", "slots must be between 1 and 10000, not 0"),
         ("task: walking", "unknown task 'walking'"),
         ("algo: td33", "unknown algo 'td33', did you mean 'td3'"),
         ("algo: 3", "algo must be a text, not 3"),
         ("episode: 5", "episode. must hold keys and values, not 5"),
         ("[1, 2]", "the file must hold keys and values"),
-        ("episode: {time_limit: .inf}", "time_limit must be finite and above 1 s, not inf"),
-        ("episode: {time_limit: 1}", "time_limit must be finite and above 1 s, not 1.0"),
-        ("episode: {reward_form: printd}", "unknown reward_form 'printd', did you mean 'printed'"),
+        ("episode: {time_limit: .inf}", "time_limit must be between 1 and 3600 s, not inf"),
+        ("episode: {time_limit: 1}", "time_limit must be above the 1 s of standing, not 1.0"),
+        ("episode: {reward_form: printd}", "unknown episode.reward_form 'printd', did you mean 'printed'"),
         ("episode: {physics: {rate: 333}}", "physics.rate must be a multiple of the control rate, 100 Hz, not 333"),
-        ("episode: {physics: {solver_iterations: 0}}", "physics.solver_iterations must be at least 1, not 0"),
+        ("episode: {physics: {solver_iterations: 0}}", "physics.solver_iterations must be between 1 and 10000, not 0"),
         ("episode: {randomisation: {friction: 0.9}}", "friction must be a list of 2 values, not 0.9"),
-        ("episode: {randomisation: {friction: [1.0, 0.7]}}", "friction must be finite, not negative and in rising"),
-        ("episode: {randomisation: {friction: [.nan, 0.7]}}", "friction must be finite, not negative and in rising"),
-        ("episode: {randomisation: {mass_deviation: 1.0}}", "mass_deviation must be below 1"),
-        ("episode: {randomisation: {actuator_bandwidth: [0, 50]}}", "actuator_bandwidth must be above 0"),
+        ("episode: {randomisation: {friction: [1.0, 0.7]}}", "friction must be between 0 and 5 and in rising order"),
+        ("episode: {randomisation: {friction: [.nan, 0.7]}}", "friction must be between 0 and 5 and in rising order"),
+        ("episode: {randomisation: {mass_deviation: 1.0}}", "mass_deviation must be between 0 and 0.9, not 1.0"),
+        (
+            "episode: {randomisation: {actuator_bandwidth: [0, 50]}}",
+            "actuator_bandwidth must be between 0.1 and 1000 per second",
+        ),
         ("episode: {randomisation: {enabled: 1}}", "enabled must be true or false, not 1"),
         ("episode: {dimensions: [0.3]}", "dimensions must hold names and values"),
         ("episode: {dimensions: {thigh_length: long}}", "dimensions.thigh_length must be a number, not 'long'"),

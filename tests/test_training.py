@@ -214,8 +214,8 @@ def test_spoilt_parameters_are_named(tmp_path: Path, content: str) -> None:
 
 def test_parameters_are_read_by_name_whatever_their_order(tmp_path: Path) -> None:
     run = RunFolder.create(tmp_path / "run", SHORT)
-    run.write_parameters({"parameters": {"P5": 5, "P2": 2, "P1": 1, "P4": 4, "P3": 3}})
-    assert run.parameters() == (1, 2, 3, 4, 5)
+    run.write_parameters({"parameters": {"P5": 0.5, "P2": 0.2, "P1": 0.1, "P4": 0.4, "P3": 0.3}})
+    assert run.parameters() == (0.1, 0.2, 0.3, 0.4, 0.5)
 
 
 def test_what_chatters_or_is_no_gait_comes_last() -> None:

@@ -11,9 +11,13 @@ import tyro
 
 from sarah.cli.options import parse_options, run_command
 from sarah.config import ALGORITHMS, EpisodeConfig, TrainingConfig
-from sarah.errors import ConfigurationError
+from sarah.errors import ConfigurationError, check_range
 
 COMMAND = "sarah-compare"
+MOST_SEEDS = 1000
+MOST_EPISODES = 1000
+SCORES = (0.01, 2.0)
+"""What a best known score can be: 1 is the ceiling, and the printed reward can exceed it."""
 
 
 @dataclass(frozen=True)
@@ -61,14 +65,19 @@ def _compare(arguments: Sequence[str]) -> None:
     options = parse_options(CompareOptions, COMMAND, arguments, CompareOptions())
     if options.out is None:
         raise ConfigurationError("give a folder for the race")
-    for name, value in (("seeds", options.seeds), ("episodes", options.episodes), ("algorithms", options.algorithms)):
-        if not value or (isinstance(value, int) and value < 1):
-            raise ConfigurationError(f"{name} must be at least 1, not {value!r}")
+    check_range("seeds", options.seeds, 1, MOST_SEEDS)
+    check_range("episodes", options.episodes, 1, MOST_EPISODES)
+    if options.best_known is not None:
+        check_range("best-known", options.best_known, *SCORES)
+    if not options.algorithms or len(set(options.algorithms)) < len(options.algorithms):
+        raise ConfigurationError(f"algorithms must be different ones, at least one, not {options.algorithms!r}")
     base = TrainingConfig(
         task=options.task, simulations=options.simulations, slots=options.slots, episode=options.episode
     )
+    from sarah.description import describe_robot
     from sarah.search import check_installed
 
+    describe_robot(options.episode.dimensions)
     for algo in options.algorithms:
         check_installed(algo)
     from sarah.comparison import as_markdown, entries_of, race, standings, write_csv

@@ -12,7 +12,7 @@ import tyro
 
 from sarah.cli.options import changed_episodes, numbers, parse_options, run_command
 from sarah.config import EpisodeConfig
-from sarah.errors import ConfigurationError, unknown_name
+from sarah.errors import ConfigurationError, check_range, unknown_name
 from sarah.tasks import BALANCE, STEPPING, TASKS
 
 if TYPE_CHECKING:
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from sarah.workers import Workers
 
 COMMAND = "sarah-eval"
+LARGEST_SEED = 2**32 - 1
+MOST_EPISODES = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -58,10 +60,8 @@ class EvalOptions:
 
     def __post_init__(self) -> None:
         """Refuse unknown names and impossible numbers."""
-        if self.episodes < 1:
-            raise ConfigurationError(f"episodes must be at least 1, not {self.episodes!r}")
-        if self.first_seed < 0:
-            raise ConfigurationError(f"first-seed must not be negative, not {self.first_seed!r}")
+        check_range("episodes", self.episodes, 1, MOST_EPISODES)
+        check_range("first-seed", self.first_seed, 0, LARGEST_SEED)
         if self.task is not None and self.task not in TASKS:
             raise ConfigurationError(unknown_name("task", self.task, TASKS))
         if self.json and self.robustness is not None:
@@ -154,7 +154,11 @@ def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[st
             f"{100 * e.drift_median:.1f} cm median, {100 * e.drift_mean:.1f} cm mean, {100 * e.drift_std:.1f} cm std, "
             f"{100 * e.drift_max:.1f} cm max",
         ),
-        ("survival", f"{round(e.survival_rate * e.episodes)} of {e.episodes} episodes"),
+        (
+            "survival",
+            f"{round(e.survival_rate * e.episodes)} of {e.episodes} episodes"
+            + (f"; {e.diverged} diverged: no number came back" if e.diverged else ""),
+        ),
         ("by sensors", f"{e.event_driven_shift_mean:.1%} of shifts, {e.event_driven_lift_mean:.1%} of lifts"),
         ("sole clearance", f"{1000 * e.sole_clearance_mean:.1f} mm"),
         ("vibration", f"{e.vibration_median:.1f} m²/s⁴ above 20 Hz"),

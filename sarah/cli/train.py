@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import shlex
+import signal
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,13 +14,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
+from sarah.cli.interruption import Interruption
 from sarah.cli.options import parse_options, run_command
-from sarah.config import EpisodeConfig, TrainingConfig, read_config
-from sarah.errors import ConfigurationError
+from sarah.config import EpisodeConfig, TrainingConfig
+from sarah.config_files import first_difference, read_config
+from sarah.errors import ConfigurationError, RunFolderError, SarahError, TrainingInterruptedError
 from sarah.tasks import BALANCE, STEPPING, TASKS
 
 if TYPE_CHECKING:
+    from sarah.runs import RunFolder
     from sarah.training import Learned
+    from sarah.workers import Workers
 
 COMMAND = "sarah-train"
 
@@ -33,6 +40,8 @@ class TrainOptions:
     :param training: what to train
     :param run_dir: folder of the run, new or empty; by default a new one, runs/<task>/<algo>-s<seed>
     :param config: YAML file of settings, like the config.yaml of any run
+    :param resume: go on with this run folder's training, as if it had not been interrupted; its settings
+        are used
     :param from_run: balance with P1 to P5 and the robot of this First Training's run folder
     :param workers: processes that simulate, on this machine; with none, this process does. They change no result
     :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
@@ -41,6 +50,7 @@ class TrainOptions:
     training: Annotated[TrainingConfig, tyro.conf.arg(name="")] = TrainingConfig()
     run_dir: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     config: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    resume: Annotated[Path | None, tyro.conf.arg(metavar="RUN")] = None
     from_run: Annotated[Path | None, tyro.conf.arg(name="from", metavar="RUN")] = None
     workers: int = 0
     scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
@@ -64,25 +74,72 @@ def _train(arguments: Sequence[str]) -> None:
     from sarah.workers import Workers
 
     check_installed(config.algo)
+    if options.resume is not None and _resumed(options.resume, options).is_finished:
+        print(f"{options.resume} is finished: there is nothing to resume")
+        return
 
     with Workers(options.workers, options.scheduler) as workers:
-        run = RunFolder.create(options.run_dir or new_run_path(config.task, config.algo, config.seed), config)
+        if options.resume is not None:
+            run = RunFolder.resumable(options.resume)
+        else:
+            run = RunFolder.create(options.run_dir or new_run_path(config.task, config.algo, config.seed), config)
         print(f"training {config.algo} on {config.task}: {config.simulations} simulations into {run.path}", flush=True)
-        from sarah.training import train
-
-        learned = train(config, run, workers, progress_bar=True)
+        learned = _learned(config, run, workers)
     _summarise(config.task, learned, run.path)
+
+
+def _resumed(path: Path, options: TrainOptions) -> RunFolder:
+    """The run folder to go on with; warns if versions are not what they were."""
+    from sarah.runs import RunFolder
+    from sarah.versions import versions
+
+    run = RunFolder.resumable(path)
+    if options.run_dir is not None or options.config is not None or options.from_run is not None:
+        raise ConfigurationError("--resume goes on with a run as it is: leave --run-dir, --config and --from out")
+    difference = first_difference(options.training, run.config())
+    if difference is not None:
+        key, given, there = difference
+        raise ConfigurationError(f"--resume {path}: {key} is {there!r} in this run, not {given!r}: leave it out")
+    before = run.versions()
+    for name, version in versions().items():
+        if before.get(name) != version:
+            print(
+                f"{COMMAND}: warning: {path} was begun with {name} {before.get(name)}, and this is {version}: "
+                "it may not go on as it would have",
+                file=sys.stderr,
+            )
+    return run
+
+
+def _learned(config: TrainingConfig, run: RunFolder, workers: Workers) -> Learned:
+    """Train; whatever stops it, the message says how to go on."""
+    from sarah.training import train
+
+    go_on = f"go on with {COMMAND} --resume {shlex.quote(str(run.path))}"
+    with Interruption(COMMAND) as interruption:
+        try:
+            return train(config, run, workers, progress_bar=True, interrupted=interruption.came)
+        except (TrainingInterruptedError, KeyboardInterrupt):
+            print(f"\n{COMMAND}: interrupted; {go_on}", file=sys.stderr)
+            raise SystemExit(128 + (interruption.signal or signal.SIGINT)) from None
+        except (SarahError, OSError) as error:
+            raise RunFolderError(f"{error}; what is finished is kept, {go_on}") from error
 
 
 def _defaults(arguments: Sequence[str]) -> TrainOptions:
     """The defaults, as --config and --from change them."""
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
     parser.add_argument("--config", type=Path)
+    parser.add_argument("--resume", type=Path)
     parser.add_argument("--from", type=Path, dest="from_run")
     try:
         files = parser.parse_known_args(arguments)[0]
     except argparse.ArgumentError:  # an option without its file, which the real parser reports
         return TrainOptions()
+    if files.resume is not None:
+        from sarah.runs import RunFolder
+
+        return TrainOptions(RunFolder.resumable(files.resume).config())
     training = TrainingConfig() if files.config is None else read_config(TrainingConfig, files.config)
     if files.from_run is not None:
         training = dataclasses.replace(training, episode=_stepping_of(files.from_run, training.episode))
@@ -114,6 +171,8 @@ def _summarise(task: str, learned: Learned, path: Path) -> None:
     )
     shares = f"{evaluation.event_driven_shift_mean:.0%} of shifts, {evaluation.event_driven_lift_mean:.0%} of lifts"
     print(f"by sensors  {shares}; sole clearance {1000 * evaluation.sole_clearance_mean:.0f} mm")
+    if learned.diverged:
+        print(f"diverged    {learned.diverged} simulations: no number came back")
     if not evaluation.is_gait:
         print("            not a gait: it steps to a clock, or does not lift its feet")
     if without is not None and evaluation.chatters(without):
