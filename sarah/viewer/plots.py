@@ -143,6 +143,7 @@ class Plots:
             self._charts = [_add_chart(gui, chart, chart is CHARTS[-1]) for chart in CHARTS]
         self._time = np.zeros(0)
         self._data: list[list[np.ndarray]] = []
+        self._ranges: list[tuple[float, float]] = []
         self._page: slice | None = None
 
     def load(self, trace: Trace, scenario: Scenario) -> None:
@@ -154,10 +155,10 @@ class Plots:
         self._time = trace.time
         is_pushed = trace.push.any(axis=1)
         shades = [(is_pushed if name == "push" else trace.phase == name).astype(float) for name in SHADES]
-        self._data = []
-        for chart, handle in zip(CHARTS, self._charts, strict=True):
+        self._data, self._ranges = [], []
+        for chart in CHARTS:
             lines = [np.broadcast_to(line.values(trace, scenario), len(trace)) for line in chart.lines]
-            handle.scales = _scales(lines, chart.smallest_span)
+            self._ranges.append(_range(lines, chart.smallest_span))
             self._data.append([trace.time, *shades, *lines])
         self._page = None
 
@@ -168,11 +169,13 @@ class Plots:
         """
         begin, end = self._page_of(time)
         page = slice(int(np.searchsorted(self._time, begin - 1e-9)), int(np.searchsorted(self._time, end + 1e-9)))
+        first, last = float(self._time[page.start]), float(self._time[page.stop - 1])
         if page != self._page:
             self._page = page
-            for handle, data in zip(self._charts, self._data, strict=True):
+            for handle, data, span in zip(self._charts, self._data, self._ranges, strict=True):
+                # Left to itself, the page carries a chart's range of time over from other data.
+                handle.scales = _scales((first, last), span)
                 handle.data = tuple(values[page] for values in data)
-        first, last = self._time[page.start], self._time[page.stop - 1]
         share = (time - first) / max(last - first, 1e-9)
         self._cursor.content = f"<style>{CURSOR_RULE.format(100.0 * min(max(share, 0.0), 1.0))}</style>"
 
@@ -208,7 +211,7 @@ def _add_chart(gui: viser.GuiApi, chart: Chart, has_time_axis: bool) -> viser.Gu
     return gui.add_uplot(
         tuple(np.array([0.0, 1.0]) for _ in series),
         series,
-        scales=_scales([np.array([0.0, 1.0])], 1.0),
+        scales=_scales((0.0, 1.0), (0.0, 1.0)),
         axes=(time_axis, uplot.Axis(label=chart.axis, labelSize=16, size=44)),
         cursor={"sync": {"key": "time"}, "drag": {"x": False, "y": False}},
         height=CHART_HEIGHT + (36 if has_time_axis else 0),
@@ -216,12 +219,12 @@ def _add_chart(gui: viser.GuiApi, chart: Chart, has_time_axis: bool) -> viser.Gu
     )
 
 
-def _scales(lines: list[np.ndarray], smallest_span: float) -> dict[str, uplot.Scale]:
+def _range(lines: list[np.ndarray], smallest_span: float) -> tuple[float, float]:
     low = min(float(np.percentile(values, LOWEST_SHARE)) for values in lines)
     high = max(float(np.percentile(values, HIGHEST_SHARE)) for values in lines)
     margin = max(0.05 * (high - low), (smallest_span - (high - low)) / 2)
-    return {
-        "x": {"time": False},
-        "y": {"range": (low - margin, high + margin)},
-        "shade": {"range": (0.0, 1.0)},
-    }
+    return low - margin, high + margin
+
+
+def _scales(time: tuple[float, float], values: tuple[float, float]) -> dict[str, uplot.Scale]:
+    return {"x": {"time": False, "range": time}, "y": {"range": values}, "shade": {"range": (0.0, 1.0)}}
