@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sarah.episode import EpisodeSpec
@@ -63,6 +64,23 @@ def choices_of_run(run: RunFolder) -> list[Choice]:
     if not choices:
         raise RunFolderError(f"{run.path} has no simulations to show yet")
     return choices + simulated
+
+
+def choice_of_parameters(parameters: Sequence[float]) -> Choice:
+    """The episode of given parameters with seed 0.
+
+    :param parameters: P1 to P5, or V1 to V4 of the balance task
+    :raises ConfigurationError: if there are other than five or four of them, or one is not allowed
+    """
+    for task in TASKS.values():
+        if len(parameters) == len(task.parameter_names):
+            label = f"{task.parameter_names[0][0]} = {', '.join(f'{value:g}' for value in parameters)} · seed 0"
+            return Choice("given", label, EpisodeSpec(tuple(parameters), 0, task.name))
+    counts = " or ".join(
+        f"{len(task.parameter_names)} numbers ({task.parameter_names[0]} to {task.parameter_names[-1]})"
+        for task in TASKS.values()
+    )
+    raise ConfigurationError(f"parameters must be {counts}, not {len(parameters)}")
 
 
 def choose(choices: list[Choice], name: str | None) -> Choice:

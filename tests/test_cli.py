@@ -172,6 +172,7 @@ def test_training_is_configured_by_a_file_and_overridden_by_options(tmp_path: Pa
             ("--task", "--algo", "--simulations", "--seed", "--run-dir", "--config", "--workers", "--scheduler"),
         ),
         ("sarah-figures", ("RUN", "--out")),
+        ("sarah-view", ("RUN|NUMBERS", "--episode", "--seed", "--export", "--host", "--port", "no password")),
         ("sarah-video", ("RUN|NUMBERS", "OUT", "--episode", "--seed", "--push-newtons", "--seconds", "--speed")),
         ("sarah-compare", ("DIR", "--algorithms", "--seeds", "--simulations", "--best-known", "--workers")),
         ("sarah-eval", ("RUN", "--episodes", "--first-seed", "--json", "--parameters", "--task")),
@@ -200,12 +201,13 @@ def test_a_reader_who_has_had_enough_is_no_error(tmp_path: Path) -> None:
     assert process.stderr == ""
 
 
-@pytest.mark.parametrize("command", ["train", "eval", "figures", "compare", "video"])
+@pytest.mark.parametrize("command", ["train", "eval", "figures", "compare", "video", "view"])
 def test_help_loads_nothing_slow(command: str) -> None:
     program = (
         f"import sys\nfrom sarah.cli.{command} import main\nsys.argv = ['command', '--help']\n"
         "try:\n    main()\nexcept SystemExit:\n    pass\n"
-        "slow = {'torch', 'matplotlib', 'gymnasium', 'numpy', 'pybullet', 'stable_baselines3', 'yourdfpy', 'yaml'}\n"
+        "slow = {'torch', 'viser', 'matplotlib', 'gymnasium', 'numpy', 'pybullet', 'stable_baselines3', 'yourdfpy'}\n"
+        "slow |= {'yaml'}\n"
         "sys.exit(' '.join(slow & set(sys.modules)) or 0)"
     )
     process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
@@ -266,6 +268,15 @@ def test_help_loads_nothing_slow(command: str) -> None:
         ("sarah-compare race --seeds 0", "seeds must be between 1 and 1000, not 0"),
         ("sarah-figures full full", "several runs need a folder for their figures: --out DIR"),
         ("sarah-figures full", "not the folder of a finished training"),
+        ("sarah-view nowhere", "nowhere is neither a run folder nor numbers separated by commas"),
+        ("sarah-view full", "full is not the folder of a training"),
+        ("sarah-view 1,1,1,1,9", "parameter P5 must be between 0 and 2, not 9.0"),
+        ("sarah-view 1,1,1,1,1 --seed -1", "seed must be a whole number from 0, not -1"),
+        ("sarah-view 1,1,1,1,1 --episode best", "--episode is for a run folder"),
+        ("sarah-view --port 0", "port must be between 1 and 65535, not 0"),
+        ("sarah-view --host nonsense.invalid", "cannot serve a page at 'nonsense.invalid'"),
+        ("sarah-view --export nowhere/a.html", "cannot write nowhere/a.html: folder nowhere does not exist"),
+        ("sarah-view --export full", "cannot write full: it is a folder"),
         ("sarah-video", "give a run folder or parameters, and the file to write"),
         ("sarah-video full", "give a run folder or parameters, and the file to write"),
         ("sarah-video full a.avi", "must end in .mp4 or .gif, not 'a.avi'"),

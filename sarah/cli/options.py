@@ -9,13 +9,17 @@ import os
 import re
 import sys
 from collections.abc import Callable, Sequence
-from typing import NoReturn, TypeVar
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn, TypeVar
 
 import tyro
 
 from sarah.config import PHYSICS, EpisodeConfig
 from sarah.errors import ConfigurationError, SarahError, unknown_name
 from sarah.tasks import STEPPING
+
+if TYPE_CHECKING:
+    from sarah.choices import Choice
 
 OptionsType = TypeVar("OptionsType")
 USAGE_ERROR = 2
@@ -105,6 +109,29 @@ def numbers(name: str, text: str) -> tuple[float, ...]:
         return tuple(float(value) for value in text.split(","))
     except ValueError:
         raise ConfigurationError(f"{name} must be numbers separated by commas, not {text!r}") from None
+
+
+def episodes_of(subject: str, episode: str | None) -> tuple[list[Choice], Choice]:
+    """The episodes that a run or parameters amount to, and the one to show.
+
+    :param subject: folder of a run, or parameters separated by commas
+    :param episode: of the run: ``learned``, ``best`` or the index of a simulation; the first of these that there is, if
+        none is named
+    :raises ConfigurationError: if there is no such thing
+    """
+    from sarah.choices import choice_of_parameters, choices_of_run, choose
+
+    if Path(subject).is_dir():
+        from sarah.runs import RunFolder
+
+        choices = choices_of_run(RunFolder.open(Path(subject), unfinished=True))
+        return choices, choose(choices, episode)
+    if not subject.strip("+-.")[:1].isdigit():
+        raise ConfigurationError(f"{subject} is neither a run folder nor numbers separated by commas")
+    if episode is not None:
+        raise ConfigurationError("--episode is for a run folder")
+    choice = choice_of_parameters(numbers("parameters", subject))
+    return [choice], choice
 
 
 def changed_episodes(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.options import changed_episodes, numbers, parse_options, run_command
+from sarah.cli.options import changed_episodes, episodes_of, parse_options, run_command
 from sarah.errors import ConfigurationError
 from sarah.tasks import STEPPING, TASKS
 
@@ -89,18 +89,7 @@ def _film(arguments: Sequence[str]) -> None:
 
 def _spec(options: VideoOptions, subject: str) -> EpisodeSpec:
     """The episode to film."""
-
-    if Path(subject).is_dir():
-        from sarah.choices import choices_of_run, choose
-        from sarah.runs import RunFolder
-
-        spec = choose(choices_of_run(RunFolder.open(Path(subject), unfinished=True)), options.episode).spec
-    else:
-        if not subject.strip("+-.")[:1].isdigit():
-            raise ConfigurationError(f"{subject} is neither a run folder nor numbers separated by commas")
-        if options.episode is not None:
-            raise ConfigurationError("--episode is for a run folder")
-        spec = _spec_of_numbers(numbers("parameters", subject))
+    spec = episodes_of(subject, options.episode)[1].spec
     for name in ("stepping", "push_newtons"):
         if spec.task == STEPPING.name and getattr(options, name) is not None:
             raise ConfigurationError(f"--{name.replace('_', '-')} is for V1 to V4")
@@ -108,19 +97,6 @@ def _spec(options: VideoOptions, subject: str) -> EpisodeSpec:
         spec.config, options.stepping, options.push_newtons, options.physics, options.randomisation
     )
     return dataclasses.replace(spec, config=config, seed=spec.seed if options.seed is None else options.seed)
-
-
-def _spec_of_numbers(values: tuple[float, ...]) -> EpisodeSpec:
-    from sarah.episode import EpisodeSpec
-
-    for task in TASKS.values():
-        if len(values) == len(task.parameter_names):
-            return EpisodeSpec(values, 0, task.name)
-    counts = " or ".join(
-        f"{len(task.parameter_names)} numbers ({task.parameter_names[0]} to {task.parameter_names[-1]})"
-        for task in TASKS.values()
-    )
-    raise ConfigurationError(f"parameters must be {counts}, not {len(values)}")
 
 
 def _caption(spec: EpisodeSpec, result: EpisodeResult) -> str:

@@ -1,0 +1,111 @@
+"""``sarah-view``: see the robot in the browser, and turn its parameters."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import ipaddress
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+from sarah.cli.options import episodes_of, parse_options, run_command
+from sarah.config import TRAINED_STEPPING
+from sarah.errors import ConfigurationError
+
+if TYPE_CHECKING:
+    from sarah.choices import Choice
+
+COMMAND = "sarah-view"
+DEFAULT_PORT = 8080
+
+
+@dataclass(frozen=True)
+class ViewOptions:
+    """Play episodes on a page in the browser, where sliders change all parameters and a button pushes the robot.
+
+    :param subject: folder of a training, which need not be finished, or numbers separated by commas: P1 to P5, or V1 to
+        V4, to balance pushes with; by default what NAF learned once
+    :param episode: of a run: ``learned`` for its learned parameters, ``best``, or the index of a simulation in its
+        episodes.csv; by default what it learned
+    :param seed: of the episode: robot, sensors and push vary with it; by default the simulation's own, or 0
+    :param export: write the episode into this one HTML file, which needs no server, and show no page
+    :param host: address to serve the page at. Whoever reaches another one than 127.0.0.1 can use the page, as there is
+        no password
+    :param port: to serve the page at; the next free one if it is taken
+    """
+
+    subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="RUN|NUMBERS")] = ",".join(
+        map(str, TRAINED_STEPPING)
+    )
+    episode: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
+    seed: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
+    export: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    host: str = "127.0.0.1"
+    port: int = DEFAULT_PORT
+
+    def __post_init__(self) -> None:
+        """Refuse impossible ports."""
+        if not 0 < self.port < 2**16:
+            raise ConfigurationError(f"port must be between 1 and {2**16 - 1}, not {self.port!r}")
+
+
+def main() -> None:
+    """Run the command with the arguments of the process."""
+    run_command(COMMAND, _view)
+
+
+def _view(arguments: Sequence[str]) -> None:
+    options = parse_options(ViewOptions, COMMAND, arguments, ViewOptions())
+    if find_spec("viser") is None:
+        raise ConfigurationError("this needs the extra view: pip install 'sarah[view]'")
+    choices, chosen = episodes_of(options.subject, options.episode)
+    if options.seed is not None:
+        spec = dataclasses.replace(chosen.spec, seed=options.seed)
+        chosen = dataclasses.replace(chosen, label=f"{chosen.label}, with seed {spec.seed}", spec=spec, score=None)
+        choices.insert(0, chosen)
+    if options.export is not None:
+        _export(options.export, chosen)
+    else:
+        _serve(options, choices, chosen)
+
+
+def _export(path: Path, chosen: Choice) -> None:
+    from tqdm import tqdm
+
+    from sarah.viewer.recording import record
+    from sarah.viewer.server import serving
+
+    if path.is_dir() or not path.parent.is_dir():  # before all the work
+        reason = "it is a folder" if path.is_dir() else f"folder {path.parent} does not exist"
+        raise ConfigurationError(f"cannot write {path}: {reason}")
+    bar = tqdm(total=1.0, desc=chosen.label, bar_format="{desc}: {percentage:3.0f}% {bar}", disable=None)
+    with bar, serving("127.0.0.1", DEFAULT_PORT) as server:
+        record(server, chosen.spec, path, lambda share: bar.update(share - bar.n))
+    print(path)
+
+
+def _serve(options: ViewOptions, choices: list[Choice], chosen: Choice) -> None:
+    from sarah.viewer.page import Page
+    from sarah.viewer.server import serving
+
+    with serving(options.host, options.port) as server:
+        page = Page(server, choices, chosen)
+        if not _is_local(options.host):
+            print(f"warning: whoever reaches {options.host} can use this page, as there is no password")
+        print(f"SARAH is at http://{options.host}:{server.get_port()} (Ctrl-C ends)", flush=True)
+        with contextlib.suppress(KeyboardInterrupt):
+            threading.Event().wait()
+        page.close()
+
+
+def _is_local(host: str) -> bool:
+    try:
+        return host == "localhost" or ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False

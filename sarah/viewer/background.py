@@ -1,0 +1,81 @@
+"""Episodes simulated beside the page, in a thread; the newest wish replaces the one before it."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import NamedTuple
+
+from sarah.episode import Episode, EpisodeResult, EpisodeSpec
+from sarah.errors import SarahError
+from sarah.tasks import TASKS
+
+TICKS_BETWEEN_LOOKS = 50
+"""Control ticks after which progress is told, and whether something newer is wished for is looked up."""
+
+
+class Wish(NamedTuple):
+    """An episode that someone waits for.
+
+    :param spec: to simulate
+    :param done: what to do with its result, which has a trace
+    """
+
+    spec: EpisodeSpec
+    done: Callable[[EpisodeResult], None]
+
+
+class BackgroundSimulation:
+    """Simulates one episode at a time, in a thread of its own.
+
+    :param progress: told the share of the episode that has been simulated, from 0 to 1
+    :param failed: told in one line why an episode cannot be simulated
+    """
+
+    def __init__(self, progress: Callable[[float], None], failed: Callable[[str], None]) -> None:
+        self._progress = progress
+        self._failed = failed
+        self._wish: Wish | None = None
+        self._condition = threading.Condition()
+        threading.Thread(target=self._run, name="simulation", daemon=True).start()
+
+    def request(self, wish: Wish) -> None:
+        """Simulate an episode; one that is being simulated is given up.
+
+        :param wish: what is wanted
+        """
+        with self._condition:
+            self._wish = wish
+            self._condition.notify()
+
+    def _run(self) -> None:
+        while True:
+            with self._condition:
+                self._condition.wait_for(lambda: self._wish is not None)
+                wish, self._wish = self._wish, None
+            assert wish is not None
+            try:
+                result = self._simulate(wish.spec)
+            except SarahError as error:
+                self._failed(str(error))
+                continue
+            if result is not None:
+                wish.done(result)
+
+    def _simulate(self, spec: EpisodeSpec) -> EpisodeResult | None:
+        """The result, or none if something newer is wished for."""
+        episode = Episode(spec.config, spec.seed, TASKS[spec.task], record_trace=True)
+        try:
+            episode.stand()
+            episode.start(spec.parameters)
+            ticks = 0
+            while episode.termination is None:
+                episode.tick()
+                ticks += 1
+                if ticks % TICKS_BETWEEN_LOOKS == 0:
+                    if self._wish is not None:
+                        return None
+                    self._progress(episode.simulation.time / spec.config.time_limit)
+            return episode.result()
+        finally:
+            episode.close()

@@ -1,0 +1,271 @@
+"""The page: choose an episode, play it, change what it depends on."""
+
+from __future__ import annotations
+
+import html
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Any, NamedTuple
+
+import viser
+
+from sarah.choices import ENDINGS, Choice
+from sarah.description import describe_robot
+from sarah.episode import EpisodeResult, EpisodeSpec
+from sarah.tasks import BALANCE, STEPPING, Task
+from sarah.trace import Trace
+from sarah.viewer.background import BackgroundSimulation, Wish
+from sarah.viewer.playback import Playback
+from sarah.viewer.plots import Plots
+from sarah.viewer.scenario import NO_PUSH, KnownPush, Scenario
+from sarah.viewer.scene import RobotScene, describe_tick
+
+SPEEDS = {"1/10": 0.1, "1/4": 0.25, "1/2": 0.5, "1": 1.0, "2": 2.0, "4": 4.0}
+SECONDS_BEFORE_PUSH = 0.5
+"""From where an episode is played on when a push is added to it."""
+LARGEST_PUSH = 200.0
+"""Of the slider, in N."""
+HINTS = {
+    "P1": "rate of rocking back at which the swing foot is put down, in rad/s",
+    "P2": "tilt over the support leg at which the swing foot may leave, in m/s²",
+    "P3": "five times the rate towards the support leg at which it may leave, in rad/s",
+    "P4": "stretches the time-out of LIFT",
+    "P5": "stretches the time-outs of SHIFT and LAND",
+    "V1": "how much the lateral acceleration abducts both hips",
+    "V2": "constant added to that acceleration, in m/s²",
+    "V3": "how much the torso's pitch flexes the swing leg",
+    "V4": "constant flexion of both legs, in units of 0.02 rad",
+}
+
+
+class Shown(NamedTuple):
+    """An episode on the page.
+
+    :param scenario: what it depends on
+    :param result: what came of it
+    :param trace: what happened in it
+    """
+
+    scenario: Scenario
+    result: EpisodeResult
+    trace: Trace
+
+
+class Page:
+    """The page of one set of episodes. Everyone who opens it sees, and steers, the same.
+
+    :attr:`frames` counts what has been shown since the beginning.
+
+    :param server: that serves it
+    :param choices: episodes to choose from, all of them with the same robot
+    :param chosen: what is shown first
+    """
+
+    def __init__(self, server: viser.ViserServer, choices: Sequence[Choice], chosen: Choice) -> None:
+        self._choices = {choice.label: choice for choice in choices}
+        self._chosen = chosen
+        self._wanted = Scenario.of(chosen.spec)
+        self._shown: Shown | None = None
+        self._before: Shown | None = None
+        self._lock = threading.RLock()
+        self.frames = 0
+        self._playback = Playback(self._show)
+        self._scene = RobotScene(server, describe_robot(chosen.spec.config.dimensions))
+        self._plots = Plots(server.gui)
+        self._gui = server.gui
+        self._gui.main_panel.dock_right()
+        self._gui.main_panel.set_width(340)
+        self._simulation = BackgroundSimulation(self._show_progress, self._show_failure)
+        self._build()
+        self._playback.start()
+        self._play_choice(chosen)
+
+    def close(self) -> None:
+        """Show no more frames."""
+        self._playback.close()
+
+    # -- what the page has, from top to bottom
+
+    def _build(self) -> None:
+        gui = self._gui
+        self._status = gui.add_html(_paragraph("", ""))
+        with gui.add_folder("Play"):
+            self._time = gui.add_slider("Time (s)", min=1.0, max=30.0, step=0.01, initial_value=1.0)
+            self._play_button = gui.add_button("Play")
+            self._speed = gui.add_dropdown("Speed", tuple(SPEEDS), initial_value="1", hint="1 is real time")
+        with gui.add_folder("Episode"):
+            self._choice = gui.add_dropdown("Episode", tuple(self._choices), initial_value=self._chosen.label)
+            self._seed = gui.add_number("Seed", 0, min=0, step=1, hint="of friction, masses, sensors and so on")
+            self._again = gui.add_button("Back to this episode", hint="undoes what the sliders changed", color="gray")
+            self._table = gui.add_html("")
+            self._news = gui.add_html("")
+        with gui.add_folder("Pattern generator"):
+            self._stepping = self._add_sliders(STEPPING)
+        with gui.add_folder("Hips"):
+            self._balance = self._add_sliders(BALANCE)
+        with gui.add_folder("Push"):
+            self._newtons = gui.add_slider("Force (N)", min=0.0, max=LARGEST_PUSH, step=5.0, initial_value=75.0)
+            self._degrees = gui.add_slider(
+                "Direction (°)", min=0.0, max=360.0, step=5.0, initial_value=0.0, hint="0 right, 90 forward, 180 left"
+            )
+            self._push_button = gui.add_button("Push now", hint="at the time that is shown")
+            self._no_push_button = gui.add_button("No push", color="gray")
+        self._connect()
+
+    def _add_sliders(self, task: Task) -> list[viser.GuiSliderHandle[float]]:
+        return [
+            self._gui.add_slider(name, min=task.low, max=task.high, step=0.01, initial_value=0.0, hint=HINTS[name])
+            for name in task.parameter_names
+        ]
+
+    def _connect(self) -> None:
+        """Say what happens when a user touches something."""
+        _on_user(self._time, self._playback.seek)
+        _on_user(self._choice, lambda label: self._play_choice(self._choices[label]))
+        _on_user(self._seed, lambda seed: self._change({"seed": int(seed)}))
+        for sliders, name in ((self._stepping, "stepping"), (self._balance, "balance")):
+            for index, slider in enumerate(sliders):
+                _on_user(slider, partial(self._change_parameter, name, index))
+        _on_user(self._newtons, lambda newtons: self._change_push(newtons=newtons))
+        _on_user(self._degrees, lambda degrees: self._change_push(degrees=degrees))
+        self._plots.window.on_update(lambda _: self._playback.seek(self._playback.time))
+        self._speed.on_update(lambda _: setattr(self._playback, "speed", SPEEDS[self._speed.value]))
+        self._play_button.on_click(lambda _: self._toggle())
+        self._again.on_click(lambda _: self._play_choice(self._chosen))
+        self._push_button.on_click(lambda _: self._push_now())
+        self._no_push_button.on_click(lambda _: self._change({"push": NO_PUSH}))
+
+    # -- what a user does
+
+    def _toggle(self) -> None:
+        if self._playback.is_playing:
+            self._playback.pause()
+        else:
+            self._playback.play()
+
+    def _play_choice(self, choice: Choice) -> None:
+        with self._lock:
+            self._chosen, self._wanted = choice, Scenario.of(choice.spec)
+            self._set_sliders(self._wanted)
+        self._simulate(choice.spec, self._wanted)
+
+    def _change_parameter(self, name: str, index: int, value: float) -> None:
+        with self._lock:
+            values = list(getattr(self._wanted, name))
+            values[index] = value
+            self._change({name: tuple(values)})
+
+    def _change_push(self, **changes: float) -> None:
+        """Change a push that there is; without one, the sliders say how strong the next one will be."""
+        with self._lock:
+            if self._wanted.push.newtons > 0.0:
+                self._change({"push": replace(self._wanted.push, **changes)})
+
+    def _push_now(self) -> None:
+        begin = round(min(self._playback.time, self._wanted.config.time_limit), 2)
+        push = KnownPush(self._newtons.value, self._degrees.value, begin)
+        self._change({"push": push}, begin - SECONDS_BEFORE_PUSH)
+
+    def _change(self, changes: Mapping[str, Any], play_from: float | None = None) -> None:
+        with self._lock:
+            self._wanted = replace(self._wanted, **changes)
+        self._simulate(self._wanted.spec(), self._wanted, play_from)
+
+    def _simulate(self, spec: EpisodeSpec, scenario: Scenario, play_from: float | None = None) -> None:
+        self._show_progress(0.0)
+        self._simulation.request(Wish(spec, lambda result: self._take(scenario, result, play_from)))
+
+    def _set_sliders(self, scenario: Scenario) -> None:
+        for sliders, values in ((self._stepping, scenario.stepping), (self._balance, scenario.balance)):
+            for slider, value in zip(sliders, values, strict=True):
+                _set(slider, value)
+        _set(self._seed, scenario.seed)
+        if scenario.push.newtons > 0.0:
+            _set(self._newtons, min(scenario.push.newtons, LARGEST_PUSH))
+            _set(self._degrees, scenario.push.degrees)
+
+    # -- what the page shows
+
+    def _take(self, scenario: Scenario, result: EpisodeResult, play_from: float | None) -> None:
+        """Play an episode that has just been simulated."""
+        assert result.trace is not None
+        with self._lock:
+            self._before, self._shown = self._shown, Shown(scenario, result, result.trace)
+            begin, end = float(result.trace.time[0]), float(result.trace.time[-1])
+            self._time.max = end
+            self._scene.load(result.trace)
+            self._plots.load(result.trace, scenario)
+            self._news.content = _paragraph("")
+            self._table.content = _comparison(self._shown, self._before, self._noted_score(scenario))
+        self._playback.load(begin, end, begin if play_from is None else play_from)
+        self._playback.play()
+
+    def _noted_score(self, scenario: Scenario) -> float | None:
+        """The score that the run noted of the chosen episode, if nothing has been changed."""
+        return self._chosen.score if scenario == Scenario.of(self._chosen.spec) else None
+
+    def _show(self, time: float) -> None:
+        """Draw a frame."""
+        with self._lock:
+            if self._shown is None:
+                return
+            tick = self._shown.trace.tick_at(time)
+            self._scene.show(tick)
+            self._plots.show(time)
+            self._play_button.label = "Pause" if self._playback.is_playing else "Play"
+            self.frames += 1
+            if self.frames % 3 == 0 or not self._playback.is_playing:
+                _set(self._time, round(time, 2))
+                self._status.content = _paragraph(*describe_tick(self._shown.trace, tick))
+
+    def _show_progress(self, share: float) -> None:
+        self._news.content = _paragraph(f"simulating: {share:.0%}")
+
+    def _show_failure(self, message: str) -> None:
+        self._news.content = _paragraph(f"cannot be simulated: {message}")
+
+
+def _paragraph(*lines: str) -> str:
+    text = "<br>".join(html.escape(line) or "&nbsp;" for line in lines)
+    return f"<div style='padding: 0.2em 0.9em; font-size: 0.85em; line-height: 1.4'>{text}</div>"
+
+
+def _set(handle: Any, value: Any) -> None:
+    """Change what an input holds, which the types of viser hold to be read-only."""
+    handle.value = value
+
+
+def _on_user(handle: Any, do: Callable[[Any], None]) -> None:
+    """Call with the new value when a user changes it, but not when the page does."""
+
+    @handle.on_update
+    def _(event: Any) -> None:
+        if event.client is not None:
+            do(handle.value)
+
+
+ROWS: tuple[tuple[str, Callable[[EpisodeResult], str]], ...] = (
+    ("score", lambda result: f"{result.score:.3f}"),
+    ("", lambda result: ENDINGS[result.termination] + ("" if result.survived else f" at {result.duration:.1f} s")),
+    ("steps/s", lambda result: f"{result.steps_per_second:.2f}"),
+    ("drift", lambda result: f"{100 * result.drift:.1f} cm"),
+    ("clearance", lambda result: f"{1000 * result.sole_clearance:.0f} mm"),
+    ("by sensors", lambda result: f"{result.event_driven_shift:.0%}, {result.event_driven_lift:.0%}"),
+)
+
+
+def _comparison(shown: Shown, before: Shown | None, noted_score: float | None) -> str:
+    """The table of results, beside those of the episode that was shown before."""
+    rows = [("", "now", "before")]
+    for name, text in ROWS:
+        rows.append((name, text(shown.result), text(before.result) if before is not None else ""))
+    lines = [f"<tr><td>{name}</td><td><b>{now}</b></td><td>{old}</td></tr>" for name, now, old in rows]
+    note = ""
+    if noted_score is not None and abs(noted_score - shown.result.score) > 1e-9:
+        note = f"<p>The run noted a score of {noted_score:.3f}: it was simulated by another version.</p>"
+    return (
+        "<div style='padding: 0 0.8em; font-size: 0.8em'><table id='results' style='width: 100%; line-height: 1.35'>"
+        f"{''.join(lines)}</table>{note}</div>"
+    )

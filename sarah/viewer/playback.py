@@ -1,0 +1,86 @@
+"""The clock that episodes are played by."""
+
+from __future__ import annotations
+
+import threading
+import time as clock
+from collections.abc import Callable
+
+FRAMES_PER_SECOND = 30
+
+
+class Playback:
+    """Plays a span of simulated time, in a thread of its own.
+
+    :param show: what to do for each frame with its simulated time in s
+    """
+
+    def __init__(self, show: Callable[[float], None]) -> None:
+        self.time = 0.0
+        self.speed = 1.0
+        self.is_playing = False
+        self._show = show
+        self._begin = self._end = 0.0
+        self._needs_frame = False
+        self._lock = threading.RLock()
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="playback", daemon=True)
+
+    def start(self) -> None:
+        """Begin to show frames."""
+        self._thread.start()
+
+    def close(self) -> None:
+        """Show no more frames."""
+        self._stop.set()
+
+    def load(self, begin: float, end: float, time: float) -> None:
+        """Play something else.
+
+        :param begin: simulated time at which it begins, in s
+        :param end: and at which it ends
+        :param time: to go on from
+        """
+        with self._lock:
+            self._begin, self._end = begin, end
+            self.seek(time)
+
+    def seek(self, time: float) -> None:
+        """Go to a time.
+
+        :param time: in s; beyond the ends, those
+        """
+        with self._lock:
+            self.time = min(max(time, self._begin), self._end)
+            self._needs_frame = True
+
+    def play(self) -> None:
+        """Play on, or from the beginning if all has been played."""
+        with self._lock:
+            if self.time >= self._end:
+                self.seek(self._begin)
+            self.is_playing = self._needs_frame = True
+
+    def pause(self) -> None:
+        """Stand still."""
+        with self._lock:
+            self.is_playing, self._needs_frame = False, True
+
+    def _run(self) -> None:
+        last = due = clock.perf_counter()
+        while not self._stop.wait(max(0.0, due - clock.perf_counter())):
+            now = clock.perf_counter()
+            due = max(due + 1.0 / FRAMES_PER_SECOND, now - 1.0 / FRAMES_PER_SECOND)  # one late frame is caught up
+            with self._lock:
+                self._advance(now - last)
+                frame = self.time if self._needs_frame else None
+                self._needs_frame = False
+            last = now
+            if frame is not None:
+                self._show(frame)
+
+    def _advance(self, seconds: float) -> None:
+        if not self.is_playing:
+            return
+        self.seek(self.time + seconds * self.speed)
+        self.is_playing = self.time < self._end

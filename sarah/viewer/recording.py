@@ -1,0 +1,42 @@
+"""An episode as one HTML file that needs neither a server nor a network."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import viser
+
+from sarah.description import describe_robot
+from sarah.episode import EpisodeSpec, simulate
+from sarah.errors import ConfigurationError
+from sarah.viewer.playback import FRAMES_PER_SECOND
+from sarah.viewer.scene import RobotScene
+
+
+def record(
+    server: viser.ViserServer, spec: EpisodeSpec, path: Path, progress: Callable[[float], object] = lambda _: None
+) -> None:
+    """Write an episode as one HTML file.
+
+    :param server: with an empty scene, which is filled
+    :param spec: of the episode
+    :param path: of the file
+    :param progress: told the share that is done, from 0 to 1
+    :raises ConfigurationError: if the file cannot be written
+    """
+    trace = simulate(spec, record_trace=True).trace
+    assert trace is not None
+    scene = RobotScene(server, describe_robot(spec.config.dimensions))
+    scene.load(trace)
+    recorder = server.get_scene_serializer()
+    for time in np.arange(trace.time[0], trace.time[-1], 1.0 / FRAMES_PER_SECOND):
+        scene.show(trace.tick_at(time))
+        recorder.insert_sleep(1.0 / FRAMES_PER_SECOND)
+        progress(time / trace.time[-1])
+    try:
+        page = recorder.as_html().replace("<title>Viser</title>", "<title>SARAH</title>")
+        path.write_text(page, encoding="utf-8")
+    except OSError as error:
+        raise ConfigurationError(f"cannot write {path}: {error.strerror or error}") from error

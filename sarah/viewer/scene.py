@@ -1,0 +1,156 @@
+"""The robot in the page's scene, with the load of its pads, its support leg and the push."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import trimesh
+import viser
+import yourdfpy
+from viser.extras import ViserUrdf
+
+from sarah.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
+from sarah.description import ACTUATED_JOINTS, PASSIVE_JOINTS, RobotDescription
+from sarah.trace import Trace
+
+Colour = tuple[int, int, int]
+
+
+def channels(colour: str) -> Colour:
+    """Red, green and blue from 0 to 255.
+
+    :param colour: such as ``#0072B2``
+    """
+    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
+
+
+PAD_COLOURS = (LEFT, "#7CBBE6", RIGHT, "#F5B183")
+"""Of left fore, left hind, right fore and right hind, in the scene and in the plots."""
+METRES_PER_NEWTON_OF_LOAD = 0.0008
+METRES_PER_NEWTON_OF_PUSH = 0.005
+PUSH_SHOWN_SECONDS = 0.6
+"""How long the arrow of a push stays, which itself is over before the eye has found it."""
+
+
+class RobotScene:
+    """The robot of an episode's trace, as it was at one of its ticks.
+
+    :param server: whose scene to fill
+    :param robot: to show
+    """
+
+    def __init__(self, server: viser.ViserServer, robot: RobotDescription) -> None:
+        self._server = server
+        self._scene = server.scene
+        self._model = yourdfpy.URDF.load(io.StringIO(robot.urdf), load_meshes=False)
+        self._order = [(*ACTUATED_JOINTS, *PASSIVE_JOINTS).index(name) for name in self._model.actuated_joint_names]
+        self._torso = self._scene.add_frame("/robot", show_axes=False, position=(0.0, 0.0, robot.standing_height))
+        self._robot = ViserUrdf(server, self._model, root_node_name="/robot")
+        self._loads = [self._add_load(robot, *pad) for pad in zip(PASSIVE_JOINTS, PAD_COLOURS, strict=True)]
+        self._support = self._scene.add_cylinder(
+            "/support", radius=0.17, height=0.004, color=channels(PHASE_COLOURS["shift"]), opacity=0.7, visible=False
+        )
+        self._status = self._scene.add_label(
+            "/status", "", position=(0.0, 0.0, robot.standing_height + 0.3), anchor="bottom-center"
+        )
+        self._arrow: viser.ArrowsHandle | None = None
+        self._add_surroundings()
+        self._trace: Trace | None = None
+
+    def load(self, trace: Trace) -> None:
+        """Show another episode.
+
+        :param trace: of the episode
+        """
+        self._trace = trace
+        if self._arrow is not None:
+            self._arrow.remove()
+            self._arrow = None
+        self._pushed = np.flatnonzero(trace.push.any(axis=1))
+        if len(self._pushed):
+            force = trace.push[self._pushed[0]]
+            direction = force / np.linalg.norm(force)
+            tip = -0.2 * direction  # on the torso, and not in it
+            tail = tip - METRES_PER_NEWTON_OF_PUSH * force
+            self._arrow = self._scene.add_arrows(
+                "/push", np.array([[tail, tip]]), channels(PUSH), shaft_radius=0.015, head_radius=0.04, visible=False
+            )
+        self._support.visible = True
+
+    def show(self, tick: int) -> None:
+        """Show the loaded episode as it was when a tick began.
+
+        :param tick: of the trace
+        """
+        trace = self._trace
+        assert trace is not None
+        x, y, z, w = trace.orientation[tick]
+        with self._server.atomic():
+            self._torso.position, self._torso.wxyz = trace.position[tick], np.array([w, x, y, z])
+            self._robot.update_cfg(np.concatenate([trace.joints[tick], trace.ankles[tick]])[self._order])
+            for bar, load in zip(self._loads, trace.pressures[tick], strict=True):
+                bar.scale = (1.0, 1.0, max(METRES_PER_NEWTON_OF_LOAD * float(load), 0.001))
+            self._show_support(trace, tick)
+            self._show_push(trace, tick)
+            self._status.text = " · ".join(describe_tick(trace, tick))
+
+    def _show_support(self, trace: Trace, tick: int) -> None:
+        side = "right" if trace.support[tick] > 0 else "left"
+        hinge = self._model.get_transform(f"{side}_forefoot", "torso")[:3, 3]
+        rotation = viser.transforms.SO3(self._torso.wxyz).as_matrix()
+        x, y, _ = self._torso.position + rotation @ hinge
+        self._support.position = np.array([x, y, 0.002])
+        self._support.color = channels(PHASE_COLOURS[trace.phase[tick]])
+
+    def _show_push(self, trace: Trace, tick: int) -> None:
+        if self._arrow is None:
+            return
+        since_begin = trace.time[tick] - trace.time[self._pushed[0]]
+        self._arrow.visible = bool(0.0 <= since_begin < PUSH_SHOWN_SECONDS)
+        self._arrow.position = trace.position[tick]
+
+    def _add_load(self, robot: RobotDescription, plate: str, colour: str) -> viser.MeshHandle:
+        """A bar that stands over a plate's soles, as high as the load of its pad."""
+        side, end = plate.split("_")
+        hinge = self._model.joint_map[plate].origin[:3, 3]
+        bar = trimesh.creation.cylinder(radius=0.013, segment=((0.0, 0.0, 0.0), (0.0, 0.0, 1.0)))
+        return self._scene.add_mesh_simple(
+            f"/robot/visual/{side}_hip/{side}_thigh/{side}_shank/{end}_load",
+            bar.vertices,
+            bar.faces,
+            color=channels(colour),
+            position=hinge + np.array([0.0, robot.soles[plate][0][1], 0.0]),
+        )
+
+    def _add_surroundings(self) -> None:
+        scene = self._scene
+        scene.add_grid(
+            "/floor",
+            4.0,
+            4.0,
+            cell_size=0.1,
+            section_size=0.5,
+            cell_color=(215, 220, 225),
+            section_color=(185, 190, 200),
+            plane_color=(243, 245, 248),
+            plane_opacity=1.0,
+        )
+        scene.configure_environment_map(None)  # one would wash the colours out, and take seconds without a GPU
+        scene.add_light_ambient("/daylight", intensity=1.5)
+        scene.add_light_directional("/sun", position=(2.0, 3.0, 4.0), intensity=2.5, cast_shadow=False)
+        camera = self._server.initial_camera
+        camera.position, camera.look_at, camera.fov = (1.0, 1.8, 1.0), (0.0, 0.0, 0.6), 0.8
+
+
+def describe_tick(trace: Trace, tick: int) -> tuple[str, str]:
+    """Time and phase, and steps per second and score, at a tick.
+
+    :param trace: of the episode
+    :param tick: of the trace
+    """
+    side = "right" if trace.support[tick] > 0 else "left"
+    return (
+        f"{trace.time[tick]:.1f} s · {trace.phase[tick].upper()}, {side} leg supports",
+        f"{trace.steps_per_second[tick]:.1f} steps/s · score so far {trace.score[tick]:.2f}",
+    )
