@@ -29,10 +29,13 @@ CONTACT_SECONDS = 0.015
 pushing back faster would throw the foot up again."""
 CONTACT_IMPEDANCE = 0.99
 """Share of that which a contact achieves against the loads on it."""
-HIP_DAMPING, LEG_DAMPING = 2000.0, 20_000.0
+HIP_DAMPING, LEG_DAMPING = 10_000.0, 20_000.0
 """Effort per deviation from the speed that a servo wants, in Nms/rad and Ns/m."""
 STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS | mujoco.mjtState.mjSTATE_WARMSTART
 """What a physics step begins with."""
+
+# A state that is not finite ends the episode; MuJoCo would also write a file to wherever the process runs.
+mujoco.set_mju_user_warning(lambda message: None)
 
 
 class MujocoSimulation:
@@ -63,6 +66,8 @@ class MujocoSimulation:
         self._positions = [self._addresses[name] for name in ACTUATED_JOINTS]
         self._speeds = [int(self._model.joint(name).dofadr[0]) for name in ACTUATED_JOINTS]
         self._limits = [robot.efforts[name] for name in ACTUATED_JOINTS]
+        shares = [damping / limit for damping, limit in zip(self._damping, self._limits, strict=True)]
+        self._servos = list(zip(shares, self._positions, self._speeds, strict=True))
         self._feet = {
             side: [
                 self._model.geom(_sole(side, plate, index)).id
@@ -79,7 +84,7 @@ class MujocoSimulation:
         self._pushed = self._data.xfrc_applied[self._model.body("torso").id, :3]
         self._is_pushed = False
         self._targets: tuple[float, ...] = (0.0,) * len(ACTUATED_JOINTS)
-        self._efforts = list(self._targets)
+        self._shares = list(self._targets)
         self._torso = self._torso_state()
         self._velocity_before = self._torso.velocity
 
@@ -128,44 +133,48 @@ class MujocoSimulation:
 
     def advance(self) -> None:
         """Simulate one control tick."""
+        model, data, before = self._model, self._data, self._before
         self._velocity_before = self._torso.velocity
         for _ in range(self._substeps):
-            self._step()
+            mujoco.mj_getState(model, data, before, STATE)
+            mujoco.mj_step(model, data)
+            shares = self._effort_shares()
+            if max(shares) > 1.0 or min(shares) < -1.0:
+                shares = self._step_again(shares)
+        self._shares = shares
         if self._is_pushed:  # MuJoCo would go on
             self._pushed[:] = 0.0
             self._is_pushed = False
         self.time += self._dt
         self._torso = self._torso_state()
 
-    def _step(self) -> None:
-        """One physics step. If servos exceed their limits it is taken again, and those give what they can."""
-        model, data, limits = self._model, self._data, self._limits
-        mujoco.mj_getState(model, data, self._before, STATE)
-        mujoco.mj_step(model, data)
-        efforts = self._servo_efforts()
+    def _step_again(self, shares: list[float]) -> list[float]:
+        """Take a physics step again, in which servos that exceeded their limits give what they can.
+
+        :param shares: of the servos' limits that they took
+        :return: that they take now
+        """
         limited: dict[int, float] = {}
-        while any(abs(effort) > limit for effort, limit in zip(efforts, limits, strict=True)):
-            for actuator, (effort, limit) in enumerate(zip(efforts, limits, strict=True)):
-                if abs(effort) > limit:
-                    limited[actuator] = math.copysign(limit, effort)
-                    self._let_give(actuator, limited[actuator])
-            mujoco.mj_setState(model, data, self._before, STATE)
-            mujoco.mj_step(model, data)
-            efforts = self._servo_efforts()
-            for actuator, effort in limited.items():
-                efforts[actuator] = effort
+        while max(shares) > 1.0 or min(shares) < -1.0:
+            for actuator, share in enumerate(shares):
+                if abs(share) > 1.0:
+                    limited[actuator] = math.copysign(1.0, share)
+                    self._let_give(actuator, limited[actuator] * self._limits[actuator])
+            mujoco.mj_setState(self._model, self._data, self._before, STATE)
+            mujoco.mj_step(self._model, self._data)
+            shares = self._effort_shares()
+            for actuator, share in limited.items():
+                shares[actuator] = share
         for actuator in limited:
             self._let_follow(actuator)
-        self._efforts = efforts
+        return shares
 
-    def _servo_efforts(self) -> list[float]:
-        """What servos without limits gave in the last physics step."""
+    def _effort_shares(self) -> list[float]:
+        """Efforts of servos that follow their targets, at the end of the last physics step, over their limits."""
         positions, speeds, rate = self._qpos.tolist(), self._qvel.tolist(), self._rate
         return [
             damping * (rate * (target - positions[position]) - speeds[speed])
-            for damping, target, position, speed in zip(
-                self._damping, self._targets, self._positions, self._speeds, strict=True
-            )
+            for target, (damping, position, speed) in zip(self._targets, self._servos, strict=True)
         ]
 
     def torso_state(self) -> TorsoState:
@@ -202,7 +211,8 @@ class MujocoSimulation:
     def actuator_motion(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Speeds (rad/s, m/s) and efforts (Nm, N) of the actuators, in the order of ``ACTUATED_JOINTS``."""
         speeds = self._qvel.tolist()
-        return tuple([speeds[index] for index in self._speeds]), tuple(self._efforts)
+        efforts = [share * limit for share, limit in zip(self._shares, self._limits, strict=True)]
+        return tuple([speeds[index] for index in self._speeds]), tuple(efforts)
 
     def sole_height(self, side: str) -> float:
         """Height of a foot's lowest sole contact over the floor, in m.
