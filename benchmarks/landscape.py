@@ -19,8 +19,9 @@ import matplotlib.pyplot as plt
 from sarah.config import PHYSICS, Engine, EpisodeConfig, Push
 from sarah.episode import EpisodeSpec
 from sarah.evaluation import Evaluation, summarise
-from sarah.figures import COLUMN_WIDTH, ENGINE_COLOURS, STYLE
+from sarah.print_style import COLUMN_WIDTH, STYLE
 from sarah.tasks import BALANCE, TASKS
+from sarah.transfer_figure import ENGINE_COLOURS
 from sarah.workers import Workers
 
 CENTRES = {"stepping": (0.4, 1.0, 0.1, 1.0, 1.0), "balance": (1.0, 0.0, 0.0, 0.0)}

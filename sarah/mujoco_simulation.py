@@ -31,6 +31,8 @@ CONTACT_IMPEDANCE = 0.99
 """Share of that which a contact achieves against the loads on it."""
 HIP_DAMPING, LEG_DAMPING = 10_000.0, 20_000.0
 """Effort per deviation from the speed that a servo wants, in Nms/rad and Ns/m."""
+JOINT_DAMPING = 2.0
+"""Factor on the URDF's joint damping: PyBullet, the reference, takes it twice."""
 STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS | mujoco.mjtState.mjSTATE_WARMSTART
 """What a physics step begins with."""
 
@@ -291,6 +293,7 @@ def _compiled(urdf: str, rate: int, solver_iterations: int) -> mujoco.MjModel:
     for name in (*ACTUATED_JOINTS, *PASSIVE_JOINTS):
         joint = spec.joint(name)
         joint.actfrclimited = mujoco.mjtLimited.mjLIMITED_FALSE  # would cut what MuJoCo computes before a step
+        joint.damping *= JOINT_DAMPING
         joint.solref_limit, joint.solimp_limit = hardness["solref"], hardness["solimp"]
     for name in ACTUATED_JOINTS:
         spec.add_actuator(

@@ -6,7 +6,9 @@ import itertools
 from collections.abc import Sequence
 from pathlib import Path
 
-from sarah.print_style import COLUMN_WIDTH, STYLE, plt, save
+import matplotlib.pyplot as plt
+
+from sarah.print_style import COLUMN_WIDTH, STYLE, save
 from sarah.transfer import Transfer
 
 ENGINE_COLOURS = {"pybullet": "#0072B2", "mujoco": "#D55E00"}

@@ -66,9 +66,9 @@ def _transfer(arguments: Sequence[str]) -> None:
 
     for engine in ENGINES:
         check_engine(engine)
-    from sarah.transfer_figure import draw_transfer
     from sarah.runs import RunFolder
     from sarah.transfer import as_markdown, transfer
+    from sarah.transfer_figure import draw_transfer
     from sarah.workers import Workers
 
     runs = [RunFolder.open(path) for path in options.runs]
