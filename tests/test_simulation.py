@@ -111,6 +111,16 @@ def test_ankles_are_free(lab: Laboratory, build: BuildSimulation) -> None:
     assert simulation.joint_positions(("left_forefoot",))[0] > 0.2
 
 
+def test_ankles_are_damped_alike(lab: Laboratory, build: BuildSimulation) -> None:
+    """In the air a plate that turns at 1 rad/s comes to rest within 5.0 (PyBullet) or 5.1 mrad (MuJoCo)."""
+    simulation = build(physics=Physics(rate=2000))
+    lab.place(simulation)
+    lab.move_joint(simulation, "left_hindfoot", -0.09, 1.0)
+    for _ in range(10):
+        simulation.advance()
+    assert simulation.joint_positions(("left_hindfoot",))[0] == pytest.approx(-0.085, abs=0.0005)
+
+
 def test_accelerometer_reads_gravity_standing_and_nothing_falling(lab: Laboratory, build: BuildSimulation) -> None:
     standing, falling = build(), build()
     lab.place(falling)
