@@ -10,13 +10,10 @@ from pathlib import Path
 import pytest
 from laboratory import laboratory
 
-from sarah.config import TRAINED_STEPPING, EpisodeConfig, Physics
-from sarah.description import describe_robot
-from sarah.engines import simulator_of
+from sarah.config import TRAINED_STEPPING, EpisodeConfig
 from sarah.episode import Episode, EpisodeSpec, simulate
 from sarah.evaluation import summarise
 from sarah.pattern_generator import PAPER_PARAMETERS
-from sarah.randomisation import NOMINAL
 from sarah.transfer import Subject, Transfer
 
 SHORT = EpisodeConfig(engine="mujoco", time_limit=6.0)
@@ -68,19 +65,6 @@ def test_episodes_that_stand_side_by_side_do_not_touch_each_other(mujoco_engine:
     for episode in episodes:
         episode.stand()
     assert [episode.run(PAPER_PARAMETERS) for episode in reversed(episodes)] == expected[::-1]
-
-
-def test_servos_give_no_more_than_their_limits(mujoco_engine: None) -> None:
-    """Legs that may push with 60 N each do not carry 98 N each, and sink to the end of their stroke."""
-    robot = describe_robot({"leg_effort": 60.0})
-    simulation = simulator_of("mujoco")(robot, Physics(), NOMINAL)
-    height = simulation.torso_state().position[2]
-    for _ in range(100):
-        simulation.advance()
-        _, efforts = simulation.actuator_motion()
-        assert all(abs(effort) <= 60.0 + 1e-9 for effort in efforts[4:])
-    assert simulation.torso_state().position[2] < height - 0.1
-    simulation.close()
 
 
 def test_physics_that_diverges_ends_the_episode_and_writes_no_file(

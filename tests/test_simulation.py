@@ -299,9 +299,10 @@ def test_standing_legs_push_with_the_weight_that_they_carry(build: BuildSimulati
 
 
 @pytest.mark.parametrize("rate", [100, 300, 1000])
-def test_actuators_push_no_harder_than_they_can(rate: int) -> None:
+def test_actuators_push_no_harder_than_they_can(lab: Laboratory, rate: int) -> None:
     """Legs of 60 N cannot hold the torso's weight, and sink with all their force, whatever the substeps."""
-    simulation = Simulation(describe_robot({"leg_effort": 60.0}), Physics(rate=rate, solver_iterations=50))
+    weak = describe_robot({"leg_effort": 60.0})
+    simulation = simulator_of(lab.engine)(weak, Physics(rate=rate, solver_iterations=50), NOMINAL)
     efforts = []
     for _ in range(SECOND // 5):
         simulation.advance()
