@@ -55,7 +55,7 @@ def test_what_a_file_does_not_name_keeps_its_default(tmp_path: Path) -> None:
         ("[1, 2]", "the file must hold keys and values"),
         ("episode: {time_limit: .inf}", "time_limit must be between 1 and 3600 s, not inf"),
         ("episode: {time_limit: 1}", "time_limit must be above the 1 s of standing, not 1.0"),
-        ("episode: {engine: mujco}", "unknown engine 'mujco', did you mean 'mujoco'?"),
+        ("episode: {engine: mujco}", "engine 'mujco', did you mean 'mujoco'?"),
         ("episode: {reward_form: printd}", "unknown episode.reward_form 'printd', did you mean 'printed'"),
         ("episode: {physics: {rate: 333}}", "physics.rate must be a multiple of the control rate, 100 Hz, not 333"),
         ("episode: {physics: {solver_iterations: 0}}", "physics.solver_iterations must be between 1 and 10000, not 0"),
