@@ -56,7 +56,9 @@ bench: install  ## how fast it is: simulation, workers, learner; minutes
 
 tables: install  ## the tables of the README and docs: hours of simulation
 	$(BIN)/python benchmarks/paper_parameters.py
-	$(BIN)/python benchmarks/landscape.py
+	$(BIN)/python benchmarks/landscape.py --engines pybullet mujoco
+	$(BIN)/python benchmarks/landscape.py --task balance --engines pybullet mujoco --episodes 12 --seconds 8
+	$(BIN)/python benchmarks/engines.py
 	$(BIN)/python benchmarks/clock.py
 	$(BIN)/python benchmarks/physics.py
 	$(BIN)/python benchmarks/first_training.py

@@ -48,6 +48,7 @@ AGENTS = ("naf", "td3", "sac", "ddpg")
 SEARCHERS = ("cma-es", "gp", "tpe", "random")
 """Black-box optimisers."""
 ALGORITHMS = AGENTS + SEARCHERS
+Engine = Literal["pybullet", "mujoco"]
 RewardForm = Literal["symmetric", "printed"]
 
 
@@ -162,6 +163,7 @@ class EpisodeConfig:
     """What all episodes of an experiment share.
 
     :param physics: how finely to integrate
+    :param engine: what integrates: ``"pybullet"``, the reference, or ``"mujoco"``
     :param randomisation: what to draw from each episode's seed
     :param dimensions: of the robot, where they differ from the xacro's defaults
     :param time_limit: of an episode, in s; the paper's first criterion
@@ -171,6 +173,7 @@ class EpisodeConfig:
     """
 
     physics: Physics = PHYSICS["standard"]
+    engine: Engine = "pybullet"
     randomisation: Randomisation = Randomisation()
     dimensions: Mapping[str, float] = field(default_factory=dict)
     time_limit: float = 30.0
@@ -180,6 +183,8 @@ class EpisodeConfig:
 
     def __post_init__(self) -> None:
         """Refuse what cannot be simulated."""
+        if self.engine not in get_args(Engine):
+            raise ConfigurationError(unknown_name("engine", self.engine, get_args(Engine)))
         check_range("time_limit", self.time_limit, STAND_SECONDS, LONGEST_EPISODE, "s")
         if self.time_limit < STAND_SECONDS + self.physics.control_dt:
             raise ConfigurationError(

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from sarah.config import STAND_SECONDS, EpisodeConfig, Physics
-from sarah.description import PASSIVE_JOINTS, RobotDescription, describe_robot
+from sarah.config import STAND_SECONDS, EpisodeConfig
+from sarah.description import PASSIVE_JOINTS, describe_robot
+from sarah.engines import BuildSimulator, simulator_of
 from sarah.errors import ConfigurationError, SimulationError, unknown_name
 from sarah.gait import GaitRecord
 from sarah.hips import BalanceParameters, HipLaw
 from sarah.motion import MotionRecord
 from sarah.pattern_generator import PatternGenerator, Phase, SteppingParameters
-from sarah.randomisation import Conditions, DrawnPush, draw_conditions, draw_push
+from sarah.randomisation import DrawnPush, draw_conditions, draw_push
 from sarah.reward import highest_return, reward_rate
 from sarah.sensors import ImperfectSensors, SensorReading, Vector
-from sarah.simulation import Simulation
-from sarah.simulator import Simulator, TorsoState
+from sarah.simulator import TorsoState
 from sarah.tasks import BALANCE, STEPPING, TASKS, Task
 from sarah.trace import Trace
 
@@ -130,7 +129,7 @@ class Episode:
     :param seed: of this episode
     :param task: ``STEPPING``, or ``BALANCE``, in which the robot is pushed
     :param record_trace: whether to keep a trace of every control tick
-    :param build: makes the simulator from robot, physics and conditions
+    :param build: makes the simulator from robot, physics and conditions; by default the configuration's engine
     """
 
     generator: PatternGenerator
@@ -144,7 +143,7 @@ class Episode:
         seed: int,
         task: Task = STEPPING,
         record_trace: bool = False,
-        build: Callable[[RobotDescription, Physics, Conditions], Simulator] = Simulation,
+        build: BuildSimulator | None = None,
     ) -> None:
         self.config = config
         self.task = task
@@ -152,7 +151,7 @@ class Episode:
         self.termination: str | None = None
         self.robot = describe_robot(config.dimensions)
         conditions = draw_conditions(config.randomisation, seed)
-        self.simulation = build(self.robot, config.physics, conditions)
+        self.simulation = (build or simulator_of(config.engine))(self.robot, config.physics, conditions)
         self._truth = self.last_reading = self.simulation.read()
         self._dt = config.physics.control_dt
         self._pad_threshold = conditions.pad_threshold

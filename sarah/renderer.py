@@ -9,10 +9,10 @@ import numpy as np
 from PIL import Image
 
 from sarah.bullet import give_back_client, load_robot, pybullet, take_client
-from sarah.description import PLATES, SIDES, RobotDescription
+from sarah.description import ACTUATED_JOINTS, PASSIVE_JOINTS, PLATES, SIDES, RobotDescription
 from sarah.scenery import View, floor, shaded
 from sarah.sensors import Vector
-from sarah.simulator import STANDARD_CAMERA, Camera
+from sarah.simulator import STANDARD_CAMERA, Camera, Simulator
 
 MARGIN = 0.05
 """Around the corners of torso and feet, in m, within which all of the robot lies; nothing else is drawn."""
@@ -130,6 +130,20 @@ class Renderer:
         colours = np.reshape(image[2], (rows, columns, 4))[..., :3]
         finer = behind.repeat(samples, axis=0).repeat(samples, axis=1)
         return np.asarray(Image.fromarray(np.where(is_robot, colours, finer)).reduce(samples))
+
+    def draw_simulator(self, simulator: Simulator, width: int, height: int, camera: Camera) -> np.ndarray:
+        """Draw a simulator's robot as it stands.
+
+        :param simulator: of any engine
+        :param width: of the picture, in pixels
+        :param height: of the picture, in pixels
+        :param camera: where to look from
+        :return: uint8 array of shape (height, width, 3)
+        """
+        names = ACTUATED_JOINTS + PASSIVE_JOINTS
+        joints = dict(zip(names, simulator.joint_positions(names), strict=True))
+        torso = simulator.torso_state()
+        return self.draw(torso.position, torso.orientation, joints, width, height, camera)
 
     def close(self) -> None:
         """Give PyBullet's client back; nothing can be drawn any more."""

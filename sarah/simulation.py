@@ -17,7 +17,7 @@ from sarah.description import ACTUATED_JOINTS, PASSIVE_JOINTS, PLATES, SIDES, Ro
 from sarah.randomisation import NOMINAL, Conditions
 from sarah.renderer import Renderer
 from sarah.sensors import SensorReading, Vector
-from sarah.simulator import GRAVITY, STANDARD_CAMERA, Camera, TorsoState, rotate_to_body
+from sarah.simulator import GRAVITY, STANDARD_CAMERA, Camera, TorsoState, rotate_to_body, specific_force
 
 CONTACT_SECONDS = 0.004
 """Time in which contacts push errors of position back to 1/e. PyBullet takes a share per physics step instead; with the
@@ -184,14 +184,8 @@ class Simulation:
     def read(self) -> SensorReading:
         """The true sensor signals of the last control tick, without noise or delay."""
         torso = self._torso
-        now, before = torso.velocity, self._velocity_before
-        specific_force = (
-            (now[0] - before[0]) / self._dt,
-            (now[1] - before[1]) / self._dt,
-            (now[2] - before[2]) / self._dt + GRAVITY,
-        )
         return SensorReading(
-            rotate_to_body(torso.orientation, specific_force),
+            specific_force(torso, self._velocity_before, self._dt),
             rotate_to_body(torso.orientation, torso.angular_velocity),
             self._pressures(),
             tuple([state[0] for state in self._joint_states]),  # type: ignore[arg-type]  # six of them
@@ -253,9 +247,7 @@ class Simulation:
         """
         if self._renderer is None:
             self._renderer = Renderer(self.robot)
-        names = ACTUATED_JOINTS + PASSIVE_JOINTS
-        joints = dict(zip(names, self.joint_positions(names), strict=True))
-        return self._renderer.draw(self._torso.position, self._torso.orientation, joints, width, height, camera)
+        return self._renderer.draw_simulator(self, width, height, camera)
 
     def close(self) -> None:
         """Give PyBullet's clients back; the simulation cannot be used any more."""

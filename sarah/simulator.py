@@ -135,3 +135,16 @@ def rotate_to_body(orientation: tuple[float, float, float, float], vector: Vecto
         2.0 * (x * y - w * z) * a + (1.0 - 2.0 * (x * x + z * z)) * b + 2.0 * (y * z + w * x) * c,
         2.0 * (x * z + w * y) * a + 2.0 * (y * z - w * x) * b + (1.0 - 2.0 * (x * x + y * y)) * c,
     )
+
+
+def specific_force(torso: TorsoState, velocity_before: Vector, dt: float) -> Vector:
+    """What an ideal accelerometer in the torso reads: the mean over a control tick, without gravity.
+
+    :param torso: at the end of the tick
+    :param velocity_before: at its beginning, in the world's frame, in m/s
+    :param dt: of the tick, in s
+    :return: in the torso's frame, in m/s^2
+    """
+    now, before = torso.velocity, velocity_before
+    force = ((now[0] - before[0]) / dt, (now[1] - before[1]) / dt, (now[2] - before[2]) / dt + GRAVITY)
+    return rotate_to_body(torso.orientation, force)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import platform
 from importlib.metadata import PackageNotFoundError, version
 
-PACKAGES = ("sarah", "pybullet", "numpy", "stable-baselines3", "gymnasium", "torch", "distributed")
-SIMULATING = ("sarah", "pybullet", "numpy")
+PACKAGES = ("sarah", "pybullet", "mujoco", "numpy", "stable-baselines3", "gymnasium", "torch", "distributed")
+SIMULATING = ("sarah", "pybullet", "mujoco", "numpy")
 """Those that an episode's bytes depend on."""
 
 

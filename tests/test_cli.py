@@ -75,6 +75,39 @@ def test_eval_summarises_a_run(trained: tuple[Path, subprocess.CompletedProcess[
         assert text in process.stdout
 
 
+def test_transfer_compares_the_engines_on_the_same_seeds(
+    trained: tuple[Path, subprocess.CompletedProcess[str]], tmp_path: Path
+) -> None:
+    pytest.importorskip("mujoco", reason="the extra mujoco is not installed")
+    folder, _ = trained
+    process = run("sarah-transfer", str(folder), "--episodes", "2", "--out", "out", "--workers", "2", cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"transfer.md", "transfer.png", "transfer.pdf"}
+    table = (tmp_path / "out" / "transfer.md").read_text()
+    assert process.stdout.startswith(table)
+    cells = [cell.strip() for cell in table.splitlines()[2].split("|")]
+    assert cells[1:4] == ["mine", "stepping", "pybullet"]
+    for engine, column in (("pybullet", 4), ("mujoco", 8)):
+        arguments = (str(folder), "--episodes", "2", "--engine", engine, "--json")
+        alone = json.loads(run("sarah-eval", *arguments, cwd=tmp_path).stdout)
+        assert cells[column] == f"{alone['score_mean']:.3f}"
+        assert cells[column + 2] == f"{alone['steps_per_second_mean']:.2f}"
+
+
+def test_mujoco_trains_and_its_run_is_evaluated_in_it(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco", reason="the extra mujoco is not installed")
+    arguments = ("--algo", "random", "--simulations", "2", "--engine", "mujoco", "--run-dir", "mine")
+    process = run("sarah-train", *arguments, *SHORT, "--workers", "2", cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    assert "engine: mujoco" in (tmp_path / "mine" / "config.yaml").read_text()
+    assert "mujoco" in (tmp_path / "mine" / "versions.txt").read_text()
+    summaries = [
+        run("sarah-eval", "mine", "--episodes", "2", *engine, cwd=tmp_path).stdout
+        for engine in ((), ("--engine", "mujoco"), ("--engine", "pybullet"))
+    ]
+    assert summaries[0] == summaries[1] != summaries[2]
+
+
 def test_eval_prints_one_json_object(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
     folder, _ = trained
     process = run("sarah-eval", str(folder), "--episodes", "2", "--first-seed", "5", "--json", cwd=folder)
@@ -201,13 +234,13 @@ def test_a_reader_who_has_had_enough_is_no_error(tmp_path: Path) -> None:
     assert process.stderr == ""
 
 
-@pytest.mark.parametrize("command", ["train", "eval", "figures", "compare", "video", "view"])
+@pytest.mark.parametrize("command", ["train", "eval", "figures", "compare", "transfer", "video", "view"])
 def test_help_loads_nothing_slow(command: str) -> None:
     program = (
         f"import sys\nfrom sarah.cli.{command} import main\nsys.argv = ['command', '--help']\n"
         "try:\n    main()\nexcept SystemExit:\n    pass\n"
         "slow = {'torch', 'viser', 'matplotlib', 'gymnasium', 'numpy', 'pybullet', 'stable_baselines3', 'yourdfpy'}\n"
-        "slow |= {'yaml'}\n"
+        "slow |= {'yaml', 'mujoco'}\n"
         "sys.exit(' '.join(slow & set(sys.modules)) or 0)"
     )
     process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
@@ -245,6 +278,13 @@ def test_help_loads_nothing_slow(command: str) -> None:
             "push.duration must be at least a control tick, 0.01 s, not 0.004",
         ),
         ("sarah-train --episode.physics.control-rate 5", "physics.control_rate must be between 50 and 1000 Hz, not 5"),
+        ("sarah-train --engine mujco", "unknown engine 'mujco', did you mean 'mujoco'?"),
+        ("sarah-compare race --engine bullet", "unknown engine 'bullet', did you mean 'pybullet'?"),
+        ("sarah-eval --parameters 1,1,1,1,1 --engine mujco", "unknown engine 'mujco', did you mean 'mujoco'?"),
+        ("sarah-transfer", "give at least one run folder"),
+        ("sarah-transfer full full", "several runs need a folder for table and figure: --out DIR"),
+        ("sarah-transfer full --episodes 0", "episodes must be at least 1, not 0"),
+        ("sarah-transfer full --first-seed -1", "first-seed must not be negative, not -1"),
         ("sarah-train --task stepping --episode.push.newtons 50 60", "episode.push is for task 'balance'"),
         ("sarah-train --task balance --episode.time-limit 1.5 --episode.push.at-seconds 2 3", "before the time_limit"),
         ("sarah-eval --task balance --parameters 1,0,1", "must be 4 numbers (V1 to V4), not 3"),

@@ -18,6 +18,7 @@ def test_a_written_configuration_reads_back(tmp_path: Path) -> None:
             physics=Physics(rate=200, solver_iterations=10),
             randomisation=Randomisation(friction=(0.5, 0.6), enabled=False),
             dimensions={"thigh_length": 0.35},
+            engine="mujoco",
             reward_form="printed",
         ),
     )
@@ -30,6 +31,7 @@ def test_what_a_file_does_not_name_keeps_its_default(tmp_path: Path) -> None:
     path.write_text("algo: sac\nepisode:\n  time_limit: 10\n")
     config = read_config(TrainingConfig, path)
     assert config == TrainingConfig(algo="sac", episode=EpisodeConfig(time_limit=10.0))
+    assert config.episode.engine == "pybullet"
     path.write_text("")
     assert read_config(TrainingConfig, path) == TrainingConfig()
 
@@ -53,6 +55,7 @@ def test_what_a_file_does_not_name_keeps_its_default(tmp_path: Path) -> None:
         ("[1, 2]", "the file must hold keys and values"),
         ("episode: {time_limit: .inf}", "time_limit must be between 1 and 3600 s, not inf"),
         ("episode: {time_limit: 1}", "time_limit must be above the 1 s of standing, not 1.0"),
+        ("episode: {engine: mujco}", "engine 'mujco', did you mean 'mujoco'?"),
         ("episode: {reward_form: printd}", "unknown episode.reward_form 'printd', did you mean 'printed'"),
         ("episode: {physics: {rate: 333}}", "physics.rate must be a multiple of the control rate, 100 Hz, not 333"),
         ("episode: {physics: {solver_iterations: 0}}", "physics.solver_iterations must be between 1 and 10000, not 0"),

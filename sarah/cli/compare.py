@@ -9,7 +9,7 @@ from typing import Annotated
 
 import tyro
 
-from sarah.cli.options import parse_options, run_command
+from sarah.cli.options import parse_options, run_command, with_engine
 from sarah.config import ALGORITHMS, EpisodeConfig, TrainingConfig
 from sarah.errors import ConfigurationError, check_range
 
@@ -36,6 +36,7 @@ class CompareOptions:
     :param simulations: budget of each training
     :param slots: episodes in flight in each training
     :param episode: settings of the episodes
+    :param engine: of the physics, ``pybullet`` or ``mujoco``: short for --episode.engine
     :param episodes: unseen seeds that every choice is evaluated on
     :param best_known: score that shares are taken of; by default the best final one of the race
     :param workers: processes that train, on this machine, one training each; with none, this process does
@@ -50,6 +51,7 @@ class CompareOptions:
     simulations: int = 100
     slots: int = 1
     episode: EpisodeConfig = EpisodeConfig()
+    engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
     episodes: int = 10
     best_known: Annotated[float | None, tyro.conf.arg(metavar="FLOAT")] = None
     workers: int = 0
@@ -71,13 +73,14 @@ def _compare(arguments: Sequence[str]) -> None:
         check_range("best-known", options.best_known, *SCORES)
     if not options.algorithms or len(set(options.algorithms)) < len(options.algorithms):
         raise ConfigurationError(f"algorithms must be different ones, at least one, not {options.algorithms!r}")
-    base = TrainingConfig(
-        task=options.task, simulations=options.simulations, slots=options.slots, episode=options.episode
-    )
+    episode = with_engine(options.episode, options.engine)
+    base = TrainingConfig(task=options.task, simulations=options.simulations, slots=options.slots, episode=episode)
     from sarah.description import describe_robot
+    from sarah.engines import check_engine
     from sarah.search import check_installed
 
     describe_robot(options.episode.dimensions)
+    check_engine(episode.engine)
     for algo in options.algorithms:
         check_installed(algo)
     from sarah.comparison import as_markdown, entries_of, race, standings, write_csv

@@ -38,6 +38,7 @@ class EvalOptions:
     :param episodes: how many
     :param first_seed: seed of the first episode; the others follow. Trainings use seeds from 2^31 up
     :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default the run's own
+    :param engine: of the physics, ``pybullet`` or ``mujoco``; by default the run's own
     :param randomisation: whether friction, masses, sensors and so on vary from seed to seed
     :param json: print one JSON object
     :param workers: processes that simulate, on this machine; with none, this process does. They change no result
@@ -53,6 +54,7 @@ class EvalOptions:
     episodes: int = 20
     first_seed: int = 0
     physics: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
+    engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
     randomisation: bool = True
     json: bool = False
     workers: int = 0
@@ -133,7 +135,9 @@ def _changed(config: EpisodeConfig, options: EvalOptions, task: str) -> EpisodeC
     for name in ("stepping", "push_newtons", "robustness"):
         if task == STEPPING.name and getattr(options, name) is not None:
             raise ConfigurationError(f"--{name.replace('_', '-')} is for --task balance")
-    return changed_episodes(config, options.stepping, options.push_newtons, options.physics, options.randomisation)
+    return changed_episodes(
+        config, options.stepping, options.push_newtons, options.physics, options.randomisation, options.engine
+    )
 
 
 def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[str, str]]:

@@ -78,6 +78,15 @@ def _one_line(box: str) -> str:
     return f"{message}, did you mean {meant[1]}?" if meant else message
 
 
+def with_engine(episode: EpisodeConfig, engine: str | None) -> EpisodeConfig:
+    """Episode settings with the physics engine that a command was given.
+
+    :param episode: the settings
+    :param engine: of --engine; without one the settings keep theirs
+    """
+    return episode if engine is None else dataclasses.replace(episode, engine=engine)  # type: ignore[arg-type]  # checked
+
+
 def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
     """Run a command; an error of ours is one line, without a traceback.
 
@@ -140,6 +149,7 @@ def changed_episodes(
     push_newtons: float | None,
     physics: str | None,
     randomisation: bool,
+    engine: str | None = None,
 ) -> EpisodeConfig:
     """Episode settings as options change them.
 
@@ -148,8 +158,10 @@ def changed_episodes(
     :param push_newtons: force of every push
     :param physics: name of a setting in :data:`~sarah.config.PHYSICS`
     :param randomisation: whether to leave it on
+    :param engine: of the physics
     :raises ConfigurationError: if one of them is not allowed
     """
+    config = with_engine(config, engine)
     if physics is not None:
         if physics not in PHYSICS:
             raise ConfigurationError(unknown_name("physics", physics, PHYSICS))

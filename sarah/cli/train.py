@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.interruption import Interruption
-from sarah.cli.options import parse_options, run_command
+from sarah.cli.options import parse_options, run_command, with_engine
 from sarah.config import EpisodeConfig, TrainingConfig
 from sarah.config_files import first_difference, read_config
 from sarah.errors import ConfigurationError, RunFolderError, SarahError, TrainingInterruptedError
@@ -38,6 +38,7 @@ class TrainOptions:
     agent (model.zip) and what TensorBoard shows.
 
     :param training: what to train
+    :param engine: of the physics, ``pybullet`` or ``mujoco``: short for --episode.engine
     :param run_dir: folder of the run, new or empty; by default a new one, runs/<task>/<algo>-s<seed>
     :param config: YAML file of settings, like the config.yaml of any run
     :param resume: go on with this run folder's training, as if it had not been interrupted; its settings
@@ -48,6 +49,7 @@ class TrainOptions:
     """
 
     training: Annotated[TrainingConfig, tyro.conf.arg(name="")] = TrainingConfig()
+    engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
     run_dir: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     config: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     resume: Annotated[Path | None, tyro.conf.arg(metavar="RUN")] = None
@@ -64,16 +66,19 @@ def main() -> None:
 def _train(arguments: Sequence[str]) -> None:
     options = parse_options(TrainOptions, COMMAND, arguments, _defaults(arguments))
     config = options.training
+    config = dataclasses.replace(config, episode=with_engine(config.episode, options.engine))
     if options.from_run is not None and config.task != BALANCE.name:
         raise ConfigurationError(f"--from is for --task {BALANCE.name}, not {config.task!r}")
     from sarah.description import describe_robot
 
     describe_robot(config.episode.dimensions)  # a bad dimension is refused before anything is written
+    from sarah.engines import check_engine
     from sarah.runs import RunFolder, new_run_path
     from sarah.search import check_installed
     from sarah.workers import Workers
 
     check_installed(config.algo)
+    check_engine(config.episode.engine)
     if options.resume is not None and _resumed(options.resume, options).is_finished:
         print(f"{options.resume} is finished: there is nothing to resume")
         return

@@ -32,6 +32,7 @@ class VideoOptions:
     :param stepping: P1 to P5 to balance with, separated by commas; by default the run's own, or trained ones
     :param push_newtons: force of the push; by default as in the run, or 0 to 100 N
     :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default the run's own
+    :param engine: of the physics, ``pybullet`` or ``mujoco``; by default the run's own
     :param randomisation: whether friction, masses, sensors and so on vary from seed to seed
     :param seconds: simulated time at which the video begins and ends; by default all of it
     :param speed: 0.25 shows everything four times as slow
@@ -44,6 +45,7 @@ class VideoOptions:
     stepping: Annotated[str | None, tyro.conf.arg(metavar="P1,P2,P3,P4,P5")] = None
     push_newtons: Annotated[float | None, tyro.conf.arg(metavar="FLOAT")] = None
     physics: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
+    engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
     randomisation: bool = True
     seconds: Annotated[tuple[float, float] | None, tyro.conf.arg(metavar="BEGIN END")] = None
     speed: float = 1.0
@@ -94,7 +96,7 @@ def _spec(options: VideoOptions, subject: str) -> EpisodeSpec:
         if spec.task == STEPPING.name and getattr(options, name) is not None:
             raise ConfigurationError(f"--{name.replace('_', '-')} is for V1 to V4")
     config = changed_episodes(
-        spec.config, options.stepping, options.push_newtons, options.physics, options.randomisation
+        spec.config, options.stepping, options.push_newtons, options.physics, options.randomisation, options.engine
     )
     return dataclasses.replace(spec, config=config, seed=spec.seed if options.seed is None else options.seed)
 

@@ -1,0 +1,96 @@
+"""``sarah-transfer``: what was learned in one physics engine, in the other."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+from sarah.cli.options import parse_options, run_command
+from sarah.errors import ConfigurationError
+from sarah.tasks import BALANCE
+
+if TYPE_CHECKING:
+    from sarah.runs import RunFolder
+    from sarah.transfer import Subject
+
+COMMAND = "sarah-transfer"
+
+
+@dataclass(frozen=True)
+class TransferOptions:
+    """Simulate runs' learned parameters in both physics engines, on the same unseen seeds and with the same pushes.
+
+    A table of mean scores, survival, steps per second and vibration is printed, and written with a figure of the
+    score in one engine against the score in the other. ``kept`` is the share of its score that a run takes along.
+
+    :param runs: folders of finished trainings, in either engine and of either task; their episode settings are used
+    :param out: folder for the table and the figure; by default the folder figures of the run, if it is only one
+    :param episodes: how many in each engine
+    :param first_seed: seed of the first episode; the others follow. Trainings use seeds from 2^31 up
+    :param push_newtons: force of every push in task balance, whose direction and time vary; by default as in the run
+    :param workers: processes that simulate, on this machine; with none, this process does. They change no result
+    :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
+    """
+
+    runs: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="RUN...")] = ()
+    out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
+    episodes: int = 20
+    first_seed: int = 0
+    push_newtons: Annotated[float | None, tyro.conf.arg(metavar="FLOAT")] = None
+    workers: int = 0
+    scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
+
+
+def main() -> None:
+    """Run the command with the arguments of the process."""
+    run_command(COMMAND, _transfer)
+
+
+def _transfer(arguments: Sequence[str]) -> None:
+    options = parse_options(TransferOptions, COMMAND, arguments, TransferOptions())
+    if not options.runs:
+        raise ConfigurationError("give at least one run folder")
+    if options.out is None and len(options.runs) > 1:
+        raise ConfigurationError("several runs need a folder for table and figure: --out DIR")
+    if options.episodes < 1:
+        raise ConfigurationError(f"episodes must be at least 1, not {options.episodes!r}")
+    if options.first_seed < 0:
+        raise ConfigurationError(f"first-seed must not be negative, not {options.first_seed!r}")
+    from sarah.engines import check_engine
+    from sarah.transfer import ENGINES
+
+    for engine in ENGINES:
+        check_engine(engine)
+    from sarah.runs import RunFolder
+    from sarah.transfer import as_markdown, transfer
+    from sarah.transfer_figure import draw_transfer
+    from sarah.workers import Workers
+
+    runs = [RunFolder.open(path) for path in options.runs]
+    subjects = [_subject(run, options.push_newtons) for run in runs]
+    seeds = range(options.first_seed, options.first_seed + options.episodes)
+    with Workers(options.workers, options.scheduler) as workers:
+        transfers = transfer(subjects, seeds, workers)
+    table = as_markdown(transfers)
+    print(table)
+    out = options.out or runs[0].figures_path
+    out.mkdir(parents=True, exist_ok=True)
+    (out / "transfer.md").write_text(table + "\n", encoding="utf-8")
+    for file in draw_transfer(transfers, out / "transfer"):
+        print(file)
+
+
+def _subject(run: RunFolder, push_newtons: float | None) -> Subject:
+    from sarah.transfer import Subject
+
+    training = run.config()
+    episode = training.episode
+    if push_newtons is not None and training.task == BALANCE.name:
+        force = (push_newtons, push_newtons)
+        episode = dataclasses.replace(episode, push=dataclasses.replace(episode.push, newtons=force))
+    return Subject(run.path.name, training.task, run.parameters(), episode)

@@ -1,0 +1,40 @@
+"""The physics engines by name. None is imported before an episode asks for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib.util import find_spec
+
+from sarah.config import Physics
+from sarah.description import RobotDescription
+from sarah.errors import ConfigurationError
+from sarah.randomisation import Conditions
+from sarah.simulator import Simulator
+
+BuildSimulator = Callable[[RobotDescription, Physics, Conditions], Simulator]
+
+
+def simulator_of(engine: str) -> BuildSimulator:
+    """What builds an engine's simulator.
+
+    :param engine: ``"pybullet"`` or ``"mujoco"``
+    :raises ConfigurationError: if the engine is not installed
+    """
+    check_engine(engine)
+    if engine == "mujoco":
+        from sarah.mujoco_simulation import MujocoSimulation
+
+        return MujocoSimulation
+    from sarah.simulation import Simulation
+
+    return Simulation
+
+
+def check_engine(engine: str) -> None:
+    """Refuse an engine that is not installed.
+
+    :param engine: ``"pybullet"`` or ``"mujoco"``
+    :raises ConfigurationError: naming how to install it
+    """
+    if find_spec(engine) is None:
+        raise ConfigurationError(f"engine {engine!r} needs the package {engine}: pip install 'sarah[{engine}]'")
