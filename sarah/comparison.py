@@ -1,6 +1,6 @@
 """A race: several algorithms, several seeds each, judged by what each would recommend along the way.
 
-Each training is a run folder. What it would have chosen after every five simulations is evaluated on seeds that no
+Each training is a run folder. What it would have recommended after every five simulations is evaluated on seeds that no
 training sees, and written beside it in ``race.csv``; a training whose ``race.csv`` is there is not run again.
 """
 

@@ -126,4 +126,4 @@ def parameters_from(action: np.ndarray, task: Task) -> tuple[float, ...]:
     count = len(task.parameter_names)
     if values.shape != (count,) or not (np.abs(values) <= 1.0).all():
         raise ConfigurationError(f"an action must be {count} numbers within -1 and 1, not {action!r}")
-    return tuple(float(task.low + (task.high - task.low) * (value + 1.0) / 2.0) for value in values)
+    return tuple(float(task.low + task.width * (value + 1.0) / 2.0) for value in values)

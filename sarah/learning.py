@@ -27,7 +27,7 @@ from sarah.vec_env import EpisodeVecEnv, LateRankReplayBuffer, LateReplayBuffer
 from sarah.workers import Executor, Job
 
 UPDATES_PER_SIMULATION = 5
-WARM_UP = 40
+WARM_UP = 20
 """Simulations before the agent learns; twice the slots, if that is more, so that it begins with as many outcomes."""
 
 
@@ -47,7 +47,7 @@ def learn(
     :param recorder: of the simulations
     :param workers: that simulate
     :param progress_bar: whether to show one
-    :return: the choice in the end
+    :return: what the algorithm itself would choose in the end
     """
     if config.algo in SEARCHERS:
         return _search(config, simulations, recorder, workers, progress_bar)

@@ -1,4 +1,4 @@
-"""What a training leaves behind while it runs: every simulation, and what would be chosen at the time."""
+"""What a training leaves behind while it runs: every simulation, and what it would recommend at the time."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from stable_baselines3.common.logger import KVWriter, Logger
 from sarah.curves import LearningCurves
 from sarah.errors import LearningError
 from sarah.journal import Journal
-from sarah.recommendation import Parameters, merit
+from sarah.recommendation import Parameters, candidates, merit
 from sarah.runs import RunFolder
 from sarah.tasks import Task
 
@@ -30,7 +30,7 @@ LOGGED_FIELDS = (
 )
 """Fields of a result that are logged under their own names."""
 SIMULATIONS_PER_CHOICE = 5
-"""How often it is noted what would be chosen."""
+"""How often it is noted what would be recommended."""
 
 
 class EpisodeRecorder(BaseCallback):
@@ -51,7 +51,8 @@ class EpisodeRecorder(BaseCallback):
     diverged: int
     """Simulations so far that ended because no number came back."""
     choose: Callable[[], Parameters] | None
-    """Tells what would be chosen now; while there is such a thing, it is noted in ``choices.csv``."""
+    """Tells what the algorithm would choose now; while there is such a thing, what a training would recommend is noted
+    in ``choices.csv``."""
 
     def __init__(self, run: RunFolder, task: Task, journal: Journal) -> None:
         super().__init__()
@@ -59,7 +60,7 @@ class EpisodeRecorder(BaseCallback):
         self.tried = []
         self.diverged = 0
         self.choose = None
-        self._names = task.parameter_names
+        self._task = task
         self._run = run
         self._journal = journal
         self._curves: LearningCurves | None = None
@@ -79,18 +80,19 @@ class EpisodeRecorder(BaseCallback):
 
         :param info: what the environment's step returned
         """
-        self._write(partial(self._run.append_episode, len(self.tried), self._names, info))
+        self._write(partial(self._run.append_episode, len(self.tried), self._task.parameter_names, info))
         self.tried.append((info["parameters"], merit(info)))
         self.diverged += info["termination"] == "diverged"
         x, y, _ = info["final_position"]
         shown = {"return": info["episode_return"], "x": x, "y": y, **{name: info[name] for name in LOGGED_FIELDS}}
         for name, value in shown.items():
             self.log.record(f"episode/{name}", value)
-        for name, value in zip(self._names, info["parameters"], strict=True):
+        for name, value in zip(self._task.parameter_names, info["parameters"], strict=True):
             self.log.record(f"parameters/{name}", value)
         self.log.dump(len(self.tried))
         if self.choose is not None and len(self.tried) % SIMULATIONS_PER_CHOICE == 0:
-            self._write(partial(self._run.append_choice, len(self.tried), self._names, self.choose()))
+            (choice,) = candidates(self.choose(), self.tried, 1, self._task.width)
+            self._write(partial(self._run.append_choice, len(self.tried), self._task.parameter_names, choice))
 
     def write_curves(self, values: dict[str, Any], excluded: dict[str, tuple[str, ...]], step: int) -> None:
         """Write a point of each learning curve.

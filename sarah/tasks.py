@@ -29,6 +29,11 @@ class Task:
     high: float
     neutral: tuple[float, ...] | None = None
 
+    @property
+    def width(self) -> float:
+        """Width of every parameter's range."""
+        return self.high - self.low
+
     def checked(self, values: Sequence[float], name: str = "parameters") -> tuple[float, ...]:
         """Take a value for every parameter as floats.
 

@@ -74,7 +74,7 @@ def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_ba
     recorder = EpisodeRecorder(run, task, journal)
     choice = learn(config, config.simulations - compared, run, recorder, journal, progress_bar)
     recorder.choose = None
-    rivals = candidates(choice, recorder.tried, count, task.high - task.low)
+    rivals = candidates(choice, recorder.tried, count, task.width)
     seeds = range(SUMMARY_EPISODES)
     without = None if task.neutral is None else evaluate(task.neutral, config, seeds, journal)
     parameters = _compare(rivals, compared, config, recorder, journal, without)

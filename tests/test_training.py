@@ -24,8 +24,8 @@ from sarah.runs import RunFolder, new_run_path
 from sarah.tasks import BALANCE, STEPPING
 from sarah.training import train
 
-# Longer than the 40 simulations of warm-up, on episodes of one second of stepping.
-SHORT = TrainingConfig(simulations=44, slots=1, seed=3, episode=EpisodeConfig(time_limit=2.0))
+# Longer than the 20 simulations of warm-up, on episodes of one second of stepping.
+SHORT = TrainingConfig(simulations=24, slots=1, seed=3, episode=EpisodeConfig(time_limit=2.0))
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +53,7 @@ def test_run_folder_holds_what_it_should(run: RunFolder) -> None:
 
 def test_every_simulation_has_its_row_and_can_be_repeated(run: RunFolder) -> None:
     rows = list(run.episodes())
-    assert [int(row["index"]) for row in rows] == list(range(44))
+    assert [int(row["index"]) for row in rows] == list(range(24))
     assert all(int(row["seed"]) >= FIRST_TRAINING_SEED for row in rows)
     row = rows[7]
     parameters = tuple(float(row[name]) for name in STEPPING.parameter_names)
@@ -90,7 +90,7 @@ def test_progress_has_the_same_figures_as_the_episodes(run: RunFolder) -> None:
 def test_parameters_are_read_without_the_agent(run: RunFolder) -> None:
     content = json.loads((run.path / "parameters.json").read_text())
     assert tuple(content["parameters"]) == STEPPING.parameter_names
-    assert content["task"] == "stepping" and content["algorithm"] == "naf" and content["simulations"] == 44
+    assert content["task"] == "stepping" and content["algorithm"] == "naf" and content["simulations"] == 24
     assert tuple(content["parameters"].values()) == RunFolder.open(run.path).parameters()
     assert all(0.0 <= value <= 2.0 for value in run.parameters())
 
