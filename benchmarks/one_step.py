@@ -1,0 +1,134 @@
+"""What each part of NAF's preset for episodes of one step is worth: the preset with one part taken out at a time.
+
+The task is a stand-in that costs nothing: five numbers, a reward with noise, a hill with its top beside a cliff, and a
+lower, wider hill elsewhere, both in other places for every seed. Judged is the agent's own best action, without noise.
+"""
+
+from __future__ import annotations
+
+import argparse
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from statistics import median
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import torch
+from gymnasium import spaces
+from stable_baselines3.common.callbacks import BaseCallback
+
+from sarah.agents import NAF
+from sarah.agents.naf import PRESETS
+
+NOISE = 0.03
+"""Standard deviation of the reward; the top of the hill is 1."""
+CHECK_EVERY = 5
+HELD = 3
+ONE_STEP = PRESETS["one-step"]
+VARIANTS: dict[str, dict[str, Any]] = {
+    "the preset": {},
+    "all transitions drawn alike": {"replay_buffer_kwargs": {"temperature": 0.0}},
+    "all transitions weigh the same": {"locality": None},
+    "L does not see the action": {"policy_kwargs": {**ONE_STEP["policy_kwargs"], "lower_sees_action": False}},
+    "ReLU instead of tanh": {"policy_kwargs": {**ONE_STEP["policy_kwargs"], "activation_fn": torch.nn.ReLU}},
+    "noise stays at 0.3": {"exploration_std": 0.3},
+    "noise of 0.05 from the start": {"exploration_std": 0.05},
+    "warm-up of 40": {"learning_starts": 40},
+    "warm-up of 0.4 around the centre": {"warmup_std": 0.4},
+    "uniform warm-up": {"warmup_std": None},
+    "one update per episode": {"gradient_steps": 1},
+    "20 updates per episode": {"gradient_steps": 20},
+    "none of it: NAF's defaults": {},
+}
+
+
+class Hills(gym.Env):
+    """A hill beside a cliff, and a decoy."""
+
+    observation_space = spaces.Box(-1.0, 1.0, (16,))
+    action_space = spaces.Box(-1.0, 1.0, (5,))
+
+    def __init__(self, seed: int) -> None:
+        self._generator = np.random.default_rng(seed)
+        self._top = self._generator.uniform(-0.6, 0.6, 5)
+        self._decoy = -np.sign(self._top) * self._generator.uniform(0.3, 0.7, 5)
+
+    def score(self, action: np.ndarray) -> float:
+        """Mean reward of an action."""
+        from_top, from_decoy = action - self._top, action - self._decoy
+        hill = np.exp(-3.0 * from_top @ from_top) if from_top[0] < 0.15 else 0.0
+        return float(max(hill, 0.6 * np.exp(-1.5 * from_decoy @ from_decoy)))
+
+    def _observe(self) -> np.ndarray:
+        return self._generator.normal(0.0, 0.1, 16).clip(-1, 1).astype(np.float32)
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict]:
+        """Stand."""
+        super().reset(seed=seed)
+        return self._observe(), {}
+
+    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict]:
+        """The whole episode."""
+        reward = self.score(action.astype(float)) + self._generator.normal(0.0, NOISE)
+        return self._observe(), reward, True, False, {}
+
+
+class Watch(BaseCallback):
+    """Notes what the agent's own action is worth."""
+
+    def __init__(self, env: Hills) -> None:
+        super().__init__()
+        self.scores: list[float] = []
+        self._env = env
+
+    def _on_step(self) -> bool:
+        if self.num_timesteps % CHECK_EVERY == 0:
+            action, _ = self.model.predict(np.zeros(16, np.float32), deterministic=True)
+            self.scores.append(self._env.score(action.astype(float)))
+        return True
+
+
+def learned(name: str, seed: int, episodes: int) -> list[float]:
+    """Scores along one training."""
+    torch.set_num_threads(1)
+    env = Hills(seed)
+    settings = {"gamma": 0.0} if name.startswith("none") else {**ONE_STEP, **VARIANTS[name]}
+    watch = Watch(env)
+    NAF("MlpPolicy", env, seed=seed, **settings).learn(episodes, callback=watch)
+    return watch.scores
+
+
+def episodes_until(scores: list[float], score: float) -> float:
+    """Episodes until a score is reached and held."""
+    reached = [value >= score for value in scores]
+    for index in range(len(reached) - HELD + 1):
+        if all(reached[index : index + HELD]):
+            return CHECK_EVERY * (index + 1)
+    return float("inf")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument("--episodes", type=int, default=200)
+    parser.add_argument("--processes", type=int, default=2)
+    options = parser.parse_args()
+    print("| | 80 % after | reached by | 90 % after | reached by | median at the end | lowest |\n" + "|---" * 7 + "|")
+    with ProcessPoolExecutor(options.processes, get_context("spawn")) as pool:
+        jobs = {
+            name: [pool.submit(learned, name, seed, options.episodes) for seed in range(options.seeds)]
+            for name in VARIANTS
+        }
+        for name, running in jobs.items():
+            curves = [job.result() for job in running]
+            cells = []
+            for share in (0.8, 0.9):
+                counts = [episodes_until(curve, share) for curve in curves]
+                cells.append(f"{median(counts):.0f} | {sum(np.isfinite(counts))} of {len(counts)}")
+            ends = [curve[-1] for curve in curves]
+            print(f"| {name} | {' | '.join(cells)} | {median(ends):.2f} | {min(ends):.2f} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
