@@ -93,21 +93,26 @@ class RunFolder:
         """
         try:
             path.mkdir(parents=True, exist_ok=True)
-            if any(path.iterdir()):
-                raise RunFolderError(f"run folder {path} is not empty: name another with --run-dir")
             run = cls(path)
-            run.journal_path.touch(exist_ok=False)
+            if any(path.iterdir()) or not run._claim():
+                raise RunFolderError(f"run folder {path} is not empty: name another with --run-dir")
             replace_text(path / "command.txt", shlex.join(sys.argv) + "\n")
             lines = (f"{name} {version}\n" for name, version in versions().items())
             replace_text(run._versions_path, "".join(lines))
             write_config(config, run._config_path)  # last: what has one can be resumed
         except RunFolderError:
             raise
-        except FileExistsError:
-            raise RunFolderError(f"run folder {path} is not empty: name another with --run-dir") from None
         except OSError as error:
             raise RunFolderError(f"cannot write run folder {path}: {error.strerror or error}") from error
         return run
+
+    def _claim(self) -> bool:
+        """Make the journal, unless another training made it at the same time."""
+        try:
+            self.journal_path.touch(exist_ok=False)
+        except FileExistsError:
+            return False
+        return True
 
     @classmethod
     def open(cls, path: Path, unfinished: bool = False) -> RunFolder:

@@ -65,7 +65,7 @@ def test_killed_locked_stopped_and_resumed(expected: dict[str, bytes], tmp_path:
     kept = rows(run)
 
     process = begin(tmp_path, "--resume", "run")
-    wait_for_rows(process, run, len(kept) + 10)
+    wait_for_rows(process, run, len(kept) + 2)
     process.terminate()
     _, errors = process.communicate(timeout=400)
     assert process.returncode == 128 + signal.SIGTERM and "Traceback" not in errors
@@ -74,7 +74,7 @@ def test_killed_locked_stopped_and_resumed(expected: dict[str, bytes], tmp_path:
     kept = rows(run)
 
     process = begin(tmp_path, "--resume", "run", "--workers", "2")
-    wait_for_rows(process, run, len(kept) + 10)
+    wait_for_rows(process, run, len(kept) + 2)
     os.killpg(process.pid, signal.SIGINT)  # as Ctrl-C does, to the workers too
     _, errors = process.communicate(timeout=400)
     assert process.returncode == 128 + signal.SIGINT and "Traceback" not in errors
