@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import socket
 import time
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from stable_baselines3.common.logger import filter_excluded_keys
 from tensorboard.compat.proto.event_pb2 import Event
@@ -18,9 +18,11 @@ from tensorboard.plugins.hparams import summary_v2 as hparams
 from tensorboard.summary.writer.record_writer import RecordWriter
 
 from sarah.config import TrainingConfig
-from sarah.gait_pictures import Picture
 from sarah.runs import EVENTS, RunFolder
 from sarah.tasks import BALANCE
+
+if TYPE_CHECKING:
+    from sarah.gait_pictures import Picture
 
 RGB = 3
 """What TensorBoard calls the colours of a picture."""

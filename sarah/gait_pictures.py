@@ -15,7 +15,6 @@ from sarah.episode import EpisodeSpec, simulate
 from sarah.errors import ConfigurationError
 from sarah.gait_figure import draw_gait_cycle
 from sarah.pattern_generator import SteppingParameters
-from sarah.recommendation import Parameters
 from sarah.tasks import STEPPING
 from sarah.video import FRAMES_PER_SECOND, frame_times, frames, write_video
 
@@ -41,7 +40,7 @@ class Picture:
     content: bytes
 
 
-def draw_gait(parameters: Parameters, task: str, config: EpisodeConfig) -> list[Picture]:
+def draw_gait(parameters: tuple[float, ...], task: str, config: EpisodeConfig) -> list[Picture]:
     """Simulate parameters on seed 0, and draw what they do.
 
     :param parameters: to draw

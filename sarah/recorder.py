@@ -14,7 +14,6 @@ from stable_baselines3.common.logger import KVWriter, Logger
 from sarah.curves import LEARNED, LearningCurves
 from sarah.errors import LearningError
 from sarah.evaluation import Evaluation
-from sarah.gait_pictures import draw_gait
 from sarah.journal import Journal
 from sarah.recommendation import Parameters, merit
 from sarah.runs import RunFolder
@@ -108,6 +107,8 @@ class EpisodeRecorder(BaseCallback):
             self._write(partial(self._draw, choose(), simulations))
 
     def _draw(self, choice: Parameters, simulations: int) -> None:
+        from sarah.gait_pictures import draw_gait  # matplotlib, for those who want pictures
+
         config = self._run.config()
         self._open_curves().show(draw_gait(choice, config.task, config.episode), simulations)
 
