@@ -97,15 +97,16 @@ class RunFolder:
             if any(path.iterdir()):
                 raise RunFolderError(f"run folder {path} is not empty: name another with --run-dir")
             run = cls(path)
-            run.journal_path.touch(exist_ok=False)
+            try:
+                run.journal_path.touch(exist_ok=False)
+            except FileExistsError:  # another training was quicker
+                raise RunFolderError(f"run folder {path} is not empty: name another with --run-dir") from None
             replace_text(path / "command.txt", shlex.join(sys.argv) + "\n")
             lines = (f"{name} {version}\n" for name, version in versions().items())
             replace_text(run._versions_path, "".join(lines))
             write_config(config, run._config_path)  # last: what has one can be resumed
         except RunFolderError:
             raise
-        except FileExistsError:
-            raise RunFolderError(f"run folder {path} is not empty: name another with --run-dir") from None
         except OSError as error:
             raise RunFolderError(f"cannot write run folder {path}: {error.strerror or error}") from error
         return run
