@@ -12,7 +12,7 @@ WORKERS ?= $(shell nproc)
 SEED ?= 1
 RUN ?= runs/$(shell date +%Y%m%d-%H%M%S)
 
-.PHONY: help install train test test-slow lint format bench tables clean
+.PHONY: help install train test test-slow lint format docs bench tables clean
 
 help:  ## show what can be made
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
@@ -27,13 +27,15 @@ $(VENV)/installed: setup.cfg pyproject.toml constraints.txt
 	@touch $@
 
 train: RUN := $(RUN)
-train: install  ## both trainings with NAF, figures and robustness table: a robot that steps in place and comes back from pushes
+train: install  ## both trainings with NAF, figures, reports and robustness table: a robot that steps in place and comes back from pushes
 	$(BIN)/sarah-train --task stepping --simulations $(SIMULATIONS) --seed $(SEED) \
 		--workers $(WORKERS) --run-dir $(RUN)/stepping
 	$(BIN)/sarah-train --task balance --from $(RUN)/stepping --simulations $(BALANCE_SIMULATIONS) --seed $(SEED) \
 		--episode.time-limit $(BALANCE_SECONDS) --episode.push.newtons $(BALANCE_NEWTONS) \
 		--workers $(WORKERS) --run-dir $(RUN)/balance
 	$(BIN)/sarah-figures $(RUN)/stepping $(RUN)/balance --out $(RUN)/figures
+	$(BIN)/sarah-report $(RUN)/stepping --workers $(WORKERS)
+	$(BIN)/sarah-report $(RUN)/balance --workers $(WORKERS)
 	$(BIN)/sarah-eval $(RUN)/balance --robustness $(RUN)/figures --episodes $(PUSHES) --workers $(WORKERS)
 
 test: install  ## the tests
@@ -50,6 +52,10 @@ lint: install  ## style and types
 format: install  ## put the style right
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
+
+docs: install  ## the documentation, into build/docs
+	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going docs build/docs
+	@echo build/docs/index.html
 
 bench: install  ## how fast it is: simulation, workers, learner; minutes
 	$(BIN)/python benchmarks/throughput.py

@@ -1,7 +1,7 @@
 """The sensor-driven central pattern generator: sensor readings in, joint targets out.
 
 A reconstruction of the paper's Figure 3, which is not public. The robot rocks from foot to foot about the torso's
-y axis, and the sensors, not a clock, decide when each phase of a step ends:
+y axis, and the sensors, not a clock, decide when each phase of a step ends::
 
     STAND   for the first second                                                             -> SHIFT
     SHIFT   the swing leg pushes the robot over the support leg                              -> LIFT

@@ -11,24 +11,25 @@ from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import KVWriter, Logger
 
-from sarah.curves import LearningCurves
+from sarah.curves import LEARNED, LearningCurves
 from sarah.errors import LearningError
+from sarah.evaluation import Evaluation
 from sarah.journal import Journal
 from sarah.recommendation import Parameters, candidates, merit
 from sarah.runs import RunFolder
 from sarah.tasks import Task
 
-LOGGED_FIELDS = (
-    "score",
-    "steps_per_second",
-    "duration",
-    "event_driven_shift",
-    "event_driven_lift",
-    "sole_clearance",
-    "vibration",
-    "actuator_power",
-)
-"""Fields of a result that are logged under their own names."""
+LOGGED_FIELDS = {
+    "score": "episode",
+    "steps_per_second": "episode",
+    "duration": "episode",
+    "event_driven_shift": "gait",
+    "event_driven_lift": "gait",
+    "sole_clearance": "gait",
+    "vibration": "actuators",
+    "actuator_power": "actuators",
+}
+"""Fields of a result that are logged under their own names, and in which group."""
 SIMULATIONS_PER_CHOICE = 5
 """How often it is noted what would be recommended."""
 
@@ -42,6 +43,7 @@ class EpisodeRecorder(BaseCallback):
     :param run: where to
     :param task: whose parameters they are
     :param journal: of the training
+    :param picture_interval: simulations between pictures, for TensorBoard, of what would be chosen; 0 for none
     """
 
     log: Logger
@@ -54,7 +56,7 @@ class EpisodeRecorder(BaseCallback):
     """Tells what the algorithm would choose now; while there is such a thing, what a training would recommend is noted
     in ``choices.csv``."""
 
-    def __init__(self, run: RunFolder, task: Task, journal: Journal) -> None:
+    def __init__(self, run: RunFolder, task: Task, journal: Journal, picture_interval: int = 0) -> None:
         super().__init__()
         self.log = Logger(folder=None, output_formats=[_CurveWriter(self)])
         self.tried = []
@@ -63,6 +65,7 @@ class EpisodeRecorder(BaseCallback):
         self._task = task
         self._run = run
         self._journal = journal
+        self._picture_interval = picture_interval
         self._curves: LearningCurves | None = None
         self._held: list[Callable[[], None]] = []
 
@@ -84,15 +87,36 @@ class EpisodeRecorder(BaseCallback):
         self.tried.append((info["parameters"], merit(info)))
         self.diverged += info["termination"] == "diverged"
         x, y, _ = info["final_position"]
-        shown = {"return": info["episode_return"], "x": x, "y": y, **{name: info[name] for name in LOGGED_FIELDS}}
-        for name, value in shown.items():
+        for name, value in {"return": info["episode_return"], "x": x, "y": y}.items():
             self.log.record(f"episode/{name}", value)
+        for name, group in LOGGED_FIELDS.items():
+            self.log.record(f"{group}/{name}", info[name])
         for name, value in zip(self._task.parameter_names, info["parameters"], strict=True):
             self.log.record(f"parameters/{name}", value)
+        if self.choose is not None:
+            self._record_choice(self.choose, len(self.tried))
         self.log.dump(len(self.tried))
-        if self.choose is not None and len(self.tried) % SIMULATIONS_PER_CHOICE == 0:
-            (choice,) = candidates(self.choose(), self.tried, 1, self._task.width)
-            self._write(partial(self._run.append_choice, len(self.tried), self._task.parameter_names, choice))
+
+    def _record_choice(self, choose: Callable[[], Parameters], simulations: int) -> None:
+        """Note what would be recommended, and show it, whenever it is time."""
+        names = self._task.parameter_names
+        noted = simulations % SIMULATIONS_PER_CHOICE == 0
+        drawn = self._picture_interval and simulations % self._picture_interval == 0
+        if not noted and not drawn:
+            return
+        (choice,) = candidates(choose(), self.tried, 1, self._task.width)
+        if noted:
+            self._write(partial(self._run.append_choice, simulations, names, choice))
+            for name, value in zip(names, choice, strict=True):
+                self.log.record(f"choice/{name}", value, exclude="csv")  # it has choices.csv
+        if drawn:
+            self._write(partial(self._draw, choice, simulations))
+
+    def _draw(self, choice: Parameters, simulations: int) -> None:
+        from sarah.gait_pictures import draw_gait  # matplotlib, for those who want pictures
+
+        config = self._run.config()
+        self._open_curves().show(draw_gait(choice, config.task, config.episode), simulations)
 
     def write_curves(self, values: dict[str, Any], excluded: dict[str, tuple[str, ...]], step: int) -> None:
         """Write a point of each learning curve.
@@ -103,8 +127,18 @@ class EpisodeRecorder(BaseCallback):
         """
         self._write(lambda: self._open_curves().write(values, excluded, step))
 
-    def close(self) -> None:
-        """Write what is held back, and close the learning curves."""
+    def close(self, learned: Evaluation) -> None:
+        """Write what the training ends with and all that is held back, and close the learning curves.
+
+        :param learned: how the learned parameters do on unseen seeds
+        """
+        values = (
+            learned.score_median,
+            learned.steps_per_second_median,
+            learned.survival_rate,
+            learned.sole_clearance_mean,
+        )
+        self.write_curves(dict(zip(LEARNED, values, strict=True)), dict.fromkeys(LEARNED, ("csv",)), len(self.tried))
         self._write_held()
         self._open_curves().close()
 

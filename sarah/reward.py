@@ -12,7 +12,7 @@ def reward_rate(x: float, y: float, height: float, steps_per_second: float, form
     """R of equation 2: (0.5 - c_x) (0.5 - c_y) 2^(-(f - 3)^4) c_z.
 
     The printed equation has no absolute values and so rewards drifting towards negative x and y. The symmetric
-    form uses max(0.5 - |c|, 0) instead, which is largest at the start position.
+    form uses ``max(0.5 - |c|, 0)`` instead, which is largest at the start position.
 
     :param x: c_x, displacement of the torso from its start to the right, in m
     :param y: c_y, the same forward, in m

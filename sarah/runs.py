@@ -7,7 +7,7 @@
     progress.csv  events.out.tfevents.*        the learning curves, for tables and for TensorBoard
     model.zip                                  the agent, in stable-baselines3's format; optimisers have none
     parameters.json                            the learned parameters: what a robot would be sent
-    figures/                                   what sarah-figures draws of this run
+    figures/  report.html                      what sarah-figures and sarah-report make of this run
 
 Everything but the model is read without unpickling, and no command reads the model: opening somebody's run executes
 none of its code.
@@ -75,6 +75,7 @@ class RunFolder:
         self.path = path
         self.model_path = path / "model.zip"
         self.figures_path = path / "figures"
+        self.report_path = path / "report.html"
         self.journal_path = path / "journal.jsonl"
         self._versions_path = path / "versions.txt"
         self._progress_path = path / "progress.csv"
@@ -162,6 +163,10 @@ class RunFolder:
     def config(self) -> TrainingConfig:
         """Read the training's configuration."""
         return read_config(TrainingConfig, self._config_path)
+
+    def config_text(self) -> str:
+        """Read ``config.yaml`` as it stands."""
+        return self._config_path.read_text(encoding="utf-8")
 
     def append_episode(self, index: int, parameter_names: Sequence[str], info: Mapping[str, Any]) -> None:
         """Add one simulation to ``episodes.csv``.

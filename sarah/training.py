@@ -48,6 +48,7 @@ def train(
     workers: Executor | None = None,
     progress_bar: bool = False,
     interrupted: Callable[[], bool] = lambda: False,
+    picture_interval: int = 0,
 ) -> Learned:
     """Train, and write the run folder. What the run folder's journal knows already is not simulated again.
 
@@ -56,30 +57,33 @@ def train(
     :param workers: that simulate; by default this process does. What is learned does not depend on them
     :param progress_bar: whether to show one
     :param interrupted: asked after every simulation whether to stop
+    :param picture_interval: simulations between pictures for TensorBoard; 0 for none. They change no result
     :return: what was learned
     :raises RunFolderError: if another training uses the run folder, or it cannot be resumed here
     :raises LearningError: if what learns no longer returns numbers
     :raises TrainingInterruptedError: if ``interrupted`` says so
     """
     with Journal(run.journal_path, workers or Workers(), interrupted) as journal:
-        return _train(config, run, journal, progress_bar)
+        return _train(config, run, journal, progress_bar, picture_interval)
 
 
-def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_bar: bool) -> Learned:
+def _train(
+    config: TrainingConfig, run: RunFolder, journal: Journal, progress_bar: bool, picture_interval: int
+) -> Learned:
     # The networks are small: more threads only wait for each other.
     torch.set_num_threads(1)
     count = candidate_count(config.simulations)
     compared = count * SIMULATIONS_PER_CANDIDATE if count > 1 else 0
     task = TASKS[config.task]
-    recorder = EpisodeRecorder(run, task, journal)
+    recorder = EpisodeRecorder(run, task, journal, picture_interval)
     choice = learn(config, config.simulations - compared, run, recorder, journal, progress_bar)
     recorder.choose = None
     rivals = candidates(choice, recorder.tried, count, task.width)
     seeds = range(SUMMARY_EPISODES)
     without = None if task.neutral is None else evaluate(task.neutral, config, seeds, journal)
     parameters = _compare(rivals, compared, config, recorder, journal, without)
-    recorder.close()
     evaluation = evaluate(parameters, config, seeds, journal)
+    recorder.close(evaluation)
     run.write_parameters(
         {
             "task": config.task,

@@ -73,8 +73,9 @@ def test_what_would_be_chosen_is_noted_every_five_simulations(run: RunFolder) ->
 def test_tensorboard_shows_the_episodes_the_parameters_and_the_learning(run: RunFolder) -> None:
     events = EventAccumulator(str(run.path))
     events.Reload()
-    episode = ("return", "score", "steps_per_second", "x", "y", "duration", "event_driven_shift", "event_driven_lift")
-    expected = {f"episode/{name}" for name in episode} | {f"parameters/{name}" for name in STEPPING.parameter_names}
+    expected = {f"episode/{name}" for name in ("return", "score", "steps_per_second", "x", "y", "duration")}
+    expected |= {f"gait/{name}" for name in ("event_driven_shift", "event_driven_lift", "sole_clearance")}
+    expected |= {f"{group}/{name}" for group in ("parameters", "choice") for name in STEPPING.parameter_names}
     assert expected | {"train/loss", "train/q", "train/exploration_std"} <= set(events.Tags()["scalars"])
     assert [event.step for event in events.Scalars("episode/score")] == list(range(1, 45))
 

@@ -44,6 +44,8 @@ class TrainOptions:
     :param resume: go on with this run folder's training, as if it had not been interrupted; its settings
         are used
     :param from_run: balance with P1 to P5 and the robot of this First Training's run folder
+    :param pictures: every so many simulations, draw what would be chosen for TensorBoard: a gait cycle, and a video of
+        3 s. Each costs some seconds, and changes no result; 0 draws none
     :param workers: processes that simulate, on this machine; with none, this process does. They change no result
     :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
     """
@@ -54,6 +56,7 @@ class TrainOptions:
     config: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     resume: Annotated[Path | None, tyro.conf.arg(metavar="RUN")] = None
     from_run: Annotated[Path | None, tyro.conf.arg(name="from", metavar="RUN")] = None
+    pictures: int = 0
     workers: int = 0
     scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
 
@@ -89,7 +92,7 @@ def _train(arguments: Sequence[str]) -> None:
         else:
             run = RunFolder.create(options.run_dir or new_run_path(config.task, config.algo, config.seed), config)
         print(f"training {config.algo} on {config.task}: {config.simulations} simulations into {run.path}", flush=True)
-        learned = _learned(config, run, workers)
+        learned = _learned(config, run, workers, options.pictures)
     _summarise(config.task, learned, run.path)
 
 
@@ -116,14 +119,14 @@ def _resumed(path: Path, options: TrainOptions) -> RunFolder:
     return run
 
 
-def _learned(config: TrainingConfig, run: RunFolder, workers: Workers) -> Learned:
+def _learned(config: TrainingConfig, run: RunFolder, workers: Workers, picture_interval: int) -> Learned:
     """Train; whatever stops it, the message says how to go on."""
     from sarah.training import train
 
     go_on = f"go on with {COMMAND} --resume {shlex.quote(str(run.path))}"
     with Interruption(COMMAND) as interruption:
         try:
-            return train(config, run, workers, progress_bar=True, interrupted=interruption.came)
+            return train(config, run, workers, True, interruption.came, picture_interval)
         except (TrainingInterruptedError, KeyboardInterrupt):
             print(f"\n{COMMAND}: interrupted; {go_on}", file=sys.stderr)
             raise SystemExit(128 + (interruption.signal or signal.SIGINT)) from None

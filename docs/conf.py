@@ -1,0 +1,66 @@
+"""Sphinx's settings: ``make docs`` builds the site into build/docs. Nothing is fetched from a network."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import textwrap
+from importlib import metadata
+from pathlib import Path
+
+from sphinx.application import Sphinx
+
+project = "sarah"
+author = "the sarah contributors"
+release = metadata.version("sarah")
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.apidoc"]
+html_theme = "furo"
+html_title = f"sarah {release}"
+# reference/commands.md includes the one, reference/api.md leads past the other.
+exclude_patterns = ["reference/generated/commands.md", "reference/generated/modules.rst"]
+html_show_copyright = False
+myst_heading_anchors = 3
+suppress_warnings = ["toc.duplicate_entry"]
+
+HERE = Path(__file__).parent
+WIDTH = 86
+"""Of a command's help, in characters: as wide as the page."""
+GENERATED = HERE / "reference" / "generated"
+apidoc_modules = [
+    {
+        "path": str(HERE.parent / "sarah"),
+        "destination": str(GENERATED.relative_to(HERE)),
+        "follow_links": True,
+        "separate_modules": True,
+        "module_first": True,
+        "automodule_options": {"members", "show-inheritance"},
+    }
+]
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_typehints_format = "short"
+autodoc_preserve_defaults = True
+
+
+def write_commands(app: Sphinx) -> None:
+    """Write what every command says to ``--help``, in the order of setup.cfg."""
+    environment = {**os.environ, "COLUMNS": str(WIDTH), "NO_COLOR": "1"}
+    commands = [
+        command.name for command in metadata.entry_points(group="console_scripts") if command.name.startswith("sarah-")
+    ]
+    sections = []
+    for command in commands:
+        path = Path(sys.executable).with_name(command)
+        process = subprocess.run([path, "--help"], env=environment, capture_output=True, text=True, check=True)
+        # tyro leaves what a command says of itself to the terminal to wrap.
+        lines = (textwrap.fill(line, WIDTH) if len(line) > WIDTH else line for line in process.stdout.splitlines())
+        text = "\n".join(lines).strip()
+        sections.append(f"## {command}\n\n```text\n{text}\n```\n")
+    GENERATED.mkdir(exist_ok=True)
+    (GENERATED / "commands.md").write_text("\n".join(sections), encoding="utf-8")
+
+
+def setup(app: Sphinx) -> None:
+    """Have the command reference written before the pages are read."""
+    app.connect("builder-inited", write_commands)

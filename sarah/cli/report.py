@@ -1,0 +1,64 @@
+"""``sarah-report``: a run as one page."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from sarah.cli.options import parse_options, run_command
+from sarah.errors import ConfigurationError
+
+COMMAND = "sarah-report"
+
+
+@dataclass(frozen=True)
+class ReportOptions:
+    """Write one HTML page about a run: results beside the paper's, video, figures, settings, commands to repeat it.
+
+    The page holds everything it shows: it can be sent as it is, and opens without a network.
+
+    :param run: folder of a finished training
+    :param out: file to write; by default report.html in the run folder
+    :param episodes: unseen seeds that the table of results is of
+    :param seconds: simulated time at which the video begins and ends; MP4 with the extra ``video``, otherwise GIF
+    :param workers: processes that simulate, on this machine; with none, this process does. They change no result
+    """
+
+    run: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN")] = None
+    out: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    episodes: int = 10
+    seconds: Annotated[tuple[float, float], tyro.conf.arg(metavar="BEGIN END")] = (1.0, 9.0)
+    workers: int = 0
+
+    def __post_init__(self) -> None:
+        """Refuse impossible numbers."""
+        if self.episodes < 1:
+            raise ConfigurationError(f"episodes must be at least 1, not {self.episodes!r}")
+        if not self.seconds[0] < self.seconds[1]:
+            raise ConfigurationError(f"seconds must be in rising order, not {self.seconds!r}")
+
+
+def main() -> None:
+    """Run the command with the arguments of the process."""
+    run_command(COMMAND, _report)
+
+
+def _report(arguments: Sequence[str]) -> None:
+    options = parse_options(ReportOptions, COMMAND, arguments, ReportOptions())
+    if options.run is None:
+        raise ConfigurationError("give a run folder")
+    from sarah.report import write_report
+    from sarah.runs import RunFolder
+    from sarah.workers import Workers
+
+    run = RunFolder.open(options.run)
+    path = options.out or run.report_path
+    if not path.parent.is_dir():
+        raise ConfigurationError(f"cannot write {path}: folder {path.parent} does not exist")
+    with Workers(options.workers) as workers:
+        write_report(run, path, workers, options.episodes, options.seconds)
+    print(path)
