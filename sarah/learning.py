@@ -27,7 +27,7 @@ from sarah.vec_env import EpisodeVecEnv, LateRankReplayBuffer, LateReplayBuffer
 from sarah.workers import Executor, Job
 
 UPDATES_PER_SIMULATION = 5
-WARM_UP = 20
+WARM_UP = 30
 """Simulations before the agent learns; twice the slots, if that is more, so that it begins with as many outcomes."""
 
 

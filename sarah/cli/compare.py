@@ -24,9 +24,9 @@ SCORES = (0.01, 2.0)
 class CompareOptions:
     """Train several algorithms with several seeds each, and see which needs the fewest simulations.
 
-    What a training would have recommended after every five simulations is evaluated on unseen seeds. The table says after
-    how many simulations 90 % and 95 % of the best known score are reached and held over three evaluations, and the
-    final score; it is printed, and written to the folder with a plot. A race that was interrupted goes on where it was.
+    What a training would have recommended after every five simulations is evaluated on unseen seeds. The table says
+    after how many simulations 90 % and 95 % of the best known score are reached and held over three evaluations, and
+    the final score; it is printed, and written to the folder with a plot. A race that was interrupted goes on where it was.
 
     :param out: folder of the race; its run folders go there too
     :param algorithms: to compare
