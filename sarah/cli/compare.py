@@ -26,7 +26,8 @@ class CompareOptions:
 
     What a training would have recommended after every five simulations is evaluated on unseen seeds. The table says
     after how many simulations 90 % and 95 % of the best known score are reached and held over three evaluations, and
-    the final score; it is printed, and written to the folder with a plot. A race that was interrupted goes on where it was.
+    the final score; it is printed, and written to the folder with a plot. A race that was interrupted goes on where it
+    was.
 
     :param out: folder of the race; its run folders go there too
     :param algorithms: to compare
