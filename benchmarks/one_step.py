@@ -1,4 +1,4 @@
-"""What each part of NAF's preset for episodes of one step is worth: the preset with one part taken out at a time.
+"""What each part of NAF's preset for episodes of one step is worth, and what NAF and the paper's networks do without it.
 
 The task is a stand-in that costs nothing: five numbers, a reward with noise, a hill with its top beside a cliff, and a
 lower, wider hill elsewhere, both in other places for every seed. Judged is the agent's own best action, without noise.
@@ -39,7 +39,17 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "uniform warm-up": {"warmup_std": None},
     "one update per episode": {"gradient_steps": 1},
     "20 updates per episode": {"gradient_steps": 20},
-    "none of it: NAF's defaults": {},
+}
+PAPER = PRESETS["paper"]
+TANH = {"policy_kwargs": {**PAPER["policy_kwargs"], "activation_fn": torch.nn.Tanh}}
+UPDATES = {"gradient_steps": 5, "learning_starts": 30, "batch_size": 64}
+"""What the others spend on learning, for those that are not the preset."""
+PLAIN: dict[str, dict[str, Any]] = {
+    "NAF's defaults": {},
+    "the paper's preset": PAPER,
+    "the paper's preset with tanh": TANH,
+    "the one-step preset with the paper's networks": {**ONE_STEP, **PAPER},
+    "the same with tanh": {**ONE_STEP, **TANH},
 }
 
 
@@ -93,7 +103,10 @@ def learned(name: str, seed: int, episodes: int) -> list[float]:
     """Scores along one training."""
     torch.set_num_threads(1)
     env = Hills(seed)
-    settings = {"gamma": 0.0} if name.startswith("none") else {**ONE_STEP, **VARIANTS[name]}
+    if name in VARIANTS:
+        settings = {**ONE_STEP, **VARIANTS[name]}
+    else:
+        settings = {"gamma": 0.0, **UPDATES, **PLAIN[name]}
     watch = Watch(env)
     NAF("MlpPolicy", env, seed=seed, **settings).learn(episodes, callback=watch)
     return watch.scores
@@ -118,7 +131,7 @@ def main() -> None:
     with ProcessPoolExecutor(options.processes, get_context("spawn")) as pool:
         jobs = {
             name: [pool.submit(learned, name, seed, options.episodes) for seed in range(options.seeds)]
-            for name in VARIANTS
+            for name in (*VARIANTS, *PLAIN)
         }
         for name, running in jobs.items():
             curves = [job.result() for job in running]
