@@ -1,4 +1,4 @@
-"""What each part of NAF's preset for episodes of one step is worth, and what NAF and the paper's networks do without it.
+"""What each part of NAF's preset for episodes of one step is worth, and what the paper's networks do without it.
 
 The task is a stand-in that costs nothing: five numbers, a reward with noise, a hill with its top beside a cliff, and a
 lower, wider hill elsewhere, both in other places for every seed. Judged is the agent's own best action, without noise.
@@ -103,10 +103,7 @@ def learned(name: str, seed: int, episodes: int) -> list[float]:
     """Scores along one training."""
     torch.set_num_threads(1)
     env = Hills(seed)
-    if name in VARIANTS:
-        settings = {**ONE_STEP, **VARIANTS[name]}
-    else:
-        settings = {"gamma": 0.0, **UPDATES, **PLAIN[name]}
+    settings = {**ONE_STEP, **VARIANTS[name]} if name in VARIANTS else {"gamma": 0.0, **UPDATES, **PLAIN[name]}
     watch = Watch(env)
     NAF("MlpPolicy", env, seed=seed, **settings).learn(episodes, callback=watch)
     return watch.scores
