@@ -84,7 +84,8 @@ class NAF(OffPolicyAlgorithm):
     :param learning_rate: The learning rate, it can be a function
         of the current progress remaining (from 1 to 0)
     :param buffer_size: size of the replay buffer
-    :param learning_starts: how many steps of the model to collect transitions for before learning starts
+    :param learning_starts: how many steps of the model to collect transitions for before learning starts.
+        More than TD3's 100: NAF has one critic, and what it believes of few transitions its policy follows at once
     :param batch_size: Minibatch size for each gradient update
     :param tau: the soft update coefficient ("Polyak update", between 0 and 1)
     :param gamma: the discount factor
@@ -143,7 +144,7 @@ class NAF(OffPolicyAlgorithm):
         env: GymEnv | str,
         learning_rate: float | Schedule = 1e-3,
         buffer_size: int = 1_000_000,  # 1e6
-        learning_starts: int = 100,
+        learning_starts: int = 1000,
         batch_size: int = 256,
         tau: float = 0.005,
         gamma: float = 0.99,
