@@ -39,7 +39,7 @@ train: install  ## both trainings with NAF, figures, reports and robustness tabl
 	$(BIN)/sarah-eval $(RUN)/balance --robustness $(RUN)/figures --episodes $(PUSHES) --workers $(WORKERS)
 
 test: install  ## the tests
-	$(BIN)/python -m pytest -n 2 --dist loadfile -m 'not slow'
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m 'not slow'
 
 test-slow: install  ## the slow tests: minutes of simulation
 	$(BIN)/python -m pytest -m slow
