@@ -29,7 +29,7 @@ class QuadraticCritic(BaseModel):
 
     ``L`` is lower triangular with a positive diagonal, so ``L L^T`` is positive definite: ``mu`` is the best
     action and ``V`` its value, without a search. The three heads are separate networks on one features
-    extractor: with layers that they share, some seeds of Pendulum fail. Actions are scaled to [-1, 1]. The output
+    extractor: with layers that they share, more seeds of Pendulum fail. Actions are scaled to [-1, 1]. The output
     layer of ``mu`` starts at zero: an untrained critic proposes the centre of the action space whatever it observes.
 
     :param observation_space: Observation space
