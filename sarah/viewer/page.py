@@ -214,11 +214,13 @@ class Page:
             tick = self._shown.trace.tick_at(time)
             self._scene.show(tick)
             self._plots.show(time)
-            self._play_button.label = "Pause" if self._playback.is_playing else "Play"
             self.frames += 1
-            if self.frames % 3 == 0 or not self._playback.is_playing:
+            is_playing = self._playback.is_playing
+            if self.frames % 3 == 0 or not is_playing:
                 _set(self._time, round(time, 2))
                 self._status.content = _paragraph(*describe_tick(self._shown.trace, tick))
+            # Last, so that nothing overwrites the time that is typed in once "Play" stands there.
+            self._play_button.label = "Pause" if is_playing else "Play"
 
     def _show_progress(self, share: float) -> None:
         self._news.content = _paragraph(f"simulating: {share:.0%}")
