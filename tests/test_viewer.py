@@ -253,9 +253,9 @@ def go_to(page: Any, seconds: float) -> None:
 
     def typed_and_shown() -> bool:
         # Typed again if need be: a page that draws less than once a second loses what is typed between two drawings.
-        if field(page, "Time (s)").input_value() != str(seconds):
-            field(page, "Time (s)").fill(str(seconds))
-            field(page, "Time (s)").press("Enter")
+        field(page, "Time (s)").fill(str(seconds))
+        field(page, "Time (s)").press("Enter")
+        page.wait_for_timeout(2000)
         return abs(float(status.first.inner_text().split()[0]) - seconds) < 0.1
 
     eventually(typed_and_shown)

@@ -44,7 +44,9 @@ class CompareOptions:
     :param scheduler: address of a Dask scheduler whose workers train instead; they must share the folder
     """
 
-    out: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="DIR")] = None
+    out: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="DIR", help_behavior_hint="(required)")] = (
+        None
+    )
     algorithms: tuple[str, ...] = ALGORITHMS
     seeds: int = 5
     first_seed: int = 0

@@ -27,7 +27,9 @@ class FigureOptions:
     :param out: folder for the figures; by default the folder figures of the run, if it is only one
     """
 
-    runs: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="RUN...")] = ()
+    runs: Annotated[
+        tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="RUN...", help_behavior_hint="(required)")
+    ] = ()
     out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
 
 

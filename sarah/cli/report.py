@@ -28,7 +28,9 @@ class ReportOptions:
     :param workers: processes that simulate, on this machine; with none, this process does. They change no result
     """
 
-    run: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN")] = None
+    run: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN", help_behavior_hint="(required)")] = (
+        None
+    )
     out: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     episodes: int = 10
     seconds: Annotated[tuple[float, float], tyro.conf.arg(metavar="BEGIN END")] = (1.0, 9.0)

@@ -37,7 +37,9 @@ class TransferOptions:
     :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
     """
 
-    runs: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="RUN...")] = ()
+    runs: Annotated[
+        tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="RUN...", help_behavior_hint="(required)")
+    ] = ()
     out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     episodes: int = 20
     first_seed: int = 0

@@ -38,8 +38,12 @@ class VideoOptions:
     :param speed: 0.25 shows everything four times as slow
     """
 
-    subject: Annotated[str | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN|NUMBERS")] = None
-    out: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="OUT")] = None
+    subject: Annotated[
+        str | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN|NUMBERS", help_behavior_hint="(required)")
+    ] = None
+    out: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="OUT", help_behavior_hint="(required)")] = (
+        None
+    )
     episode: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
     seed: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
     stepping: Annotated[str | None, tyro.conf.arg(metavar="P1,P2,P3,P4,P5")] = None
