@@ -52,7 +52,7 @@ def test_engine_weighs_the_robot_as_it_is_described(lab: Laboratory, build: Buil
     assert lab.frictions(changed) == {0.8}
 
 
-@pytest.mark.parametrize("physics", PHYSICS)
+@pytest.mark.parametrize("physics", ["standard", pytest.param("reference", marks=pytest.mark.slow)])
 def test_standing_30_seconds_neither_drifts_nor_tilts(build: BuildSimulation, physics: str) -> None:
     """Measured: 0.4 mm, 0.03 degrees and 0.2 mm of height."""
     simulation = build(physics=PHYSICS[physics])
