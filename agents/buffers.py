@@ -1,4 +1,4 @@
-"""Replay buffer for tasks of one step, which draws good episodes more often than bad ones."""
+"""Replay buffer for tasks of one step, which draws good episodes more often than bad ones and knows the best action."""
 
 from typing import Any
 
@@ -8,6 +8,29 @@ from gymnasium import spaces
 from stable_baselines3.common.buffers import ReplayBuffer
 from stable_baselines3.common.type_aliases import ReplayBufferSamples
 from stable_baselines3.common.vec_env import VecNormalize
+
+DOUBT = 0.25
+"""Worthless transitions that every neighbourhood is thought to hold, so that single lucky ones do not win."""
+NEIGHBOURHOOD = 0.15
+"""Distance over which one transition says something of another's action, in scaled actions."""
+BEST_CANDIDATES = 100
+"""Transitions of the highest rewards, among which the best action is looked for."""
+
+
+def neighbourhood_means(at: np.ndarray, places: np.ndarray, values: np.ndarray, distance: float) -> np.ndarray:
+    """
+    Mean value around some places, by a Gaussian kernel, where little is known drawn towards 0.
+
+    :param at: Where to judge, of shape (m, dim)
+    :param places: Where values are known, of shape (n, dim)
+    :param values: The values there, not negative, of shape (n,)
+    :param distance: Standard deviation of the kernel
+    :return: Means of shape (m,)
+    """
+    squared_distances = np.square(at[:, None] - places).sum(axis=2)
+    weights = np.exp(-squared_distances / (2 * distance**2))
+    means: np.ndarray = weights @ values / (weights.sum(axis=1) + DOUBT)
+    return means
 
 
 def average_ranks(values: np.ndarray) -> np.ndarray:
@@ -107,3 +130,15 @@ class RankReplayBuffer(ReplayBuffer):
             self._probabilities = weights / weights.sum()
         batch_inds = np.random.choice(self.size(), size=batch_size, p=self._probabilities)
         return self._get_samples(batch_inds, env=env)
+
+    def best_action(self) -> np.ndarray:
+        """
+        The action around which rewards are highest, so that one lucky transition does not win.
+
+        :return: One of the stored scaled actions, of shape (action dim,)
+        """
+        actions, rewards = self.actions[: self.size(), 0], self.rewards[: self.size(), 0]
+        highest = np.argsort(-rewards, kind="stable")[:BEST_CANDIDATES]
+        means = neighbourhood_means(actions[highest], actions, rewards - rewards.min(), NEIGHBOURHOOD)
+        best: np.ndarray = actions[highest[np.argmax(means)]]
+        return best

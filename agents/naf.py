@@ -32,14 +32,15 @@ PRESETS: dict[str, dict[str, Any]] = {
     "one-step": dict(
         learning_rate=1e-3,
         buffer_size=10_000,
-        learning_starts=30,
+        learning_starts=15,
         batch_size=64,
         gamma=0.0,  # The reward is the return, also where a time limit ends the episode
-        gradient_steps=5,
+        gradient_steps=10,
         replay_buffer_class=RankReplayBuffer,
         replay_buffer_kwargs=dict(temperature=4.0),
         exploration_std=LinearSchedule(0.3, 0.05, end_fraction=0.8),
         warmup_std=0.5,
+        elite_share=LinearSchedule(0.8, 0.2, end_fraction=0.8),
         locality=0.4,
         policy_kwargs=dict(net_arch=[32, 32], activation_fn=nn.Tanh, lower_sees_action=True),
     ),
@@ -111,6 +112,10 @@ class NAF(OffPolicyAlgorithm):
     :param warmup_std: Standard deviation of the actions before ``learning_starts``, in scaled actions,
         around the centre of the action space and clipped to it. If ``None`` (default), they are uniform.
         Choose it where good actions lie away from the bounds.
+    :param elite_share: Share of the exploring actions that are drawn around the best action of the replay buffer
+        instead of around ``mu``, which a decoy may hold; it can be a function of the current progress remaining
+        (from 1 to 0). Needs a ``RankReplayBuffer``, which knows that action.
+    :param elite_std: Standard deviation of these actions, in scaled actions
     :param locality: Distance from ``mu``, in scaled actions, over which a transition's weight in the loss
         falls: ``exp(-|u - mu|^2 / (2 * locality^2)) + 0.02``. If ``None`` (default), all weigh the same.
         Choose it where the return is far from quadratic, and only what is near ``mu`` can be fitted.
@@ -158,6 +163,8 @@ class NAF(OffPolicyAlgorithm):
         max_grad_norm: float = 10.0,
         exploration_std: float | Schedule = 0.1,
         warmup_std: float | None = None,
+        elite_share: float | Schedule = 0.0,
+        elite_std: float = 0.2,
         locality: float | None = None,
         stats_window_size: int = 100,
         tensorboard_log: str | None = None,
@@ -197,6 +204,8 @@ class NAF(OffPolicyAlgorithm):
         self.max_grad_norm = max_grad_norm
         self.exploration_std = exploration_std
         self.warmup_std = warmup_std
+        self.elite_share = elite_share
+        self.elite_std = elite_std
         self.locality = locality
 
         if _init_setup_model:
@@ -209,6 +218,9 @@ class NAF(OffPolicyAlgorithm):
         self.batch_norm_stats = get_parameters_by_name(self.q_net, ["running_"])
         self.batch_norm_stats_target = get_parameters_by_name(self.q_net_target, ["running_"])
         self.exploration_schedule = FloatSchedule(self.exploration_std)
+        self.elite_share_schedule = FloatSchedule(self.elite_share)
+        if self.elite_share != 0.0 and not isinstance(self.replay_buffer, RankReplayBuffer):
+            raise ValueError(f"elite_share needs a RankReplayBuffer, not a {type(self.replay_buffer).__name__}")
 
     def _create_aliases(self) -> None:
         self.q_net = self.policy.q_net
@@ -228,7 +240,15 @@ class NAF(OffPolicyAlgorithm):
             std = self.exploration_schedule(self._current_progress_remaining)
             action_noise = NormalActionNoise(np.zeros(shape), np.full(shape, std))
             self.logger.record("train/exploration_std", std)
-        return super()._sample_action(learning_starts, action_noise, n_envs)
+        action, scaled_action = super()._sample_action(learning_starts, action_noise, n_envs)
+        elite_share = self.elite_share_schedule(self._current_progress_remaining)
+        if elite_share > 0 and self.num_timesteps >= max(learning_starts, 1):
+            best_action = self.replay_buffer.best_action().reshape(self.action_space.shape)  # type: ignore[union-attr]
+            elite = np.random.normal(best_action, self.elite_std, shape).clip(-1, 1).astype(np.float32)
+            is_elite = np.random.random((n_envs, *[1] * len(self.action_space.shape))) < elite_share
+            scaled_action = np.where(is_elite, elite, scaled_action)
+            action = self.policy.unscale_action(scaled_action)
+        return action, scaled_action
 
     def train(self, gradient_steps: int, batch_size: int = 100) -> None:
         """

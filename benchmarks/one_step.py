@@ -34,15 +34,18 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "ReLU instead of tanh": {"policy_kwargs": {**ONE_STEP["policy_kwargs"], "activation_fn": torch.nn.ReLU}},
     "noise stays at 0.3": {"exploration_std": 0.3},
     "noise of 0.05 from the start": {"exploration_std": 0.05},
-    "warm-up of 15": {"learning_starts": 15},
+    "nothing explored around the best": {"elite_share": 0.0},
+    "all explored around the best": {"elite_share": 1.0},
+    "warm-up of 30": {"learning_starts": 30},
     "warm-up of 0.3 around the centre": {"warmup_std": 0.3},
     "uniform warm-up": {"warmup_std": None},
     "one update per episode": {"gradient_steps": 1},
+    "five updates per episode": {"gradient_steps": 5},
     "20 updates per episode": {"gradient_steps": 20},
 }
 PAPER = PRESETS["paper"]
 TANH = {"policy_kwargs": {**PAPER["policy_kwargs"], "activation_fn": torch.nn.Tanh}}
-UPDATES = {"gradient_steps": 5, "learning_starts": 30, "batch_size": 64}
+UPDATES = {name: ONE_STEP[name] for name in ("gradient_steps", "learning_starts", "batch_size")}
 """What the others spend on learning, for those that are not the preset."""
 PLAIN: dict[str, dict[str, Any]] = {
     "NAF's defaults": {},

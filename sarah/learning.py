@@ -26,9 +26,8 @@ from sarah.tasks import TASKS, Task
 from sarah.vec_env import EpisodeVecEnv, LateRankReplayBuffer, LateReplayBuffer
 from sarah.workers import Executor, Job
 
-UPDATES_PER_SIMULATION = 5
 WARM_UP = 30
-"""Simulations before the agent learns; twice the slots, if that is more, so that it begins with as many outcomes."""
+"""Simulations before NAF's rivals learn; twice the slots, if that is more."""
 
 
 def learn(
@@ -80,15 +79,16 @@ def make_agent(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
     :param config: of the training
     :param env: to learn from
     """
-    common: dict[str, Any] = dict(
-        seed=spread_seed(config), gradient_steps=UPDATES_PER_SIMULATION, learning_starts=max(WARM_UP, 2 * config.slots)
-    )
+    warm_up = PRESETS["one-step"]["learning_starts"] if config.algo == "naf" else WARM_UP
+    # Learning begins with as many outcomes as are in flight.
+    common: dict[str, Any] = dict(seed=spread_seed(config), learning_starts=max(warm_up, 2 * config.slots))
     if config.algo == "naf":
         return NAF("MlpPolicy", env, **{**PRESETS["one-step"], "replay_buffer_class": LateRankReplayBuffer, **common})
     # Their defaults are for long episodes of small rewards; here the reward is the return.
     settings = dict(
         batch_size=64,
         gamma=0.0,
+        gradient_steps=PRESETS["one-step"]["gradient_steps"],
         policy_kwargs=dict(net_arch=[64, 64]),
         replay_buffer_class=LateReplayBuffer,
         **common,

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from sarah.agents.buffers import neighbourhood_means
 from sarah.evaluation import SMALLEST_CLEARANCE, SMALLEST_EVENT_SHARE
 
 Parameters = tuple[float, ...]
@@ -25,8 +26,6 @@ NEIGHBOURHOOD = 0.075
 """Distance over which one episode says something of another's parameters, as a share of their box's width."""
 DISTINCT = 0.1
 """Smallest distance between candidates, as such a share."""
-DOUBT = 0.25
-"""Episodes without merit that every neighbourhood is thought to hold, so that single lucky ones do not win."""
 
 
 def merit(info: Mapping[str, Any]) -> float:
@@ -77,7 +76,4 @@ def _neighbourhood_merits(
     if not tried:
         return np.zeros(len(parameters))
     places, merits = zip(*tried, strict=True)
-    differences = np.asarray(parameters)[:, None] - np.asarray(places)
-    weights = np.exp(-np.square(differences).sum(axis=2) / (2.0 * (NEIGHBOURHOOD * width) ** 2))
-    found: np.ndarray = weights @ np.asarray(merits) / (weights.sum(axis=1) + DOUBT)
-    return found
+    return neighbourhood_means(np.array(parameters), np.array(places), np.array(merits), NEIGHBOURHOOD * width)

@@ -13,6 +13,7 @@ import pytest
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 from sarah import learning, recommendation, training
+from sarah.agents import PRESETS
 from sarah.config import AGENTS, ALGORITHMS, EpisodeConfig, Physics, TrainingConfig
 from sarah.episode import EpisodeSpec, simulate
 from sarah.errors import LearningError, RunFolderError, TrainingInterruptedError
@@ -29,6 +30,7 @@ EPISODE = EpisodeConfig(time_limit=1.2, physics=Physics(rate=50, solver_iteratio
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
     """A training that learns from its sixth simulation on, compares two candidates, and evaluates on two seeds."""
     monkeypatch.setattr(learning, "WARM_UP", 6)
+    monkeypatch.setitem(PRESETS["one-step"], "learning_starts", 6)
     monkeypatch.setattr(training, "candidate_count", lambda simulations: 2)
     monkeypatch.setattr(training, "SIMULATIONS_PER_CANDIDATE", 2)
     monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
@@ -155,7 +157,7 @@ def test_a_training_that_does_not_repeat_is_not_resumed(whole: RunFolder, tmp_pa
         train(whole.config(), begun, interrupted=interrupted_after(20))
     before = {path.name: path.read_bytes() for path in begun.path.iterdir()}
     with pytest.MonkeyPatch.context() as monkeypatch:
-        monkeypatch.setattr(learning, "UPDATES_PER_SIMULATION", 4)
+        monkeypatch.setitem(PRESETS["one-step"], "gradient_steps", 4)
         with pytest.raises(RunFolderError, match="cannot be resumed here: it does not repeat"):
             train(whole.config(), begun)
     assert {path.name: path.read_bytes() for path in begun.path.iterdir()} == before

@@ -26,7 +26,7 @@ from sarah.tasks import BALANCE, STEPPING
 from sarah.training import train
 
 SHARES = ("event_driven_shift", "event_driven_lift")
-# Longer than the 30 simulations of warm-up, on episodes of one second of stepping.
+# Longer than the warm-up, on episodes of one second of stepping.
 SHORT = TrainingConfig(simulations=34, slots=1, seed=3, episode=EpisodeConfig(time_limit=2.0))
 
 

@@ -8,7 +8,7 @@ from stable_baselines3.common.noise import NormalActionNoise
 from stable_baselines3.common.utils import LinearSchedule
 from stable_baselines3.common.vec_env import DummyVecEnv
 
-from sarah.agents import NAF
+from sarah.agents import NAF, RankReplayBuffer
 
 
 class Recorder(gym.Env):
@@ -82,3 +82,40 @@ def test_gaussian_warm_up(n_envs):
 def test_uniform_warm_up():
     actions = explore(3000, learning_starts=3000, exploration_std=0.0)
     np.testing.assert_allclose(actions.std(axis=0), 1 / np.sqrt(3), rtol=0.05)
+
+
+class Target(Recorder):
+    """Rewards what is near (0.5, -0.5), in scaled actions."""
+
+    def step(self, action):
+        scaled = (action - [1.0, -1.0]) / [1.0, 2.0]
+        observation, _, *rest = super().step(action)
+        return observation, -float(np.abs(scaled - [0.5, -0.5]).sum()), *rest
+
+
+def elite_actions(steps: int, **kwargs) -> tuple[np.ndarray, np.ndarray]:
+    """Scaled actions of the warm-up and after it, by a model that is never trained; (steps, 2)."""
+    env = Target()
+    kwargs = dict(gradient_steps=0, seed=0, replay_buffer_class=RankReplayBuffer, exploration_std=0.0) | kwargs
+    NAF("MlpPolicy", env, learning_starts=30, **kwargs).learn(30 + steps)
+    actions = (np.array(env.actions) - [1.0, -1.0]) / [1.0, 2.0]
+    return actions[:30], actions[30:]
+
+
+def test_elite_actions_follow_the_best_of_the_replay_buffer():
+    _, after = elite_actions(300, elite_share=1.0, elite_std=0.1)
+    np.testing.assert_allclose(after[200:].mean(axis=0), [0.5, -0.5], atol=0.1)
+    np.testing.assert_allclose(after.std(axis=0), 0.1, rtol=0.5)
+    warm_up, after = elite_actions(1, elite_share=1.0, elite_std=0.0)
+    assert np.abs(warm_up - after).sum(axis=1).min() < 1e-6  # one of those that have been tried
+
+
+def test_the_other_actions_keep_to_mu():
+    _, after = elite_actions(1000, elite_share=0.7, elite_std=0.01)
+    share_at_mu = np.mean(np.abs(after).sum(axis=1) == 0.0)
+    assert share_at_mu == pytest.approx(0.3, abs=0.05)
+
+
+def test_elite_actions_need_a_buffer_that_knows_the_best():
+    with pytest.raises(ValueError, match="elite_share needs a RankReplayBuffer, not a ReplayBuffer"):
+        NAF("MlpPolicy", Recorder(), elite_share=0.5)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from stable_baselines3.common.utils import set_random_seed
 
 from sarah.agents import RankReplayBuffer
-from sarah.agents.buffers import average_ranks
+from sarah.agents.buffers import average_ranks, neighbourhood_means
 
 BOX = spaces.Box(-1, 1, (2,))
 
@@ -128,3 +128,24 @@ def test_time_limits_are_not_ends():
 def test_memory_optimisation_is_refused():
     with pytest.raises(NotImplementedError, match="optimize_memory_usage"):
         fill([], optimize_memory_usage=True)
+
+
+def test_the_best_action_is_the_one_among_good_ones():
+    rng = np.random.default_rng(0)
+    buffer = RankReplayBuffer(100, spaces.Box(-1, 1, (1,)), BOX, "cpu", 1)
+
+    def add(action, reward):
+        buffer.add(np.zeros((1, 1)), np.zeros((1, 1)), np.array([action]), np.array([reward]), np.ones(1), [{}])
+
+    add([-0.8, 0.8], 1.0)  # lucky, among bad ones
+    for _ in range(5):
+        add(rng.normal([-0.8, 0.8], 0.02), -1.0)
+        add(rng.normal([0.5, 0.5], 0.02), 0.7)
+    np.testing.assert_allclose(buffer.best_action(), [0.5, 0.5], atol=0.1)
+
+
+def test_neighbourhood_means_by_hand():
+    means = neighbourhood_means(np.array([[0.0], [3.0]]), np.array([[0.0], [0.2]]), np.array([1.0, 3.0]), distance=0.2)
+    weight = np.exp(-0.5)
+    assert means[0] == pytest.approx((1.0 + 3.0 * weight) / (1.25 + weight))
+    assert means[1] == pytest.approx(0.0, abs=1e-9)  # far from all
