@@ -146,6 +146,22 @@ BALANCE_EVAL = "sarah-eval --task balance --parameters 1,0,1,0"
         ("sarah-eval full/precious.txt", "run folder full/precious.txt does not exist"),
         ("sarah-compare full/precious.txt --seeds 1", "full/precious.txt"),
         ("sarah-figures full", "not the folder of a finished training"),
+        ("sarah-transfer full", "not the folder of a finished training"),
+        ("sarah-report nowhere", "run folder nowhere does not exist"),
+        ("sarah-video full out.mp4", "full"),
+        ("sarah-video 1,1,1,1,1 out.txt", "out.txt"),
+        ("sarah-video 1,1,1,1,1 nowhere/out.mp4", "nowhere"),
+        # The page
+        ("sarah-view full", "full"),
+        ("sarah-view nowhere", "nowhere is neither a run folder nor numbers separated by commas"),
+        ("sarah-view 1,1", "parameters must be 5 numbers (P1 to P5) or 4 numbers (V1 to V4), not 2"),
+        ("sarah-view 1,1,1,1,3", "P5 must be between 0 and 2, not 3"),
+        ("sarah-view --port 0", "port must be between 1 and 65535, not 0"),
+        ("sarah-view --seed -1", "seed must be a whole number from 0, not -1"),
+        ("sarah-view --engine mujocco", "unknown engine 'mujocco', did you mean 'mujoco'?"),
+        ("sarah-view --host 203.0.113.1", "cannot serve a page at '203.0.113.1'"),
+        ("sarah-view --export full", "cannot write full: it is a folder"),
+        ("sarah-view --export nowhere/out.html", "cannot write nowhere/out.html: folder nowhere does not exist"),
     ],
 )
 def test_command_lines(line: str, message: str, answer: Callable[[str], str], tmp_path: Path) -> None:

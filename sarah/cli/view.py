@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.options import episodes_of, parse_options, run_command
+from sarah.cli.options import episodes_of, parse_options, run_command, with_engine
 from sarah.config import TRAINED_STEPPING
+from sarah.engines import check_engine
 from sarah.errors import ConfigurationError
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ class ViewOptions:
     :param episode: of a run: ``learned`` for its learned parameters, ``best``, or the index of a simulation in its
         episodes.csv; by default what it learned
     :param seed: of the episode: robot, sensors and push vary with it; by default the simulation's own, or 0
+    :param engine: of the physics, ``pybullet`` or ``mujoco``; by default the run's own
     :param export: write the episode into this one HTML file, which needs no server, and show no page
     :param host: address to serve the page at. Whoever reaches another one than 127.0.0.1 can use the page, as there is
         no password
@@ -45,6 +47,7 @@ class ViewOptions:
     )
     episode: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
     seed: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
+    engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
     export: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     host: str = "127.0.0.1"
     port: int = DEFAULT_PORT
@@ -65,6 +68,9 @@ def _view(arguments: Sequence[str]) -> None:
     if find_spec("viser") is None:
         raise ConfigurationError("this needs the extra view: pip install 'sarah[view]'")
     choices, chosen = episodes_of(options.subject, options.episode)
+    if options.engine is not None:
+        choices, chosen = [_in_engine(choice, options.engine) for choice in choices], _in_engine(chosen, options.engine)
+    check_engine(chosen.spec.config.engine)
     if options.seed is not None:
         spec = dataclasses.replace(chosen.spec, seed=options.seed)
         chosen = dataclasses.replace(chosen, label=f"{chosen.label}, with seed {spec.seed}", spec=spec, score=None)
@@ -73,6 +79,13 @@ def _view(arguments: Sequence[str]) -> None:
         _export(options.export, chosen)
     else:
         _serve(options, choices, chosen)
+
+
+def _in_engine(choice: Choice, engine: str) -> Choice:
+    """The same episode in a physics engine; another one's score is not the run's."""
+    config = with_engine(choice.spec.config, engine)
+    spec = dataclasses.replace(choice.spec, config=config)
+    return dataclasses.replace(choice, spec=spec, score=choice.score if spec == choice.spec else None)
 
 
 def _export(path: Path, chosen: Choice) -> None:
