@@ -14,6 +14,7 @@ from typing import Any
 
 import matplotlib.image
 import numpy as np
+import psutil
 import pytest
 
 from sarah.choices import ENDINGS, choices_of_run, choose
@@ -29,6 +30,7 @@ from sarah.viewer.background import BackgroundSimulation, Wish
 from sarah.viewer.playback import Playback
 from sarah.viewer.scenario import KnownPush, Scenario
 from sarah.viewer.scene import channels, describe_tick
+from sarah.viewer.server import serving
 
 BIN = Path(sys.executable).parent
 CONFIG = EpisodeConfig(time_limit=6.0, push=Push(newtons=(40.0, 60.0), at_seconds=(2.0, 3.0)))
@@ -146,6 +148,17 @@ def test_the_newest_wish_is_simulated_and_the_one_before_it_given_up() -> None:
     simulation.request(Wish(new, lambda result: (done.append(result), finished.set())))  # type: ignore[func-returns-value]
     assert finished.wait(60.0)
     assert done == [simulate(new)]
+
+
+def test_the_page_is_served_to_this_machine_only() -> None:
+    with serving(view.ViewOptions().host, view.DEFAULT_PORT) as server:
+        listening = [
+            connection.laddr
+            for connection in psutil.Process().net_connections()
+            if connection.status == psutil.CONN_LISTEN
+        ]
+        assert {address.ip for address in listening} == {"127.0.0.1"}
+        assert server.get_port() in {address.port for address in listening}
 
 
 def test_without_the_extra_the_command_says_what_to_install(
