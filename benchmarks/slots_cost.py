@@ -6,10 +6,11 @@ import argparse
 import os
 from pathlib import Path
 from statistics import mean, median
+from typing import get_args
 
 from trainings import learned
 
-from sarah.config import EpisodeConfig, TrainingConfig
+from sarah.config import Engine, EpisodeConfig, TrainingConfig
 from sarah.learning import WARM_UP
 from sarah.runs import RunFolder
 from sarah.training import evaluate
@@ -22,6 +23,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--simulations", type=int, default=99, help="below 100, which has no closing comparison")
     parser.add_argument("--seconds", type=float, default=10.0, help="of each episode")
+    parser.add_argument("--engine", choices=get_args(Engine), default="pybullet")
     parser.add_argument("--runs", type=Path, default=Path("runs/slots"))
     options = parser.parse_args()
     print("| slots | score while learning | of the agent's choice | lowest seed |\n|---|---|---|---|")
@@ -29,7 +31,7 @@ def main() -> None:
         for slots in options.slots:
             learning, final = [], []
             for seed in range(options.seeds):
-                episode = EpisodeConfig(time_limit=options.seconds)
+                episode = EpisodeConfig(time_limit=options.seconds, engine=options.engine)
                 config = TrainingConfig(simulations=options.simulations, seed=seed, slots=slots, episode=episode)
                 path = options.runs / f"slots{slots}-s{seed}"
                 parameters = learned(config, path, workers)
