@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
@@ -13,6 +13,9 @@ from sarah.errors import ConfigurationError, SimulationError, unknown_name
 from sarah.sensors import SensorReading
 from sarah.simulator import GRAVITY
 from sarah.tasks import TASKS, Task
+
+if TYPE_CHECKING:
+    from sarah.renderer import Renderer
 
 FIRST_TRAINING_SEED = 2**31
 """Episode seeds that the environments draw start here, so that smaller ones stay unseen by every training."""
@@ -48,6 +51,7 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         self.config = config or EpisodeConfig()
         self.render_mode = render_mode
         self._episode: Episode | None = None
+        self._renderer: Renderer | None = None
         self._seed = 0
 
     def reset(
@@ -60,7 +64,7 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         :param options: none are known
         """
         super().reset(seed=seed)
-        self.close()
+        self._close_episode()
         self._seed = draw_seed(self.np_random)
         self._episode = Episode(self.config, self._seed, self.task)
         return observation_from(self._episode.stand()), {"seed": self._seed}
@@ -85,10 +89,20 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         """
         if self.render_mode is None or self._episode is None:
             return None
-        return self._episode.simulation.render()
+        if self._renderer is None:
+            from sarah.renderer import Renderer
+
+            self._renderer = Renderer(self._episode.robot)
+        return self._renderer.draw_simulator(self._episode.simulation)
 
     def close(self) -> None:
         """Give the physics engine's resources back."""
+        self._close_episode()
+        if self._renderer is not None:
+            self._renderer.close()
+            self._renderer = None
+
+    def _close_episode(self) -> None:
         if self._episode is not None:
             self._episode.close()
             self._episode = None

@@ -8,7 +8,6 @@ from __future__ import annotations
 import copy
 import math
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -17,10 +16,7 @@ from sarah.config import PHYSICS, Physics
 from sarah.description import ACTUATED_JOINTS, PASSIVE_JOINTS, PLATES, SIDES, RobotDescription
 from sarah.randomisation import NOMINAL, Conditions
 from sarah.sensors import SensorReading, Vector
-from sarah.simulator import GRAVITY, STANDARD_CAMERA, Camera, TorsoState, rotate_to_body, specific_force
-
-if TYPE_CHECKING:
-    from sarah.renderer import Renderer
+from sarah.simulator import GRAVITY, TorsoState, rotate_to_body, specific_force
 
 CONTACT_STEPS = 0.5
 """Time constant in which a contact stops what comes towards it, in physics steps."""
@@ -58,7 +54,6 @@ class MujocoSimulation:
         self.time = 0.0
         self._dt = physics.control_dt
         self._substeps = physics.rate // physics.control_rate
-        self._renderer: Renderer | None = None
         self._model = copy.copy(_compiled(robot.urdf, physics.rate, physics.solver_iterations))
         self._data = mujoco.MjData(self._model)
         self._apply_conditions(physics, conditions)
@@ -225,24 +220,8 @@ class MujocoSimulation:
         heights = self._data.geom_xpos[:, 2].tolist()
         return min([heights[sole] for sole in self._feet[side]]) - self.robot.contact_radius
 
-    def render(self, width: int = 640, height: int = 480, camera: Camera = STANDARD_CAMERA) -> np.ndarray:
-        """Draw the robot as it stands, by the same renderer as for every engine.
-
-        :param width: of the picture, in pixels
-        :param height: of the picture, in pixels
-        :param camera: where to look from
-        :return: uint8 array of shape (height, width, 3)
-        """
-        if self._renderer is None:
-            from sarah.renderer import Renderer
-
-            self._renderer = Renderer(self.robot)
-        return self._renderer.draw_simulator(self, width, height, camera)
-
     def close(self) -> None:
         """Give back what pictures took."""
-        if self._renderer is not None:
-            self._renderer.close()
 
 
 def _sole(side: str, plate: str, index: int) -> str:

@@ -10,9 +10,9 @@ from PIL import Image
 
 from sarah.bullet import give_back_client, load_robot, pybullet, take_client
 from sarah.description import ACTUATED_JOINTS, PASSIVE_JOINTS, PLATES, SIDES, RobotDescription
-from sarah.scenery import View, floor, shaded
+from sarah.scenery import STANDARD_CAMERA, Camera, View, floor, shaded
 from sarah.sensors import Vector
-from sarah.simulator import STANDARD_CAMERA, Camera, Simulator
+from sarah.simulator import Simulator
 
 MARGIN = 0.05
 """Around the corners of torso and feet, in m, within which all of the robot lies; nothing else is drawn."""
@@ -131,7 +131,9 @@ class Renderer:
         finer = behind.repeat(samples, axis=0).repeat(samples, axis=1)
         return np.asarray(Image.fromarray(np.where(is_robot, colours, finer)).reduce(samples))
 
-    def draw_simulator(self, simulator: Simulator, width: int, height: int, camera: Camera) -> np.ndarray:
+    def draw_simulator(
+        self, simulator: Simulator, width: int = 640, height: int = 480, camera: Camera = STANDARD_CAMERA
+    ) -> np.ndarray:
         """Draw a simulator's robot as it stands.
 
         :param simulator: of any engine

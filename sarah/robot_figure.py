@@ -16,8 +16,7 @@ from sarah.colours import LEFT, RIGHT
 from sarah.description import GROUPS, JOINT_AXES, JOINT_TYPES, PASSIVE_JOINTS, RobotDescription
 from sarah.print_style import COLUMN_WIDTH, STYLE, save
 from sarah.renderer import Renderer
-from sarah.scenery import View
-from sarah.simulator import Camera
+from sarah.scenery import Camera, View
 
 CAMERA = Camera(height=0.46, distance=2.3, yaw=152.0, pitch=-9.0)
 HEIGHT = 1.3 * COLUMN_WIDTH

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFilter
-
-from sarah.simulator import Camera
 
 FIELD_OF_VIEW = math.radians(35.0)
 """Of the camera, from the picture's lower to its upper edge."""
@@ -24,6 +23,24 @@ SHADOW_BLUR = 0.004
 """Of a picture's height."""
 SAMPLES = 2
 """Of the floor, along each side of a pixel."""
+
+
+class Camera(NamedTuple):
+    """Where a picture is taken from: it looks at a point above where the robot starts, and stands still.
+
+    :param height: of the point over the floor, in m
+    :param distance: from it, in m
+    :param yaw: in degrees; 180 looks at the robot from its front
+    :param pitch: in degrees; negative looks down
+    """
+
+    height: float = 0.48
+    distance: float = 2.0
+    yaw: float = 162.0
+    pitch: float = -7.0
+
+
+STANDARD_CAMERA = Camera()
 
 
 class View:

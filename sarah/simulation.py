@@ -9,15 +9,12 @@ from __future__ import annotations
 import math
 from itertools import product
 
-import numpy as np
-
 from sarah.bullet import give_back_client, load_robot, pybullet, take_client
 from sarah.config import PHYSICS, Physics
 from sarah.description import ACTUATED_JOINTS, PASSIVE_JOINTS, PLATES, SIDES, RobotDescription
 from sarah.randomisation import NOMINAL, Conditions
-from sarah.renderer import Renderer
 from sarah.sensors import SensorReading, Vector
-from sarah.simulator import GRAVITY, STANDARD_CAMERA, Camera, TorsoState, rotate_to_body, specific_force
+from sarah.simulator import GRAVITY, TorsoState, rotate_to_body, specific_force
 
 CONTACT_SECONDS = 0.004
 """Time in which contacts push errors of position back to 1/e. PyBullet takes a share per physics step instead; with the
@@ -45,7 +42,6 @@ class Simulation:
         self._dt = physics.control_dt
         self._substeps = physics.rate // physics.control_rate
         self._client = take_client()
-        self._renderer: Renderer | None = None
         try:
             self._build(physics, conditions)
         except BaseException:
@@ -237,22 +233,8 @@ class Simulation:
                 lowest = min(lowest, height)
         return lowest - self.robot.contact_radius
 
-    def render(self, width: int = 640, height: int = 480, camera: Camera = STANDARD_CAMERA) -> np.ndarray:
-        """Draw the robot as it stands, by PyBullet's software renderer.
-
-        :param width: of the picture, in pixels
-        :param height: of the picture, in pixels
-        :param camera: where to look from
-        :return: uint8 array of shape (height, width, 3)
-        """
-        if self._renderer is None:
-            self._renderer = Renderer(self.robot)
-        return self._renderer.draw_simulator(self, width, height, camera)
-
     def close(self) -> None:
         """Give PyBullet's clients back; the simulation cannot be used any more."""
         if self._client >= 0:
             give_back_client(self._client)
             self._client = -1
-        if self._renderer is not None:
-            self._renderer.close()

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple, Protocol
 
-import numpy as np
-
 from sarah.sensors import SensorReading, Vector
 
 GRAVITY = 9.81
@@ -45,24 +43,6 @@ class TorsoState(NamedTuple):
         """Whether the physics engine still returns numbers that a robot's state can have."""
         position, orientation, velocity, angular_velocity = self
         return math.hypot(*position, *orientation, *velocity, *angular_velocity) < LARGEST_STATE
-
-
-class Camera(NamedTuple):
-    """Where a picture is taken from: it looks at a point above where the robot starts, and stands still.
-
-    :param height: of the point over the floor, in m
-    :param distance: from it, in m
-    :param yaw: in degrees; 180 looks at the robot from its front
-    :param pitch: in degrees; negative looks down
-    """
-
-    height: float = 0.48
-    distance: float = 2.0
-    yaw: float = 162.0
-    pitch: float = -7.0
-
-
-STANDARD_CAMERA = Camera()
 
 
 class Simulator(Protocol):
@@ -106,15 +86,6 @@ class Simulator(Protocol):
         """Height of a foot's lowest sole contact over the floor, in m.
 
         :param side: ``"left"`` or ``"right"``
-        """
-
-    def render(self, width: int = 640, height: int = 480, camera: Camera = STANDARD_CAMERA) -> np.ndarray:
-        """Draw the robot as it stands.
-
-        :param width: of the picture, in pixels
-        :param height: of the picture, in pixels
-        :param camera: where to look from
-        :return: uint8 array of shape (height, width, 3)
         """
 
     def close(self) -> None:

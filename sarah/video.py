@@ -14,8 +14,7 @@ from sarah.description import ACTUATED_JOINTS, PASSIVE_JOINTS, RobotDescription
 from sarah.errors import ConfigurationError
 from sarah.overlay import Overlay
 from sarah.renderer import Renderer
-from sarah.scenery import View
-from sarah.simulator import STANDARD_CAMERA, Camera
+from sarah.scenery import STANDARD_CAMERA, Camera, View
 from sarah.trace import Trace
 
 SUFFIXES = (".mp4", ".gif")

@@ -18,7 +18,7 @@ from sarah.pattern_generator import PAPER_PARAMETERS
 from sarah.randomisation import draw_conditions, draw_push
 from sarah.reward import highest_return, reward_rate
 from sarah.sensors import SensorReading
-from sarah.simulator import STANDARD_CAMERA, Camera, TorsoState
+from sarah.simulator import TorsoState
 from sarah.tasks import BALANCE
 
 CONTROL_DT = PHYSICS["standard"].control_dt
@@ -282,9 +282,6 @@ class NoPhysics:
 
     def sole_height(self, side: str) -> float:
         return 0.0
-
-    def render(self, width: int = 1, height: int = 1, camera: Camera = STANDARD_CAMERA) -> np.ndarray:
-        return np.zeros((height, width, 3), np.uint8)
 
     def close(self) -> None:
         self.closed = True

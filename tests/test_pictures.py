@@ -7,8 +7,7 @@ import pytest
 
 from sarah.description import GROUPS, RobotDescription, describe_robot
 from sarah.renderer import Renderer
-from sarah.scenery import View, floor
-from sarah.simulator import STANDARD_CAMERA, Camera
+from sarah.scenery import STANDARD_CAMERA, Camera, View, floor
 
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 SIZE = (320, 240)

@@ -12,6 +12,7 @@ from sarah.config import PHYSICS, Physics
 from sarah.description import ACTUATED_JOINTS, GROUPS, PASSIVE_JOINTS, SIDES, describe_robot
 from sarah.engines import simulator_of
 from sarah.randomisation import LINKS, NOMINAL, Conditions
+from sarah.renderer import Renderer
 from sarah.simulator import GRAVITY, Simulator, rotate_to_body
 
 SECOND = PHYSICS["standard"].control_rate
@@ -256,7 +257,8 @@ def test_two_simulations_repeat_bit_for_bit(build: BuildSimulation) -> None:
 
 
 def test_picture_shows_the_robot(build: BuildSimulation) -> None:
-    picture = build().render(160, 120)
+    simulation = build()
+    picture = Renderer(simulation.robot).draw_simulator(simulation, 160, 120)
     assert picture.shape == (120, 160, 3) and picture.dtype == np.uint8
     red, _, blue = picture.reshape(-1, 3).astype(int).T
     right_leg, left_leg = (red > blue + 60).sum(), (blue > red + 60).sum()
