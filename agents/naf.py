@@ -20,7 +20,8 @@ from torch import nn
 from torch.optim.swa_utils import get_ema_multi_avg_fn
 
 from sarah.agents.buffers import RankReplayBuffer
-from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy, NAFPolicy, QuadraticCritic
+from sarah.agents.critic import QuadraticCritic
+from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy, NAFPolicy
 
 SelfNAF = TypeVar("SelfNAF", bound="NAF")
 

@@ -10,7 +10,8 @@ from stable_baselines3.common.utils import ConstantSchedule
 from torch import nn
 
 from sarah.agents.naf import locality_weights
-from sarah.agents.policies import MlpPolicy, QuadraticCritic
+from sarah.agents.critic import QuadraticCritic
+from sarah.agents.policies import MlpPolicy
 
 OBS_DIM = 4
 
