@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from stable_baselines3.common.utils import ConstantSchedule
 from torch import nn
 
-from sarah.agents.naf import locality_weights
 from sarah.agents.critic import QuadraticCritic
+from sarah.agents.naf import locality_weights
 from sarah.agents.policies import MlpPolicy
 
 OBS_DIM = 4

@@ -1,0 +1,132 @@
+"""Action value of NAF: the networks V, mu and L."""
+
+import torch as th
+from gymnasium import spaces
+from stable_baselines3.common.policies import BaseModel
+from stable_baselines3.common.preprocessing import get_action_dim
+from stable_baselines3.common.torch_layers import BaseFeaturesExtractor, create_mlp
+from stable_baselines3.common.type_aliases import PyTorchObs
+from torch import nn
+
+LOG_DIAGONAL_MIN = -5.0
+LOG_DIAGONAL_MAX = 5.0
+
+
+class QuadraticCritic(BaseModel):
+    r"""
+    Action value that is quadratic in the action (Gu et al. 2016, https://arxiv.org/abs/1603.00748):
+
+    .. math:: Q(s, u) = V(s) - \frac{1}{2} (u - \mu(s))^T L(s) L(s)^T (u - \mu(s))
+
+    ``L`` is lower triangular with a positive diagonal, so ``L L^T`` is positive definite: ``mu`` is the best
+    action and ``V`` its value, without a search. The three heads are separate networks on one features
+    extractor: with layers that they share, more seeds of Pendulum fail. Actions are scaled to [-1, 1]. The output
+    layer of ``mu`` starts at zero: an untrained critic proposes the centre of the action space whatever it observes.
+
+    :param observation_space: Observation space
+    :param action_space: Action space
+    :param features_extractor: Network to extract features
+        (a CNN when using images, a nn.Flatten() layer otherwise)
+    :param features_dim: Number of features
+    :param net_arch: Hidden layers of each head, by name: ``V``, ``mu`` and ``L``
+    :param activation_fn: Activation function
+    :param normalize_images: Whether to normalize images or not,
+         dividing by 255.0 (True by default)
+    :param squash_mu: Whether ``mu`` ends in a tanh; if not, it is linear and may leave [-1, 1]
+    :param lower_sees_action: Whether ``L`` also reads the action, see :class:`NAFPolicy`
+    """
+
+    action_space: spaces.Box
+    features_extractor: BaseFeaturesExtractor
+    rows: th.Tensor
+    columns: th.Tensor
+    in_column: th.Tensor
+    is_diagonal: th.Tensor
+
+    def __init__(
+        self,
+        observation_space: spaces.Space,
+        action_space: spaces.Box,
+        features_extractor: BaseFeaturesExtractor,
+        features_dim: int,
+        net_arch: dict[str, list[int]],
+        activation_fn: type[nn.Module] = nn.ReLU,
+        normalize_images: bool = True,
+        squash_mu: bool = True,
+        lower_sees_action: bool = False,
+    ) -> None:
+        super().__init__(
+            observation_space,
+            action_space,
+            features_extractor=features_extractor,
+            normalize_images=normalize_images,
+        )
+        self.lower_sees_action = lower_sees_action
+
+        action_dim = get_action_dim(action_space)
+        rows, columns = th.tril_indices(action_dim, action_dim)
+        # Where in L its entries are, row by row
+        self.register_buffer("rows", rows, persistent=False)
+        self.register_buffer("columns", columns, persistent=False)
+        self.register_buffer("in_column", nn.functional.one_hot(columns, action_dim).float(), persistent=False)
+        self.register_buffer("is_diagonal", rows == columns, persistent=False)
+
+        lower_input_dim = features_dim + action_dim * lower_sees_action
+        self.value_net = nn.Sequential(*create_mlp(features_dim, 1, net_arch["V"], activation_fn))
+        self.mu_net = nn.Sequential(*create_mlp(features_dim, action_dim, net_arch["mu"], activation_fn, squash_mu))
+        self.lower_net = nn.Sequential(*create_mlp(lower_input_dim, len(rows), net_arch["L"], activation_fn))
+
+        mu_output = [layer for layer in self.mu_net if isinstance(layer, nn.Linear)][-1]
+        nn.init.zeros_(mu_output.weight)
+        nn.init.zeros_(mu_output.bias)
+
+    def forward(self, obs: PyTorchObs, actions: th.Tensor) -> tuple[th.Tensor, th.Tensor]:
+        """
+        Value of actions, and the best actions, which a loss may want too.
+
+        :param obs: Observations
+        :param actions: Actions, scaled to [-1, 1], of shape (batch, action dim)
+        :return: ``Q`` of shape (batch, 1) and ``mu`` of shape (batch, action dim)
+        """
+        features = self.extract_features(obs, self.features_extractor)
+        mu = self.mu_net(features)
+        # (u - mu)^T L L^T (u - mu) is the squared length of the row (u - mu)^T L, summed without building L
+        projected = ((actions - mu).index_select(1, self.rows) * self._entries(features, actions)) @ self.in_column
+        advantage = -0.5 * projected.square().sum(dim=1, keepdim=True)
+        return self.value_net(features) + advantage, mu
+
+    def value(self, obs: PyTorchObs) -> th.Tensor:
+        """
+        Value of the best action, the maximum of ``Q`` over the actions.
+
+        :param obs: Observations
+        :return: ``V`` of shape (batch, 1)
+        """
+        return self.value_net(self.extract_features(obs, self.features_extractor))
+
+    def mu(self, obs: PyTorchObs) -> th.Tensor:
+        """
+        Best actions, where ``Q`` has its maximum.
+
+        :param obs: Observations
+        :return: ``mu`` of shape (batch, action dim), scaled so that the action space is [-1, 1]
+        """
+        return self.mu_net(self.extract_features(obs, self.features_extractor))
+
+    def lower(self, obs: PyTorchObs, actions: th.Tensor) -> th.Tensor:
+        """
+        Matrix ``L``, filled row by row, its diagonal the exponential of a clamped output.
+
+        :param obs: Observations
+        :param actions: Scaled actions, which count only if ``lower_sees_action``
+        :return: ``L`` of shape (batch, action dim, action dim)
+        """
+        lower = actions.new_zeros(*actions.shape, actions.shape[1])
+        features = self.extract_features(obs, self.features_extractor)
+        lower[:, self.rows, self.columns] = self._entries(features, actions)
+        return lower
+
+    def _entries(self, features: th.Tensor, actions: th.Tensor) -> th.Tensor:
+        inputs = th.cat([features, actions], dim=1) if self.lower_sees_action else features
+        outputs = self.lower_net(inputs)
+        return th.where(self.is_diagonal, outputs.clamp(LOG_DIAGONAL_MIN, LOG_DIAGONAL_MAX).exp(), outputs)
