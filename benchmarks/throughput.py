@@ -75,12 +75,14 @@ def bare_loop(physics: Physics, limit: float, targets: list[tuple[float, ...]]) 
 
 def loops(limit: float, rounds: int) -> dict[str, float]:
     """Every round measures everything once; ratios are medians of the rounds' ratios."""
-    targets = commands(Physics(), limit)
+    standard, reference = Physics(), PHYSICS["reference"]
+    targets, reference_targets = commands(standard, limit), commands(reference, limit)
     measured = [
         {
-            "closed": closed_loop(Physics(), limit),
-            "bare": bare_loop(Physics(), limit, targets),
-            "reference": closed_loop(PHYSICS["reference"], limit),
+            "closed": closed_loop(standard, limit),
+            "bare": bare_loop(standard, limit, targets),
+            "reference": closed_loop(reference, limit),
+            "bare_reference": bare_loop(reference, limit, reference_targets),
             "former": closed_loop(FORMER_START, limit),
         }
         for _ in range(rounds)
@@ -94,6 +96,7 @@ def loops(limit: float, rounds: int) -> dict[str, float]:
         "bare_times_real_time": median(one["bare"] for one in measured),
         "reference_times_real_time": median(one["reference"] for one in measured),
         "closed_loop_over_bare": ratio("closed", "bare"),
+        "closed_loop_over_bare_at_reference": ratio("reference", "bare_reference"),
         "default_over_reference": ratio("closed", "reference"),
         "default_over_500_hz_30_iterations": ratio("closed", "former"),
     }
