@@ -8,7 +8,6 @@ BALANCE_SECONDS ?= 10
 BALANCE_NEWTONS ?= 75 125
 PUSHES ?= 8
 WORKERS ?= $(shell nproc)
-# What the package ships came from seed 1.
 SEED ?= 1
 RUN ?= runs/$(shell date +%Y%m%d-%H%M%S)
 

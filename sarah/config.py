@@ -41,7 +41,7 @@ PLAUSIBLE: dict[str, tuple[float, float, str]] = {
 """Of randomisation and push: lowest and highest value that a robot or a push can have, and its unit. Beyond, somebody
 has mistaken the unit."""
 TRAINED_STEPPING = (0.41, 0.52, 0.62, 1.17, 1.37)
-"""P1 to P5 that the balance task keeps unless others are given: what NAF learned from seed 1, to two digits."""
+"""P1 to P5 that the balance task keeps unless others are given: what NAF learned once, to two digits."""
 
 AGENTS = ("naf", "td3", "sac", "ddpg")
 """Learn by reinforcement, with networks."""
