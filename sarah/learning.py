@@ -11,7 +11,6 @@ from stable_baselines3 import DDPG, SAC, TD3
 from stable_baselines3.common.noise import NormalActionNoise
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from stable_baselines3.common.vec_env import VecEnv
-from tqdm import tqdm
 
 from sarah.agents.naf import NAF, PRESETS
 from sarah.config import SEARCHERS, Randomisation, TrainingConfig
@@ -36,7 +35,6 @@ def learn(
     run: RunFolder,
     recorder: EpisodeRecorder,
     workers: Executor,
-    progress_bar: bool,
 ) -> Parameters:
     """Learn by what the configuration names.
 
@@ -45,11 +43,10 @@ def learn(
     :param run: where an agent is saved
     :param recorder: of the simulations
     :param workers: that simulate
-    :param progress_bar: whether to show one
     :return: what the algorithm itself would choose in the end
     """
     if config.algo in SEARCHERS:
-        return _search(config, simulations, recorder, workers, progress_bar)
+        return _search(config, simulations, recorder, workers)
     env = EpisodeVecEnv(config.task, config.episode, simulations, config.slots, workers)
     model = make_agent(config, env)
     model.set_logger(recorder.log)
@@ -60,7 +57,6 @@ def learn(
         simulations + config.slots - 1,
         callback=recorder,
         log_interval=None,  # type: ignore[arg-type]
-        progress_bar=progress_bar,
     )
     check_weights(model)
     with replacing(run.model_path) as file:
@@ -124,16 +120,14 @@ def chosen_parameters(model: OffPolicyAlgorithm, observation: np.ndarray, task: 
     return parameters_from(action, task)
 
 
-def _search(
-    config: TrainingConfig, simulations: int, recorder: EpisodeRecorder, workers: Executor, progress_bar: bool
-) -> Parameters:
+def _search(config: TrainingConfig, simulations: int, recorder: EpisodeRecorder, workers: Executor) -> Parameters:
     """Let a black-box optimiser try parameters, as many in flight as there are slots; its choice is returned."""
     task = TASKS[config.task]
     searcher = make_searcher(config.algo, len(task.parameter_names), spread_seed(config))
     generator = np.random.default_rng(spread_seed(config))
     recorder.choose = lambda: parameters_from(searcher.choice(), task)
     running: deque[tuple[np.ndarray, EpisodeSpec, Job]] = deque()
-    for _ in tqdm(range(simulations), disable=not progress_bar):
+    for _ in range(simulations):
         while len(running) == config.slots or not searcher.ready():
             _tell_oldest(running, searcher, recorder)
         action = searcher.ask()

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, NoReturn
 
 import torch
 from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import KVWriter, Logger
+from tqdm import tqdm
 
 from sarah.curves import LEARNED, LearningCurves
 from sarah.errors import LearningError
@@ -43,6 +44,7 @@ class EpisodeRecorder(BaseCallback):
     :param run: where to
     :param task: whose parameters they are
     :param journal: of the training
+    :param progress: bar that every simulation moves
     :param picture_interval: simulations between pictures, for TensorBoard, of what would be chosen; 0 for none
     """
 
@@ -56,7 +58,9 @@ class EpisodeRecorder(BaseCallback):
     """Tells what the algorithm would choose now; while there is such a thing, what a training would recommend is noted
     in ``choices.csv``."""
 
-    def __init__(self, run: RunFolder, task: Task, journal: Journal, picture_interval: int = 0) -> None:
+    def __init__(
+        self, run: RunFolder, task: Task, journal: Journal, progress: tqdm[NoReturn], picture_interval: int = 0
+    ) -> None:
         super().__init__()
         self.log = Logger(folder=None, output_formats=[_CurveWriter(self)])
         self.tried = []
@@ -65,6 +69,7 @@ class EpisodeRecorder(BaseCallback):
         self._task = task
         self._run = run
         self._journal = journal
+        self._progress = progress
         self._picture_interval = picture_interval
         self._curves: LearningCurves | None = None
         self._held: list[Callable[[], None]] = []
@@ -96,6 +101,8 @@ class EpisodeRecorder(BaseCallback):
         if self.choose is not None:
             self._record_choice(self.choose, len(self.tried))
         self.log.dump(len(self.tried))
+        self._progress.set_postfix(score=f"{info['score']:.2f}", refresh=False)
+        self._progress.update()
 
     def _record_choice(self, choose: Callable[[], Parameters], simulations: int) -> None:
         """Note what would be recommended, and show it, whenever it is time."""

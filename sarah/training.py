@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from statistics import mean
 
 import torch
+from tqdm import tqdm
 
 from sarah.config import TrainingConfig
 from sarah.envs import FIRST_TRAINING_SEED
@@ -55,7 +56,7 @@ def train(
     :param config: of the training
     :param run: a new run folder, or that of the same training, which was interrupted and goes on
     :param workers: that simulate; by default this process does. What is learned does not depend on them
-    :param progress_bar: whether to show one
+    :param progress_bar: whether to show one, if there is a terminal
     :param interrupted: asked after every simulation whether to stop
     :param picture_interval: simulations between pictures for TensorBoard; 0 for none. They change no result
     :return: what was learned
@@ -75,13 +76,15 @@ def _train(
     count = candidate_count(config.simulations)
     compared = count * SIMULATIONS_PER_CANDIDATE if count > 1 else 0
     task = TASKS[config.task]
-    recorder = EpisodeRecorder(run, task, journal, picture_interval)
-    choice = learn(config, config.simulations - compared, run, recorder, journal, progress_bar)
-    recorder.choose = None
-    rivals = candidates(choice, recorder.tried, count, task.width)
     seeds = range(SUMMARY_EPISODES)
-    without = None if task.neutral is None else evaluate(task.neutral, config, seeds, journal)
-    parameters = _compare(rivals, compared, config, recorder, journal, without)
+    # Only on a terminal.
+    with tqdm(total=config.simulations, unit=" simulations", disable=None if progress_bar else True) as progress:
+        recorder = EpisodeRecorder(run, task, journal, progress, picture_interval)
+        choice = learn(config, config.simulations - compared, run, recorder, journal)
+        recorder.choose = None
+        rivals = candidates(choice, recorder.tried, count, task.width)
+        without = None if task.neutral is None else evaluate(task.neutral, config, seeds, journal)
+        parameters = _compare(rivals, compared, config, recorder, journal, without)
     evaluation = evaluate(parameters, config, seeds, journal)
     recorder.close(evaluation)
     run.write_parameters(
