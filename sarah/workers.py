@@ -10,9 +10,11 @@ import functools
 import logging
 import os
 import signal
+import threading
 from abc import ABC, abstractmethod
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Sequence
+from concurrent import futures
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
@@ -208,10 +210,10 @@ class _RemoteJob:
 
 
 def _connect(address: str) -> Client:
-    from distributed import Client
-
     try:
-        client = Client(address, timeout=SCHEDULER_SECONDS)
+        client = _client_in_time(address)
+    except futures.TimeoutError as error:
+        raise WorkersError(f"no Dask scheduler answers at {address!r}: whoever listens there says nothing") from error
     except (OSError, ValueError, TypeError, RuntimeError) as error:
         raise WorkersError(f"no Dask scheduler answers at {address!r}: {error}") from error
     here = versions(SIMULATING)
@@ -220,6 +222,22 @@ def _connect(address: str) -> Client:
             client.close()
             raise WorkersError(f"worker {worker} has {there}, and results would differ: here is {here}")
     return client
+
+
+def _client_in_time(address: str) -> Client:
+    """A client, made in a thread: Dask waits for ever at a port where nobody says anything."""
+    from distributed import Client
+
+    made: futures.Future[Client] = futures.Future()
+
+    def make() -> None:
+        try:
+            made.set_result(Client(address, timeout=SCHEDULER_SECONDS))
+        except BaseException as error:
+            made.set_exception(error)
+
+    threading.Thread(target=make, daemon=True).start()
+    return made.result(2 * SCHEDULER_SECONDS)
 
 
 def _start(count: int) -> tuple[LocalCluster, Client]:
