@@ -126,12 +126,13 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--episodes", type=int, default=200)
     parser.add_argument("--processes", type=int, default=2)
+    parser.add_argument("--only", nargs="+", choices=[*VARIANTS, *PLAIN], default=[*VARIANTS, *PLAIN], metavar="NAME")
     options = parser.parse_args()
     print("| | 80 % after | reached by | 90 % after | reached by | median at the end | lowest |\n" + "|---" * 7 + "|")
     with ProcessPoolExecutor(options.processes, get_context("spawn")) as pool:
         jobs = {
             name: [pool.submit(learned, name, seed, options.episodes) for seed in range(options.seeds)]
-            for name in (*VARIANTS, *PLAIN)
+            for name in options.only
         }
         for name, running in jobs.items():
             curves = [job.result() for job in running]
