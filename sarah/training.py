@@ -56,7 +56,7 @@ def train(
     :param config: of the training
     :param run: a new run folder, or that of the same training, which was interrupted and goes on
     :param workers: that simulate; by default this process does. What is learned does not depend on them
-    :param progress_bar: whether to show one, if there is a terminal
+    :param progress_bar: whether to show one
     :param interrupted: asked after every simulation whether to stop
     :param picture_interval: simulations between pictures for TensorBoard; 0 for none. They change no result
     :return: what was learned
@@ -77,8 +77,7 @@ def _train(
     compared = count * SIMULATIONS_PER_CANDIDATE if count > 1 else 0
     task = TASKS[config.task]
     seeds = range(SUMMARY_EPISODES)
-    # Only on a terminal.
-    with tqdm(total=config.simulations, unit=" simulations", disable=None if progress_bar else True) as progress:
+    with tqdm(total=config.simulations, unit=" simulations", disable=not progress_bar) as progress:
         recorder = EpisodeRecorder(run, task, journal, progress, picture_interval)
         choice = learn(config, config.simulations - compared, run, recorder, journal)
         recorder.choose = None

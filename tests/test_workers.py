@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import dask
+import distributed  # noqa: F401  # its settings are there before a test changes one, and stay when that ends
 import psutil
 import pytest
 

@@ -16,7 +16,6 @@ import tyro
 
 from sarah.cli.options import episodes_of, parse_options, run_command, with_engine
 from sarah.config import TRAINED_STEPPING
-from sarah.engines import check_engine
 from sarah.errors import ConfigurationError
 
 if TYPE_CHECKING:
@@ -70,6 +69,8 @@ def _view(arguments: Sequence[str]) -> None:
     choices, chosen = episodes_of(options.subject, options.episode)
     if options.engine is not None:
         choices, chosen = [_in_engine(choice, options.engine) for choice in choices], _in_engine(chosen, options.engine)
+    from sarah.engines import check_engine
+
     check_engine(chosen.spec.config.engine)
     if options.seed is not None:
         spec = dataclasses.replace(chosen.spec, seed=options.seed)
