@@ -187,7 +187,7 @@ def draw_race(curves: Sequence[Curve], path: Path) -> list[Path]:
             axis.plot(simulations, middle, color=COLOURS[algo], linewidth=1.2, label=f"{algo.upper()} ({len(runs)})")
         axis.set_xlabel("simulations")
         axis.set_ylabel("score on unseen seeds")
-        figure.legend(loc="outside upper center", ncols=4)
+        figure.legend(loc="outside upper center", ncols=3)
         return save(figure, path)
 
 

@@ -77,7 +77,7 @@ def draw_gait_cycle(trace: Trace, parameters: SteppingParameters, path: Path) ->
                 time, np.degrees(joints[:, :2].mean(axis=1)), color="black", linewidth=1.0, label="abduction of both"
             )
             axes[4].set_ylabel("hip angle\n(degrees)")
-            axes[4].legend(loc="upper right")
+            axes[4].legend(loc="best")
         axes[-1].set_xlabel("time (s)")
         axes[-1].set_xlim(time[0], time[-1])
         for axis in axes:
