@@ -14,7 +14,8 @@ import pytest
 
 BIN = Path(sys.executable).parent
 COARSE = ("--episode.time-limit", "2", "--episode.physics.rate", "100", "--episode.physics.solver-iterations", "5")
-TRAINING = ("--simulations", "40", "--slots", "2", "--run-dir", "run", *COARSE)
+# Long enough to be interrupted three times also where the test itself has to wait for the processor.
+TRAINING = ("--simulations", "90", "--slots", "2", "--run-dir", "run", *COARSE)
 RECORDS = ("episodes.csv", "choices.csv", "progress.csv", "parameters.json")
 
 
