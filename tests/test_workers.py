@@ -44,6 +44,12 @@ def learned_bytes(run_folder: RunFolder) -> dict[str, bytes]:
     return {**texts, "weights": weights}
 
 
+@pytest.fixture(autouse=True)
+def _nobody_stands() -> None:
+    """Whatever other tests have left standing in this process."""
+    workers_module.forget_standing()
+
+
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return learned_bytes(train_in(tmp_path_factory.mktemp("alone"), None))
