@@ -80,6 +80,13 @@ def test_an_unknown_episode_is_told_which_there_are(run: RunFolder) -> None:
         choose(choices, "7")
 
 
+def test_an_episode_in_the_other_engine_has_no_noted_score(run: RunFolder) -> None:
+    choice = choices_of_run(run)[2]
+    other = view._in_engine(choice, "mujoco")
+    assert other.spec.config.engine == "mujoco" and other.spec.seed == choice.spec.seed and other.score is None
+    assert view._in_engine(choice, "pybullet") == choice
+
+
 def test_an_unfinished_run_can_be_played_and_a_damaged_one_is_named(run: RunFolder, tmp_path: Path) -> None:
     copy = tmp_path / "copy"
     shutil.copytree(run.path, copy)
