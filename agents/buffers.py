@@ -13,23 +13,30 @@ DOUBT = 0.25
 """Worthless transitions that every neighbourhood is thought to hold, so that single lucky ones do not win."""
 NEIGHBOURHOOD = 0.15
 """Distance over which one transition says something of another's action, in scaled actions."""
+SURROUNDINGS = 0.3
+"""The same for actions that are still to be tried."""
+LITTLE_DOUBT = 1e-3
+"""Of them: average transitions in every neighbourhood, which count only where hardly anything is known."""
 BEST_CANDIDATES = 100
 """Transitions of the highest rewards, among which the best action is looked for."""
 
 
-def neighbourhood_means(at: np.ndarray, places: np.ndarray, values: np.ndarray, distance: float) -> np.ndarray:
+def neighbourhood_means(
+    at: np.ndarray, places: np.ndarray, values: np.ndarray, distance: float, doubt: float = DOUBT
+) -> np.ndarray:
     """
     Mean value around some places, by a Gaussian kernel, where little is known drawn towards 0.
 
     :param at: Where to judge, of shape (m, dim)
     :param places: Where values are known, of shape (n, dim)
-    :param values: The values there, not negative, of shape (n,)
+    :param values: The values there, of shape (n,)
     :param distance: Standard deviation of the kernel
+    :param doubt: Values of 0 that every place is thought to have
     :return: Means of shape (m,)
     """
     squared_distances = np.square(at[:, None] - places).sum(axis=2)
     weights = np.exp(-squared_distances / (2 * distance**2))
-    means: np.ndarray = weights @ values / (weights.sum(axis=1) + DOUBT)
+    means: np.ndarray = weights @ values / (weights.sum(axis=1) + doubt)
     return means
 
 
@@ -142,3 +149,18 @@ class RankReplayBuffer(ReplayBuffer):
         means = neighbourhood_means(actions[highest], actions, rewards - rewards.min(), NEIGHBOURHOOD)
         best: np.ndarray = actions[highest[np.argmax(means)]]
         return best
+
+    def draw_near_best(self, std: float, draws: int) -> np.ndarray:
+        """
+        An action to try near the best one: of some Gaussian draws around it that with the best neighbourhood.
+
+        :param std: Standard deviation of the draws, in scaled actions
+        :param draws: How many
+        :return: A scaled action, of shape (action dim,)
+        """
+        best = self.best_action()
+        drawn = np.random.normal(best, std, (draws, len(best))).clip(-1, 1).astype(np.float32)
+        actions, rewards = self.actions[: self.size(), 0], self.rewards[: self.size(), 0]
+        means = neighbourhood_means(drawn, actions, rewards - rewards.mean(), SURROUNDINGS, LITTLE_DOUBT)
+        promising: np.ndarray = drawn[np.argmax(means)]
+        return promising

@@ -33,15 +33,16 @@ PRESETS: dict[str, dict[str, Any]] = {
     "one-step": dict(
         learning_rate=1e-3,
         buffer_size=10_000,
-        learning_starts=15,
+        learning_starts=10,
         batch_size=64,
         gamma=0.0,  # The reward is the return, also where a time limit ends the episode
         gradient_steps=10,
         replay_buffer_class=RankReplayBuffer,
         replay_buffer_kwargs=dict(temperature=4.0),
         exploration_std=LinearSchedule(0.3, 0.05, end_fraction=0.8),
-        warmup_std=0.5,
-        elite_share=LinearSchedule(0.8, 0.2, end_fraction=0.8),
+        elite_share=LinearSchedule(1.0, 0.5, end_fraction=0.8),
+        elite_std=LinearSchedule(0.5, 0.05, end_fraction=0.8),
+        elite_draws=16,
         locality=0.4,
         policy_kwargs=dict(net_arch=[32, 32], activation_fn=nn.Tanh, lower_sees_action=True),
     ),
@@ -110,13 +111,13 @@ class NAF(OffPolicyAlgorithm):
     :param exploration_std: Standard deviation of the Gaussian exploration noise, in actions scaled
         to [-1, 1]. It can be a function of the current progress remaining (from 1 to 0),
         such as ``LinearSchedule``; 0 switches the noise off. Without effect if ``action_noise`` is given.
-    :param warmup_std: Standard deviation of the actions before ``learning_starts``, in scaled actions,
-        around the centre of the action space and clipped to it. If ``None`` (default), they are uniform.
-        Choose it where good actions lie away from the bounds.
     :param elite_share: Share of the exploring actions that are drawn around the best action of the replay buffer
         instead of around ``mu``, which a decoy may hold; it can be a function of the current progress remaining
         (from 1 to 0). Needs a ``RankReplayBuffer``, which knows that action.
-    :param elite_std: Standard deviation of these actions, in scaled actions
+    :param elite_std: Standard deviation of these actions, in scaled actions; it can be a function of the current
+        progress remaining (from 1 to 0)
+    :param elite_draws: How many actions are drawn each time, of which that is done whose neighbourhood in the replay
+        buffer had the highest rewards: wide draws find their way by what is known
     :param locality: Distance from ``mu``, in scaled actions, over which a transition's weight in the loss
         falls: ``exp(-|u - mu|^2 / (2 * locality^2)) + 0.02``. If ``None`` (default), all weigh the same.
         Choose it where the return is far from quadratic, and only what is near ``mu`` can be fitted.
@@ -163,9 +164,9 @@ class NAF(OffPolicyAlgorithm):
         n_steps: int = 1,
         max_grad_norm: float = 10.0,
         exploration_std: float | Schedule = 0.1,
-        warmup_std: float | None = None,
         elite_share: float | Schedule = 0.0,
-        elite_std: float = 0.2,
+        elite_std: float | Schedule = 0.2,
+        elite_draws: int = 1,
         locality: float | None = None,
         stats_window_size: int = 100,
         tensorboard_log: str | None = None,
@@ -204,9 +205,9 @@ class NAF(OffPolicyAlgorithm):
 
         self.max_grad_norm = max_grad_norm
         self.exploration_std = exploration_std
-        self.warmup_std = warmup_std
         self.elite_share = elite_share
         self.elite_std = elite_std
+        self.elite_draws = elite_draws
         self.locality = locality
 
         if _init_setup_model:
@@ -220,6 +221,7 @@ class NAF(OffPolicyAlgorithm):
         self.batch_norm_stats_target = get_parameters_by_name(self.q_net_target, ["running_"])
         self.exploration_schedule = FloatSchedule(self.exploration_std)
         self.elite_share_schedule = FloatSchedule(self.elite_share)
+        self.elite_std_schedule = FloatSchedule(self.elite_std)
         if self.elite_share != 0.0 and not isinstance(self.replay_buffer, RankReplayBuffer):
             raise ValueError(f"elite_share needs a RankReplayBuffer, not a {type(self.replay_buffer).__name__}")
 
@@ -233,21 +235,18 @@ class NAF(OffPolicyAlgorithm):
         action_noise: ActionNoise | None = None,
         n_envs: int = 1,
     ) -> tuple[np.ndarray, np.ndarray]:
-        shape = (n_envs, *self.action_space.shape)
-        if self.warmup_std is not None and self.num_timesteps < learning_starts:
-            scaled_action = np.random.normal(0.0, self.warmup_std, shape).clip(-1, 1).astype(np.float32)
-            return self.policy.unscale_action(scaled_action), scaled_action
         if action_noise is None:
+            shape = (n_envs, *self.action_space.shape)
             std = self.exploration_schedule(self._current_progress_remaining)
             action_noise = NormalActionNoise(np.zeros(shape), np.full(shape, std))
             self.logger.record("train/exploration_std", std)
         action, scaled_action = super()._sample_action(learning_starts, action_noise, n_envs)
         elite_share = self.elite_share_schedule(self._current_progress_remaining)
         if elite_share > 0 and self.num_timesteps >= max(learning_starts, 1):
-            best_action = self.replay_buffer.best_action().reshape(self.action_space.shape)  # type: ignore[union-attr]
-            elite = np.random.normal(best_action, self.elite_std, shape).clip(-1, 1).astype(np.float32)
-            is_elite = np.random.random((n_envs, *[1] * len(self.action_space.shape))) < elite_share
-            scaled_action = np.where(is_elite, elite, scaled_action)
+            std = self.elite_std_schedule(self._current_progress_remaining)
+            for i in np.flatnonzero(np.random.random(n_envs) < elite_share):
+                elite = self.replay_buffer.draw_near_best(std, self.elite_draws)  # type: ignore[union-attr]
+                scaled_action[i] = elite.reshape(self.action_space.shape)
             action = self.policy.unscale_action(scaled_action)
         return action, scaled_action
 

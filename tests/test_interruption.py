@@ -27,6 +27,8 @@ def begin(folder: Path, *arguments: str) -> subprocess.Popen[str]:
         text=True,
         cwd=folder,
         start_new_session=True,
+        # Whoever starts the tests in the background may have switched Ctrl-C off, and programs inherit that.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
 
 

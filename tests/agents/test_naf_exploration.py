@@ -1,4 +1,4 @@
-"""Exploration: the warm-up, then Gaussian noise around mu that follows its schedule."""
+"""Exploration: the warm-up, then noise around mu and draws around the best action, by their schedules."""
 
 import gymnasium as gym
 import numpy as np
@@ -68,17 +68,6 @@ def test_given_action_noise_takes_precedence():
     np.testing.assert_allclose(actions, np.broadcast_to([0.5, -0.5], actions.shape), atol=1e-6)
 
 
-@pytest.mark.parametrize("n_envs", [1, 3])
-def test_gaussian_warm_up(n_envs):
-    actions = explore(3000, n_envs, learning_starts=1500 * n_envs, warmup_std=0.4, exploration_std=0.0)
-    warm_up, after = actions[:1500], actions[1500:]
-    np.testing.assert_array_equal(after, 0.0)
-    # 1.2 % of a Gaussian of 0.4 lies beyond the bounds, and is clipped to them
-    assert np.abs(warm_up).max() == pytest.approx(1.0, abs=1e-6)
-    np.testing.assert_allclose(warm_up.std(axis=0), 0.4, rtol=0.08)
-    assert 0.5 < np.mean(np.abs(warm_up) < 0.4) < 0.85
-
-
 def test_uniform_warm_up():
     actions = explore(3000, learning_starts=3000, exploration_std=0.0)
     np.testing.assert_allclose(actions.std(axis=0), 1 / np.sqrt(3), rtol=0.05)
@@ -108,6 +97,21 @@ def test_elite_actions_follow_the_best_of_the_replay_buffer():
     np.testing.assert_allclose(after.std(axis=0), 0.1, rtol=0.5)
     warm_up, after = elite_actions(1, elite_share=1.0, elite_std=0.0)
     assert np.abs(warm_up - after).sum(axis=1).min() < 1e-6  # one of those that have been tried
+
+
+def test_elite_draws_follow_their_schedule():
+    _, after = elite_actions(600, elite_share=1.0, elite_std=LinearSchedule(0.3, 0.02, end_fraction=0.5))
+    spread = np.abs(np.diff(after, axis=0))
+    assert spread[:100].mean() > 5 * spread[400:].mean()
+
+
+def test_of_many_draws_the_most_promising_is_tried():
+    """With wide draws only those towards what has been good are worth an episode."""
+    distances = {
+        draws: np.abs(elite_actions(200, elite_share=1.0, elite_std=0.5, elite_draws=draws)[1] - [0.5, -0.5]).mean()
+        for draws in (1, 16)
+    }
+    assert distances[16] < 0.6 * distances[1]
 
 
 def test_the_other_actions_keep_to_mu():
