@@ -43,6 +43,11 @@ has mistaken the unit."""
 TRAINED_STEPPING = (0.41, 0.52, 0.62, 1.17, 1.37)
 """P1 to P5 that the balance task keeps unless others are given: what NAF learned once, to two digits."""
 
+SIMULATIONS_PER_CANDIDATE = 5
+"""In the comparison that ends a training."""
+BUDGET_PER_CANDIDATE = 50
+"""Simulations of the whole training for each candidate: a tenth of them goes into the comparison."""
+
 AGENTS = ("naf", "td3", "sac", "ddpg")
 """Learn by reinforcement, with networks."""
 SEARCHERS = ("cma-es", "gp", "tpe", "random")
@@ -237,3 +242,13 @@ class TrainingConfig:
             raise ConfigurationError(
                 f"episode.push.at_seconds must begin before the time_limit of {limit:g} s, not {push.at_seconds!r}"
             )
+
+    @property
+    def candidate_count(self) -> int:
+        """How many candidates the budget affords to compare at the end; with one, there is nothing to compare."""
+        return max(1, self.simulations // BUDGET_PER_CANDIDATE)
+
+    @property
+    def compared_simulations(self) -> int:
+        """How many simulations the comparison of candidates takes, at the end of the budget."""
+        return self.candidate_count * SIMULATIONS_PER_CANDIDATE if self.candidate_count > 1 else 0

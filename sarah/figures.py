@@ -2,7 +2,8 @@
 
 Figures 4 to 7 show what was tried, and what came of it, against training steps. A training step is one simulation. One
 run shows its simulations as dots and their running median as a line; several runs of an algorithm show the median over
-the runs of that line, and the band between their quartiles.
+the runs of that line, and the band between their quartiles. The simulations that compare the best candidates at the end
+are no steps of learning: a single run shows them as hollow dots, and no line goes through them.
 """
 
 from __future__ import annotations
@@ -76,10 +77,12 @@ class Curves:
 
     :param algorithm: its name
     :param columns: of ``episodes.csv`` as numbers, each of shape (runs, simulations)
+    :param learning: how many of the simulations come before the comparison of candidates
     """
 
     algorithm: str
     columns: dict[str, np.ndarray]
+    learning: int
 
 
 def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
@@ -102,6 +105,7 @@ def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
 
 def _curves(runs: Sequence[RunFolder], task: Task) -> list[Curves]:
     by_algorithm: dict[str, list[dict[str, list[float]]]] = {}
+    learning: dict[str, int] = {}
     names = ("return", "steps_per_second", "x", "y", *task.parameter_names)
     for run in runs:
         rows = list(run.episodes())
@@ -111,12 +115,15 @@ def _curves(runs: Sequence[RunFolder], task: Task) -> list[Curves]:
             columns = {name: [_number(row[name]) for row in rows] for name in names}
         except (KeyError, TypeError, ValueError) as error:
             raise RunFolderError(f"the simulations of {run.path} cannot be read: {error!r}") from error
-        by_algorithm.setdefault(run.config().algo, []).append(columns)
+        config = run.config()
+        by_algorithm.setdefault(config.algo, []).append(columns)
+        learned_from = min(len(rows), config.simulations - config.compared_simulations)
+        learning[config.algo] = min(learning.get(config.algo, learned_from), learned_from)
     curves = []
     for algorithm, tables in by_algorithm.items():
         shortest = min(len(table["return"]) for table in tables)
         stacked = {name: np.array([table[name][:shortest] for table in tables]) for name in names}
-        curves.append(Curves(algorithm, stacked))
+        curves.append(Curves(algorithm, stacked, learning[algorithm]))
     return curves
 
 
@@ -138,7 +145,7 @@ def _draw(curves: Sequence[Curves], panels: Panels, path: Path) -> list[Path]:
     )
     for axis, (column, label) in zip(axes[:, 0], panels, strict=True):
         for curve in curves:
-            _draw_panel(axis, curve.columns[column], curve.algorithm)
+            _draw_panel(axis, curve, column)
         if column in PAPER:
             axis.axhline(PAPER[column], color="black", linewidth=0.8, linestyle=":", label="paper")
         axis.set_ylabel(label)
@@ -148,16 +155,20 @@ def _draw(curves: Sequence[Curves], panels: Panels, path: Path) -> list[Path]:
     return save(figure, path)
 
 
-def _draw_panel(axis: Axes, values: np.ndarray, algorithm: str) -> None:
+def _draw_panel(axis: Axes, curves: Curves, column: str) -> None:
+    values, learning, colour = curves.columns[column], curves.learning, COLOURS[curves.algorithm]
     steps = np.arange(1, values.shape[1] + 1)
-    smooth = np.array([running_median(run) for run in values])
-    colour = COLOURS[algorithm]
+    smooth = np.array([running_median(run) for run in values[:, :learning]])
+    label = curves.algorithm.upper()
     if len(values) == 1:
-        axis.plot(steps, values[0], ".", markersize=2, color=colour, alpha=0.4)
+        dots: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 1.6, "color": colour, "alpha": 0.5}
+        axis.plot(steps[:learning], values[0, :learning], markeredgewidth=0, **dots)
+        axis.plot(steps[learning:], values[0, learning:], markerfacecolor="none", markeredgewidth=0.4, **dots)
     else:
-        axis.fill_between(steps, *np.quantile(smooth, (0.25, 0.75), axis=0), color=colour, alpha=0.25, linewidth=0)
-    label = algorithm.upper() if len(values) == 1 else f"{algorithm.upper()}, {len(values)} runs"
-    axis.plot(steps, np.median(smooth, axis=0), color=colour, linewidth=1.2, label=label)
+        low, high = np.quantile(smooth, (0.25, 0.75), axis=0)
+        axis.fill_between(steps[:learning], low, high, color=colour, alpha=0.25, linewidth=0)
+        label += f", {len(values)} runs"
+    axis.plot(steps[:learning], np.median(smooth, axis=0), color=colour, linewidth=1.2, label=label)
 
 
 def running_median(values: np.ndarray) -> np.ndarray:

@@ -19,9 +19,6 @@ from sarah.evaluation import SMALLEST_CLEARANCE, SMALLEST_EVENT_SHARE
 
 Parameters = tuple[float, ...]
 
-SIMULATIONS_PER_CANDIDATE = 5
-BUDGET_PER_CANDIDATE = 50
-"""Simulations of the whole training for each candidate: a tenth of them goes into the comparison."""
 NEIGHBOURHOOD = 0.075
 """Distance over which one episode says something of another's parameters, as a share of their box's width."""
 DISTINCT = 0.1
@@ -38,14 +35,6 @@ def merit(info: Mapping[str, Any]) -> float:
     for share in shares:
         merit *= min(1.0, share / SMALLEST_EVENT_SHARE)
     return merit
-
-
-def candidate_count(simulations: int) -> int:
-    """How many candidates a budget affords; with one, there is nothing to compare.
-
-    :param simulations: of the whole training
-    """
-    return max(1, simulations // BUDGET_PER_CANDIDATE)
 
 
 def candidates(

@@ -17,7 +17,7 @@ from sarah.episode import EpisodeResult, EpisodeSpec
 from sarah.evaluation import Evaluation, summarise
 from sarah.journal import Journal
 from sarah.learning import learn
-from sarah.recommendation import SIMULATIONS_PER_CANDIDATE, Parameters, candidate_count, candidates, merit
+from sarah.recommendation import Parameters, candidates, merit
 from sarah.recorder import EpisodeRecorder
 from sarah.runs import RunFolder
 from sarah.tasks import BALANCE, TASKS
@@ -73,15 +73,14 @@ def _train(
 ) -> Learned:
     # The networks are small: more threads only wait for each other.
     torch.set_num_threads(1)
-    count = candidate_count(config.simulations)
-    compared = count * SIMULATIONS_PER_CANDIDATE if count > 1 else 0
+    compared = config.compared_simulations
     task = TASKS[config.task]
     seeds = range(SUMMARY_EPISODES)
     with tqdm(total=config.simulations, unit=" simulations", disable=not progress_bar) as progress:
         recorder = EpisodeRecorder(run, task, journal, progress, picture_interval)
         choice = learn(config, config.simulations - compared, run, recorder, journal)
         recorder.choose = None
-        rivals = candidates(choice, recorder.tried, count, task.width)
+        rivals = candidates(choice, recorder.tried, config.candidate_count, task.width)
         without = None if task.neutral is None else evaluate(task.neutral, config, seeds, journal)
         parameters = _compare(rivals, compared, config, recorder, journal, without)
     evaluation = evaluate(parameters, config, seeds, journal)

@@ -4,7 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sarah.recommendation import DISTINCT, candidate_count, candidates, merit
+from sarah.config import TrainingConfig
+from sarah.recommendation import DISTINCT, candidates, merit
 
 CHOICE = (1.0, 1.0, 1.0, 1.0, 1.0)
 WIDTH = 2.0
@@ -65,5 +66,6 @@ def test_what_is_no_gait_has_less_merit() -> None:
 
 
 def test_a_small_budget_affords_no_comparison() -> None:
-    assert candidate_count(1) == candidate_count(99) == 1
-    assert candidate_count(160) == 3
+    budgets = {count: TrainingConfig(simulations=count) for count in (1, 99, 160)}
+    assert {count: budget.candidate_count for count, budget in budgets.items()} == {1: 1, 99: 1, 160: 3}
+    assert {count: budget.compared_simulations for count, budget in budgets.items()} == {1: 0, 99: 0, 160: 15}

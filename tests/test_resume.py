@@ -12,7 +12,8 @@ from typing import Any
 import pytest
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
-from sarah import learning, recommendation, training
+import sarah.config
+from sarah import learning, training
 from sarah.agents import PRESETS
 from sarah.config import AGENTS, ALGORITHMS, EpisodeConfig, Physics, TrainingConfig
 from sarah.episode import EpisodeSpec, simulate
@@ -31,8 +32,8 @@ def short(monkeypatch: pytest.MonkeyPatch) -> None:
     """A training that learns from its sixth simulation on, compares two candidates, and evaluates on two seeds."""
     monkeypatch.setattr(learning, "WARM_UP", 6)
     monkeypatch.setitem(PRESETS["one-step"], "learning_starts", 6)
-    monkeypatch.setattr(training, "candidate_count", lambda simulations: 2)
-    monkeypatch.setattr(training, "SIMULATIONS_PER_CANDIDATE", 2)
+    monkeypatch.setattr(TrainingConfig, "candidate_count", 2)
+    monkeypatch.setattr(sarah.config, "SIMULATIONS_PER_CANDIDATE", 2)
     monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
 
 
@@ -223,5 +224,4 @@ def test_columns_of_the_learning_curves_are_in_the_same_order_everywhere(whole: 
         columns = next(csv.reader(file))
     first = [name for name in columns if name.startswith(("episode/", "parameters/"))]
     assert first == sorted(first) and set(columns) > {"train/loss", "train/n_updates"}
-    assert recommendation.SIMULATIONS_PER_CANDIDATE == 5  # what this file shortens is not what trainings use
     assert json.loads((whole.path / "parameters.json").read_text())["simulations"] == 16

@@ -175,7 +175,7 @@ def test_trainings_of_neighbouring_seeds_share_no_episode(tmp_path: Path) -> Non
 def test_candidates_are_compared_on_the_same_seeds_within_the_budget(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(training, "candidate_count", lambda simulations: 2)
+    monkeypatch.setattr(TrainingConfig, "candidate_count", 2)
     config = TrainingConfig(simulations=16, slots=1, episode=EpisodeConfig(time_limit=2.0))
     run = RunFolder.create(tmp_path / "run", config)
     parameters = train(config, run).parameters
