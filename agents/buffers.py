@@ -159,7 +159,9 @@ class RankReplayBuffer(ReplayBuffer):
         :return: A scaled action, of shape (action dim,)
         """
         best = self.best_action()
-        drawn = np.random.normal(best, std, (draws, len(best))).clip(-1, 1).astype(np.float32)
+        drawn = np.random.normal(best, std, (draws, len(best)))
+        # Reflected at the bounds, where otherwise every wide draw would end
+        drawn = np.where(np.abs(drawn) > 1, 2 * np.sign(drawn) - drawn, drawn).clip(-1, 1).astype(np.float32)
         actions, rewards = self.actions[: self.size(), 0], self.rewards[: self.size(), 0]
         means = neighbourhood_means(drawn, actions, rewards - rewards.mean(), SURROUNDINGS, LITTLE_DOUBT)
         promising: np.ndarray = drawn[np.argmax(means)]

@@ -334,6 +334,7 @@ def simulate(spec: EpisodeSpec, record_trace: bool = False) -> EpisodeResult:
     :param spec: everything that the result depends on; the same spec gives the same bytes in any process
     :param record_trace: whether the result has a :class:`~sarah.trace.Trace`
     :return: the result
+    :raises SimulationError: if there is nothing to trace, because the robot did not even stand
     """
     episode = Episode(spec.config, spec.seed, TASKS[spec.task], record_trace)
     try:

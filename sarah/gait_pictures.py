@@ -12,7 +12,7 @@ from PIL import Image
 from sarah.config import EpisodeConfig
 from sarah.description import describe_robot
 from sarah.episode import EpisodeSpec, simulate
-from sarah.errors import ConfigurationError
+from sarah.errors import ConfigurationError, SimulationError
 from sarah.gait_figure import draw_gait_cycle
 from sarah.pattern_generator import SteppingParameters
 from sarah.tasks import STEPPING
@@ -46,10 +46,13 @@ def draw_gait(parameters: tuple[float, ...], task: str, config: EpisodeConfig) -
     :param parameters: to draw
     :param task: whose parameters they are
     :param config: settings of the episode
-    :return: a video, and a gait cycle if the robot makes one
+    :return: a video, and a gait cycle if the robot makes one; nothing if it does not even stand
     """
     short = dataclasses.replace(config, time_limit=min(EPISODE_SECONDS, config.time_limit))
-    trace = simulate(EpisodeSpec(parameters, 0, task, short), record_trace=True).trace
+    try:
+        trace = simulate(EpisodeSpec(parameters, 0, task, short), record_trace=True).trace
+    except SimulationError:  # it diverges: the curves show that
+        return []
     assert trace is not None
     stepping = parameters if task == STEPPING.name else config.stepping
     end = trace.time[-1]

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from sarah.errors import SimulationError
+
 
 @dataclass(frozen=True)
 class Trace:
@@ -58,7 +60,10 @@ class Trace:
         """Make a trace of its rows.
 
         :param rows: one for each tick, with a value for every field
+        :raises SimulationError: if there are none
         """
+        if not rows:
+            raise SimulationError("there is nothing to show: the simulation diverged while the robot stood")
         return cls(**{field.name: np.array([row[field.name] for row in rows]) for field in fields(cls)})
 
     def __len__(self) -> int:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sarah.config import PLAUSIBLE, EpisodeConfig, Physics, Push, Randomisation
+from sarah.config import PLAUSIBLE, STAND_SECONDS, EpisodeConfig, Physics, Push, Randomisation
 from sarah.description import ACTUATED_JOINTS, describe_robot
 from sarah.envs import observation_from
 from sarah.episode import TERMINATIONS, Episode, EpisodeResult, EpisodeSpec, simulate
@@ -115,9 +115,11 @@ def test_extreme_but_legal_configurations_give_numbers(config: EpisodeConfig, v:
 NOT_A_NUMBER = TorsoState((math.nan, 0.0, 0.8), (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3)  # type: ignore[arg-type]
 
 
-def spoilt(seconds: float, parts: dict[str, object], monkeypatch: pytest.MonkeyPatch) -> Episode:
+def spoilt(
+    seconds: float, parts: dict[str, object], monkeypatch: pytest.MonkeyPatch, record_trace: bool = False
+) -> Episode:
     """An episode in which what the engine returns is replaced from some time on."""
-    episode = Episode(EpisodeConfig(time_limit=3.0), 0)
+    episode = Episode(EpisodeConfig(time_limit=3.0), 0, record_trace=record_trace)
     for name, value in parts.items():
         original = getattr(episode.simulation, name)
         monkeypatch.setattr(
@@ -150,6 +152,20 @@ def test_a_diverging_simulation_ends_as_diverged_with_a_finite_reward(
     assert result.duration <= max(seconds, 1.0) + 0.05
     assert all(map(math.isfinite, (*observation, *observation_from(episode.last_reading), *result.final_position)))
     assert summarise([result, simulate(EpisodeSpec((1.0,) * 5, 0, config=EpisodeConfig(time_limit=1.1)))]).diverged == 1
+
+
+def test_who_diverges_while_standing_leaves_nothing_to_show(monkeypatch: pytest.MonkeyPatch) -> None:
+    diverging = {"read": STANDING._replace(joints=(1e30, 0.0, 0.0, 0.0, 0.0, 0.0))}
+    for seconds in (0.5, 1.5):
+        episode = spoilt(seconds, diverging, monkeypatch, record_trace=True)
+        episode.stand()
+        if seconds > STAND_SECONDS:
+            trace = episode.run((0.4, 1.3, 0.1, 1.0, 1.0)).trace
+            assert trace is not None and len(trace) > 1
+        else:
+            with pytest.raises(SimulationError, match="nothing to show: the simulation diverged while the robot stood"):
+                episode.run((0.4, 1.3, 0.1, 1.0, 1.0))
+        episode.close()
 
 
 def test_results_that_are_no_numbers_are_named() -> None:
