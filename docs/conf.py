@@ -16,6 +16,8 @@ author = "the sarah contributors"
 release = metadata.version("sarah")
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.apidoc"]
 html_theme = "furo"
+html_static_path = ["_static"]
+html_css_files = ["tables.css"]
 html_title = f"sarah {release}"
 # reference/commands.md includes the one, reference/api.md leads past the other.
 exclude_patterns = ["reference/generated/commands.md", "reference/generated/modules.rst"]
