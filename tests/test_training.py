@@ -12,7 +12,7 @@ from stable_baselines3 import DDPG, SAC, TD3
 from stable_baselines3.common.base_class import BaseAlgorithm
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
-from sarah import training
+from sarah import learning, training
 from sarah.agents.naf import NAF
 from sarah.config import SEARCHERS, EpisodeConfig, TrainingConfig
 from sarah.envs import FIRST_TRAINING_SEED
@@ -27,7 +27,7 @@ from sarah.training import train
 
 SHARES = ("event_driven_shift", "event_driven_lift")
 # Longer than the warm-up, on episodes of one second of stepping.
-SHORT = TrainingConfig(simulations=34, slots=1, seed=3, episode=EpisodeConfig(time_limit=2.0))
+SHORT = TrainingConfig(simulations=16, slots=1, seed=3, episode=EpisodeConfig(time_limit=2.0))
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +55,7 @@ def test_run_folder_holds_what_it_should(run: RunFolder) -> None:
 
 def test_every_simulation_has_its_row_and_can_be_repeated(run: RunFolder) -> None:
     rows = list(run.episodes())
-    assert [int(row["index"]) for row in rows] == list(range(34))
+    assert [int(row["index"]) for row in rows] == list(range(16))
     assert all(int(row["seed"]) >= FIRST_TRAINING_SEED for row in rows)
     row = rows[7]
     parameters = tuple(float(row[name]) for name in STEPPING.parameter_names)
@@ -67,7 +67,7 @@ def test_every_simulation_has_its_row_and_can_be_repeated(run: RunFolder) -> Non
 
 def test_what_would_be_recommended_is_noted_every_five_simulations(run: RunFolder) -> None:
     choices = list(run.choices())
-    assert [int(row["simulations"]) for row in choices] == list(range(5, 35, 5))
+    assert [int(row["simulations"]) for row in choices] == list(range(5, 16, 5))
     tried = []
     for row in run.episodes():
         info = {name: float(row[name]) for name in ("score", *SHARES, "sole_clearance")}
@@ -85,7 +85,7 @@ def test_tensorboard_shows_the_episodes_the_parameters_and_the_learning(run: Run
     expected |= {f"gait/{name}" for name in ("event_driven_shift", "event_driven_lift", "sole_clearance")}
     expected |= {f"{group}/{name}" for group in ("parameters", "choice") for name in STEPPING.parameter_names}
     assert expected | {"train/loss", "train/q", "train/exploration_std"} <= set(events.Tags()["scalars"])
-    assert [event.step for event in events.Scalars("episode/score")] == list(range(1, 35))
+    assert [event.step for event in events.Scalars("episode/score")] == list(range(1, 17))
 
 
 def test_progress_has_the_same_figures_as_the_episodes(run: RunFolder) -> None:
@@ -99,7 +99,7 @@ def test_progress_has_the_same_figures_as_the_episodes(run: RunFolder) -> None:
 def test_parameters_are_read_without_the_agent(run: RunFolder) -> None:
     content = json.loads((run.path / "parameters.json").read_text())
     assert tuple(content["parameters"]) == STEPPING.parameter_names
-    assert content["task"] == "stepping" and content["algorithm"] == "naf" and content["simulations"] == 34
+    assert content["task"] == "stepping" and content["algorithm"] == "naf" and content["simulations"] == 16
     assert tuple(content["parameters"].values()) == RunFolder.open(run.path).parameters()
     assert all(0.0 <= value <= 2.0 for value in run.parameters())
 
@@ -119,10 +119,10 @@ def test_training_repeats_from_its_seed(run: RunFolder, tmp_path: Path) -> None:
 def test_second_training_learns_v_with_the_legs_of_the_first(tmp_path: Path) -> None:
     stepping = (0.35, 0.6, 0.2, 1.0, 1.0)
     episode = EpisodeConfig(time_limit=2.0, stepping=stepping)
-    config = TrainingConfig(task="balance", simulations=42, slots=1, episode=episode)
+    config = TrainingConfig(task="balance", simulations=16, slots=1, episode=episode)
     run = RunFolder.create(tmp_path / "run", config)
     learned = train(config, run)
-    row = list(run.episodes())[41]
+    row = list(run.episodes())[15]
     parameters = tuple(float(row[name]) for name in BALANCE.parameter_names)
     assert (
         float(row["return"]) == simulate(EpisodeSpec(parameters, int(row["seed"]), "balance", episode)).episode_return
@@ -135,12 +135,15 @@ def test_second_training_learns_v_with_the_legs_of_the_first(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(("algo", "algorithm"), [("td3", TD3), ("sac", SAC), ("ddpg", DDPG)])
-def test_other_algorithms_run_the_same_path(algo: str, algorithm: type[BaseAlgorithm], tmp_path: Path) -> None:
-    config = TrainingConfig(algo=algo, simulations=42, slots=1, episode=EpisodeConfig(time_limit=1.5))
+def test_other_algorithms_run_the_same_path(
+    algo: str, algorithm: type[BaseAlgorithm], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(learning, "WARM_UP", 6)
+    config = TrainingConfig(algo=algo, simulations=12, slots=1, episode=EpisodeConfig(time_limit=1.5))
     run = RunFolder.create(tmp_path / algo, config)
     learned = train(config, run)
     assert isinstance(algorithm.load(run.model_path), algorithm)
-    assert len(list(run.episodes())) == 42 and len(learned.parameters) == 5
+    assert len(list(run.episodes())) == 12 and len(learned.parameters) == 5
     assert math.isfinite(learned.evaluation.score_mean)
 
 

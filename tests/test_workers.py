@@ -26,8 +26,8 @@ from sarah.runs import RunFolder
 from sarah.training import train
 from sarah.workers import Workers, run, stand
 
-# Longer than the 30 simulations of warm-up; some episodes fall, most last a second of stepping.
-TRAINING = TrainingConfig(simulations=38, slots=4, seed=5, episode=EpisodeConfig(time_limit=2.0))
+# Longer than the 10 simulations of warm-up; some episodes fall, most last a second of stepping.
+TRAINING = TrainingConfig(simulations=20, slots=4, seed=5, episode=EpisodeConfig(time_limit=2.0))
 SPEC = EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), seed=1, config=EpisodeConfig(time_limit=2.0))
 
 
@@ -77,7 +77,7 @@ def test_training_survives_the_death_of_workers(alone: dict[str, bytes], tmp_pat
             killed.append(pid)
 
     with Workers(2) as workers:
-        killer = threading.Thread(target=kill_when_rows, args=(workers, [3, 20]), daemon=True)
+        killer = threading.Thread(target=kill_when_rows, args=(workers, [2, 10]), daemon=True)
         killer.start()
         survived = learned_bytes(train_in(tmp_path, workers))
         killer.join(timeout=30.0)
