@@ -24,7 +24,7 @@ def make_model(**kwargs):
 
 
 def test_save_load(tmp_path):
-    model = make_model(locality=0.3, warmup_std=0.2, exploration_std=LinearSchedule(0.3, 0.1, 0.5)).learn(100)
+    model = make_model(locality=0.3, elite_draws=4, exploration_std=LinearSchedule(0.3, 0.1, 0.5)).learn(100)
     model.save(tmp_path / "model")
     loaded = NAF.load(tmp_path / "model", env=make_vec_env("Pendulum-v1"))
     np.testing.assert_array_equal(model.predict(OBS)[0], loaded.predict(OBS)[0])
@@ -32,7 +32,7 @@ def test_save_load(tmp_path):
     first, second = model.policy.optimizer.state_dict(), loaded.policy.optimizer.state_dict()
     for key, state in first["state"].items():
         assert_same_state(state, second["state"][key])
-    assert (loaded.locality, loaded.warmup_std, loaded.num_timesteps) == (0.3, 0.2, 100)
+    assert (loaded.locality, loaded.elite_draws, loaded.num_timesteps) == (0.3, 4, 100)
     assert loaded.exploration_schedule(0.75) == pytest.approx(0.2)
     assert loaded.policy.q_net is loaded.q_net and loaded.policy.q_net_target is loaded.q_net_target
     loaded.learn(50, reset_num_timesteps=False)
