@@ -117,8 +117,8 @@ def _curves(runs: Sequence[RunFolder], task: Task) -> list[Curves]:
             raise RunFolderError(f"the simulations of {run.path} cannot be read: {error!r}") from error
         config = run.config()
         by_algorithm.setdefault(config.algo, []).append(columns)
-        learned_from = min(len(rows), config.simulations - config.compared_simulations)
-        learning[config.algo] = min(learning.get(config.algo, learned_from), learned_from)
+        before_comparison = min(len(rows), config.simulations - config.compared_simulations)
+        learning[config.algo] = min(learning.get(config.algo, before_comparison), before_comparison)
     curves = []
     for algorithm, tables in by_algorithm.items():
         shortest = min(len(table["return"]) for table in tables)
