@@ -61,8 +61,8 @@ def draw_gait_cycle(trace: Trace, parameters: SteppingParameters, path: Path) ->
         _threshold(tilt, time, trace.phase[rows] == "shift", parameters.P2, "P2")
         tilt.set_ylabel("tilt\n(m/s²)")
         rate.plot(time, trace.rate[rows], color="black", linewidth=1.2)
-        _threshold(rate, time, trace.phase[rows] == "lift", -parameters.P1, "\N{MINUS SIGN}P1")
-        _threshold(rate, time, trace.phase[rows] == "shift", RATE_SCALE * parameters.P3, f"{RATE_SCALE:g} P3")
+        _threshold(rate, time, trace.phase[rows] == "lift", -parameters.P1, "\N{MINUS SIGN}P1", "top")
+        _threshold(rate, time, trace.phase[rows] == "shift", RATE_SCALE * parameters.P3, f"{RATE_SCALE:g} P3", "bottom")
         rate.set_ylabel("rate\n(rad/s)")
         pads = trace.pressures[rows]
         _both(load, time, pads[:, :2].sum(axis=1), pads[:, 2:].sum(axis=1))
@@ -99,8 +99,8 @@ def _both(axis: Axes, time: np.ndarray, left: np.ndarray, right: np.ndarray) -> 
     axis.plot(time, right, color=RIGHT, linewidth=1.2)
 
 
-def _threshold(axis: Axes, time: np.ndarray, counts: np.ndarray, value: float, name: str) -> None:
-    """A parameter, where it is compared with."""
+def _threshold(axis: Axes, time: np.ndarray, counts: np.ndarray, value: float, name: str, side: str = "center") -> None:
+    """A parameter, where it is compared with; its name stands on a side of it, for two may be close together."""
     axis.plot(time, np.where(counts, value, np.nan), color=THRESHOLD, linewidth=1.2, linestyle=(0, (2, 1)))
     axis.annotate(
         name,
@@ -108,7 +108,7 @@ def _threshold(axis: Axes, time: np.ndarray, counts: np.ndarray, value: float, n
         (2, 0),
         xycoords=axis.get_yaxis_transform(),
         textcoords="offset points",
-        va="center",
+        va=side,
         color=THRESHOLD,
         fontsize=7,
     )
