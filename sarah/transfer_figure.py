@@ -29,8 +29,8 @@ def draw_transfer(transfers: Sequence[Transfer], path: Path) -> list[Path]:
     with plt.rc_context(STYLE):
         figure, axis = plt.subplots(figsize=(COLUMN_WIDTH, COLUMN_WIDTH), layout="constrained")
         axis.axline((0.0, 0.0), slope=1.0, color="grey", linewidth=0.8)
-        for slope in (0.9, 1.0 / 0.9):
-            axis.axline((0.0, 0.0), slope=slope, color="grey", linewidth=0.6, linestyle=":")
+        for slope, label in ((0.9, "90 % kept"), (1.0 / 0.9, None)):
+            axis.axline((0.0, 0.0), slope=slope, color="grey", linewidth=0.8, linestyle=":", label=label)
         for (engine, colour), (task, marker) in itertools.product(ENGINE_COLOURS.items(), TASK_MARKERS.items()):
             runs = [
                 [one.evaluations[name].score_mean for name in (across, up)]  # type: ignore[index]
