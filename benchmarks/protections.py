@@ -93,6 +93,13 @@ PROTECTIONS = (
         "test_fuzz.py::test_results_that_are_no_numbers_are_named",
     ),
     Protection(
+        "an episode with nothing to show says so",
+        "trace.py",
+        "if not rows:",
+        "if False:",
+        "test_fuzz.py::test_who_diverges_while_standing_leaves_nothing_to_show",
+    ),
+    Protection(
         "readings that are no numbers are passed over",
         "pattern_generator.py",
         "if not reading.is_finite:",
