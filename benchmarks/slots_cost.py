@@ -10,11 +10,13 @@ from typing import get_args
 
 from trainings import learned
 
+from sarah.agents.naf import PRESETS
 from sarah.config import Engine, EpisodeConfig, TrainingConfig
-from sarah.learning import WARM_UP
 from sarah.runs import RunFolder
 from sarah.training import evaluate
 from sarah.workers import Workers
+
+WARM_UP = PRESETS["one-step"]["learning_starts"]
 
 
 def main() -> None:
