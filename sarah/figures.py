@@ -35,6 +35,8 @@ WINDOW = 15
 """Simulations that the running median is over."""
 SECTORS = 16
 """Directions that survival is shown by."""
+CHORDS = 8
+"""That the arc of a sector is drawn with."""
 COLOURS = {
     "naf": "#0072B2",
     "td3": "#D55E00",
@@ -221,7 +223,7 @@ def draw_survival(controllers: Mapping[str, Sequence[PushedEpisode]], path: Path
         for axis, (name, episodes) in zip(axes[0], controllers.items(), strict=True):
             mesh = _draw_survival(axis, survival_by_direction(episodes, SECTORS))
             axis.set_title(name)
-        figure.colorbar(mesh, ax=axes, label="survival", orientation="horizontal", shrink=0.6)
+        figure.colorbar(mesh, ax=axes, label="survival (white: no push this way)", orientation="horizontal", shrink=0.6)
         return save(figure, path)
 
 
@@ -229,9 +231,9 @@ def _draw_survival(axis: Any, survival: Mapping[float, Sequence[float | None]]) 
     forces = list(survival)
     middles = [(low + high) / 2 for low, high in itertools.pairwise(forces)]
     rings = [0.0, *middles, forces[-1] + (forces[-1] - middles[-1] if middles else 0.0)]
-    sectors = (np.arange(SECTORS + 1) - 0.5) * 2 * np.pi / SECTORS
+    edges = (np.arange(SECTORS * CHORDS + 1) / CHORDS - 0.5) * 2 * np.pi / SECTORS
     shares = np.array([[np.nan if share is None else share for share in row] for row in survival.values()])
-    mesh: QuadMesh = axis.pcolormesh(sectors, rings, shares, cmap="cividis", vmin=0.0, vmax=1.0)
+    mesh: QuadMesh = axis.pcolormesh(edges, rings, shares.repeat(CHORDS, axis=1), cmap="cividis", vmin=0.0, vmax=1.0)
     axis.set_rmax(rings[-1])
     labels = axis.set_rgrids(forces, [f"{force:.0f} N" for force in forces], angle=67.5, fontsize=6)[1]
     for label in labels:  # readable on every colour
