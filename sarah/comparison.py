@@ -1,13 +1,15 @@
 """A race: several algorithms, several seeds each, judged by what each would recommend along the way.
 
 Each training is a run folder. What it would have recommended after every five simulations is evaluated on seeds that no
-training sees, and written beside it in ``race.csv``; a training whose ``race.csv`` is there is not run again.
+training sees, and written beside it in ``race.csv``; a training whose ``race.csv`` is there is not run again, only
+evaluated again if the number of unseen seeds has changed.
 """
 
 from __future__ import annotations
 
 import csv
 import dataclasses
+import io
 import os
 import shutil
 import time
@@ -22,12 +24,15 @@ import numpy as np
 from sarah.config import TrainingConfig
 from sarah.episode import EpisodeSpec, simulate
 from sarah.errors import RunFolderError
+from sarah.files import replace_text
 from sarah.journal import Journal
 from sarah.runs import RunFolder
 from sarah.tasks import TASKS
 from sarah.training import train
 from sarah.workers import Workers
 
+RACE_FILE = "race.csv"
+"""In every run folder of a race: the score of what was recommended, along the way and in the end."""
 HELD = 3
 """Evaluations in a row that must reach a share of the best known score."""
 SHARES = (0.9, 0.95)
@@ -98,23 +103,33 @@ def race(entries: Sequence[Entry], workers: Workers) -> list[Curve]:
             raise RunFolderError(f"{entry.folder} is not of a race: name another folder")
         if is_run(entry) and RunFolder(entry.folder).config() != entry.config:
             raise RunFolderError(f"{entry.folder} is a training with other settings: name another folder")
-    jobs = [workers.submit(run_entry, entry) for entry in entries if not is_run(entry)]
+    jobs = [workers.submit(run_entry, entry) for entry in entries if not is_evaluated(entry)]
     for job in jobs:
         job.result()
     return [read_curve(entry) for entry in entries]
 
 
 def is_run(entry: Entry) -> bool:
-    """Whether a training and its evaluation are complete."""
-    return (entry.folder / "race.csv").is_file()
+    """Whether a training and an evaluation of it are complete."""
+    return (entry.folder / RACE_FILE).is_file()
+
+
+def is_evaluated(entry: Entry) -> bool:
+    """Whether the evaluation is complete too on as many unseen seeds as the race asks for."""
+    return is_run(entry) and _rows(entry.folder)[0].get("episodes") == str(entry.episodes)
 
 
 def run_entry(entry: Entry) -> None:
     """Train, and evaluate every choice, in a folder that gets its name when it is complete.
 
+    A training that is complete is only evaluated.
+
     :param entry: the training
     :raises RunFolderError: if another race is training it
     """
+    if is_run(entry):
+        _evaluate_choices(entry, entry.folder, read_curve(entry).seconds)
+        return
     unfinished = entry.folder.with_name(f"{entry.folder.name}.unfinished")
     if unfinished.exists():  # an interrupted race left it, or another one is at it
         journal = RunFolder(unfinished).journal_path
@@ -122,24 +137,28 @@ def run_entry(entry: Entry) -> None:
             shutil.rmtree(unfinished)
     start = time.perf_counter()
     run = RunFolder.create(unfinished, entry.config)
-    learned = train(entry.config, run)
-    seconds = time.perf_counter() - start
+    train(entry.config, run)
+    _evaluate_choices(entry, unfinished, time.perf_counter() - start)
+    os.replace(unfinished, entry.folder)
+
+
+def _evaluate_choices(entry: Entry, folder: Path, seconds: float) -> None:
+    """Write what everything that was recommended along the way, and in the end, scores."""
+    run = RunFolder(folder)
     names = TASKS[entry.config.task].parameter_names
     choices = [(int(row["simulations"]), tuple(float(row[name]) for name in names)) for row in run.choices()]
     known: dict[tuple[float, ...], float] = {}
-    rows = []
-    for simulations, parameters in [*choices, (entry.config.simulations, learned.parameters)]:
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    writer.writerow(("simulations", "score", "seconds", "episodes"))
+    for simulations, parameters in [*choices, (entry.config.simulations, run.parameters())]:
         if parameters not in known:
             specs = (
                 EpisodeSpec(parameters, seed, entry.config.task, entry.config.episode) for seed in range(entry.episodes)
             )
             known[parameters] = mean(simulate(spec).score for spec in specs)
-        rows.append({"simulations": simulations, "score": known[parameters], "seconds": seconds})
-    with (unfinished / "race.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, ("simulations", "score", "seconds"))
-        writer.writeheader()
-        writer.writerows(rows)
-    os.replace(unfinished, entry.folder)
+        writer.writerow((simulations, known[parameters], seconds, entry.episodes))
+    replace_text(folder / RACE_FILE, text.getvalue())
 
 
 def read_curve(entry: Entry) -> Curve:
@@ -147,14 +166,18 @@ def read_curve(entry: Entry) -> Curve:
 
     :param entry: a training that is complete
     """
-    with (entry.folder / "race.csv").open(newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+    rows = _rows(entry.folder)
     return Curve(
         entry.config.algo,
         tuple(int(row["simulations"]) for row in rows),
         tuple(float(row["score"]) for row in rows),
         float(rows[0]["seconds"]),
     )
+
+
+def _rows(folder: Path) -> list[dict[str, str]]:
+    with (folder / RACE_FILE).open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
 
 
 def simulations_until(curve: Curve, score: float) -> float:

@@ -69,8 +69,15 @@ def test_a_race_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyP
     specs = [EpisodeSpec(run.parameters(), seed, config=TINY.episode) for seed in range(2)]
     assert curves[0].scores[-1] == pytest.approx(sum(simulate(spec).score for spec in specs) / 2)
 
+    third = EpisodeSpec(run.parameters(), 2, config=TINY.episode)
     monkeypatch.setattr(comparison, "run_entry", lambda entry: pytest.fail("it is there already"))
     assert race(entries, Workers()) == curves
+    monkeypatch.undo()
+    monkeypatch.setattr(comparison, "train", lambda config, run: pytest.fail("it is trained already"))
+    (more,) = race([dataclasses.replace(entries[0], episodes=3)], Workers())
+    assert more.seconds == curves[0].seconds and more.simulations == (5, 10, 10)
+    assert 3 * more.scores[-1] == pytest.approx(2 * curves[0].scores[-1] + simulate(third).score)
+
     other = [dataclasses.replace(entries[0], config=dataclasses.replace(TINY, simulations=11))]
     with pytest.raises(RunFolderError, match="other settings"):
         race(other, Workers())
