@@ -13,8 +13,9 @@ DOUBT = 0.25
 """Worthless transitions that every neighbourhood is thought to hold, so that single lucky ones do not win."""
 NEIGHBOURHOOD = 0.15
 """Distance over which one transition says something of another's action, in scaled actions."""
-SURROUNDINGS = 0.3
-"""The same for actions that are still to be tried."""
+SURROUNDINGS = 0.7
+"""The same for actions that are still to be tried, as a share of the deviation that they are drawn with: wide at first,
+when little is known. Never less than the distance above."""
 LITTLE_DOUBT = 1e-3
 """Of them: average transitions in every neighbourhood, which count only where hardly anything is known."""
 BEST_CANDIDATES = 100
@@ -163,6 +164,7 @@ class RankReplayBuffer(ReplayBuffer):
         # Reflected at the bounds, where otherwise every wide draw would end
         drawn = np.where(np.abs(drawn) > 1, 2 * np.sign(drawn) - drawn, drawn).clip(-1, 1).astype(np.float32)
         actions, rewards = self.actions[: self.size(), 0], self.rewards[: self.size(), 0]
-        means = neighbourhood_means(drawn, actions, rewards - rewards.mean(), SURROUNDINGS, LITTLE_DOUBT)
+        distance = max(NEIGHBOURHOOD, SURROUNDINGS * std)
+        means = neighbourhood_means(drawn, actions, rewards - rewards.mean(), distance, LITTLE_DOUBT)
         promising: np.ndarray = drawn[np.argmax(means)]
         return promising

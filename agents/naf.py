@@ -33,7 +33,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     "one-step": dict(
         learning_rate=1e-3,
         buffer_size=10_000,
-        learning_starts=10,
+        learning_starts=5,
         batch_size=64,
         gamma=0.0,  # The reward is the return, also where a time limit ends the episode
         gradient_steps=10,
@@ -41,7 +41,7 @@ PRESETS: dict[str, dict[str, Any]] = {
         replay_buffer_kwargs=dict(temperature=4.0),
         exploration_std=LinearSchedule(0.3, 0.05, end_fraction=0.8),
         elite_share=LinearSchedule(1.0, 0.5, end_fraction=0.8),
-        elite_std=LinearSchedule(0.5, 0.05, end_fraction=0.8),
+        elite_std=LinearSchedule(0.7, 0.05, end_fraction=0.8),
         elite_draws=16,
         locality=0.4,
         policy_kwargs=dict(net_arch=[32, 32], activation_fn=nn.Tanh, lower_sees_action=True),

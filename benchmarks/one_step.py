@@ -38,7 +38,7 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "all explored around the best": {"elite_share": 1.0},
     "one draw around the best": {"elite_draws": 1},
     "one draw of 0.2 around the best": {"elite_draws": 1, "elite_std": 0.2},
-    "warm-up of 5": {"learning_starts": 5},
+    "warm-up of 10": {"learning_starts": 10},
     "warm-up of 30": {"learning_starts": 30},
     "one update per episode": {"gradient_steps": 1},
     "five updates per episode": {"gradient_steps": 5},

@@ -26,7 +26,7 @@ from sarah.runs import RunFolder
 from sarah.training import train
 from sarah.workers import Workers, run, stand
 
-# Longer than the 10 simulations of warm-up; some episodes fall, most last a second of stepping.
+# Longer than the 8 simulations of warm-up; some episodes fall, most last a second of stepping.
 TRAINING = TrainingConfig(simulations=20, slots=4, seed=5, episode=EpisodeConfig(time_limit=2.0))
 SPEC = EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), seed=1, config=EpisodeConfig(time_limit=2.0))
 
