@@ -91,6 +91,13 @@ def elite_actions(steps: int, **kwargs) -> tuple[np.ndarray, np.ndarray]:
     return actions[:30], actions[30:]
 
 
+def test_the_first_action_is_the_centre_on_request():
+    for first_action_centre in (False, True):
+        warm_up, _ = elite_actions(1, elite_share=1.0, first_action_centre=first_action_centre)
+        assert (warm_up[0] == 0.0).all() == first_action_centre
+        assert (np.abs(warm_up[1:]) > 0.0).all()
+
+
 def test_elite_actions_follow_the_best_of_the_replay_buffer():
     _, after = elite_actions(300, elite_share=1.0, elite_std=0.1)
     np.testing.assert_allclose(after[200:].mean(axis=0), [0.5, -0.5], atol=0.1)
