@@ -43,7 +43,6 @@ PRESETS: dict[str, dict[str, Any]] = {
         elite_share=LinearSchedule(1.0, 0.5, end_fraction=0.8),
         elite_std=LinearSchedule(0.7, 0.05, end_fraction=0.8),
         elite_draws=16,
-        first_action_centre=True,
         locality=0.4,
         policy_kwargs=dict(net_arch=[32, 32], activation_fn=nn.Tanh, lower_sees_action=True),
     ),
@@ -119,8 +118,8 @@ class NAF(OffPolicyAlgorithm):
         progress remaining (from 1 to 0)
     :param elite_draws: How many actions are drawn each time, of which that is done whose neighbourhood in the replay
         buffer had the highest rewards: wide draws find their way by what is known
-    :param first_action_centre: Whether the very first action is the centre of the action space, often the
-        neutral one, from which ``elite_draws`` may then start
+    :param first_action_centre: Whether the first environment's first action is the centre of the action space, often
+        the neutral one, from which ``elite_draws`` may then start
     :param locality: Distance from ``mu``, in scaled actions, over which a transition's weight in the loss
         falls: ``exp(-|u - mu|^2 / (2 * locality^2)) + 0.02``. If ``None`` (default), all weigh the same.
         Choose it where the return is far from quadratic, and only what is near ``mu`` can be fitted.
@@ -254,7 +253,7 @@ class NAF(OffPolicyAlgorithm):
                 scaled_action[i] = elite.reshape(self.action_space.shape)
             action = self.policy.unscale_action(scaled_action)
         if self.first_action_centre and self.num_timesteps == 0:
-            scaled_action = np.zeros_like(scaled_action)
+            scaled_action[0] = 0.0  # Of the first environment: the others warm up as ever
             action = self.policy.unscale_action(scaled_action)
         return action, scaled_action
 

@@ -36,7 +36,7 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "noise of 0.05 from the start": {"exploration_std": 0.05},
     "nothing explored around the best": {"elite_share": 0.0},
     "all explored around the best": {"elite_share": 1.0},
-    "no centre at first": {"first_action_centre": False},
+    "the centre at first": {"first_action_centre": True},
     "one draw around the best": {"elite_draws": 1},
     "one draw of 0.2 around the best": {"elite_draws": 1, "elite_std": 0.2},
     "warm-up of 10": {"learning_starts": 10},
