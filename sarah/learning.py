@@ -79,9 +79,7 @@ def make_agent(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
     # Learning begins with as many outcomes as are in flight.
     common: dict[str, Any] = dict(seed=spread_seed(config), learning_starts=max(warm_up, 2 * config.slots))
     if config.algo == "naf":
-        common["first_action_centre"] = (
-            TASKS[config.task].neutral is not None
-        )  # V = 0, which few uniform draws come near
+        common["first_action_centre"] = TASKS[config.task].neutral is not None  # few uniform draws come near V = 0
         return NAF("MlpPolicy", env, **{**PRESETS["one-step"], "replay_buffer_class": LateRankReplayBuffer, **common})
     # Their defaults are for long episodes of small rewards; here the reward is the return.
     settings = dict(
