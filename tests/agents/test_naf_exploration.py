@@ -91,11 +91,11 @@ def elite_actions(steps: int, **kwargs) -> tuple[np.ndarray, np.ndarray]:
     return actions[:30], actions[30:]
 
 
-def test_the_first_action_is_the_centre_on_request():
-    for first_action_centre in (False, True):
-        warm_up, _ = elite_actions(1, elite_share=1.0, first_action_centre=first_action_centre)
-        assert (warm_up[0] == 0.0).all() == first_action_centre
-        assert (np.abs(warm_up[1:]) > 0.0).all()
+@pytest.mark.parametrize("on_request", [False, True])
+def test_only_the_first_environment_begins_at_the_centre_on_request(on_request: bool):
+    actions = explore(4, n_envs=2, learning_starts=30, first_action_centre=on_request)
+    assert (actions[0, 0] == 0.0).all() == on_request
+    assert (actions[0, 1] != 0.0).all() and (actions[1:] != 0.0).all()
 
 
 def test_elite_actions_follow_the_best_of_the_replay_buffer():
