@@ -11,10 +11,10 @@ y axis, and the sensors, not a clock, decide when each phase of a step ends::
     LAND    both legs straight                                                               -> SHIFT, legs swapped
             until the swing foot is loaded, or 0.5 (1 + P5) s
 
-Tilt is the low-passed lateral acceleration and rate the low-passed angular rate about y, both positive towards
-the support leg. The time-outs are slow on purpose: with faster ones a learner uses them as an open-loop clock and
-ignores the sensors (benchmarks/clock.py compares 0.3 s and 0.5 s). Plain floats
-only: it runs once per control tick, and on a robot.
+Tilt is the low-passed lateral acceleration, with what the hip law's abduction takes from it added again, and rate the
+low-passed angular rate about y, both positive towards the support leg. The time-outs are slow on purpose: with faster
+ones a learner uses them as an open-loop clock and ignores the sensors (benchmarks/clock.py compares 0.3 s and 0.5 s).
+Plain floats only: it runs once per control tick, and on a robot.
 """
 
 from __future__ import annotations
@@ -41,6 +41,9 @@ LEG_SPEED = 1.0
 """Of the ramp that leg length targets follow, in m/s."""
 TILT_TIME_CONSTANT = 0.10
 RATE_TIME_CONSTANT = 0.01
+TILT_PER_ABDUCTION = 60.0
+"""How much tilt a radian of abduction stands for, in m/s^2. Gravity alone would make it 9.8, but the rocking dies
+down too; without this a P2 that suits the First Training keeps the robot waiting in the Second."""
 
 
 class Phase(Enum):
@@ -125,8 +128,12 @@ class PatternGenerator:
 
     @property
     def tilt(self) -> float:
-        """Lateral acceleration towards the support leg, in m/s^2: leaning over it is positive."""
-        return -self.support.value * self._stable_x.value
+        """Lateral acceleration towards the support leg, in m/s^2: leaning over it is positive.
+
+        Abduction by the hip law keeps the torso upright while the legs lean, so it counts as tilt too.
+        """
+        hidden_by_hips = 0.0 if self.hips is None else TILT_PER_ABDUCTION * self.hips.abduction
+        return self.support.value * (hidden_by_hips - self._stable_x.value)
 
     @property
     def rate(self) -> float:

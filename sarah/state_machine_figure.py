@@ -26,8 +26,9 @@ SILENCE = SensorReading((0.0, 0.0, 9.81), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0),
 DT = 0.001
 MINUS = "\u2212"
 NOTE = """tilt (m/s²), rate (rad/s): low-passed lateral acceleration and angular rate
-about y, towards the support leg. stable_x (m/s²): slower low-pass of the
-lateral acceleration. pitch (rad): leaky integral of the angular rate about x.
+about y, towards the support leg; abduction counts as tilt. stable_x (m/s²):
+slower low-pass of the lateral acceleration. pitch (rad): leaky integral of the
+angular rate about x.
 """
 
 

@@ -6,6 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sarah.config import EpisodeConfig, Push
+from sarah.episode import EpisodeSpec, simulate
 from sarah.hips import HIP_SPEED, LARGEST_ANGLE, PITCH_TIME_CONSTANT, BalanceParameters, HipLaw, Side
 from sarah.pattern_generator import PAPER_PARAMETERS, PatternGenerator, SteppingParameters
 from sarah.sensors import SensorReading
@@ -84,3 +86,11 @@ def test_any_readings_keep_hips_bounded_and_slow(
         now = (moved.abduction, *moved.flexion.values())
         assert all(abs(value) <= LARGEST_ANGLE for value in now)
         assert all(abs(a - b) <= HIP_SPEED * DT + 1e-12 for a, b in zip(now, before, strict=True))
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_papers_p1_to_p5_go_on_stepping_with_the_hip_law(seed: int) -> None:
+    push = Push(newtons=(100.0, 100.0), degrees=(0.0, 0.0))
+    episode = EpisodeConfig(time_limit=8.0, stepping=PAPER_PARAMETERS, push=push)
+    result = simulate(EpisodeSpec((0.8, 0.0, 0.0, 0.0), seed, "balance", episode))
+    assert result.survived and result.event_driven_shift > 0.9 and result.steps_per_second > 2.0

@@ -1,0 +1,80 @@
+"""Whether the hip law goes with what the First Training learned: V1 on several P1 to P5.
+
+Columns differ in V1, and in how much tilt a radian of abduction counts for (m/s^2). The first row's P1 to P5 are the
+paper's, the second's what the package ships, the others what ten First Trainings learned. Cells: mean score under
+pushes, and in brackets the share that survived and the steps per second.
+"""
+
+from __future__ import annotations
+
+import argparse
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from statistics import mean
+
+from sarah import pattern_generator
+from sarah.config import TRAINED_STEPPING, EpisodeConfig, Push
+from sarah.episode import EpisodeResult, EpisodeSpec, simulate
+from sarah.pattern_generator import PAPER_PARAMETERS, TILT_PER_ABDUCTION
+from sarah.tasks import BALANCE
+
+STEPPING = (
+    (*PAPER_PARAMETERS,),
+    TRAINED_STEPPING,
+    (0.02, 0.23, 0.29, 0.07, 1.96),
+    (0.01, 0.87, 0.14, 1.97, 1.88),
+    (0.43, 0.53, 0.43, 1.85, 1.68),
+    (0.05, 0.94, 0.24, 1.41, 0.38),
+    (0.42, 0.32, 0.31, 0.83, 0.54),
+    (0.42, 0.19, 0.75, 1.17, 1.73),
+    (0.04, 0.04, 0.93, 1.20, 1.22),
+    (0.09, 1.22, 0.09, 0.81, 1.26),
+    (0.01, 1.08, 0.09, 1.60, 0.47),
+    (0.03, 0.26, 0.37, 0.17, 1.37),
+)
+
+
+def simulate_with(tilt_per_abduction: float, spec: EpisodeSpec) -> EpisodeResult:
+    pattern_generator.TILT_PER_ABDUCTION = tilt_per_abduction
+    return simulate(spec)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--v1", type=float, nargs="+", default=[0.7, 1.1], help="beside 0")
+    parser.add_argument(
+        "--tilts", type=float, nargs="+", default=[0.0, 9.81, TILT_PER_ABDUCTION], help="in m/s^2 per rad"
+    )
+    parser.add_argument("--pushes", type=int, default=8)
+    parser.add_argument("--newtons", type=float, nargs=2, default=(75.0, 125.0))
+    parser.add_argument("--engine", choices=("pybullet", "mujoco"), default="pybullet")
+    options = parser.parse_args()
+
+    laws = [(0.0, 0.0)] + [(tilt, v1) for tilt in options.tilts for v1 in options.v1]
+    heads = ["V1 = 0"] + [f"{tilt:g}: V1 = {v1:g}" for tilt, v1 in laws[1:]]
+    print("| P1 to P5 | " + " | ".join(heads) + " |\n" + "|---" * (len(laws) + 1) + "|")
+    better = [0] * len(laws)
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
+        for stepping in STEPPING:
+            push = Push(newtons=tuple(options.newtons))
+            config = EpisodeConfig(time_limit=10.0, stepping=stepping, push=push, engine=options.engine)
+            jobs = [
+                (tilt, EpisodeSpec((v1, 0.0, 0.0, 0.0), seed, BALANCE.name, config))
+                for tilt, v1 in laws
+                for seed in range(options.pushes)
+            ]
+            results = list(pool.map(simulate_with, *zip(*jobs, strict=True), chunksize=options.pushes))
+            cells, scores = [], []
+            for index in range(len(laws)):
+                episodes = results[index * options.pushes : (index + 1) * options.pushes]
+                scores.append(mean(result.score for result in episodes))
+                survival = mean(result.survived for result in episodes)
+                frequency = mean(result.steps_per_second for result in episodes)
+                cells.append(f"{scores[-1]:.2f} ({survival:.2f}, {frequency:.1f})")
+                better[index] += scores[-1] > scores[0]
+            print(f"| {', '.join(f'{value:.2f}' for value in stepping)} | {' | '.join(cells)} |", flush=True)
+    print(f"| better than V1 = 0 | | {' | '.join(f'{count} of {len(STEPPING)}' for count in better[1:])} |")
+
+
+if __name__ == "__main__":
+    main()
