@@ -48,6 +48,8 @@ COLOURS = {
     "random": "#000000",
 }
 """Of each algorithm; told apart by the colour-blind (Okabe and Ito)."""
+ALGORITHM_LABELS = {algo: algo.upper() for algo in COLOURS} | {"random": "random search"}
+"""What pictures and pages call each algorithm."""
 
 Panels = list[tuple[str, str]]
 """Column of ``episodes.csv`` and label of each panel, from top to bottom."""
@@ -161,7 +163,7 @@ def _draw_panel(axis: Axes, curves: Curves, column: str) -> None:
     values, learning, colour = curves.columns[column], curves.learning, COLOURS[curves.algorithm]
     steps = np.arange(1, values.shape[1] + 1)
     smooth = np.array([running_median(run) for run in values[:, :learning]])
-    label = curves.algorithm.upper()
+    label = ALGORITHM_LABELS[curves.algorithm]
     if len(values) == 1:
         dots: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 1.6, "color": colour, "alpha": 0.5}
         axis.plot(steps[:learning], values[0, :learning], markeredgewidth=0, **dots)
@@ -197,7 +199,8 @@ def draw_race(curves: Sequence[Curve], path: Path) -> list[Path]:
             simulations = runs[0].simulations
             low, middle, high = np.quantile([run.scores for run in runs], (0.25, 0.5, 0.75), axis=0)
             axis.fill_between(simulations, low, high, color=COLOURS[algo], alpha=0.15, linewidth=0)
-            axis.plot(simulations, middle, color=COLOURS[algo], linewidth=1.2, label=f"{algo.upper()} ({len(runs)})")
+            label = f"{ALGORITHM_LABELS[algo]} ({len(runs)})"
+            axis.plot(simulations, middle, color=COLOURS[algo], linewidth=1.2, label=label)
         axis.set_xlabel("simulations")
         axis.set_ylabel("score on unseen seeds")
         figure.legend(loc="outside upper center", ncols=3)

@@ -18,6 +18,7 @@ from sarah.config import TrainingConfig
 from sarah.description import describe_robot
 from sarah.episode import EpisodeSpec, simulate
 from sarah.evaluation import Evaluation
+from sarah.figures import ALGORITHM_LABELS
 from sarah.files import replace_text
 from sarah.pattern_generator import PAPER_PARAMETERS
 from sarah.recommendation import Parameters
@@ -104,6 +105,7 @@ def write_report(
         title=TITLES[config.task],
         run=str(run.path),
         config=config,
+        algorithm=ALGORITHM_LABELS[config.algo],
         episodes=episodes,
         rows=_parameter_rows(config, learned, rival) + _result_rows(config, ours, theirs),
         rival="the paper's parameters, simulated here" if task.neutral is None else "without the hip law (V = 0)",
