@@ -83,6 +83,7 @@ class HipLaw:
 
     def __init__(self, parameters: BalanceParameters, dt: float) -> None:
         self.abduction = 0.0
+        self.abduction_rate = 0.0
         self.flexion = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
         self.pitch = 0.0
         self._parameters = parameters
@@ -107,7 +108,9 @@ class HipLaw:
         """
         v = self._parameters
         constant = FLEXION_SCALE * v.V4
-        self.abduction = self._moved(self.abduction, -ABDUCTION_SCALE * (v.V1 * self.stable_x + v.V2))
+        abduction = self._moved(self.abduction, -ABDUCTION_SCALE * (v.V1 * self.stable_x + v.V2))
+        self.abduction_rate = (abduction - self.abduction) / self._dt
+        self.abduction = abduction
         self.flexion[swing] = self._moved(self.flexion[swing], PITCH_SCALE * v.V3 * self.pitch + constant)
         self.flexion[swing.other] = self._moved(self.flexion[swing.other], constant)
 

@@ -11,10 +11,10 @@ y axis, and the sensors, not a clock, decide when each phase of a step ends::
     LAND    both legs straight                                                               -> SHIFT, legs swapped
             until the swing foot is loaded, or 0.5 (1 + P5) s
 
-Tilt is the low-passed lateral acceleration, with what the hip law's abduction takes from it added again, and rate the
-low-passed angular rate about y, both positive towards the support leg. The time-outs are slow on purpose: with faster
-ones a learner uses them as an open-loop clock and ignores the sensors (benchmarks/clock.py compares 0.3 s and 0.5 s).
-Plain floats only: it runs once per control tick, and on a robot.
+Tilt is the low-passed lateral acceleration and rate the low-passed angular rate about y, both positive towards the
+support leg; to both is added a share of the hip law's abduction, which the torso does not feel. The time-outs are slow
+on purpose: with faster ones a learner uses them as an open-loop clock and ignores the sensors (benchmarks/clock.py
+compares 0.3 s and 0.5 s). Plain floats only: it runs once per control tick, and on a robot.
 """
 
 from __future__ import annotations
@@ -41,9 +41,10 @@ LEG_SPEED = 1.0
 """Of the ramp that leg length targets follow, in m/s."""
 TILT_TIME_CONSTANT = 0.10
 RATE_TIME_CONSTANT = 0.01
-TILT_PER_ABDUCTION = 60.0
-"""How much tilt a radian of abduction stands for, in m/s^2. Gravity alone would make it 9.8, but the rocking dies
-down too; without this a P2 that suits the First Training keeps the robot waiting in the Second."""
+ABDUCTION_TILT = 150.0
+"""How much tilt a radian of the hip law's abduction counts for, in m/s^2."""
+ABDUCTION_RATE_SHARE = 0.2
+"""How much of the abduction's own rate counts as rate. Both are measured: benchmarks/stepping_and_hips.py."""
 
 
 class Phase(Enum):
@@ -130,15 +131,16 @@ class PatternGenerator:
     def tilt(self) -> float:
         """Lateral acceleration towards the support leg, in m/s^2: leaning over it is positive.
 
-        Abduction by the hip law keeps the torso upright while the legs lean, so it counts as tilt too.
+        Abduction keeps the torso upright while the legs lean, and counts as tilt too.
         """
-        hidden_by_hips = 0.0 if self.hips is None else TILT_PER_ABDUCTION * self.hips.abduction
-        return self.support.value * (hidden_by_hips - self._stable_x.value)
+        abduction = 0.0 if self.hips is None else self.hips.abduction
+        return self.support.value * (ABDUCTION_TILT * abduction - self._stable_x.value)
 
     @property
     def rate(self) -> float:
-        """Angular rate about y towards the support leg, in rad/s."""
-        return self.support.value * self._rate_y.value
+        """Angular rate about y towards the support leg, in rad/s; the abduction's has a share in it."""
+        abduction_rate = 0.0 if self.hips is None else self.hips.abduction_rate
+        return self.support.value * (self._rate_y.value + ABDUCTION_RATE_SHARE * abduction_rate)
 
     def sense(self, reading: SensorReading) -> None:
         """Filter one reading without acting on it, as while standing. One that is not finite is passed over."""

@@ -31,7 +31,7 @@ class Trace:
     :param support: the support leg: +1 right, -1 left
     :param stable_x: low-passed lateral acceleration, in m/s^2
     :param tilt: what P2 is compared with (:attr:`~sarah.pattern_generator.PatternGenerator.tilt`), in m/s^2
-    :param rate: about y towards the support leg, which P1 and P3 are compared with, in rad/s
+    :param rate: what P1 and P3 are compared with (:attr:`~sarah.pattern_generator.PatternGenerator.rate`), in rad/s
     :param steps_per_second: of the last 2 s
     :param push: force on the torso's centre during the tick, in the world's frame, in N; shape (ticks, 3)
     :param score: reached when the tick began

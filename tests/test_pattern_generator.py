@@ -8,14 +8,15 @@ from hypothesis import strategies as st
 
 from sarah.errors import ConfigurationError
 from sarah.filters import LowPass
-from sarah.hips import LARGEST_ACCELERATION, BalanceParameters, HipLaw
+from sarah.hips import HIP_SPEED, LARGEST_ACCELERATION, BalanceParameters, HipLaw
 from sarah.pattern_generator import (
+    ABDUCTION_RATE_SHARE,
+    ABDUCTION_TILT,
     LEG_SPEED,
     LIFT_LENGTH,
     MINIMUM_PHASE_SECONDS,
     PAPER_PARAMETERS,
     PUSH_LENGTH,
-    TILT_PER_ABDUCTION,
     TILT_TIME_CONSTANT,
     PatternGenerator,
     Phase,
@@ -218,13 +219,17 @@ def test_no_phase_outlasts_its_time_out(parameters: tuple[float, ...], steady: t
         assert ticks * DT <= generator.time_out(phase) + DT
 
 
-def test_abduction_by_the_hip_law_counts_as_tilt_to_its_side() -> None:
+def test_abduction_by_the_hip_law_counts_as_tilt_and_rate_to_its_side() -> None:
     hips = HipLaw(BalanceParameters(0.0, -2.0, 0.0, 0.0), DT)
     generator = PatternGenerator(SteppingParameters(*PAPER_PARAMETERS), dt=DT, hips=hips)
+    generator.tick(reading())
+    assert generator.support is Side.RIGHT and hips.abduction_rate == pytest.approx(HIP_SPEED)
+    assert generator.rate == pytest.approx(ABDUCTION_RATE_SHARE * HIP_SPEED)
     for _ in range(20):
         generator.tick(reading())
     # Both feet 0.1 rad to the left: the legs lean over the right one, though the torso is upright.
     assert hips.abduction == pytest.approx(0.1) and generator.stable_x == 0.0
-    assert generator.support is Side.RIGHT and generator.tilt == pytest.approx(0.1 * TILT_PER_ABDUCTION)
+    assert generator.support is Side.RIGHT and generator.tilt == pytest.approx(0.1 * ABDUCTION_TILT)
+    assert generator.rate == 0.0
     generator.support = Side.LEFT
-    assert generator.tilt == pytest.approx(-0.1 * TILT_PER_ABDUCTION)
+    assert generator.tilt == pytest.approx(-0.1 * ABDUCTION_TILT)
