@@ -14,7 +14,7 @@ from multiprocessing import get_context
 from statistics import mean
 
 from sarah import pattern_generator
-from sarah.config import TRAINED_STEPPING, EpisodeConfig, Push
+from sarah.config import TRAINED_STEPPING, EpisodeConfig, Push, Randomisation
 from sarah.episode import EpisodeResult, EpisodeSpec, simulate
 from sarah.pattern_generator import ABDUCTION_RATE_SHARE, ABDUCTION_TILT, PAPER_PARAMETERS
 from sarah.tasks import BALANCE
@@ -47,7 +47,10 @@ def main() -> None:
     parser.add_argument("--pushes", type=int, default=8)
     parser.add_argument("--newtons", type=float, nargs=2, default=(75.0, 125.0))
     parser.add_argument("--engine", choices=("pybullet", "mujoco"), default="pybullet")
+    parser.add_argument("--calm", action="store_true", help="without pushes, noise and other randomisation")
     options = parser.parse_args()
+    newtons = (0.0, 0.0) if options.calm else tuple(options.newtons)
+    episodes_each = 1 if options.calm else options.pushes
 
     laws = [("nothing", 0.0)] + [(told, v1) for told in TOLD for v1 in options.v1]
     heads = ["V1 = 0"] + [f"{told}: V1 = {v1:g}" for told, v1 in laws[1:]]
@@ -55,17 +58,22 @@ def main() -> None:
     better = [0] * len(laws)
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
         for stepping in STEPPING:
-            push = Push(newtons=tuple(options.newtons))
-            config = EpisodeConfig(time_limit=10.0, stepping=stepping, push=push, engine=options.engine)
+            config = EpisodeConfig(
+                time_limit=10.0,
+                stepping=stepping,
+                push=Push(newtons=newtons),
+                randomisation=Randomisation(enabled=not options.calm),
+                engine=options.engine,
+            )
             jobs = [
                 (told, EpisodeSpec((v1, 0.0, 0.0, 0.0), seed, BALANCE.name, config))
                 for told, v1 in laws
-                for seed in range(options.pushes)
+                for seed in range(episodes_each)
             ]
-            results = list(pool.map(simulate_with, *zip(*jobs, strict=True), chunksize=options.pushes))
+            results = list(pool.map(simulate_with, *zip(*jobs, strict=True), chunksize=episodes_each))
             cells, scores = [], []
             for index in range(len(laws)):
-                episodes = results[index * options.pushes : (index + 1) * options.pushes]
+                episodes = results[index * episodes_each : (index + 1) * episodes_each]
                 scores.append(mean(result.score for result in episodes))
                 survival = mean(result.survived for result in episodes)
                 frequency = mean(result.steps_per_second for result in episodes)
