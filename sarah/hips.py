@@ -83,9 +83,9 @@ class HipLaw:
 
     def __init__(self, parameters: BalanceParameters, dt: float) -> None:
         self.abduction = 0.0
-        self.abduction_rate = 0.0
         self.flexion = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
         self.pitch = 0.0
+        self._abduction_before = 0.0
         self._parameters = parameters
         self._dt = dt
         self._stable_x = LowPass(STABLE_TIME_CONSTANT, dt)
@@ -94,6 +94,11 @@ class HipLaw:
     def stable_x(self) -> float:
         """The hips' low-passed lateral acceleration, in m/s^2."""
         return self._stable_x.value
+
+    @property
+    def abduction_rate(self) -> float:
+        """How fast the last tick moved the abduction target, in rad/s."""
+        return (self.abduction - self._abduction_before) / self._dt
 
     def sense(self, reading: SensorReading) -> None:
         """Filter one reading without acting on it, as while standing."""
@@ -108,9 +113,8 @@ class HipLaw:
         """
         v = self._parameters
         constant = FLEXION_SCALE * v.V4
-        abduction = self._moved(self.abduction, -ABDUCTION_SCALE * (v.V1 * self.stable_x + v.V2))
-        self.abduction_rate = (abduction - self.abduction) / self._dt
-        self.abduction = abduction
+        self._abduction_before = self.abduction
+        self.abduction = self._moved(self.abduction, -ABDUCTION_SCALE * (v.V1 * self.stable_x + v.V2))
         self.flexion[swing] = self._moved(self.flexion[swing], PITCH_SCALE * v.V3 * self.pitch + constant)
         self.flexion[swing.other] = self._moved(self.flexion[swing.other], constant)
 
