@@ -17,7 +17,14 @@ from matplotlib.axes import Axes
 from sarah.colours import PHASE_COLOURS
 from sarah.config import STAND_SECONDS
 from sarah.hips import HIP_SPEED, LARGEST_ANGLE, BalanceParameters, HipLaw, Side
-from sarah.pattern_generator import MINIMUM_PHASE_SECONDS, PatternGenerator, Phase, SteppingParameters
+from sarah.pattern_generator import (
+    ABDUCTION_RATE_SHARE,
+    ABDUCTION_TILT,
+    MINIMUM_PHASE_SECONDS,
+    PatternGenerator,
+    Phase,
+    SteppingParameters,
+)
 from sarah.print_style import COLUMN_WIDTH, STYLE, save
 from sarah.sensors import SensorReading
 
@@ -25,10 +32,10 @@ SILENCE = SensorReading((0.0, 0.0, 9.81), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0),
 """In which no sensor ends a phase."""
 DT = 0.001
 MINUS = "\u2212"
-NOTE = """tilt (m/s²), rate (rad/s): low-passed lateral acceleration and angular rate
-about y, towards the support leg; abduction counts as tilt. stable_x (m/s²):
-slower low-pass of the lateral acceleration. pitch (rad): leaky integral of the
-angular rate about x.
+NOTE = f"""tilt (m/s²), rate (rad/s): low-passed lateral acceleration and angular rate
+about y, towards the support leg, plus {ABDUCTION_TILT:g} and {ABDUCTION_RATE_SHARE:g} times the abduction and
+its rate. stable_x (m/s²): slower low-pass of the lateral acceleration.
+pitch (rad): leaky integral of the angular rate about x.
 """
 
 
