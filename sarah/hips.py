@@ -96,6 +96,11 @@ class HipLaw:
         return self._stable_x.value
 
     @property
+    def sway(self) -> float:
+        """Abduction without V2's constant, in rad: what of it comes and goes with the rocking."""
+        return self.abduction + ABDUCTION_SCALE * self._parameters.V2
+
+    @property
     def abduction_rate(self) -> float:
         """How fast the last tick moved the abduction target, in rad/s."""
         return (self.abduction - self._abduction_before) / self._dt

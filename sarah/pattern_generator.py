@@ -42,7 +42,7 @@ LEG_SPEED = 1.0
 TILT_TIME_CONSTANT = 0.10
 RATE_TIME_CONSTANT = 0.01
 ABDUCTION_TILT = 150.0
-"""How much tilt a radian of the hip law's abduction counts for, in m/s^2."""
+"""How much tilt a radian of the hip law's abduction, without its constant, counts for, in m/s^2."""
 ABDUCTION_RATE_SHARE = 0.2
 """How much of the abduction's own rate counts as rate. Both are measured: benchmarks/stepping_and_hips.py."""
 
@@ -133,8 +133,8 @@ class PatternGenerator:
 
         Abduction keeps the torso upright while the legs lean, and counts as tilt too.
         """
-        abduction = 0.0 if self.hips is None else self.hips.abduction
-        return self.support.value * (ABDUCTION_TILT * abduction - self._stable_x.value)
+        sway = 0.0 if self.hips is None else self.hips.sway
+        return self.support.value * (ABDUCTION_TILT * sway - self._stable_x.value)
 
     @property
     def rate(self) -> float:
