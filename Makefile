@@ -69,6 +69,7 @@ tables: install  ## the tables of the README and docs: hours of simulation
 	$(BIN)/python benchmarks/first_training.py
 	$(BIN)/python benchmarks/robot.py
 	$(BIN)/python benchmarks/hip_laws.py
+	$(BIN)/python benchmarks/stepping_and_hips.py
 	$(BIN)/python benchmarks/second_training.py --algo naf td3
 
 clean:  ## remove what was built, but no runs

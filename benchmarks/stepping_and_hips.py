@@ -20,7 +20,7 @@ from sarah.pattern_generator import ABDUCTION_RATE_SHARE, ABDUCTION_TILT, PAPER_
 from sarah.tasks import BALANCE
 
 STEPPING = (
-    (*PAPER_PARAMETERS,),
+    PAPER_PARAMETERS,
     TRAINED_STEPPING,
     (0.02, 0.23, 0.29, 0.07, 1.96),
     (0.01, 0.87, 0.14, 1.97, 1.88),

@@ -12,8 +12,8 @@ y axis, and the sensors, not a clock, decide when each phase of a step ends::
             until the swing foot is loaded, or 0.5 (1 + P5) s
 
 Tilt is the low-passed lateral acceleration and rate the low-passed angular rate about y, both positive towards the
-support leg; to both is added a share of the hip law's abduction, which the torso does not feel. The time-outs are slow
-on purpose: with faster ones a learner uses them as an open-loop clock and ignores the sensors (benchmarks/clock.py
+support leg; the hip law's abduction, which the torso does not feel, is added to both. The time-outs are slow on
+purpose: with faster ones a learner uses them as an open-loop clock and ignores the sensors (benchmarks/clock.py
 compares 0.3 s and 0.5 s). Plain floats only: it runs once per control tick, and on a robot.
 """
 

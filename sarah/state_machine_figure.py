@@ -33,9 +33,9 @@ SILENCE = SensorReading((0.0, 0.0, 9.81), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0),
 DT = 0.001
 MINUS = "\u2212"
 NOTE = f"""tilt (m/s²), rate (rad/s): low-passed lateral acceleration and angular rate
-about y, towards the support leg, plus {ABDUCTION_TILT:g} and {ABDUCTION_RATE_SHARE:g} times the abduction and
-its rate. stable_x (m/s²): slower low-pass of the lateral acceleration.
-pitch (rad): leaky integral of the angular rate about x.
+about y, towards the support leg, plus {ABDUCTION_TILT:g} and {ABDUCTION_RATE_SHARE:g} times the abduction
+(without V2) and its rate. stable_x (m/s²): slower low-pass of the lateral
+acceleration. pitch (rad): leaky integral of the angular rate about x.
 """
 
 
