@@ -170,7 +170,7 @@ class EpisodeConfig:
     :param physics: how finely to integrate
     :param engine: what integrates: ``"pybullet"``, the reference, or ``"mujoco"``
     :param randomisation: what to draw from each episode's seed
-    :param dimensions: of the robot, where they differ from the xacro's defaults
+    :param dimensions: of the robot, names and values where they differ from the xacro's; by default none do
     :param time_limit: of an episode, in s; the paper's first criterion
     :param reward_form: ``"symmetric"``, or ``"printed"`` for equation 2 to the letter
     :param stepping: P1 to P5 of the balance task, which the agent does not choose there
