@@ -60,17 +60,18 @@ bench: install  ## how fast it is: simulation, workers, learner; minutes
 	$(BIN)/python benchmarks/throughput.py
 
 tables: install  ## the tables of the README and docs: hours of simulation
-	$(BIN)/python benchmarks/paper_parameters.py
-	$(BIN)/python benchmarks/landscape.py --engines pybullet mujoco
+	$(BIN)/python benchmarks/landscape.py --engines pybullet mujoco --episodes 3 --seconds 12
 	$(BIN)/python benchmarks/landscape.py --task balance --engines pybullet mujoco --episodes 12 --seconds 8
 	$(BIN)/python benchmarks/engines.py
 	$(BIN)/python benchmarks/clock.py
-	$(BIN)/python benchmarks/physics.py
-	$(BIN)/python benchmarks/first_training.py
-	$(BIN)/python benchmarks/robot.py
-	$(BIN)/python benchmarks/hip_laws.py
+	$(BIN)/python benchmarks/physics.py 1.1,0,0,0 0.8,0,0.4,0 1.29,0.23,-0.02,-1.97 --seeds 10 \
+		--settings 1000,100 300,40 200,50 200,40 200,30
+	$(BIN)/python benchmarks/first_training.py --algo naf --episodes 12 --reference-episodes 2
+	$(BIN)/python benchmarks/robot.py --pushes 20 --unpushed 2
+	$(BIN)/python benchmarks/hip_laws.py pitch:swing:1 acceleration:both:1 acceleration:held:1 acceleration:sampled:1 \
+		angle:swing:1 --newtons 105 --pushes 200 --unpushed 2
 	$(BIN)/python benchmarks/stepping_and_hips.py
-	$(BIN)/python benchmarks/second_training.py --algo naf td3
+	$(BIN)/python benchmarks/second_training.py --algo naf
 
 clean:  ## remove what was built, but no runs
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis

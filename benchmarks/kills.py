@@ -22,7 +22,7 @@ from sarah.runs import RunFolder
 from sarah.training import train
 
 SIMULATIONS = 50
-"""Of which agents learn from those after the warm-up, 5 or 30."""
+"""Of which agents learn from those after the warm-up, 6 or 30."""
 SHORT = EpisodeConfig(time_limit=2.0, physics=Physics(rate=100, solver_iterations=5))
 ALGORITHMS = ("naf", "cma-es", "td3", "tpe")
 FORK = multiprocessing.get_context("fork")

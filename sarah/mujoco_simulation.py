@@ -221,7 +221,7 @@ class MujocoSimulation:
         return min([heights[sole] for sole in self._feet[side]]) - self.robot.contact_radius
 
     def close(self) -> None:
-        """Give back what pictures took."""
+        """Nothing is left open: MuJoCo's memory goes with the object."""
 
 
 def _sole(side: str, plate: str, index: int) -> str:

@@ -24,7 +24,7 @@ PIXELS_PER_INCH = 300
 TRIAD = (0.07, 0.50, 0.0)
 """Where the axes are drawn, on the floor, in m."""
 TRIAD_LENGTH = 0.10
-UP_AXIS, FORWARD_AXIS = 2, 1
+UP_AXIS = 2
 
 
 @dataclass(frozen=True)

@@ -62,7 +62,7 @@ class Simulation:
             physicsClientId=self._client,
         )
         pybullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self._client)
-        self._floor = self._build_floor()
+        self._build_floor()
         self._body, self._links = load_robot(
             self._client,
             self.robot.urdf,
@@ -95,11 +95,10 @@ class Simulation:
         self._targets: tuple[float, ...] = ()
         self.set_targets((0.0,) * len(self._joints))
 
-    def _build_floor(self) -> int:
+    def _build_floor(self) -> None:
         shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self._client)
         floor = pybullet.createMultiBody(0.0, shape, physicsClientId=self._client)
         pybullet.changeDynamics(floor, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=self._client)
-        return int(floor)
 
     def _keep_only_pad_contacts(self) -> None:
         links = sorted(set(self._links.values()))

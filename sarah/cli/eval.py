@@ -39,14 +39,14 @@ class EvalOptions:
     :param first_seed: seed of the first episode; the others follow. Trainings use seeds from 2^31 up
     :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default the run's own
     :param engine: of the physics, ``pybullet`` or ``mujoco``; by default the run's own
-    :param randomisation: whether friction, masses, sensors and so on vary from seed to seed
+    :param randomisation: leave friction, masses, sensors and so on as designed, instead of varying them by seed
     :param json: print one JSON object
     :param workers: processes that simulate, on this machine; with none, this process does. They change no result
     :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
     """
 
-    run: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN")] = None
-    task: str | None = None
+    run: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN]")] = None
+    task: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
     parameters: Annotated[str | None, tyro.conf.arg(metavar="NUMBERS")] = None
     stepping: Annotated[str | None, tyro.conf.arg(metavar="P1,P2,P3,P4,P5")] = None
     push_newtons: Annotated[float | None, tyro.conf.arg(metavar="FLOAT")] = None
@@ -55,7 +55,7 @@ class EvalOptions:
     first_seed: int = 0
     physics: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
     engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
-    randomisation: bool = True
+    randomisation: Annotated[bool, tyro.conf.arg(help_behavior_hint="(default: they vary)")] = True
     json: bool = False
     workers: int = 0
     scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None

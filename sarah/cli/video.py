@@ -33,7 +33,7 @@ class VideoOptions:
     :param push_newtons: force of the push; by default as in the run, or 0 to 100 N
     :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default the run's own
     :param engine: of the physics, ``pybullet`` or ``mujoco``; by default the run's own
-    :param randomisation: whether friction, masses, sensors and so on vary from seed to seed
+    :param randomisation: leave friction, masses, sensors and so on as designed, instead of varying them by seed
     :param seconds: simulated time at which the video begins and ends; by default all of it
     :param speed: 0.25 shows everything four times as slow
     """
@@ -50,7 +50,7 @@ class VideoOptions:
     push_newtons: Annotated[float | None, tyro.conf.arg(metavar="FLOAT")] = None
     physics: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
     engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
-    randomisation: bool = True
+    randomisation: Annotated[bool, tyro.conf.arg(help_behavior_hint="(default: they vary)")] = True
     seconds: Annotated[tuple[float, float] | None, tyro.conf.arg(metavar="BEGIN END")] = None
     speed: float = 1.0
 

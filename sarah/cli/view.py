@@ -41,7 +41,7 @@ class ViewOptions:
     :param port: to serve the page at; the next free one if it is taken
     """
 
-    subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="RUN|NUMBERS")] = ",".join(
+    subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS]")] = ",".join(
         map(str, TRAINED_STEPPING)
     )
     episode: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
