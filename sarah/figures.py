@@ -24,7 +24,7 @@ from matplotlib.patheffects import withStroke
 from sarah.errors import RunFolderError
 from sarah.pattern_generator import PAPER_PARAMETERS
 from sarah.print_style import COLUMN_WIDTH, STYLE, save
-from sarah.robustness import PushedEpisode, survival_by_direction
+from sarah.robustness import PushedEpisode, finest_sectors, survival_by_direction
 from sarah.runs import RunFolder
 from sarah.tasks import BALANCE, STEPPING, Task
 
@@ -33,8 +33,6 @@ if TYPE_CHECKING:  # it brings the trainings with it
 
 WINDOW = 15
 """Simulations that the running median is over."""
-SECTORS = 16
-"""Directions that survival is shown by."""
 CHORDS = 8
 """That the arc of a sector is drawn with."""
 COLOURS = {
@@ -224,7 +222,7 @@ def draw_survival(controllers: Mapping[str, Sequence[PushedEpisode]], path: Path
             layout="constrained",
         )
         for axis, (name, episodes) in zip(axes[0], controllers.items(), strict=True):
-            mesh = _draw_survival(axis, survival_by_direction(episodes, SECTORS))
+            mesh = _draw_survival(axis, survival_by_direction(episodes, finest_sectors(episodes)))
             axis.set_title(name)
         figure.colorbar(mesh, ax=axes, label="survival (white: no push this way)", orientation="horizontal", shrink=0.6)
         return save(figure, path)
@@ -234,8 +232,9 @@ def _draw_survival(axis: Any, survival: Mapping[float, Sequence[float | None]]) 
     forces = list(survival)
     middles = [(low + high) / 2 for low, high in itertools.pairwise(forces)]
     rings = [0.0, *middles, forces[-1] + (forces[-1] - middles[-1] if middles else 0.0)]
-    edges = (np.arange(SECTORS * CHORDS + 1) / CHORDS - 0.5) * 2 * np.pi / SECTORS
     shares = np.array([[np.nan if share is None else share for share in row] for row in survival.values()])
+    sectors = shares.shape[1]
+    edges = (np.arange(sectors * CHORDS + 1) / CHORDS - 0.5) * 2 * np.pi / sectors
     mesh: QuadMesh = axis.pcolormesh(edges, rings, shares.repeat(CHORDS, axis=1), cmap="cividis", vmin=0.0, vmax=1.0)
     axis.set_rmax(rings[-1])
     labels = axis.set_rgrids(forces, [f"{force:.0f} N" for force in forces], angle=67.5, fontsize=6)[1]

@@ -25,6 +25,8 @@ PUSHED_BETWEEN = (2.0, 4.0)
 SECONDS_AFTER = 10.0
 """How long after the latest push the robot must stay up."""
 DIRECTIONS = ("all", "lateral", "sagittal")
+SECTORS = (16, 8, 4)
+"""How many directions survival may be shown by."""
 CONFIDENCE_QUANTILE = 1.96
 """Of the normal distribution, for intervals of 95 %."""
 
@@ -164,3 +166,14 @@ def survival_by_direction(episodes: Sequence[PushedEpisode], sectors: int) -> di
                 counts[sector][1] += 1
         table[newtons] = [survived / total if total else None for survived, total in counts]
     return table
+
+
+def finest_sectors(episodes: Sequence[PushedEpisode]) -> int:
+    """The largest of :data:`SECTORS` of which none is without pushes; if there is none such, the smallest.
+
+    :param episodes: of one controller
+    """
+    for sectors in SECTORS:
+        if all(None not in shares for shares in survival_by_direction(episodes, sectors).values()):
+            break
+    return sectors

@@ -12,7 +12,14 @@ from sarah import robustness
 from sarah.cli import eval as eval_command
 from sarah.config import EpisodeConfig
 from sarah.episode import EpisodeResult, EpisodeSpec, simulate
-from sarah.robustness import PushedEpisode, push_many, robustness_table, survival_by_direction, wilson_interval
+from sarah.robustness import (
+    PushedEpisode,
+    finest_sectors,
+    push_many,
+    robustness_table,
+    survival_by_direction,
+    wilson_interval,
+)
 from sarah.workers import Workers
 
 RESULT = EpisodeResult(0.8, 4.0, 3.0, 30, 14.15, "time_limit", (0.03, 0.04, 0.84), 0.02, 1.0, 1.0, 9.0, 15.0, 0.5, 0.6)
@@ -72,6 +79,11 @@ def test_interval_holds_the_share_and_is_never_empty(trials: int, data: st.DataO
 def test_sectors_are_centred_on_right_forward_left_and_back() -> None:
     episodes = [pushed(5), pushed(-5, FALL), pushed(90), pushed(180, FALL), pushed(-175, FALL)]
     assert survival_by_direction(episodes, 4) == {100.0: [0.5, 1.0, 0.0, None]}
+
+
+@pytest.mark.parametrize("step, sectors", [(22.5, 16), (30, 8), (45, 8), (90, 4), (180, 4)])
+def test_a_plot_has_no_more_sectors_than_pushes_point_to(step: float, sectors: int) -> None:
+    assert finest_sectors([pushed(step * index) for index in range(round(360 / step))]) == sectors
 
 
 def test_eval_prints_the_table_and_leaves_it_with_a_plot(
