@@ -36,5 +36,6 @@ def check_engine(engine: str) -> None:
     :param engine: ``"pybullet"`` or ``"mujoco"``
     :raises ConfigurationError: naming how to install it
     """
-    if find_spec(engine) is None:
+    spec = find_spec(engine)
+    if spec is None or spec.origin is None:  # `pip uninstall mujoco` leaves a folder of that name, but no package
         raise ConfigurationError(f"engine {engine!r} needs the package {engine}: pip install 'sarah[{engine}]'")

@@ -9,6 +9,8 @@ import pybullet
 import pytest
 
 from sarah.description import PLATES, SIDES
+from sarah.engines import check_engine
+from sarah.errors import ConfigurationError
 
 
 class BulletLaboratory:
@@ -141,5 +143,13 @@ def laboratory(engine: str) -> BulletLaboratory | MujocoLaboratory:
     """An engine's laboratory; a test of an engine that is not installed is skipped."""
     if engine == "pybullet":
         return BulletLaboratory()
-    pytest.importorskip("mujoco", reason="the extra mujoco is not installed")
+    need_mujoco()
     return MujocoLaboratory()
+
+
+def need_mujoco() -> None:
+    """Skip the test that calls it if MuJoCo is not installed."""
+    try:
+        check_engine("mujoco")
+    except ConfigurationError as missing:
+        pytest.skip(str(missing))

@@ -5,13 +5,17 @@ import json
 import math
 import subprocess
 import sys
+from importlib.machinery import ModuleSpec
 from pathlib import Path
 
 import pytest
-from laboratory import laboratory
+from laboratory import need_mujoco
 
+from sarah import engines
 from sarah.config import TRAINED_STEPPING, EpisodeConfig
+from sarah.engines import simulator_of
 from sarah.episode import Episode, EpisodeSpec, simulate
+from sarah.errors import ConfigurationError
 from sarah.evaluation import summarise
 from sarah.pattern_generator import PAPER_PARAMETERS
 from sarah.transfer import Subject, Transfer
@@ -23,7 +27,7 @@ MUJOCO_IS_MISSING = "import sys\nsys.modules['mujoco'] = None\n"
 @pytest.fixture
 def mujoco_engine() -> None:
     """MuJoCo is installed, or the test is skipped."""
-    laboratory("mujoco")
+    need_mujoco()
 
 
 @pytest.mark.parametrize("parameters", [PAPER_PARAMETERS, TRAINED_STEPPING])
@@ -99,6 +103,13 @@ def test_without_the_extra_a_command_says_how_to_get_it_and_writes_nothing(
     needed = "engine 'mujoco' needs the package mujoco: pip install 'sarah[mujoco]'"
     assert process.returncode == 2 and process.stderr == f"sarah-{command}: error: {needed}\n"
     assert not list(tmp_path.iterdir())
+
+
+def test_what_pip_leaves_of_mujoco_is_no_engine(monkeypatch: pytest.MonkeyPatch) -> None:
+    folder_only = ModuleSpec("mujoco", loader=None, is_package=True)
+    monkeypatch.setattr(engines, "find_spec", lambda name: folder_only)
+    with pytest.raises(ConfigurationError, match="needs the package mujoco"):
+        simulator_of("mujoco")
 
 
 def test_without_the_extra_pybullet_works() -> None:
