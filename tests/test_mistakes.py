@@ -10,6 +10,7 @@ import pytest
 import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from laboratory import need_mujoco
 
 from sarah.config import TrainingConfig
 from sarah.config_files import read_config
@@ -146,7 +147,6 @@ BALANCE_EVAL = "sarah-eval --task balance --parameters 1,0,1,0"
         ("sarah-eval full/precious.txt", "run folder full/precious.txt does not exist"),
         ("sarah-compare full/precious.txt --seeds 1", "full/precious.txt"),
         ("sarah-figures full", "not the folder of a finished training"),
-        ("sarah-transfer full", "not the folder of a finished training"),
         ("sarah-report nowhere", "run folder nowhere does not exist"),
         ("sarah-video full out.mp4", "full"),
         ("sarah-video 1,1,1,1,1 out.txt", "out.txt"),
@@ -168,6 +168,12 @@ def test_command_lines(line: str, message: str, answer: Callable[[str], str], tm
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "precious.txt").write_text("data")
     assert message in answer(line)
+
+
+def test_transfer_of_no_training(answer: Callable[[str], str], tmp_path: Path) -> None:
+    need_mujoco()
+    (tmp_path / "full").mkdir()
+    assert "not the folder of a finished training" in answer("sarah-transfer full")
 
 
 @pytest.mark.parametrize(
