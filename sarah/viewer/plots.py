@@ -212,7 +212,7 @@ def _add_chart(gui: viser.GuiApi, chart: Chart, has_time_axis: bool) -> viser.Gu
         tuple(np.array([0.0, 1.0]) for _ in series),
         series,
         scales=_scales((0.0, 1.0), (0.0, 1.0)),
-        axes=(time_axis, uplot.Axis(label=chart.axis, labelSize=16, size=44)),
+        axes=(time_axis, uplot.Axis(label=chart.axis, labelSize=16, size=44, space=18)),  # two values at least
         cursor={"sync": {"key": "time"}, "drag": {"x": False, "y": False}},
         height=CHART_HEIGHT + (36 if has_time_axis else 0),
         padding=(6, 12, 2, 0),
