@@ -173,7 +173,5 @@ def finest_sectors(episodes: Sequence[PushedEpisode]) -> int:
 
     :param episodes: of one controller
     """
-    for sectors in SECTORS:
-        if all(None not in shares for shares in survival_by_direction(episodes, sectors).values()):
-            break
-    return sectors
+    without_gaps = (n for n in SECTORS if all(None not in row for row in survival_by_direction(episodes, n).values()))
+    return next(without_gaps, SECTORS[-1])
