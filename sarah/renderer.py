@@ -27,10 +27,11 @@ class Renderer:
     """Draws a robot in any pose, by PyBullet's software renderer.
 
     :param robot: the checked robot
-    :param samples: of the robot along each side of a pixel: more smooth its edges, and cost time with their square
+    :param samples: of the robot along each side of a pixel: 2 smooth its edges; less than 1 is softer, and quicker, for
+        time grows with their square
     """
 
-    def __init__(self, robot: RobotDescription, samples: int = 2) -> None:
+    def __init__(self, robot: RobotDescription, samples: float = 2.0) -> None:
         self._robot = robot
         self._samples = samples
         self._client = take_client()
@@ -111,8 +112,7 @@ class Renderer:
             NEAR,
             FAR,
         )
-        samples = self._samples
-        rows, columns = samples * (bottom - top), samples * (right - left)
+        columns, rows = round(self._samples * (right - left)), round(self._samples * (bottom - top))
         image = pybullet.getCameraImage(
             columns,
             rows,
@@ -126,10 +126,12 @@ class Renderer:
             renderer=pybullet.ER_TINY_RENDERER,
             physicsClientId=self._client,
         )
-        is_robot = np.reshape(image[4], (rows, columns, 1)) >= 0
-        colours = np.reshape(image[2], (rows, columns, 4))[..., :3]
-        finer = behind.repeat(samples, axis=0).repeat(samples, axis=1)
-        return np.asarray(Image.fromarray(np.where(is_robot, colours, finer)).reduce(samples))
+        pixels = np.array(image[2], np.uint8).reshape(rows, columns, 4)
+        pixels[..., 3] = 255 * (np.reshape(image[4], (rows, columns)) >= 0)
+        robot = Image.fromarray(pixels).resize((right - left, bottom - top), Image.Resampling.BILINEAR)
+        picture = Image.fromarray(behind)
+        picture.paste(robot, mask=robot)
+        return np.asarray(picture)
 
     def draw_simulator(
         self, simulator: Simulator, width: int = 640, height: int = 480, camera: Camera = STANDARD_CAMERA
