@@ -131,7 +131,8 @@ def test_a_folder_that_cannot_be_written_is_one_line(small_disk: Path) -> None:
     assert not list(small_disk.iterdir())
 
 
-def test_killed_at_random_moments(tmp_path: Path) -> None:
+@pytest.mark.slow
+def test_killed_at_random_moments() -> None:
     """Fewer than by the command that docs/reliability.md names."""
     program = Path(__file__).parent.parent / "benchmarks" / "kills.py"
     process = subprocess.run([sys.executable, program, "--kills", "3"], capture_output=True, text=True, timeout=400)

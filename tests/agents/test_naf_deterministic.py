@@ -8,7 +8,7 @@ from sarah.agents import NAF, PRESETS
 
 
 def trained_weights(seed: int, n_envs: int, preset: str | None) -> np.ndarray:
-    arguments = {**PRESETS.get(preset, {}), "learning_starts": 30, "batch_size": 16, "buffer_size": 500}
+    arguments = {**PRESETS.get(preset, {}), "learning_starts": 40, "batch_size": 16, "buffer_size": 500}
     env = make_vec_env("Pendulum-v1", n_envs=n_envs, seed=seed)
     model = NAF("MlpPolicy", env, seed=seed, **arguments).learn(60)
     return np.concatenate([model.policy.parameters_to_vector(), model.replay_buffer.actions.ravel()])
