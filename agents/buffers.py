@@ -151,6 +151,16 @@ class RankReplayBuffer(ReplayBuffer):
         best: np.ndarray = actions[highest[np.argmax(means)]]
         return best
 
+    def may_be_good(self, action: np.ndarray) -> bool:
+        """
+        Whether the rewards around an action are at least average, or hardly any are known.
+
+        :param action: A scaled action, of shape (action dim,)
+        """
+        actions, rewards = self.actions[: self.size(), 0], self.rewards[: self.size(), 0]
+        means = neighbourhood_means(action[None], actions, rewards - rewards.mean(), NEIGHBOURHOOD, LITTLE_DOUBT)
+        return bool(means[0] >= -LITTLE_DOUBT * rewards.std())
+
     def draw_near_best(self, std: float, draws: int) -> np.ndarray:
         """
         An action to try near the best one: of some Gaussian draws around it that with the best neighbourhood.

@@ -113,7 +113,8 @@ class NAF(OffPolicyAlgorithm):
         such as ``LinearSchedule``; 0 switches the noise off. Without effect if ``action_noise`` is given.
     :param elite_share: Share of the exploring actions that are drawn around the best action of the replay buffer
         instead of around ``mu``, which a decoy may hold; it can be a function of the current progress remaining
-        (from 1 to 0). Needs a ``RankReplayBuffer``, which knows that action.
+        (from 1 to 0). As long as it is above 0, actions among rewards below the average are replaced by such draws
+        too: ``mu`` may stay on a plateau that no gradient leads from. Needs a ``RankReplayBuffer``.
     :param elite_std: Standard deviation of these actions, in scaled actions; it can be a function of the current
         progress remaining (from 1 to 0)
     :param elite_draws: How many actions are drawn each time, of which that is done whose neighbourhood in the replay
@@ -247,15 +248,27 @@ class NAF(OffPolicyAlgorithm):
         action, scaled_action = super()._sample_action(learning_starts, action_noise, n_envs)
         elite_share = self.elite_share_schedule(self._current_progress_remaining)
         if elite_share > 0 and self.num_timesteps >= max(learning_starts, 1):
-            std = self.elite_std_schedule(self._current_progress_remaining)
-            for i in np.flatnonzero(np.random.random(n_envs) < elite_share):
-                elite = self.replay_buffer.draw_near_best(std, self.elite_draws)  # type: ignore[union-attr]
-                scaled_action[i] = elite.reshape(self.action_space.shape)
+            self._draw_near_best(scaled_action, elite_share)
             action = self.policy.unscale_action(scaled_action)
         if self.first_action_centre and self.num_timesteps == 0:
             scaled_action[0] = 0.0  # Of the first environment: the others warm up as ever
             action = self.policy.unscale_action(scaled_action)
         return action, scaled_action
+
+    def _draw_near_best(self, scaled_actions: np.ndarray, share: float) -> None:
+        """
+        Replace a share of some exploring actions, and those known to be bad, by draws around the best action.
+
+        :param scaled_actions: One of each environment; changed in place
+        :param share: Of them
+        """
+        assert isinstance(self.replay_buffer, RankReplayBuffer)
+        std = self.elite_std_schedule(self._current_progress_remaining)
+        near_best = np.random.random(len(scaled_actions)) < share
+        for i, scaled_action in enumerate(scaled_actions):
+            if near_best[i] or not self.replay_buffer.may_be_good(scaled_action.ravel()):
+                elite = self.replay_buffer.draw_near_best(std, self.elite_draws)
+                scaled_actions[i] = elite.reshape(scaled_action.shape)
 
     def train(self, gradient_steps: int, batch_size: int = 100) -> None:
         """

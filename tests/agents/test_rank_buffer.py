@@ -144,6 +144,15 @@ def test_the_best_action_is_the_one_among_good_ones():
     np.testing.assert_allclose(buffer.best_action(), [0.5, 0.5], atol=0.1)
 
 
+def test_what_may_be_good_is_average_at_least_or_unknown():
+    buffer = RankReplayBuffer(10, spaces.Box(-1, 1, (1,)), BOX, "cpu", 1)
+    for action, reward in (([-0.5, 0.0], 0.0), ([-0.4, 0.0], 0.2), ([0.5, 0.0], 0.7)):  # average 0.3
+        buffer.add(np.zeros((1, 1)), np.zeros((1, 1)), np.array([action]), np.array([reward]), np.ones(1), [{}])
+    assert not buffer.may_be_good(np.array([-0.45, 0.0]))
+    assert buffer.may_be_good(np.array([0.45, 0.1]))
+    assert buffer.may_be_good(np.array([0.0, 1.0]))  # nothing was tried there
+
+
 def test_neighbourhood_means_by_hand():
     means = neighbourhood_means(np.array([[0.0], [3.0]]), np.array([[0.0], [0.2]]), np.array([1.0, 3.0]), distance=0.2)
     weight = np.exp(-0.5)
