@@ -37,11 +37,12 @@ PRESETS: dict[str, dict[str, Any]] = {
         batch_size=64,
         gamma=0.0,  # The reward is the return, also where a time limit ends the episode
         gradient_steps=10,
+        max_grad_norm=10.0,
         replay_buffer_class=RankReplayBuffer,
         replay_buffer_kwargs=dict(temperature=4.0),
-        exploration_std=LinearSchedule(0.3, 0.05, end_fraction=0.8),
+        exploration_std=0.3,
         elite_share=LinearSchedule(1.0, 0.5, end_fraction=0.8),
-        elite_std=LinearSchedule(0.7, 0.05, end_fraction=0.8),
+        elite_std=LinearSchedule(0.4, 0.3, end_fraction=0.8),
         elite_draws=16,
         locality=0.4,
         policy_kwargs=dict(net_arch=[32, 32], activation_fn=nn.Tanh, lower_sees_action=True),
@@ -90,7 +91,8 @@ class NAF(OffPolicyAlgorithm):
     :param learning_starts: how many steps of the model to collect transitions for before learning starts.
         More than TD3's 100: NAF has one critic, and what it believes of few transitions its policy follows at once
     :param batch_size: Minibatch size for each gradient update
-    :param tau: the soft update coefficient ("Polyak update", between 0 and 1)
+    :param tau: the soft update coefficient ("Polyak update", between 0 and 1). More than TD3's 0.005: where V is too
+        high, nothing but the target's news brings it down
     :param gamma: the discount factor
     :param train_freq: Update the model every ``train_freq`` steps. Alternatively pass a tuple of frequency
         and unit like ``(5, "step")`` or ``(2, "episode")``.
@@ -107,7 +109,8 @@ class NAF(OffPolicyAlgorithm):
     :param n_steps: When n_step > 1, uses n-step return (with the NStepReplayBuffer) when updating
         the Q-value network. Note: it is only used when ``replay_buffer_class`` is ``None``,
         and is not supported for Dict observation spaces yet.
-    :param max_grad_norm: The maximum value for the gradient clipping
+    :param max_grad_norm: The maximum value for the gradient clipping. Low, so that a few transitions that V is far
+        off for do not shift it everywhere else
     :param exploration_std: Standard deviation of the Gaussian exploration noise, in actions scaled
         to [-1, 1]. It can be a function of the current progress remaining (from 1 to 0),
         such as ``LinearSchedule``; 0 switches the noise off. Without effect if ``action_noise`` is given.
@@ -120,7 +123,8 @@ class NAF(OffPolicyAlgorithm):
     :param elite_draws: How many actions are drawn each time, of which that is done whose neighbourhood in the replay
         buffer had the highest rewards: wide draws find their way by what is known
     :param first_action_centre: Whether the first environment's first action is the centre of the action space, often
-        the neutral one, from which ``elite_draws`` may then start
+        a neutral one. Then actions around the best one are drawn as soon as its outcome is known, and not only after
+        ``learning_starts`` uniform ones
     :param locality: Distance from ``mu``, in scaled actions, over which a transition's weight in the loss
         falls: ``exp(-|u - mu|^2 / (2 * locality^2)) + 0.02``. If ``None`` (default), all weigh the same.
         Choose it where the return is far from quadratic, and only what is near ``mu`` can be fitted.
@@ -156,7 +160,7 @@ class NAF(OffPolicyAlgorithm):
         buffer_size: int = 1_000_000,  # 1e6
         learning_starts: int = 1000,
         batch_size: int = 256,
-        tau: float = 0.005,
+        tau: float = 0.02,
         gamma: float = 0.99,
         train_freq: int | tuple[int, str] = 1,
         gradient_steps: int = 1,
@@ -165,7 +169,7 @@ class NAF(OffPolicyAlgorithm):
         replay_buffer_kwargs: dict[str, Any] | None = None,
         optimize_memory_usage: bool = False,
         n_steps: int = 1,
-        max_grad_norm: float = 10.0,
+        max_grad_norm: float = 1.0,
         exploration_std: float | Schedule = 0.1,
         elite_share: float | Schedule = 0.0,
         elite_std: float | Schedule = 0.2,
@@ -247,13 +251,18 @@ class NAF(OffPolicyAlgorithm):
             self.logger.record("train/exploration_std", std)
         action, scaled_action = super()._sample_action(learning_starts, action_noise, n_envs)
         elite_share = self.elite_share_schedule(self._current_progress_remaining)
-        if elite_share > 0 and self.num_timesteps >= max(learning_starts, 1):
+        if elite_share > 0 and self._knows_a_best_action(learning_starts):
             self._draw_near_best(scaled_action, elite_share)
             action = self.policy.unscale_action(scaled_action)
         if self.first_action_centre and self.num_timesteps == 0:
             scaled_action[0] = 0.0  # Of the first environment: the others warm up as ever
             action = self.policy.unscale_action(scaled_action)
         return action, scaled_action
+
+    def _knows_a_best_action(self, learning_starts: int) -> bool:
+        """Whether the draws around it may begin: after the warm-up, or with the outcome of the centre."""
+        assert self.replay_buffer is not None
+        return self.replay_buffer.size() > 0 and (self.first_action_centre or self.num_timesteps >= learning_starts)
 
     def _draw_near_best(self, scaled_actions: np.ndarray, share: float) -> None:
         """

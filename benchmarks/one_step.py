@@ -17,6 +17,7 @@ import numpy as np
 import torch
 from gymnasium import spaces
 from stable_baselines3.common.callbacks import BaseCallback
+from stable_baselines3.common.utils import LinearSchedule
 
 from sarah.agents import NAF
 from sarah.agents.naf import PRESETS
@@ -32,11 +33,12 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "all transitions weigh the same": {"locality": None},
     "L does not see the action": {"policy_kwargs": {**ONE_STEP["policy_kwargs"], "lower_sees_action": False}},
     "ReLU instead of tanh": {"policy_kwargs": {**ONE_STEP["policy_kwargs"], "activation_fn": torch.nn.ReLU}},
-    "noise stays at 0.3": {"exploration_std": 0.3},
+    "noise falls from 0.3 to 0.05": {"exploration_std": LinearSchedule(0.3, 0.05, end_fraction=0.8)},
     "noise of 0.05 from the start": {"exploration_std": 0.05},
     "nothing explored around the best": {"elite_share": 0.0},
     "all explored around the best": {"elite_share": 1.0},
     "the centre at first": {"first_action_centre": True},
+    "draws around the best fall from 0.7 to 0.05": {"elite_std": LinearSchedule(0.7, 0.05, end_fraction=0.8)},
     "one draw around the best": {"elite_draws": 1},
     "one draw of 0.2 around the best": {"elite_draws": 1, "elite_std": 0.2},
     "warm-up of 10": {"learning_starts": 10},
