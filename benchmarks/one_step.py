@@ -1,7 +1,8 @@
 """What each part of NAF's preset for episodes of one step is worth, and what the paper's networks do without it.
 
 The task is a stand-in that costs nothing: five numbers, a reward with noise, a hill with its top beside a cliff, and a
-lower, wider hill elsewhere, both in other places for every seed. Judged is the agent's own best action, without noise.
+lower, wider hill elsewhere, both in other places for every seed. Judged is the agent's own best action, ``mu``, without
+noise; and in the last column the best action of its replay buffer, if that knows one.
 """
 
 from __future__ import annotations
@@ -19,8 +20,7 @@ from gymnasium import spaces
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.utils import LinearSchedule
 
-from sarah.agents import NAF
-from sarah.agents.naf import PRESETS
+from sarah.agents import NAF, PRESETS, RankReplayBuffer
 
 NOISE = 0.03
 """Standard deviation of the reward; the top of the hill is 1."""
@@ -33,7 +33,7 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "all transitions weigh the same": {"locality": None},
     "L does not see the action": {"policy_kwargs": {**ONE_STEP["policy_kwargs"], "lower_sees_action": False}},
     "ReLU instead of tanh": {"policy_kwargs": {**ONE_STEP["policy_kwargs"], "activation_fn": torch.nn.ReLU}},
-    "noise falls from 0.3 to 0.05": {"exploration_std": LinearSchedule(0.3, 0.05, end_fraction=0.8)},
+    "noise stays at 0.3": {"exploration_std": 0.3},
     "noise of 0.05 from the start": {"exploration_std": 0.05},
     "nothing explored around the best": {"elite_share": 0.0},
     "all explored around the best": {"elite_share": 1.0},
@@ -106,14 +106,16 @@ class Watch(BaseCallback):
         return True
 
 
-def learned(name: str, seed: int, episodes: int) -> list[float]:
-    """Scores along one training."""
+def learned(name: str, seed: int, episodes: int) -> tuple[list[float], float]:
+    """Scores of mu along one training, and of the best action in the end."""
     torch.set_num_threads(1)
     env = Hills(seed)
     settings = {**ONE_STEP, **VARIANTS[name]} if name in VARIANTS else {"gamma": 0.0, **UPDATES, **PLAIN[name]}
     watch = Watch(env)
-    NAF("MlpPolicy", env, seed=seed, **settings).learn(episodes, callback=watch)
-    return watch.scores
+    model = NAF("MlpPolicy", env, seed=seed, **settings).learn(episodes, callback=watch)
+    if not isinstance(model.replay_buffer, RankReplayBuffer):
+        return watch.scores, float("nan")
+    return watch.scores, env.score(model.replay_buffer.best_action().astype(float))
 
 
 def episodes_until(scores: list[float], score: float) -> float:
@@ -132,20 +134,24 @@ def main() -> None:
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--only", nargs="+", choices=[*VARIANTS, *PLAIN], default=[*VARIANTS, *PLAIN], metavar="NAME")
     options = parser.parse_args()
-    print("| | 80 % after | reached by | 90 % after | reached by | median at the end | lowest |\n" + "|---" * 7 + "|")
+    print("| | 80 % after | reached by | 90 % after | reached by | mu's median | lowest | best action's median |")
+    print("|---" * 8 + "|")
     with ProcessPoolExecutor(options.processes, get_context("spawn")) as pool:
         jobs = {
             name: [pool.submit(learned, name, seed, options.episodes) for seed in range(options.seeds)]
             for name in options.only
         }
         for name, running in jobs.items():
-            curves = [job.result() for job in running]
+            curves, best = zip(*(job.result() for job in running), strict=True)
             cells = []
             for share in (0.8, 0.9):
                 counts = [episodes_until(curve, share) for curve in curves]
                 cells.append(f"{median(counts):.0f} | {sum(np.isfinite(counts))} of {len(counts)}")
             ends = [curve[-1] for curve in curves]
-            print(f"| {name} | {' | '.join(cells)} | {median(ends):.2f} | {min(ends):.2f} |", flush=True)
+            print(
+                f"| {name} | {' | '.join(cells)} | {median(ends):.2f} | {min(ends):.2f} | {median(best):.2f} |",
+                flush=True,
+            )
 
 
 if __name__ == "__main__":
