@@ -148,10 +148,8 @@ def main() -> None:
                 counts = [episodes_until(curve, share) for curve in curves]
                 cells.append(f"{median(counts):.0f} | {sum(np.isfinite(counts))} of {len(counts)}")
             ends = [curve[-1] for curve in curves]
-            print(
-                f"| {name} | {' | '.join(cells)} | {median(ends):.2f} | {min(ends):.2f} | {median(best):.2f} |",
-                flush=True,
-            )
+            best_cell = "-" if np.isnan(best).any() else f"{median(best):.2f}"
+            print(f"| {name} | {' | '.join(cells)} | {median(ends):.2f} | {min(ends):.2f} | {best_cell} |", flush=True)
 
 
 if __name__ == "__main__":
