@@ -25,7 +25,7 @@ class NAFPolicy(BasePolicy):
     :param observation_space: Observation space
     :param action_space: Action space
     :param lr_schedule: Learning rate schedule (could be constant)
-    :param net_arch: Hidden layers, one list for all three heads (``[64, 64]`` by default)
+    :param net_arch: Hidden layers, one list for all three heads (``[256, 256]`` by default, as SAC's)
         or one list each, ``dict(V=[...], mu=[...], L=[...])``
     :param activation_fn: Activation function (ReLU by default). Tanh suits smooth tasks of one step,
         but fails where values are large; with sigmoid, deeper networks hardly learn.
@@ -78,7 +78,7 @@ class NAFPolicy(BasePolicy):
             normalize_images=normalize_images,
         )
         if net_arch is None:
-            net_arch = [64, 64]
+            net_arch = [256, 256]
         if not isinstance(net_arch, dict):
             net_arch = dict.fromkeys(("V", "mu", "L"), net_arch)
         if set(net_arch) != {"V", "mu", "L"}:

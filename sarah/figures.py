@@ -191,7 +191,7 @@ def draw_race(curves: Sequence[Curve], path: Path) -> list[Path]:
     :return: the files, PNG and PDF
     """
     with plt.rc_context(STYLE):
-        figure, axis = plt.subplots(figsize=(COLUMN_WIDTH, 0.8 * COLUMN_WIDTH), layout="constrained")
+        figure, axis = plt.subplots(figsize=(COLUMN_WIDTH, 0.9 * COLUMN_WIDTH), layout="constrained")
         for algo in dict.fromkeys(curve.algo for curve in curves):
             runs = [curve for curve in curves if curve.algo == algo]
             simulations = runs[0].simulations
@@ -201,7 +201,7 @@ def draw_race(curves: Sequence[Curve], path: Path) -> list[Path]:
             axis.plot(simulations, middle, color=COLOURS[algo], linewidth=1.2, label=label)
         axis.set_xlabel("simulations")
         axis.set_ylabel("score on unseen seeds")
-        figure.legend(loc="outside upper center", ncols=3)
+        figure.legend(loc="outside upper center", ncols=2)  # three columns of all eight do not fit
         return save(figure, path)
 
 

@@ -7,11 +7,12 @@ import pytest
 from matplotlib.image import imread
 
 from sarah import hips, pattern_generator
-from sarah.config import TRAINED_STEPPING, EpisodeConfig, TrainingConfig
+from sarah.comparison import Curve
+from sarah.config import ALGORITHMS, TRAINED_STEPPING, EpisodeConfig, TrainingConfig
 from sarah.description import RobotDescription, describe_robot
 from sarah.episode import EpisodeSpec, simulate
 from sarah.errors import ConfigurationError, RunFolderError
-from sarah.figures import draw_figures, running_median
+from sarah.figures import draw_figures, draw_race, running_median
 from sarah.gait_figure import draw_gait_cycle, gait_cycle
 from sarah.pattern_generator import Phase, SteppingParameters
 from sarah.robot_figure import draw_robot, labels_of
@@ -130,3 +131,12 @@ def test_robot_that_makes_no_cycle_has_none_to_draw() -> None:
     assert trace is not None
     with pytest.raises(ConfigurationError, match="no whole one"):
         gait_cycle(trace)
+
+
+def test_a_race_of_all_algorithms_has_room_for_its_legend(tmp_path: Path) -> None:
+    """Nothing is drawn on the picture's border, where it would be cut off."""
+    curves = [Curve(algo, (5, 10), (0.2, 0.8), 1.0) for algo in ALGORITHMS for _ in range(10)]
+    picture, _ = draw_race(curves, tmp_path / "race")
+    pixels = imread(picture)[..., :3]
+    for border in (pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]):
+        assert (border == 1.0).all()
