@@ -10,6 +10,9 @@ from stable_baselines3.common.vec_env import DummyVecEnv
 
 from sarah.agents import NAF, RankReplayBuffer
 
+SMALL = {"policy_kwargs": {"net_arch": [8]}}
+"""Networks that nothing is learned with: quick ones."""
+
 
 class Recorder(gym.Env):
     """Keeps its actions; the centre of the action space is (1, -1)."""
@@ -32,7 +35,7 @@ class Recorder(gym.Env):
 def explore(steps: int, n_envs: int = 1, **kwargs) -> np.ndarray:
     """Scaled actions of a model that is never trained, so that mu stays 0; (steps, n_envs, 2)."""
     envs = [Recorder() for _ in range(n_envs)]
-    kwargs = {"learning_starts": 0, "gradient_steps": 0, "buffer_size": 10_000, "seed": 0, **kwargs}
+    kwargs = {"learning_starts": 0, "gradient_steps": 0, "buffer_size": 10_000, "seed": 0, **SMALL, **kwargs}
     model = NAF("MlpPolicy", DummyVecEnv([lambda e=e: e for e in envs]), **kwargs)
     model.learn(steps * n_envs)
     actions = (np.stack([e.actions for e in envs], axis=1) - [1.0, -1.0]) / [1.0, 2.0]
@@ -85,7 +88,7 @@ class Target(Recorder):
 def elite_actions(steps: int, environment: type[Recorder] = Target, **kwargs) -> tuple[np.ndarray, np.ndarray]:
     """Scaled actions of the warm-up and after it, by a model that is never trained; (steps, 2)."""
     env = environment()
-    kwargs = dict(gradient_steps=0, seed=0, replay_buffer_class=RankReplayBuffer, exploration_std=0.0) | kwargs
+    kwargs = dict(gradient_steps=0, seed=0, replay_buffer_class=RankReplayBuffer, exploration_std=0.0) | SMALL | kwargs
     NAF("MlpPolicy", env, learning_starts=30, **kwargs).learn(30 + steps)
     actions = (np.array(env.actions) - [1.0, -1.0]) / [1.0, 2.0]
     return actions[:30], actions[30:]
