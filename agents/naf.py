@@ -91,8 +91,8 @@ class NAF(OffPolicyAlgorithm):
     :param learning_starts: how many steps of the model to collect transitions for before learning starts.
         More than TD3's 100: NAF has one critic, and what it believes of few transitions its policy follows at once
     :param batch_size: Minibatch size for each gradient update
-    :param tau: the soft update coefficient ("Polyak update", between 0 and 1). More than TD3's 0.005: where V is too
-        high, nothing but the target's news brings it down
+    :param tau: the soft update coefficient ("Polyak update", between 0 and 1). TD3's 0.005 is
+        slower to learn with
     :param gamma: the discount factor
     :param train_freq: Update the model every ``train_freq`` steps. Alternatively pass a tuple of frequency
         and unit like ``(5, "step")`` or ``(2, "episode")``.
@@ -109,8 +109,7 @@ class NAF(OffPolicyAlgorithm):
     :param n_steps: When n_step > 1, uses n-step return (with the NStepReplayBuffer) when updating
         the Q-value network. Note: it is only used when ``replay_buffer_class`` is ``None``,
         and is not supported for Dict observation spaces yet.
-    :param max_grad_norm: The maximum value for the gradient clipping. Low, so that a few transitions that V is far
-        off for do not shift it everywhere else
+    :param max_grad_norm: The maximum value for the gradient clipping
     :param exploration_std: Standard deviation of the Gaussian exploration noise, in actions scaled
         to [-1, 1]. It can be a function of the current progress remaining (from 1 to 0),
         such as ``LinearSchedule``; 0 switches the noise off. Without effect if ``action_noise`` is given.

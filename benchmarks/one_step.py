@@ -37,7 +37,7 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "noise of 0.05 from the start": {"exploration_std": 0.05},
     "nothing explored around the best": {"elite_share": 0.0},
     "all explored around the best": {"elite_share": 1.0},
-    "the centre at first": {"first_action_centre": True},
+    "the centre first, and draws around the best at once": {"first_action_centre": True},
     "draws around the best fall from 0.7 to 0.05": {"elite_std": LinearSchedule(0.7, 0.05, end_fraction=0.8)},
     "one draw around the best": {"elite_draws": 1},
     "one draw of 0.2 around the best": {"elite_draws": 1, "elite_std": 0.2},

@@ -103,18 +103,7 @@ def test_only_the_first_environment_begins_at_the_centre_on_request(on_request: 
 
 def test_from_the_centre_the_draws_begin_at_once():
     """Where the centre is a fair choice, no action is spent on uniform draws."""
-    env = Recorder()
-    NAF(
-        "MlpPolicy",
-        env,
-        learning_starts=30,
-        seed=0,
-        replay_buffer_class=RankReplayBuffer,
-        elite_share=1.0,
-        elite_std=0.1,
-        first_action_centre=True,
-    ).learn(30)
-    warm_up = (np.array(env.actions) - [1.0, -1.0]) / [1.0, 2.0]
+    warm_up, _ = elite_actions(1, Recorder, elite_share=1.0, elite_std=0.1, first_action_centre=True)
     steps = np.abs(np.diff(warm_up, axis=0)).max(axis=1)
     assert (np.abs(warm_up[0]) == 0.0).all() and (steps > 0.0).all()
     assert np.abs(warm_up).max() < 0.6
