@@ -16,8 +16,9 @@ class QuadraticCritic(BaseModel):
     r"""
     Action value that is quadratic in the action (Gu et al. 2016, https://arxiv.org/abs/1603.00748):
 
-    .. math:: Q(s, u) = V(s) - \frac{1}{2} (u - \mu(s))^T L(s) L(s)^T (u - \mu(s))
+    .. math:: Q(s, u) = V(s) - \frac{1}{2} (u - \mu(s))^T (L(s) L(s)^T + c I) (u - \mu(s))
 
+    with ``min_curvature`` as c, which is 0 in the publication.
     ``L`` is lower triangular with a positive diagonal, so ``L L^T`` is positive definite: ``mu`` is the best
     action and ``V`` its value, without a search. The three heads are separate networks on one features
     extractor: with layers that they share, more seeds of Pendulum fail. Actions are scaled to [-1, 1]. The output
@@ -33,7 +34,7 @@ class QuadraticCritic(BaseModel):
     :param normalize_images: Whether to normalize images or not,
          dividing by 255.0 (True by default)
     :param squash_mu: Whether ``mu`` ends in a tanh; if not, it is linear and may leave [-1, 1]
-    :param lower_sees_action: Whether ``L`` also reads the action, see :class:`NAFPolicy`
+    :param min_curvature: What is added to the curvature ``L L^T``, see :class:`NAFPolicy`
     """
 
     action_space: spaces.Box
@@ -53,7 +54,7 @@ class QuadraticCritic(BaseModel):
         activation_fn: type[nn.Module] = nn.ReLU,
         normalize_images: bool = True,
         squash_mu: bool = True,
-        lower_sees_action: bool = False,
+        min_curvature: float = 0.0,
     ) -> None:
         super().__init__(
             observation_space,
@@ -61,7 +62,7 @@ class QuadraticCritic(BaseModel):
             features_extractor=features_extractor,
             normalize_images=normalize_images,
         )
-        self.lower_sees_action = lower_sees_action
+        self.min_curvature = min_curvature
 
         action_dim = get_action_dim(action_space)
         rows, columns = th.tril_indices(action_dim, action_dim)
@@ -71,29 +72,30 @@ class QuadraticCritic(BaseModel):
         self.register_buffer("in_column", nn.functional.one_hot(columns, action_dim).float(), persistent=False)
         self.register_buffer("is_diagonal", rows == columns, persistent=False)
 
-        lower_input_dim = features_dim + action_dim * lower_sees_action
         self.value_net = nn.Sequential(*create_mlp(features_dim, 1, net_arch["V"], activation_fn))
         self.mu_net = nn.Sequential(*create_mlp(features_dim, action_dim, net_arch["mu"], activation_fn, squash_mu))
-        self.lower_net = nn.Sequential(*create_mlp(lower_input_dim, len(rows), net_arch["L"], activation_fn))
+        self.lower_net = nn.Sequential(*create_mlp(features_dim, len(rows), net_arch["L"], activation_fn))
 
         mu_output = [layer for layer in self.mu_net if isinstance(layer, nn.Linear)][-1]
         nn.init.zeros_(mu_output.weight)
         nn.init.zeros_(mu_output.bias)
 
-    def forward(self, obs: PyTorchObs, actions: th.Tensor) -> tuple[th.Tensor, th.Tensor]:
+    def forward(self, obs: PyTorchObs, actions: th.Tensor) -> th.Tensor:
         """
-        Value of actions, and the best actions, which a loss may want too.
+        Value of actions.
 
         :param obs: Observations
         :param actions: Actions, scaled to [-1, 1], of shape (batch, action dim)
-        :return: ``Q`` of shape (batch, 1) and ``mu`` of shape (batch, action dim)
+        :return: ``Q`` of shape (batch, 1)
         """
         features = self.extract_features(obs, self.features_extractor)
-        mu = self.mu_net(features)
+        from_mu = actions - self.mu_net(features)
         # (u - mu)^T L L^T (u - mu) is the squared length of the row (u - mu)^T L, summed without building L
-        projected = ((actions - mu).index_select(1, self.rows) * self._entries(features, actions)) @ self.in_column
-        advantage = -0.5 * projected.square().sum(dim=1, keepdim=True)
-        return self.value_net(features) + advantage, mu
+        projected = (from_mu.index_select(1, self.rows) * self._entries(features)) @ self.in_column
+        squared_length = projected.square().sum(dim=1, keepdim=True)
+        if self.min_curvature > 0:
+            squared_length = squared_length + self.min_curvature * from_mu.square().sum(dim=1, keepdim=True)
+        return self.value_net(features) - 0.5 * squared_length
 
     def value(self, obs: PyTorchObs) -> th.Tensor:
         """
@@ -113,20 +115,19 @@ class QuadraticCritic(BaseModel):
         """
         return self.mu_net(self.extract_features(obs, self.features_extractor))
 
-    def lower(self, obs: PyTorchObs, actions: th.Tensor) -> th.Tensor:
+    def lower(self, obs: PyTorchObs) -> th.Tensor:
         """
         Matrix ``L``, filled row by row, its diagonal the exponential of a clamped output.
 
         :param obs: Observations
-        :param actions: Scaled actions, which count only if ``lower_sees_action``
         :return: ``L`` of shape (batch, action dim, action dim)
         """
-        lower = actions.new_zeros(*actions.shape, actions.shape[1])
-        features = self.extract_features(obs, self.features_extractor)
-        lower[:, self.rows, self.columns] = self._entries(features, actions)
+        entries = self._entries(self.extract_features(obs, self.features_extractor))
+        action_dim = get_action_dim(self.action_space)
+        lower = entries.new_zeros(len(entries), action_dim, action_dim)
+        lower[:, self.rows, self.columns] = entries
         return lower
 
-    def _entries(self, features: th.Tensor, actions: th.Tensor) -> th.Tensor:
-        inputs = th.cat([features, actions], dim=1) if self.lower_sees_action else features
-        outputs = self.lower_net(inputs)
+    def _entries(self, features: th.Tensor) -> th.Tensor:
+        outputs = self.lower_net(features)
         return th.where(self.is_diagonal, outputs.clamp(LOG_DIAGONAL_MIN, LOG_DIAGONAL_MAX).exp(), outputs)

@@ -25,8 +25,6 @@ from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy, NAFPol
 
 SelfNAF = TypeVar("SelfNAF", bound="NAF")
 
-LOCALITY_FLOOR = 0.02
-
 PRESETS: dict[str, dict[str, Any]] = {
     # Local NAF, for episodes of one step with a few hundred of them to spend. With several
     # environments, ``gradient_steps`` is per step of all of them: multiply it by their number.
@@ -39,13 +37,12 @@ PRESETS: dict[str, dict[str, Any]] = {
         gradient_steps=10,
         max_grad_norm=10.0,
         replay_buffer_class=RankReplayBuffer,
-        replay_buffer_kwargs=dict(temperature=4.0),
+        replay_buffer_kwargs=dict(temperature=4.0, locality=0.4),
         exploration_std=LinearSchedule(0.3, 0.05, end_fraction=0.8),
         elite_share=LinearSchedule(1.0, 0.5, end_fraction=0.8),
         elite_std=LinearSchedule(0.4, 0.15, end_fraction=0.8),
         elite_draws=16,
-        locality=0.4,
-        policy_kwargs=dict(net_arch=[32, 32], activation_fn=nn.Tanh, lower_sees_action=True),
+        policy_kwargs=dict(net_arch=[32, 32], activation_fn=nn.Tanh, min_curvature=1.0),
     ),
     # The networks of Kouppas et al., literally. Their bias of 1 at the output of mu is the centre
     # of Box(0, 2), which in scaled actions is 0. On episodes of one step they hardly learn.
@@ -58,20 +55,6 @@ PRESETS: dict[str, dict[str, Any]] = {
     ),
 }
 """Arguments for known kinds of task: ``NAF("MlpPolicy", env, **PRESETS["one-step"])``."""
-
-
-def locality_weights(actions: th.Tensor, mu: th.Tensor, locality: float) -> th.Tensor:
-    """
-    Weights of transitions in the loss: high where the action is near ``mu``, where Q has to be right.
-
-    :param actions: Scaled actions of shape (batch, action dim)
-    :param mu: Best actions of the same shape, as constants
-    :param locality: Distance over which the weight falls, in scaled actions
-    :return: Weights of shape (batch, 1), of mean 1
-    """
-    squared_distance = (actions - mu).square().sum(dim=1, keepdim=True)
-    weights = th.exp(-squared_distance / (2 * locality**2)) + LOCALITY_FLOOR
-    return weights / weights.mean()
 
 
 class NAF(OffPolicyAlgorithm):
@@ -115,8 +98,7 @@ class NAF(OffPolicyAlgorithm):
         such as ``LinearSchedule``; 0 switches the noise off. Without effect if ``action_noise`` is given.
     :param elite_share: Share of the exploring actions that are drawn around the best action of the replay buffer
         instead of around ``mu``, which a decoy may hold; it can be a function of the current progress remaining
-        (from 1 to 0). As long as it is above 0, actions among rewards below the average are replaced by such draws
-        too: ``mu`` may stay on a plateau that no gradient leads from. Needs a ``RankReplayBuffer``.
+        (from 1 to 0). Needs a ``RankReplayBuffer``.
     :param elite_std: Standard deviation of these actions, in scaled actions; it can be a function of the current
         progress remaining (from 1 to 0)
     :param elite_draws: How many actions are drawn each time, of which that is done whose neighbourhood in the replay
@@ -124,9 +106,6 @@ class NAF(OffPolicyAlgorithm):
     :param first_action_centre: Whether the first environment's first action is the centre of the action space, often
         a neutral one. Then actions around the best one are drawn as soon as its outcome is known, and not only after
         ``learning_starts`` uniform ones
-    :param locality: Distance from ``mu``, in scaled actions, over which a transition's weight in the loss
-        falls: ``exp(-|u - mu|^2 / (2 * locality^2)) + 0.02``. If ``None`` (default), all weigh the same.
-        Choose it where the return is far from quadratic, and only what is near ``mu`` can be fitted.
     :param stats_window_size: Window size for the rollout logging, specifying the number of episodes
         to average the reported success rate, mean episode length, and mean reward over
     :param tensorboard_log: the log location for tensorboard (if None, no logging)
@@ -174,7 +153,6 @@ class NAF(OffPolicyAlgorithm):
         elite_std: float | Schedule = 0.2,
         elite_draws: int = 1,
         first_action_centre: bool = False,
-        locality: float | None = None,
         stats_window_size: int = 100,
         tensorboard_log: str | None = None,
         policy_kwargs: dict[str, Any] | None = None,
@@ -216,7 +194,6 @@ class NAF(OffPolicyAlgorithm):
         self.elite_std = elite_std
         self.elite_draws = elite_draws
         self.first_action_centre = first_action_centre
-        self.locality = locality
 
         if _init_setup_model:
             self._setup_model()
@@ -265,7 +242,7 @@ class NAF(OffPolicyAlgorithm):
 
     def _draw_near_best(self, scaled_actions: np.ndarray, share: float) -> None:
         """
-        Replace a share of some exploring actions, and those known to be bad, by draws around the best action.
+        Replace a share of some exploring actions by draws around the best action.
 
         :param scaled_actions: One of each environment; changed in place
         :param share: Of them
@@ -273,10 +250,9 @@ class NAF(OffPolicyAlgorithm):
         assert isinstance(self.replay_buffer, RankReplayBuffer)
         std = self.elite_std_schedule(self._current_progress_remaining)
         near_best = np.random.random(len(scaled_actions)) < share
-        for i, scaled_action in enumerate(scaled_actions):
-            if near_best[i] or not self.replay_buffer.may_be_good(scaled_action.ravel()):
-                elite = self.replay_buffer.draw_near_best(std, self.elite_draws)
-                scaled_actions[i] = elite.reshape(scaled_action.shape)
+        for i in np.flatnonzero(near_best):
+            elite = self.replay_buffer.draw_near_best(std, self.elite_draws)
+            scaled_actions[i] = elite.reshape(scaled_actions[i].shape)
 
     def train(self, gradient_steps: int, batch_size: int = 100) -> None:
         """
@@ -308,13 +284,10 @@ class NAF(OffPolicyAlgorithm):
                 target_q_values = replay_data.rewards + (1 - replay_data.dones) * discounts * next_values
 
             # Get current Q-values estimates
-            current_q_values, mu = self.q_net(replay_data.observations, replay_data.actions)
+            current_q_values = self.q_net(replay_data.observations, replay_data.actions)
             mean_q_values.append(current_q_values.detach().mean())
 
-            squared_errors = (current_q_values - target_q_values).square()
-            if self.locality is not None:
-                squared_errors *= locality_weights(replay_data.actions, mu.detach(), self.locality)
-            loss = squared_errors.mean()
+            loss = nn.functional.mse_loss(current_q_values, target_q_values)
             losses.append(loss.detach())
 
             # Optimize the policy

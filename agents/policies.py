@@ -40,9 +40,8 @@ class NAFPolicy(BasePolicy):
         excluding the learning rate, to pass to the optimizer
     :param squash_mu: Whether ``mu`` ends in a tanh (True by default). If not, it is linear,
         as in the original paper, and the policy clips it to the action space.
-    :param lower_sees_action: Whether ``L`` also reads the action (False by default). ``Q`` is then no longer
-        quadratic and can follow a cliff, while ``mu`` stays its maximum. For tasks of one step only:
-        where the target bootstraps, learning suffers.
+    :param min_curvature: Curvature of ``Q`` that is added in all directions of the action (0 by default). Where it is
+        flat ``mu`` gets no gradient: without it, ``mu`` may stay wrong in a direction that ``L`` makes flat to fit.
     """
 
     action_space: spaces.Box
@@ -62,7 +61,7 @@ class NAFPolicy(BasePolicy):
         optimizer_class: type[th.optim.Optimizer] = th.optim.Adam,
         optimizer_kwargs: dict[str, Any] | None = None,
         squash_mu: bool = True,
-        lower_sees_action: bool = False,
+        min_curvature: float = 0.0,
     ) -> None:
         if optimizer_kwargs is None and optimizer_class is th.optim.Adam:
             optimizer_kwargs = dict(fused=True)  # Several times faster on networks as small as these
@@ -91,7 +90,7 @@ class NAFPolicy(BasePolicy):
             "activation_fn": activation_fn,
             "normalize_images": normalize_images,
             "squash_mu": squash_mu,
-            "lower_sees_action": lower_sees_action,
+            "min_curvature": min_curvature,
         }
 
         self._build(lr_schedule)
@@ -156,7 +155,7 @@ class NAFPolicy(BasePolicy):
                 net_arch=self.net_args["net_arch"],
                 activation_fn=self.net_args["activation_fn"],
                 squash_mu=self.net_args["squash_mu"],
-                lower_sees_action=self.net_args["lower_sees_action"],
+                min_curvature=self.net_args["min_curvature"],
                 lr_schedule=self._dummy_schedule,  # dummy lr schedule, not needed for loading policy alone
                 optimizer_class=self.optimizer_class,
                 optimizer_kwargs=self.optimizer_kwargs,

@@ -18,7 +18,6 @@ import numpy as np
 import torch
 from gymnasium import spaces
 from stable_baselines3.common.callbacks import BaseCallback
-from stable_baselines3.common.utils import LinearSchedule
 
 from sarah.agents import NAF, PRESETS, RankReplayBuffer
 
@@ -27,24 +26,19 @@ NOISE = 0.03
 CHECK_EVERY = 5
 HELD = 3
 ONE_STEP = PRESETS["one-step"]
+NETWORKS = ONE_STEP["policy_kwargs"]
 VARIANTS: dict[str, dict[str, Any]] = {
     "the preset": {},
-    "all transitions drawn alike": {"replay_buffer_kwargs": {"temperature": 0.0}},
-    "all transitions weigh the same": {"locality": None},
-    "L does not see the action": {"policy_kwargs": {**ONE_STEP["policy_kwargs"], "lower_sees_action": False}},
-    "ReLU instead of tanh": {"policy_kwargs": {**ONE_STEP["policy_kwargs"], "activation_fn": torch.nn.ReLU}},
+    "good and bad drawn alike": {"replay_buffer_kwargs": {"temperature": 0.0, "locality": 0.4}},
+    "near and far drawn alike": {"replay_buffer_kwargs": {"temperature": 4.0, "locality": None}},
+    "Q may be flat": {"policy_kwargs": {**NETWORKS, "min_curvature": 0.0}},
+    "ReLU instead of tanh": {"policy_kwargs": {**NETWORKS, "activation_fn": torch.nn.ReLU}},
     "noise stays at 0.3": {"exploration_std": 0.3},
-    "noise of 0.05 from the start": {"exploration_std": 0.05},
     "nothing explored around the best": {"elite_share": 0.0},
     "all explored around the best": {"elite_share": 1.0},
-    "the centre first, and draws around the best at once": {"first_action_centre": True},
-    "draws around the best fall from 0.7 to 0.05": {"elite_std": LinearSchedule(0.7, 0.05, end_fraction=0.8)},
     "one draw around the best": {"elite_draws": 1},
-    "one draw of 0.2 around the best": {"elite_draws": 1, "elite_std": 0.2},
-    "warm-up of 10": {"learning_starts": 10},
     "warm-up of 30": {"learning_starts": 30},
     "one update per episode": {"gradient_steps": 1},
-    "five updates per episode": {"gradient_steps": 5},
     "20 updates per episode": {"gradient_steps": 20},
 }
 PAPER = PRESETS["paper"]

@@ -10,7 +10,6 @@ from stable_baselines3.common.utils import ConstantSchedule
 from torch import nn
 
 from sarah.agents.critic import QuadraticCritic
-from sarah.agents.naf import locality_weights
 from sarah.agents.policies import MlpPolicy
 
 OBS_DIM = 4
@@ -48,23 +47,23 @@ def lower_by_hand(outputs: np.ndarray, action_dim: int) -> np.ndarray:
     return lower
 
 
-@pytest.mark.parametrize("lower_sees_action", [False, True])
+@pytest.mark.parametrize("min_curvature", [0.0, 1.5])
 @pytest.mark.parametrize("action_dim", [1, 2, 5])
-def test_q_is_equation_3(action_dim, lower_sees_action):
-    critic = make_critic(action_dim, lower_sees_action=lower_sees_action)
+def test_q_is_equation_3(action_dim, min_curvature):
+    critic = make_critic(action_dim, min_curvature=min_curvature)
     obs, actions = draw(action_dim)
     with th.no_grad():
-        q_values, mu = critic(obs, actions)
-        inputs = th.cat([obs, actions], dim=1) if lower_sees_action else obs
-        outputs = critic.lower_net(inputs).double().numpy()
+        q_values, mu = critic(obs, actions), critic.mu(obs)
+        outputs = critic.lower_net(obs).double().numpy()
         values = critic.value_net(obs).double().numpy()
-        lowers = critic.lower(obs, actions).numpy()
+        lowers = critic.lower(obs).numpy()
     assert q_values.shape == (7, 1)
     for n in range(7):
         lower = lower_by_hand(outputs[n], action_dim)
         np.testing.assert_allclose(lowers[n], lower, rtol=1e-6)
         difference = actions[n].double().numpy() - mu[n].double().numpy()
         product = np.array([[sum(a * b for a, b in zip(p, q, strict=True)) for q in lower] for p in lower])
+        product += min_curvature * np.eye(action_dim)
         quadratic = sum(
             difference[i] * product[i, j] * difference[j] for i in range(action_dim) for j in range(action_dim)
         )
@@ -75,7 +74,7 @@ def test_lower_triangle_of_the_paper():
     critic = make_critic(5)
     nn.init.zeros_(critic.lower_net[-1].weight)
     critic.lower_net[-1].bias.data = th.arange(1.0, 16.0) / 10
-    lower = critic.lower(*draw(5))[0].detach().numpy()
+    lower = critic.lower(draw(5)[0])[0].detach().numpy()
     expected = np.array(
         [
             [np.exp(0.1), 0, 0, 0, 0],
@@ -93,27 +92,35 @@ def test_lower_triangle_of_the_paper():
     action_dim=st.integers(1, 6),
     seed=st.integers(0, 10_000),
     squash_mu=st.booleans(),
-    lower_sees_action=st.booleans(),
 )
-def test_mu_is_the_maximum_and_v_its_value(action_dim, seed, squash_mu, lower_sees_action):
-    critic = make_critic(action_dim, seed, squash_mu=squash_mu, lower_sees_action=lower_sees_action)
+def test_mu_is_the_maximum_and_v_its_value(action_dim, seed, squash_mu):
+    critic = make_critic(action_dim, seed, squash_mu=squash_mu)
     obs, actions = draw(action_dim, batch=64, seed=seed)
     with th.no_grad():
         mu, values = critic.mu(obs), critic.value(obs)
-        at_mu, mu_again = critic(obs, mu)
-        elsewhere, _ = critic(obs, actions)
-        nearby, _ = critic(obs, mu + 0.1 * actions)
-    th.testing.assert_close(mu, mu_again)
+        at_mu, elsewhere, nearby = critic(obs, mu), critic(obs, actions), critic(obs, mu + 0.1 * actions)
     th.testing.assert_close(at_mu, values)
     assert (elsewhere <= values).all() and (elsewhere < values).any()
     assert (nearby <= values).all()
 
 
 @settings(max_examples=30, deadline=None)
+@given(action_dim=st.integers(1, 6), seed=st.integers(0, 10_000), min_curvature=st.floats(0, 10))
+def test_q_falls_in_every_direction_by_the_least_curvature(action_dim, seed, min_curvature):
+    """Whatever L learns: where Q were flat, mu would get no gradient."""
+    critic = make_critic(action_dim, seed, min_curvature=min_curvature)
+    obs, actions = draw(action_dim, seed=seed)
+    with th.no_grad():
+        distances = (actions - critic.mu(obs)).square().sum(dim=1, keepdim=True)
+        falls = critic.value(obs) - critic(obs, actions)
+    assert (falls >= 0.5 * min_curvature * distances - 1e-4).all()
+
+
+@settings(max_examples=30, deadline=None)
 @given(action_dim=st.integers(1, 6), seed=st.integers(0, 10_000))
 def test_curvature_is_positive_definite(action_dim, seed):
     """L L^T is, exactly when L is triangular with a positive diagonal (Cholesky); its eigenvalues would be rounded."""
-    lower = make_critic(action_dim, seed).lower(*draw(action_dim, seed=seed)).detach()
+    lower = make_critic(action_dim, seed).lower(draw(action_dim, seed=seed)[0]).detach()
     assert th.equal(lower, lower.tril())
     assert (lower.diagonal(dim1=1, dim2=2) > 0).all()
 
@@ -123,7 +130,7 @@ def test_curvature_is_positive_definite(action_dim, seed):
 def test_diagonal_is_bounded_whatever_the_weights(scale, seed):
     critic = make_critic(3, seed)
     critic.lower_net[-1].bias.data *= scale
-    lower = critic.lower(*draw(3, seed=seed)).detach()
+    lower = critic.lower(draw(3, seed=seed)[0]).detach()
     diagonal = lower.diagonal(dim1=1, dim2=2)
     assert (diagonal >= np.exp(-5.001)).all() and (diagonal <= np.exp(5.001)).all()
     assert (lower.triu(1) == 0).all()
@@ -139,17 +146,8 @@ def test_an_untrained_policy_proposes_the_centre():
 
 def test_every_head_gets_a_gradient():
     critic = make_critic(3)
-    critic(*draw(3))[0].sum().backward()
+    critic(*draw(3)).sum().backward()
     assert all(p.grad is not None and p.grad.abs().sum() > 0 for p in critic.parameters())
-
-
-def test_locality_weights():
-    mu = th.zeros(3, 2)
-    actions = th.tensor([[0.0, 0.0], [0.3, 0.4], [1.0, 1.0]])
-    raw = np.array([1.0, np.exp(-0.25 / 0.32), np.exp(-2 / 0.32)]) + 0.02
-    weights = locality_weights(actions, mu, 0.4)
-    assert weights.shape == (3, 1)
-    np.testing.assert_allclose(weights[:, 0].numpy(), raw / raw.mean(), rtol=1e-6)
 
 
 def test_heads_take_their_own_sizes():

@@ -50,7 +50,7 @@ def assert_learned(model: NAF) -> None:
         assert th.isfinite(new).all() and not th.equal(old, new)
 
 
-@pytest.mark.parametrize("kwargs", [{}, {"n_steps": 3}, {"locality": 0.4}, {"gradient_steps": -1}])
+@pytest.mark.parametrize("kwargs", [{}, {"n_steps": 3}, {"gradient_steps": -1}])
 @pytest.mark.parametrize("n_envs", [1, 3])
 def test_run(kwargs, n_envs):
     env = make_vec_env("Pendulum-v1", n_envs=n_envs, seed=0)

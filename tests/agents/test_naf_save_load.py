@@ -24,7 +24,7 @@ def make_model(**kwargs):
 
 
 def test_save_load(tmp_path):
-    model = make_model(locality=0.3, elite_draws=4, exploration_std=LinearSchedule(0.3, 0.1, 0.5)).learn(100)
+    model = make_model(max_grad_norm=0.3, elite_draws=4, exploration_std=LinearSchedule(0.3, 0.1, 0.5)).learn(100)
     model.save(tmp_path / "model")
     loaded = NAF.load(tmp_path / "model", env=make_vec_env("Pendulum-v1"))
     np.testing.assert_array_equal(model.predict(OBS)[0], loaded.predict(OBS)[0])
@@ -32,7 +32,7 @@ def test_save_load(tmp_path):
     first, second = model.policy.optimizer.state_dict(), loaded.policy.optimizer.state_dict()
     for key, state in first["state"].items():
         assert_same_state(state, second["state"][key])
-    assert (loaded.locality, loaded.elite_draws, loaded.num_timesteps) == (0.3, 4, 100)
+    assert (loaded.max_grad_norm, loaded.elite_draws, loaded.num_timesteps) == (0.3, 4, 100)
     assert loaded.exploration_schedule(0.75) == pytest.approx(0.2)
     assert loaded.policy.q_net is loaded.q_net and loaded.policy.q_net_target is loaded.q_net_target
     loaded.learn(50, reset_num_timesteps=False)
@@ -80,7 +80,7 @@ def test_set_parameters():
 
 
 def test_policy_alone(tmp_path):
-    model = make_model(policy_kwargs=dict(net_arch=[8], squash_mu=False, lower_sees_action=True)).learn(60)
+    model = make_model(policy_kwargs=dict(net_arch=[8], squash_mu=False, min_curvature=0.5)).learn(60)
     model.policy.save(tmp_path / "policy")
     loaded = MlpPolicy.load(tmp_path / "policy")
     np.testing.assert_array_equal(model.predict(OBS)[0], loaded.predict(OBS)[0])

@@ -10,7 +10,6 @@ from gymnasium import spaces
 from torch import nn
 
 from sarah.agents import NAF
-from sarah.agents.naf import locality_weights
 
 GAMMA = 0.9
 
@@ -84,32 +83,8 @@ def test_targets(timeout, n_steps):
     targets = np.array([target(int(start)) for start in batch.observations[:, 0]])
     assert len(set(targets.tolist())) == 3
     with th.no_grad():
-        q_values = model.q_net(batch.observations, batch.actions)[0][:, 0].numpy()
+        q_values = model.q_net(batch.observations, batch.actions)[:, 0].numpy()
     assert logged == pytest.approx(np.mean((q_values - targets) ** 2), rel=1e-5)
-
-
-def test_locality_weighs_the_loss():
-    model = make_model(Corridor(), locality=0.4).learn(30)
-    values = fill_target(model)
-    batch, logged = one_update(model)
-    starts = batch.observations[:, 0].numpy().astype(int)
-    targets = np.array([i + 1 + (GAMMA * values[i + 1] if i < 2 else 0.0) for i in starts])
-    with th.no_grad():
-        q_values, mu = model.q_net(batch.observations, batch.actions)
-    weights = locality_weights(batch.actions, mu, 0.4)[:, 0].numpy()
-    assert weights.max() / weights.min() > 2
-    assert logged == pytest.approx(np.mean(weights * (q_values[:, 0].numpy() - targets) ** 2), rel=1e-5)
-
-
-def test_locality_has_no_gradient():
-    """Moving mu must not pay by taking weight away from transitions that are fitted badly."""
-    model = make_model(Corridor(), locality=0.4, max_grad_norm=np.inf).learn(30)
-    # With L at its lower bound, Q does not depend on mu: all that could move mu is the weight
-    nn.init.zeros_(model.q_net.lower_net[-1].weight)
-    nn.init.constant_(model.q_net.lower_net[-1].bias, -1000.0)
-    model.train(1, 64)
-    value_gradient = model.q_net.value_net[-1].bias.grad.abs().item()
-    assert model.q_net.mu_net[-2].bias.grad.abs().item() < 1e-3 * value_gradient
 
 
 def test_target_network_starts_as_a_copy():
@@ -146,7 +121,7 @@ def test_schedules_and_logs():
     assert logged["train/n_updates"] == 20
     batch, _ = one_update(model)
     with th.no_grad():
-        q_values = model.q_net(batch.observations, batch.actions)[0]
+        q_values = model.q_net(batch.observations, batch.actions)
     assert model.logger.name_to_value["train/q"] == pytest.approx(q_values.mean().item(), rel=1e-5)
 
 
