@@ -38,7 +38,7 @@ def test_one_step_solves_a_hill_beside_a_cliff():
         env = Cliff(seed)
         model = NAF("MlpPolicy", env, seed=seed, **PRESETS["one-step"]).learn(100)
         learned.append(env.score(model.predict(np.zeros(16, np.float32))[0]))
-    assert min(learned) > 0.85 and np.mean(learned) > 0.93
+    assert min(learned) > 0.9
 
 
 def test_one_step_over_several_environments():
