@@ -18,8 +18,6 @@ SURROUNDINGS = 0.7
 when little is known. Never less than the distance above."""
 LITTLE_DOUBT = 1e-3
 """Of them: average transitions in every neighbourhood, which count only where hardly anything is known."""
-LOCALITY_FLOOR = 0.02
-"""What is left of the weight of transitions far from the best action."""
 BEST_CANDIDATES = 100
 """Transitions of the highest rewards, among which the best action is looked for."""
 
@@ -59,9 +57,7 @@ class RankReplayBuffer(ReplayBuffer):
     """
     Replay buffer that draws a transition with a probability proportional to ``exp(temperature * rank)``,
     where ``rank`` is that of its reward in the buffer, from 0 (lowest) to 1 (highest), mean rank for ties.
-    Transitions of all environments are ranked together. With ``locality`` the probability also falls with the
-    distance from the best action, by ``exp(-distance^2 / (2 * locality^2)) + 0.02``: a parabola cannot fit a landscape
-    with cliffs and decoys, so it is fitted where it matters.
+    Transitions of all environments are ranked together.
 
     It is meant for episodes of one step, where the reward is the return. In longer episodes it would
     favour transitions of high reward whatever they lead to. The probabilities are computed at the first
@@ -77,8 +73,6 @@ class RankReplayBuffer(ReplayBuffer):
         separately and treat the task as infinite horizon task.
     :param temperature: Logarithm of how much more often the best transition is drawn than the worst, by its rank;
         0 draws all ranks alike
-    :param locality: Distance from the best action, in scaled actions, over which transitions are drawn less and less;
-        ``None`` draws near and far alike
     """
 
     def __init__(
@@ -91,7 +85,6 @@ class RankReplayBuffer(ReplayBuffer):
         optimize_memory_usage: bool = False,
         handle_timeout_termination: bool = True,
         temperature: float = 4.0,
-        locality: float | None = None,
     ) -> None:
         if optimize_memory_usage:
             raise NotImplementedError("RankReplayBuffer doesn't support optimize_memory_usage=True")
@@ -105,7 +98,6 @@ class RankReplayBuffer(ReplayBuffer):
             handle_timeout_termination=handle_timeout_termination,
         )
         self.temperature = temperature
-        self.locality = locality
         self._probabilities: np.ndarray | None = None
 
     def add(
@@ -143,9 +135,6 @@ class RankReplayBuffer(ReplayBuffer):
         """
         if self._probabilities is None:
             weights = np.exp(self.temperature * average_ranks(self.rewards[: self.size(), 0]))
-            if self.locality is not None:
-                squared_distances = np.square(self.actions[: self.size(), 0] - self.best_action()).sum(axis=1)
-                weights *= np.exp(-squared_distances / (2 * self.locality**2)) + LOCALITY_FLOOR
             self._probabilities = weights / weights.sum()
         batch_inds = np.random.choice(self.size(), size=batch_size, p=self._probabilities)
         return self._get_samples(batch_inds, env=env)

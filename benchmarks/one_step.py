@@ -29,8 +29,7 @@ ONE_STEP = PRESETS["one-step"]
 NETWORKS = ONE_STEP["policy_kwargs"]
 VARIANTS: dict[str, dict[str, Any]] = {
     "the preset": {},
-    "good and bad drawn alike": {"replay_buffer_kwargs": {"temperature": 0.0, "locality": 0.4}},
-    "near and far drawn alike": {"replay_buffer_kwargs": {"temperature": 4.0, "locality": None}},
+    "good and bad drawn alike": {"replay_buffer_kwargs": {"temperature": 0.0}},
     "Q may be flat": {"policy_kwargs": {**NETWORKS, "min_curvature": 0.0}},
     "ReLU instead of tanh": {"policy_kwargs": {**NETWORKS, "activation_fn": torch.nn.ReLU}},
     "noise stays at 0.3": {"exploration_std": 0.3},

@@ -130,17 +130,6 @@ def test_memory_optimisation_is_refused():
         fill([], optimize_memory_usage=True)
 
 
-def test_locality_draws_what_is_near_the_best_action():
-    """exp(-d^2 / (2 * 0.4^2)) + 0.02 times the factor of the rank, for d of 0, 0.5 and far."""
-    set_random_seed(0)
-    buffer = RankReplayBuffer(10, spaces.Box(-9, 9, (1,)), BOX, "cpu", 1, temperature=2.0, locality=0.4)
-    for number, (action, reward) in enumerate((([0.5, 0.5], 1.0), ([0.2, 0.1], 0.3), ([-1.0, -1.0], 0.0))):
-        observation = np.full((1, 1), number)
-        buffer.add(observation, observation, np.array([action]), np.array([reward]), np.ones(1), [{}])
-    expected = np.exp([2.0, 1.0, 0.0]) * (np.array([1.0, np.exp(-0.25 / 0.32), 0.0]) + 0.02)
-    np.testing.assert_allclose(frequencies(buffer, 3), expected / expected.sum(), atol=0.005)
-
-
 def test_the_best_action_is_the_one_among_good_ones():
     rng = np.random.default_rng(0)
     buffer = RankReplayBuffer(100, spaces.Box(-1, 1, (1,)), BOX, "cpu", 1)
