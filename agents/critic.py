@@ -20,16 +20,17 @@ class QuadraticCritic(BaseModel):
 
     with ``min_curvature`` as c, which is 0 in the publication.
     ``L`` is lower triangular with a positive diagonal, so ``L L^T`` is positive definite: ``mu`` is the best
-    action and ``V`` its value, without a search. The three heads are separate networks on one features
-    extractor: with layers that they share, more seeds of Pendulum fail. Actions are scaled to [-1, 1]. The output
-    layer of ``mu`` starts at zero: an untrained critic proposes the centre of the action space whatever it observes.
+    action and ``V`` its value, without a search. ``V`` is a network of its own on the features extractor: with layers
+    that all three share, seeds of Pendulum fail. Actions are scaled to [-1, 1]. The output layer of ``mu`` starts at
+    zero: an untrained critic proposes the centre of the action space whatever it observes.
 
     :param observation_space: Observation space
     :param action_space: Action space
     :param features_extractor: Network to extract features
         (a CNN when using images, a nn.Flatten() layer otherwise)
     :param features_dim: Number of features
-    :param net_arch: Hidden layers of each head, by name: ``V``, ``mu`` and ``L``
+    :param net_arch: Hidden layers of each head, by name, ``V``, ``mu`` and ``L``, and of those that ``mu`` and ``L``
+        have in common before their own, ``shared``
     :param activation_fn: Activation function
     :param normalize_images: Whether to normalize images or not,
          dividing by 255.0 (True by default)
@@ -73,8 +74,10 @@ class QuadraticCritic(BaseModel):
         self.register_buffer("is_diagonal", rows == columns, persistent=False)
 
         self.value_net = nn.Sequential(*create_mlp(features_dim, 1, net_arch["V"], activation_fn))
-        self.mu_net = nn.Sequential(*create_mlp(features_dim, action_dim, net_arch["mu"], activation_fn, squash_mu))
-        self.lower_net = nn.Sequential(*create_mlp(features_dim, len(rows), net_arch["L"], activation_fn))
+        self.shared_net = nn.Sequential(*create_mlp(features_dim, -1, net_arch["shared"], activation_fn))
+        shared_dim = [features_dim, *net_arch["shared"]][-1]
+        self.mu_net = nn.Sequential(*create_mlp(shared_dim, action_dim, net_arch["mu"], activation_fn, squash_mu))
+        self.lower_net = nn.Sequential(*create_mlp(shared_dim, len(rows), net_arch["L"], activation_fn))
 
         mu_output = [layer for layer in self.mu_net if isinstance(layer, nn.Linear)][-1]
         nn.init.zeros_(mu_output.weight)
@@ -89,9 +92,10 @@ class QuadraticCritic(BaseModel):
         :return: ``Q`` of shape (batch, 1)
         """
         features = self.extract_features(obs, self.features_extractor)
-        from_mu = actions - self.mu_net(features)
+        shared = self.shared_net(features)
+        from_mu = actions - self.mu_net(shared)
         # (u - mu)^T L L^T (u - mu) is the squared length of the row (u - mu)^T L, summed without building L
-        projected = (from_mu.index_select(1, self.rows) * self._entries(features)) @ self.in_column
+        projected = (from_mu.index_select(1, self.rows) * self._entries(shared)) @ self.in_column
         squared_length = projected.square().sum(dim=1, keepdim=True)
         if self.min_curvature > 0:
             squared_length = squared_length + self.min_curvature * from_mu.square().sum(dim=1, keepdim=True)
@@ -113,7 +117,7 @@ class QuadraticCritic(BaseModel):
         :param obs: Observations
         :return: ``mu`` of shape (batch, action dim), scaled so that the action space is [-1, 1]
         """
-        return self.mu_net(self.extract_features(obs, self.features_extractor))
+        return self.mu_net(self.shared_net(self.extract_features(obs, self.features_extractor)))
 
     def lower(self, obs: PyTorchObs) -> th.Tensor:
         """
@@ -122,12 +126,12 @@ class QuadraticCritic(BaseModel):
         :param obs: Observations
         :return: ``L`` of shape (batch, action dim, action dim)
         """
-        entries = self._entries(self.extract_features(obs, self.features_extractor))
+        entries = self._entries(self.shared_net(self.extract_features(obs, self.features_extractor)))
         action_dim = get_action_dim(self.action_space)
         lower = entries.new_zeros(len(entries), action_dim, action_dim)
         lower[:, self.rows, self.columns] = entries
         return lower
 
-    def _entries(self, features: th.Tensor) -> th.Tensor:
-        outputs = self.lower_net(features)
+    def _entries(self, shared: th.Tensor) -> th.Tensor:
+        outputs = self.lower_net(shared)
         return th.where(self.is_diagonal, outputs.clamp(LOG_DIAGONAL_MIN, LOG_DIAGONAL_MAX).exp(), outputs)

@@ -42,7 +42,9 @@ PRESETS: dict[str, dict[str, Any]] = {
         elite_share=0.5,
         elite_std=LinearSchedule(0.4, 0.15, end_fraction=0.8),
         elite_draws=16,
-        policy_kwargs=dict(net_arch=[32, 32], activation_fn=nn.Tanh, min_curvature=1.0),
+        policy_kwargs=dict(
+            net_arch=dict(V=[32, 32], mu=[32, 32], L=[32, 32]), activation_fn=nn.Tanh, min_curvature=1.0
+        ),
     ),
     # The networks of Kouppas et al., literally. Their bias of 1 at the output of mu is the centre
     # of Box(0, 2), which in scaled actions is 0. On episodes of one step they hardly learn.

@@ -25,8 +25,9 @@ class NAFPolicy(BasePolicy):
     :param observation_space: Observation space
     :param action_space: Action space
     :param lr_schedule: Learning rate schedule (could be constant)
-    :param net_arch: Hidden layers, one list for all three heads (``[256, 256]`` by default, as SAC's)
-        or one list each, ``dict(V=[...], mu=[...], L=[...])``
+    :param net_arch: Hidden layers, one list for ``V`` and for those that ``mu`` and ``L`` share (``[256, 256]`` by
+        default, as SAC's) or one list each, ``dict(V=[...], mu=[...], L=[...])``, before which ``mu`` and ``L`` may
+        have ``shared=[...]`` in common
     :param activation_fn: Activation function (ReLU by default). Tanh suits smooth tasks of one step,
         but fails where values are large; with sigmoid, deeper networks hardly learn.
     :param features_extractor_class: Features extractor to use.
@@ -79,14 +80,16 @@ class NAFPolicy(BasePolicy):
         if net_arch is None:
             net_arch = [256, 256]
         if not isinstance(net_arch, dict):
-            net_arch = dict.fromkeys(("V", "mu", "L"), net_arch)
-        if set(net_arch) != {"V", "mu", "L"}:
-            raise ValueError(f"net_arch must be a list or have the keys V, mu and L, not {sorted(net_arch)}")
+            net_arch = dict(V=net_arch, shared=net_arch, mu=[], L=[])
+        if set(net_arch) | {"shared"} != {"V", "shared", "mu", "L"}:
+            raise ValueError(
+                f"net_arch must be a list or have the keys V, mu and L and perhaps shared, not {sorted(net_arch)}"
+            )
 
         self.net_args: dict[str, Any] = {
             "observation_space": self.observation_space,
             "action_space": self.action_space,
-            "net_arch": net_arch,
+            "net_arch": {"shared": [], **net_arch},
             "activation_fn": activation_fn,
             "normalize_images": normalize_images,
             "squash_mu": squash_mu,

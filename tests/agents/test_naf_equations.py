@@ -15,14 +15,17 @@ from sarah.agents.policies import MlpPolicy
 OBS_DIM = 4
 
 
-def make_critic(action_dim: int, seed: int = 0, **policy_kwargs) -> QuadraticCritic:
+SEPARATE = dict(V=[16], mu=[16], L=[16])
+
+
+def make_critic(action_dim: int, seed: int = 0, net_arch=(16,), **policy_kwargs) -> QuadraticCritic:
     """A critic whose weights are all random and large, so that no term of Q is small."""
     th.manual_seed(seed)
     policy = MlpPolicy(
         spaces.Box(-1, 1, (OBS_DIM,)),
         spaces.Box(-1, 1, (action_dim,)),
         ConstantSchedule(1e-3),
-        net_arch=[16],
+        net_arch=net_arch,
         **policy_kwargs,
     )
     for parameter in policy.q_net.parameters():
@@ -48,13 +51,14 @@ def lower_by_hand(outputs: np.ndarray, action_dim: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("min_curvature", [0.0, 1.5])
+@pytest.mark.parametrize("net_arch", [[16], SEPARATE], ids=["shared", "separate"])
 @pytest.mark.parametrize("action_dim", [1, 2, 5])
-def test_q_is_equation_3(action_dim, min_curvature):
-    critic = make_critic(action_dim, min_curvature=min_curvature)
+def test_q_is_equation_3(action_dim, net_arch, min_curvature):
+    critic = make_critic(action_dim, net_arch=net_arch, min_curvature=min_curvature)
     obs, actions = draw(action_dim)
     with th.no_grad():
         q_values, mu = critic(obs, actions), critic.mu(obs)
-        outputs = critic.lower_net(obs).double().numpy()
+        outputs = critic.lower_net(critic.shared_net(obs)).double().numpy()
         values = critic.value_net(obs).double().numpy()
         lowers = critic.lower(obs).numpy()
     assert q_values.shape == (7, 1)
@@ -144,8 +148,9 @@ def test_an_untrained_policy_proposes_the_centre():
     np.testing.assert_array_equal(actions, np.tile([1.0, -1.0], (7, 1)))
 
 
-def test_every_head_gets_a_gradient():
-    critic = make_critic(3)
+@pytest.mark.parametrize("net_arch", [[16], SEPARATE], ids=["shared", "separate"])
+def test_every_head_gets_a_gradient(net_arch):
+    critic = make_critic(3, net_arch=net_arch)
     critic(*draw(3)).sum().backward()
     assert all(p.grad is not None and p.grad.abs().sum() > 0 for p in critic.parameters())
 
@@ -155,10 +160,11 @@ def test_heads_take_their_own_sizes():
 
     def sizes(net_arch):
         q_net = MlpPolicy(*spaces_, ConstantSchedule(1e-3), net_arch=net_arch).q_net
-        nets = (q_net.value_net, q_net.mu_net, q_net.lower_net)
+        nets = (q_net.value_net, q_net.shared_net, q_net.mu_net, q_net.lower_net)
         return [[layer.out_features for layer in net if isinstance(layer, nn.Linear)] for net in nets]
 
-    assert sizes(dict(V=[7, 8], mu=[], L=[5])) == [[7, 8, 1], [2], [5, 3]]
-    assert sizes([6, 4]) == [[6, 4, 1], [6, 4, 2], [6, 4, 3]]
-    with pytest.raises(ValueError, match=r"V, mu and L, not \['pi'\]"):
+    assert sizes(dict(V=[7, 8], mu=[], L=[5])) == [[7, 8, 1], [], [2], [5, 3]]
+    assert sizes(dict(V=[7], shared=[6, 4], mu=[], L=[5])) == [[7, 1], [6, 4], [2], [5, 3]]
+    assert sizes([6, 4]) == [[6, 4, 1], [6, 4], [2], [3]]
+    with pytest.raises(ValueError, match=r"V, mu and L and perhaps shared, not \['pi'\]"):
         sizes(dict(pi=[4]))

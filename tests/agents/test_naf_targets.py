@@ -143,8 +143,8 @@ def test_fast_updates_are_the_plain_ones():
             obs, next_obs = batch.observations[n : n + 1], batch.next_observations[n : n + 1]
             with th.no_grad():
                 wanted = batch.rewards[n, 0] + GAMMA * (1 - batch.dones[n, 0]) * target.value(next_obs)[0, 0]
-            difference = batch.actions[n] - q_net.mu_net(obs)[0]
-            outputs = q_net.lower_net(obs)[0]
+            difference = batch.actions[n] - q_net.mu(obs)[0]
+            outputs = q_net.lower_net(q_net.shared_net(obs))[0]
             advantage, k = 0.0, 0
             lower = {}
             for i in range(len(difference)):
