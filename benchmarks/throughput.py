@@ -62,14 +62,25 @@ def closed_loop(physics: Physics, limit: float) -> float:
         return simulated / (time.perf_counter() - start)
 
 
-def bare_loop(physics: Physics, limit: float, targets: list[tuple[float, ...]]) -> float:
-    """Simulated seconds per second of physics steps alone, on the trajectory of the same targets."""
+def bare_loop(physics: Physics, limit: float, targets: list[tuple[float, ...]], read: bool = False) -> float:
+    """Simulated seconds per second of physics steps alone, on the trajectory of the same targets.
+
+    With ``read`` PyBullet is also asked for what a tick needs, and nothing is made of its answers.
+    """
     with closing(started(physics, limit)) as episode:
         simulation, client = episode.simulation, episode.simulation._client
+        body, joints = simulation._body, simulation._joints
+        foot, _ = simulation._feet["left"]
         start = time.perf_counter()
         for command in targets:
             simulation.set_targets(command)
             pybullet.stepSimulation(physicsClientId=client)
+            if read:
+                pybullet.getBasePositionAndOrientation(body, physicsClientId=client)
+                pybullet.getBaseVelocity(body, physicsClientId=client)
+                pybullet.getJointStates(body, joints, client)
+                pybullet.getContactPoints(body, body, physicsClientId=client)
+                pybullet.getLinkStates(body, foot, computeForwardKinematics=1, physicsClientId=client)
         return len(targets) * physics.control_dt / (time.perf_counter() - start)
 
 
@@ -81,6 +92,7 @@ def loops(limit: float, rounds: int) -> dict[str, float]:
         {
             "closed": closed_loop(standard, limit),
             "bare": bare_loop(standard, limit, targets),
+            "read": bare_loop(standard, limit, targets, read=True),
             "reference": closed_loop(reference, limit),
             "bare_reference": bare_loop(reference, limit, reference_targets),
             "former": closed_loop(FORMER_START, limit),
@@ -96,6 +108,7 @@ def loops(limit: float, rounds: int) -> dict[str, float]:
         "bare_times_real_time": median(one["bare"] for one in measured),
         "reference_times_real_time": median(one["reference"] for one in measured),
         "closed_loop_over_bare": ratio("closed", "bare"),
+        "calls_alone_over_bare": ratio("read", "bare"),
         "closed_loop_over_bare_at_reference": ratio("reference", "bare_reference"),
         "default_over_reference": ratio("closed", "reference"),
         "default_over_500_hz_30_iterations": ratio("closed", "former"),
