@@ -21,16 +21,16 @@ class QuadraticCritic(BaseModel):
     with ``min_curvature`` as c, which is 0 in the publication.
     ``L`` is lower triangular with a positive diagonal, so ``L L^T`` is positive definite: ``mu`` is the best
     action and ``V`` its value, without a search. ``V`` is a network of its own on the features extractor: with layers
-    that all three share, seeds of Pendulum fail. Actions are scaled to [-1, 1]. The output layer of ``mu`` starts at
-    zero: an untrained critic proposes the centre of the action space whatever it observes.
+    of 64 units that all three shared, seeds of Pendulum failed. Actions are scaled to [-1, 1]. The output layer of
+    ``mu`` starts at zero: an untrained critic proposes the centre of the action space whatever it observes.
 
     :param observation_space: Observation space
     :param action_space: Action space
     :param features_extractor: Network to extract features
         (a CNN when using images, a nn.Flatten() layer otherwise)
     :param features_dim: Number of features
-    :param net_arch: Hidden layers of each head, by name, ``V``, ``mu`` and ``L``, and of those that ``mu`` and ``L``
-        have in common before their own, ``shared``
+    :param net_arch: Hidden layers of each head, by name, ``V``, ``mu`` and ``L``, and those that ``mu`` and ``L``
+        follow in common, ``shared``
     :param activation_fn: Activation function
     :param normalize_images: Whether to normalize images or not,
          dividing by 255.0 (True by default)

@@ -26,7 +26,7 @@ from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy, NAFPol
 SelfNAF = TypeVar("SelfNAF", bound="NAF")
 
 PRESETS: dict[str, dict[str, Any]] = {
-    # Local NAF, for episodes of one step with a few hundred of them to spend. With several
+    # For episodes of one step with a few hundred of them to spend. With several
     # environments, ``gradient_steps`` is per step of all of them: multiply it by their number.
     "one-step": dict(
         learning_rate=1e-3,

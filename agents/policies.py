@@ -25,9 +25,9 @@ class NAFPolicy(BasePolicy):
     :param observation_space: Observation space
     :param action_space: Action space
     :param lr_schedule: Learning rate schedule (could be constant)
-    :param net_arch: Hidden layers, one list for ``V`` and for those that ``mu`` and ``L`` share (``[256, 256]`` by
-        default, as SAC's) or one list each, ``dict(V=[...], mu=[...], L=[...])``, before which ``mu`` and ``L`` may
-        have ``shared=[...]`` in common
+    :param net_arch: Hidden layers. A list is for those of ``V``, and for those that ``mu`` and ``L`` share
+        (``[256, 256]`` by default, as SAC's). With ``dict(V=[...], mu=[...], L=[...])`` each has layers of its own;
+        with the key ``shared`` as well, those of ``mu`` and ``L`` follow layers in common
     :param activation_fn: Activation function (ReLU by default). Tanh suits smooth tasks of one step,
         but fails where values are large; with sigmoid, deeper networks hardly learn.
     :param features_extractor_class: Features extractor to use.

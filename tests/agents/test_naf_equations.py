@@ -13,20 +13,22 @@ from sarah.agents.critic import QuadraticCritic
 from sarah.agents.policies import MlpPolicy
 
 OBS_DIM = 4
+ARCHITECTURES = {
+    "shared": [16],
+    "separate": dict(V=[16], mu=[16], L=[16]),
+    "both": dict(V=[16], shared=[12], mu=[8], L=[6]),
+}
+for_every_architecture = pytest.mark.parametrize("net_arch", ARCHITECTURES.values(), ids=ARCHITECTURES)
 
 
-SEPARATE = dict(V=[16], mu=[16], L=[16])
-
-
-def make_critic(action_dim: int, seed: int = 0, net_arch=(16,), **policy_kwargs) -> QuadraticCritic:
+def make_critic(action_dim: int, seed: int = 0, **policy_kwargs) -> QuadraticCritic:
     """A critic whose weights are all random and large, so that no term of Q is small."""
     th.manual_seed(seed)
     policy = MlpPolicy(
         spaces.Box(-1, 1, (OBS_DIM,)),
         spaces.Box(-1, 1, (action_dim,)),
         ConstantSchedule(1e-3),
-        net_arch=net_arch,
-        **policy_kwargs,
+        **{"net_arch": [16], **policy_kwargs},
     )
     for parameter in policy.q_net.parameters():
         nn.init.normal_(parameter, std=0.5)
@@ -51,7 +53,7 @@ def lower_by_hand(outputs: np.ndarray, action_dim: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("min_curvature", [0.0, 1.5])
-@pytest.mark.parametrize("net_arch", [[16], SEPARATE], ids=["shared", "separate"])
+@for_every_architecture
 @pytest.mark.parametrize("action_dim", [1, 2, 5])
 def test_q_is_equation_3(action_dim, net_arch, min_curvature):
     critic = make_critic(action_dim, net_arch=net_arch, min_curvature=min_curvature)
@@ -148,11 +150,17 @@ def test_an_untrained_policy_proposes_the_centre():
     np.testing.assert_array_equal(actions, np.tile([1.0, -1.0], (7, 1)))
 
 
-@pytest.mark.parametrize("net_arch", [[16], SEPARATE], ids=["shared", "separate"])
+@for_every_architecture
 def test_every_head_gets_a_gradient(net_arch):
     critic = make_critic(3, net_arch=net_arch)
     critic(*draw(3)).sum().backward()
     assert all(p.grad is not None and p.grad.abs().sum() > 0 for p in critic.parameters())
+
+
+def test_v_shares_no_layer():
+    critic = make_critic(3)
+    critic.value(draw(3)[0]).sum().backward()
+    assert all(p.grad is None for net in (critic.shared_net, critic.mu_net, critic.lower_net) for p in net.parameters())
 
 
 def test_heads_take_their_own_sizes():
