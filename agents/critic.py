@@ -29,8 +29,8 @@ class QuadraticCritic(BaseModel):
     :param features_extractor: Network to extract features
         (a CNN when using images, a nn.Flatten() layer otherwise)
     :param features_dim: Number of features
-    :param net_arch: Hidden layers of each head, by name, ``V``, ``mu`` and ``L``, and those that ``mu`` and ``L``
-        follow in common, ``shared``
+    :param net_arch: Hidden layers by name: of each head, ``V``, ``mu`` and ``L``, and ``shared``, which come before
+        those of ``mu`` and ``L`` and serve both
     :param activation_fn: Activation function
     :param normalize_images: Whether to normalize images or not,
          dividing by 255.0 (True by default)
