@@ -1,7 +1,8 @@
 """How fine must the physics be? Mean score of parameter sets at several settings, and the speed of each.
 
 Good sets, poor ones, and sets at the edge of stalling; further ones, such as what a training learned at a cheap one,
-follow as arguments. Every setting simulates the same seeds, for 12 s and without pushes.
+follow as arguments. Every setting simulates the same seeds, for 12 s and without pushes. A second table has steps per
+second and sole clearance.
 """
 
 from __future__ import annotations
@@ -9,10 +10,10 @@ from __future__ import annotations
 import argparse
 import os
 import time
-from statistics import mean
+from statistics import mean, stdev
 
 from sarah.config import TRAINED_STEPPING, EpisodeConfig, Physics, Push
-from sarah.episode import EpisodeSpec, simulate
+from sarah.episode import EpisodeResult, EpisodeSpec, simulate
 from sarah.tasks import TASKS
 from sarah.workers import Workers
 
@@ -26,8 +27,37 @@ STEPPING_SETS = (
     (0.8, 1.2, 0.1, 1.0, 1.0),
 )
 BALANCE_SETS = ((0.0, 0.0, 0.0, 0.0), (1.1, 0.34, -0.04, -1.72), (1.8, 0.0, 1.0, 0.0))
-SETTINGS = ((1000, 100), (1000, 20), (500, 30), (400, 20), (300, 50), (300, 40), (300, 30), (200, 50), (200, 30))
-"""Physics steps per second and solver iterations; scores are compared with those of the first."""
+SETTINGS = ("1000,100,0", "1000,100,0.005", "500,30,0", "300,40,0", "200,40,0", "200,20,0.005")
+"""Physics steps per second, solver iterations and added plate inertia; scores are compared with those of the first."""
+
+
+def simulated(
+    physics: Physics, sets: list[tuple[float, ...]], seeds: int, workers: Workers
+) -> tuple[list[list[EpisodeResult]], float]:
+    """Every set's results, and simulated seconds per processor second of two episodes."""
+    config = EpisodeConfig(physics=physics, push=Push(newtons=(0.0, 0.0)), time_limit=12.0)
+    specs = []
+    for parameters in sets:
+        task = next(name for name, task in TASKS.items() if len(task.parameter_names) == len(parameters))
+        specs += [EpisodeSpec(parameters, seed, task, config) for seed in range(seeds)]
+    results = list(workers.simulate_all(specs))
+    start = time.process_time()
+    speed = sum(simulate(spec).duration for spec in specs[:2]) / (time.process_time() - start)
+    return [results[first : first + seeds] for first in range(0, len(results), seeds)], speed
+
+
+def compared(results: list[EpisodeResult], finest: list[EpisodeResult]) -> str:
+    """Mean score, its distance from the finest setting's, and the standard error of that, from the seeds in pairs."""
+    score, fine = (mean(result.score for result in some) for some in (results, finest))
+    differences = [one.score - other.score for one, other in zip(results, finest, strict=True)]
+    error = stdev(differences) / len(differences) ** 0.5 if len(differences) > 1 else 0.0
+    return f"{score:.3f} ({score / fine - 1:+.1%} ±{error / fine:.1%})"
+
+
+def gait(results: list[EpisodeResult]) -> str:
+    """Mean steps per second and sole clearance."""
+    steps, clearance = mean(r.steps_per_second for r in results), mean(r.sole_clearance for r in results)
+    return f"{steps:.2f}, {1000 * clearance:.0f} mm"
 
 
 def main() -> None:
@@ -35,33 +65,28 @@ def main() -> None:
     parser.add_argument("sets", nargs="*", help="further sets: P1 to P5, or V1 to V4, separated by commas")
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument(
-        "--settings", nargs="+", metavar="RATE,ITERATIONS", help="instead of all; the first is compared with"
+        "--settings",
+        nargs="+",
+        metavar="RATE,ITERATIONS,INERTIA",
+        default=SETTINGS,
+        help="the first is compared with",
     )
     options = parser.parse_args()
-    settings = SETTINGS
-    if options.settings:
-        settings = tuple(tuple(map(int, text.split(","))) for text in options.settings)
-    further = [tuple(map(float, text.split(","))) for text in options.sets]
-    sets = [*STEPPING_SETS, *BALANCE_SETS, *further]
-    print("| Hz, iterations |", " | ".join(", ".join(f"{v:g}" for v in s) for s in sets), "| x real time |")
-    print("|---" * (len(sets) + 2) + "|")
-    finest: list[float] = []
+    sets = [*STEPPING_SETS, *BALANCE_SETS, *(tuple(map(float, text.split(","))) for text in options.sets)]
+    head = "| Hz, iterations, kg m^2 | " + " | ".join(", ".join(f"{v:g}" for v in s) for s in sets)
+    print(f"{head} | x real time |\n{'|---' * (len(sets) + 2)}|")
+    finest: list[list[EpisodeResult]] = []
+    gaits = []
     with Workers(os.cpu_count() or 1) as workers:
-        for rate, iterations in settings:
-            config = EpisodeConfig(physics=Physics(rate, iterations), push=Push(newtons=(0.0, 0.0)), time_limit=12.0)
-            specs = []
-            for parameters in sets:
-                task = next(name for name, task in TASKS.items() if len(task.parameter_names) == len(parameters))
-                specs += [EpisodeSpec(parameters, seed, task, config) for seed in range(options.seeds)]
-            results = list(workers.simulate_all(specs))
-            scores = [
-                mean(r.score for r in results[i : i + options.seeds]) for i in range(0, len(results), options.seeds)
-            ]
-            finest = finest or scores
-            start = time.process_time()
-            speed = sum(simulate(spec).duration for spec in specs[:2]) / (time.process_time() - start)
-            cells = [f"{score:.3f} ({score / fine - 1:+.1%})" for score, fine in zip(scores, finest, strict=True)]
-            print(f"| {rate}, {iterations} |", " | ".join(cells), f"| {speed:.0f} |", flush=True)
+        for setting in options.settings:
+            rate, iterations, inertia = setting.split(",")
+            physics = Physics(int(rate), int(iterations), added_plate_inertia=float(inertia))
+            results, speed = simulated(physics, sets, options.seeds, workers)
+            finest = finest or results
+            cells = [compared(one, fine) for one, fine in zip(results, finest, strict=True)]
+            print(f"| {setting} |", " | ".join(cells), f"| {speed:.0f} |", flush=True)
+            gaits.append(f"| {setting} | {' | '.join(map(gait, results))} |")
+    print(f"\n{head} |\n{'|---' * (len(sets) + 1)}|", *gaits, sep="\n")
 
 
 if __name__ == "__main__":

@@ -32,7 +32,7 @@ from sarah.training import train
 from sarah.vec_env import EpisodeVecEnv
 from sarah.workers import Workers
 
-FORMER_START = Physics(500, 30)
+FORMER_START = Physics(500, 30, added_plate_inertia=0.0)
 """What most prototypes of this robot ran at."""
 
 

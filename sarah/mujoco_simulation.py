@@ -29,6 +29,8 @@ HIP_DAMPING, LEG_DAMPING = 10_000.0, 20_000.0
 """Effort per deviation from the speed that a servo wants, in Nms/rad and Ns/m."""
 JOINT_DAMPING = 2.0
 """Factor on the URDF's joint damping: PyBullet, the reference, takes it twice."""
+LOWEST_RATE = 300
+"""Physics steps per second that are taken at least: contacts are softer at lower rates."""
 STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS | mujoco.mjtState.mjSTATE_WARMSTART
 """What a physics step begins with."""
 
@@ -40,7 +42,8 @@ class MujocoSimulation:
     """A :class:`~sarah.simulator.Simulator` in MuJoCo.
 
     :param robot: the checked robot
-    :param physics: how finely to integrate; the solver stops before its last iteration when it has converged
+    :param physics: how finely to integrate, at least at 300 Hz; the solver stops before its last iteration when it has
+        converged
     :param conditions: friction, masses, servo bandwidth and start velocity of this episode
     """
 
@@ -53,10 +56,11 @@ class MujocoSimulation:
         self.robot = robot
         self.time = 0.0
         self._dt = physics.control_dt
-        self._substeps = physics.rate // physics.control_rate
-        self._model = copy.copy(_compiled(robot.urdf, physics.rate, physics.solver_iterations))
+        self._substeps = math.ceil(max(physics.rate, LOWEST_RATE) / physics.control_rate)
+        rate = self._substeps * physics.control_rate
+        self._model = copy.copy(_compiled(robot.urdf, rate, physics.solver_iterations))
         self._data = mujoco.MjData(self._model)
-        self._apply_conditions(physics, conditions)
+        self._apply_conditions(rate, conditions)
         self._addresses = {
             name: int(self._model.joint(name).qposadr[0]) for name in (*ACTUATED_JOINTS, *PASSIVE_JOINTS)
         }
@@ -85,7 +89,7 @@ class MujocoSimulation:
         self._torso = self._torso_state()
         self._velocity_before = self._torso.velocity
 
-    def _apply_conditions(self, physics: Physics, conditions: Conditions) -> None:
+    def _apply_conditions(self, rate: int, conditions: Conditions) -> None:
         model = self._model
         for link, factor in conditions.mass_factors.items():
             index = model.body(link).id
@@ -95,7 +99,7 @@ class MujocoSimulation:
         mujoco.mj_resetData(model, self._data)
         model.pair_friction[:, :2] = conditions.friction
         # MuJoCo takes the position at a step's end: with this rate a servo is the same first-order lag at every step.
-        self._rate = (math.exp(conditions.actuator_bandwidth / physics.rate) - 1.0) * physics.rate
+        self._rate = (math.exp(conditions.actuator_bandwidth / rate) - 1.0) * rate
         self._damping = [LEG_DAMPING if name.endswith("leg_length") else HIP_DAMPING for name in ACTUATED_JOINTS]
         for actuator in range(len(ACTUATED_JOINTS)):
             self._let_follow(actuator)

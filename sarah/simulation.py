@@ -87,6 +87,13 @@ class Simulation:
         # A servo's share of the way in one physics step, so that it is the same first-order lag at every rate.
         gain = 1.0 - math.exp(-conditions.actuator_bandwidth / physics.rate)
         self._gains = [gain] * len(self._joints)
+        self._added_plate_inertia = physics.added_plate_inertia
+        self._plate_inertias = {
+            link: pybullet.getDynamicsInfo(self._body, link, physicsClientId=self._client)[2]
+            for links, _ in self._feet.values()
+            for link in links
+        }
+        self._retracted = dict.fromkeys(SIDES, True)
         # PyBullet takes them as impulses over the whole tick, and lets every substep spend all of it.
         self._efforts = [self.robot.efforts[name] / self._substeps for name in ACTUATED_JOINTS]
         self._torso = self._torso_state()
@@ -150,6 +157,22 @@ class Simulation:
             positionGains=self._gains,
             physicsClientId=self._client,
         )
+        for side, length in zip(SIDES, targets[-len(SIDES) :], strict=True):
+            if (length > 0.0) != self._retracted[side]:
+                self._retract(side, length > 0.0)
+
+    def _retract(self, side: str, retracted: bool) -> None:
+        """Leave the plates of a leg that is retracted their own inertia, and give those of another leg the added one.
+
+        Light plates between the floor and pads that carry a whole robot make the solver converge slowly. While they
+        stand they do not turn, and their inertia changes nothing else.
+        """
+        self._retracted[side] = retracted
+        added = 0.0 if retracted else self._added_plate_inertia
+        for link in self._feet[side][0]:
+            about_hinge, *others = self._plate_inertias[link]
+            inertia = (about_hinge + added, *others)
+            pybullet.changeDynamics(self._body, link, localInertiaDiagonal=inertia, physicsClientId=self._client)
 
     def push(self, force: Vector) -> None:
         """Push the torso at its centre during the next control tick.

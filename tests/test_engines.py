@@ -12,7 +12,7 @@ import pytest
 from laboratory import need_mujoco
 
 from sarah import engines
-from sarah.config import TRAINED_STEPPING, EpisodeConfig
+from sarah.config import TRAINED_STEPPING, EpisodeConfig, Physics
 from sarah.engines import simulator_of
 from sarah.episode import Episode, EpisodeSpec, simulate
 from sarah.errors import ConfigurationError
@@ -60,6 +60,17 @@ def test_same_spec_gives_identical_results_in_fresh_processes_whatever_they_simu
     ]
     assert runs[0] == runs[1]
     assert json.loads(runs[0])["steps"] > 0
+
+
+@pytest.mark.parametrize(
+    ("asked", "taken"), [(Physics(100), Physics(300)), (Physics(200, 20, 200), Physics(400, 20, 200))]
+)
+def test_mujoco_takes_at_least_300_steps_a_second(mujoco_engine: None, asked: Physics, taken: Physics) -> None:
+    results = [
+        simulate(EpisodeSpec(PAPER_PARAMETERS, 1, config=dataclasses.replace(SHORT, time_limit=2.0, physics=physics)))
+        for physics in (asked, taken, Physics(500, 20, 100))
+    ]
+    assert results[0] == results[1] != results[2]
 
 
 def test_episodes_that_stand_side_by_side_do_not_touch_each_other(mujoco_engine: None) -> None:

@@ -9,10 +9,11 @@ import pytest
 from laboratory import BulletLaboratory, MujocoLaboratory, laboratory
 
 from sarah.config import PHYSICS, Physics
-from sarah.description import ACTUATED_JOINTS, GROUPS, PASSIVE_JOINTS, SIDES, describe_robot
+from sarah.description import ACTUATED_JOINTS, GROUPS, PASSIVE_JOINTS, PLATES, SIDES, describe_robot
 from sarah.engines import simulator_of
 from sarah.randomisation import LINKS, NOMINAL, Conditions
 from sarah.renderer import Renderer
+from sarah.simulation import Simulation
 from sarah.simulator import GRAVITY, Simulator, rotate_to_body
 
 SECOND = PHYSICS["standard"].control_rate
@@ -114,7 +115,7 @@ def test_ankles_are_free(lab: Laboratory, build: BuildSimulation) -> None:
 
 def test_ankles_are_damped_alike(lab: Laboratory, build: BuildSimulation) -> None:
     """In the air a plate that turns at 1 rad/s comes to rest within 5.0 (PyBullet) or 5.1 mrad (MuJoCo)."""
-    simulation = build(physics=Physics(rate=2000))
+    simulation = build(physics=Physics(rate=2000, added_plate_inertia=0.0))
     lab.place(simulation)
     lab.move_joint(simulation, "left_hindfoot", -0.09, 1.0)
     for _ in range(10):
@@ -169,12 +170,17 @@ def test_rotation_keeps_length_and_undoes_itself() -> None:
     assert body == pytest.approx(tuple(expected))
 
 
+@pytest.mark.parametrize("physics", ["standard", "reference"])
 @pytest.mark.parametrize("force", [(100.0, 0.0, 0.0), (0.0, -50.0, 0.0), (30.0, 40.0, 10.0)])
 def test_push_delivers_force_times_duration(
-    lab: Laboratory, build: BuildSimulation, force: tuple[float, float, float]
+    lab: Laboratory, build: BuildSimulation, physics: str, force: tuple[float, float, float]
 ) -> None:
-    """In the air, so that the floor takes none of it; within 1 % of F T."""
-    simulation = build()
+    """In the air, so that the floor takes none of it.
+
+    Along the push within 0.2 % of F T. Across it, what integrating a robot that the push turns gets wrong, which falls
+    with the physics step: together 1.2 % at 200 Hz, 0.23 % at 1 kHz.
+    """
+    simulation = build(physics=PHYSICS[physics])
     lab.place(simulation)
     ticks = 15
     before = momentum(lab, simulation)
@@ -184,7 +190,9 @@ def test_push_delivers_force_times_duration(
     duration = ticks / SECOND
     gained = momentum(lab, simulation) - before + np.array((0.0, 0.0, 30.0 * GRAVITY * duration))
     impulse = np.array(force) * duration
-    assert np.linalg.norm(gained - impulse) < 0.01 * np.linalg.norm(impulse)
+    size = np.linalg.norm(impulse)
+    assert gained @ impulse / size == pytest.approx(size, rel=0.002)
+    assert np.linalg.norm(gained - impulse) < 2.4 / PHYSICS[physics].rate * size
 
 
 def test_push_lasts_one_tick(lab: Laboratory, build: BuildSimulation) -> None:
@@ -244,6 +252,26 @@ def test_retracting_a_leg_lifts_its_sole(lab: Laboratory, build: BuildSimulation
     for _ in range(20):
         simulation.advance()
     assert simulation.sole_height("left") - simulation.sole_height("right") == pytest.approx(0.05, abs=0.005)
+
+
+def test_plates_have_the_added_inertia_unless_their_leg_is_retracted() -> None:
+    """About the hinge only, and on the masses of this episode."""
+    conditions = Conditions(mass_factors=dict.fromkeys(LINKS, 1.05))
+    plain, simulation = (
+        Simulation(describe_robot(), Physics(added_plate_inertia=added), conditions) for added in (0.0, 0.005)
+    )
+
+    def inertias(simulation: Simulation, side: str) -> np.ndarray:
+        links = [simulation._links[f"{side}_{plate}"] for plate in PLATES]
+        return np.array([pybullet.getDynamicsInfo(simulation._body, link, simulation._client)[2] for link in links])
+
+    added = np.array((0.005, 0.0, 0.0))
+    for left_length, left_added in ((0.0, added), (0.001, 0.0 * added), (-0.008, added)):
+        simulation.set_targets((0.0, 0.0, 0.0, 0.0, left_length, 0.0))
+        assert inertias(simulation, "left") == pytest.approx(inertias(plain, "left") + left_added)
+        assert inertias(simulation, "right") == pytest.approx(inertias(plain, "right") + added)
+    plain.close()
+    simulation.close()
 
 
 def test_two_simulations_repeat_bit_for_bit(build: BuildSimulation) -> None:
