@@ -70,7 +70,7 @@ class Physics:
     """
 
     rate: int = 200
-    solver_iterations: int = 20
+    solver_iterations: int = 25
     control_rate: int = 100
     added_plate_inertia: float = 0.005
 
