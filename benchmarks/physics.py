@@ -1,8 +1,9 @@
 """How fine must the physics be? Mean score of parameter sets at several settings, and the speed of each.
 
 Good sets, poor ones, and sets at the edge of stalling; further ones, such as what a training learned at a cheap one,
-follow as arguments. Every setting simulates the same seeds, for 12 s and without pushes. Scores come with their
-distance from the first setting's, and its standard error; a second table has steps per second and sole clearance.
+follow as arguments. Every setting simulates the same seeds, for 12 s, without pushes unless --newtons asks for them.
+Scores come with their distance from the first setting's, and its standard error; a second table has steps per second,
+sole clearance and the share that is up at the end.
 """
 
 from __future__ import annotations
@@ -33,10 +34,10 @@ SETTINGS = ("1000,100,0", "1000,100,0.005", "500,30,0", "300,40,0", "200,40,0", 
 
 
 def simulated(
-    physics: Physics, sets: list[tuple[float, ...]], seeds: int, workers: Workers
+    physics: Physics, newtons: float, sets: list[tuple[float, ...]], seeds: int, workers: Workers
 ) -> tuple[list[list[EpisodeResult]], float]:
     """Every set's results, and simulated seconds per processor second of two episodes."""
-    config = EpisodeConfig(physics=physics, push=Push(newtons=(0.0, 0.0)), time_limit=12.0)
+    config = EpisodeConfig(physics=physics, push=Push(newtons=(newtons, newtons)), time_limit=12.0)
     specs = []
     for parameters in sets:
         task = next(name for name, task in TASKS.items() if len(task.parameter_names) == len(parameters))
@@ -59,15 +60,16 @@ def compared(results: list[EpisodeResult], finest: list[EpisodeResult]) -> str:
 
 
 def gait(results: list[EpisodeResult]) -> str:
-    """Mean steps per second and sole clearance."""
+    """Mean steps per second and sole clearance, and the share that survived."""
     steps, clearance = mean(r.steps_per_second for r in results), mean(r.sole_clearance for r in results)
-    return f"{steps:.2f}, {1000 * clearance:.0f} mm"
+    return f"{steps:.2f}, {1000 * clearance:.0f} mm, {mean(r.survived for r in results):.0%}"
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sets", nargs="*", help="further sets: P1 to P5, or V1 to V4, separated by commas")
     parser.add_argument("--seeds", type=int, default=20, help="at least 2")
+    parser.add_argument("--newtons", type=float, default=0.0, help="of a push from anywhere, in the sets of four")
     parser.add_argument(
         "--settings",
         nargs="+",
@@ -82,7 +84,7 @@ def main() -> None:
         for setting in options.settings:
             rate, iterations, inertia = setting.split(",")
             physics = Physics(int(rate), int(iterations), added_plate_inertia=float(inertia))
-            results, speed = simulated(physics, sets, options.seeds, workers)
+            results, speed = simulated(physics, options.newtons, sets, options.seeds, workers)
             columns.append(results)
             speeds.append(f"{speed:.0f}")
             print(f"{setting} done", file=sys.stderr)

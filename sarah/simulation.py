@@ -157,7 +157,7 @@ class Simulation:
             positionGains=self._gains,
             physicsClientId=self._client,
         )
-        for side, length in zip(SIDES, targets[-len(SIDES) :], strict=True):
+        for side, length in zip(SIDES, targets[-len(SIDES) :], strict=True):  # the legs' lengths come last
             if (length > 0.0) != self._retracted[side]:
                 self._retract(side, length > 0.0)
 
