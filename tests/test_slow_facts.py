@@ -45,6 +45,22 @@ def test_papers_parameters_keep_their_score_at_the_reference_physics(workers: Wo
     assert reference.score_median >= 0.95 * standard.score_median
 
 
+@pytest.mark.parametrize("v1", [0.0, 1.1])
+def test_inertia_added_to_standing_plates_changes_nothing_at_the_reference_physics(workers: Workers, v1: float) -> None:
+    """With V1 the soles rise least, and would least of all if swinging plates had it."""
+    added, reference = (
+        summarise(
+            workers.simulate_all([EpisodeSpec((v1, 0.0, 0.0, 0.0), seed, "balance", config) for seed in range(8)])
+        )
+        for config in (
+            EpisodeConfig(physics=physics, push=Push(newtons=(0.0, 0.0)), time_limit=12.0)
+            for physics in (dataclasses.replace(PHYSICS["reference"], added_plate_inertia=0.005), PHYSICS["reference"])
+        )
+    )
+    assert added.score_mean == pytest.approx(reference.score_mean, rel=0.02)
+    assert added.sole_clearance_mean == pytest.approx(reference.sole_clearance_mean, abs=0.001)
+
+
 def test_no_clock_among_random_parameters_pays(workers: Workers) -> None:
     generator = random.Random(0)
     drawn = [tuple(generator.uniform(0.0, 2.0) for _ in range(5)) for _ in range(60)]
