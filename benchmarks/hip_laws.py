@@ -28,6 +28,7 @@ SCALES = {"acceleration": 0.05, "angle": 0.5, "pitch": 2.5, "rate": 0.15}
 """Radians of flexion per unit of the signal, at V3 = 1."""
 LEGS = ("both", "swing", "support", "held", "sampled")
 SETTINGS = {
+    "100 Hz, standard": Physics(),
     "100 Hz, 300 Hz x 40": Physics(300, 40, 100, added_plate_inertia=0.0),
     "100 Hz, 600 Hz x 60": Physics(600, 60, 100, added_plate_inertia=0.0),
     "200 Hz, 400 Hz x 40": Physics(400, 40, 200, added_plate_inertia=0.0),

@@ -34,6 +34,8 @@ SCHEDULER_SECONDS = 10
 """How long to wait for a connection to a scheduler."""
 SAFE_PATH = "PYTHONSAFEPATH"
 """Keeps Python from putting the working folder on its search path, from Python 3.11 on."""
+NICENESS = 5
+"""By which worker processes of this machine go behind the one that learns."""
 MOST_WORKERS = 1000
 """On one machine."""
 ATTEMPTS = 20
@@ -243,11 +245,12 @@ def _client_in_time(address: str) -> Client:
 def _start(count: int) -> tuple[LocalCluster, Client]:
     from distributed import Client, LocalCluster, WorkerPlugin
 
-    class IgnoreInterrupts(WorkerPlugin):
-        """Ctrl-C at a terminal reaches workers too; it is for the training to stop them."""
+    class Serve(WorkerPlugin):
+        """Leave Ctrl-C, which reaches workers too, to the training, and the processor to the learner they wait for."""
 
         def setup(self, worker: Any) -> None:
             signal.signal(signal.SIGINT, signal.SIG_IGN)
+            os.nice(NICENESS)
 
     cluster = LocalCluster(
         n_workers=count,
@@ -260,7 +263,7 @@ def _start(count: int) -> tuple[LocalCluster, Client]:
     )
     try:
         client = Client(cluster)
-        client.register_plugin(IgnoreInterrupts())
+        client.register_plugin(Serve())
     except BaseException:
         cluster.close()
         raise
