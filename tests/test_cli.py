@@ -163,7 +163,7 @@ def test_eval_options_reach_the_episodes() -> None:
     trained_at_200_hz = EpisodeConfig(physics=Physics(rate=400, control_rate=200))
     config = _changed(trained_at_200_hz, options, "balance")
     assert config.push.newtons == (60.0, 60.0) and config.stepping == (0.1, 0.2, 0.3, 0.4, 0.5)
-    assert config.physics == Physics(1000, 100, 200) and not config.randomisation.enabled
+    assert config.physics == Physics(1000, 100, 200, 0.0) and not config.randomisation.enabled
 
 
 def test_figures_of_both_trainings(balanced: Path) -> None:
