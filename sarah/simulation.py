@@ -165,7 +165,7 @@ class Simulation:
         """Leave the plates of a leg that is retracted their own inertia, and give those of another leg the added one.
 
         Light plates between the floor and pads that carry a whole robot make the solver converge slowly. While they
-        stand they do not turn, and their inertia changes nothing else.
+        stand they hardly turn, and their inertia changes little else (docs/robot.md has how much).
         """
         self._retracted[side] = retracted
         added = 0.0 if retracted else self._added_plate_inertia

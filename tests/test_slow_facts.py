@@ -46,7 +46,9 @@ def test_papers_parameters_keep_their_score_at_the_reference_physics(workers: Wo
 
 
 @pytest.mark.parametrize("v1", [0.0, 1.1])
-def test_inertia_added_to_standing_plates_changes_nothing_at_the_reference_physics(workers: Workers, v1: float) -> None:
+def test_inertia_added_to_standing_plates_keeps_good_scores_and_clearance_at_the_reference(
+    workers: Workers, v1: float
+) -> None:
     """With V1 the soles rise least, and would least of all if swinging plates had it."""
     added, reference = (
         summarise(
