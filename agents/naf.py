@@ -279,11 +279,13 @@ class NAF(OffPolicyAlgorithm):
             # For n-step replay, discount factor is gamma**n_steps (when no early termination)
             discounts = replay_data.discounts if replay_data.discounts is not None else self.gamma
 
-            with th.no_grad():
-                # The maximum of Q over the actions is V: no action is needed for the target
-                next_values = self.q_net_target.value(replay_data.next_observations)
-                # 1-step TD target
-                target_q_values = replay_data.rewards + (1 - replay_data.dones) * discounts * next_values
+            target_q_values = replay_data.rewards
+            if self.gamma > 0:  # Otherwise what comes next does not count
+                with th.no_grad():
+                    # The maximum of Q over the actions is V: no action is needed for the target
+                    next_values = self.q_net_target.value(replay_data.next_observations)
+                    # 1-step TD target
+                    target_q_values = replay_data.rewards + (1 - replay_data.dones) * discounts * next_values
 
             # Get current Q-values estimates
             current_q_values = self.q_net(replay_data.observations, replay_data.actions)

@@ -53,11 +53,12 @@ def _result(plain: Any) -> EpisodeResult:
 _KINDS = {
     "stand": _Kind(lambda reading: reading, _reading),
     "run": _Kind(
-        lambda outcome: [outcome.result.fields(), outcome.reading], lambda p: Outcome(_result(p[0]), _reading(p[1]))
+        lambda outcome: [outcome.result.fields(), *outcome[1:]],
+        lambda p: Outcome(_result(p[0]), _reading(p[1]), p[2] and _reading(p[2])),
     ),
     "simulate": _Kind(lambda result: result.fields(), _result),
 }
-_NAMES: dict[Callable[[Any], Any], str] = {stand: "stand", run: "run", simulate: "simulate"}
+_NAMES: dict[Callable[..., Any], str] = {stand: "stand", run: "run", simulate: "simulate"}
 
 
 @dataclass(frozen=True)
@@ -133,18 +134,18 @@ class Journal(Executor):
         if damaged:
             _log.warning("%s: damaged rows: %d; what they held is simulated again", self._path, damaged)
 
-    def submit(self, function: Callable[[Any], Any], subject: Any) -> Job:
+    def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
         """Have an episode simulated, unless it is known what comes of it.
 
         :param function: :func:`~sarah.workers.stand`, :func:`~sarah.workers.run` or :func:`sarah.simulate`
-        :param subject: the episode's specification
+        :param subjects: the episode's specification, and what else the function takes
         :raises RunFolderError: if the training asks for something else than it did when the journal was written
         """
-        request = _request(self._submitted, function, subject)
+        request = _request(self._submitted, function, subjects[0])
         row = self._known.pop(self._submitted, None)
         self._submitted += 1
         if row is None:
-            return _NewJob(self, request, self._executor.submit(function, subject))
+            return _NewJob(self, request, self._executor.submit(function, *subjects))
         if row.request != request:
             raise RunFolderError(
                 f"{self._path.parent} cannot be resumed here: it does not repeat what it did before its interruption, "
@@ -195,7 +196,7 @@ class _NewJob:
         return value
 
 
-def _request(index: int, function: Callable[[Any], Any], spec: EpisodeSpec) -> dict[str, Any]:
+def _request(index: int, function: Callable[..., Any], spec: EpisodeSpec) -> dict[str, Any]:
     return {"index": index, "kind": _NAMES[function], "seed": spec.seed, "parameters": list(spec.parameters)}
 
 

@@ -9,6 +9,8 @@ store it with that action. The order of the outcomes, and so the training, does 
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import gymnasium
@@ -21,12 +23,14 @@ from sarah.agents.buffers import RankReplayBuffer
 from sarah.config import EpisodeConfig
 from sarah.envs import SarahEnv, draw_seed, observation_from, parameters_from
 from sarah.episode import EpisodeSpec
+from sarah.sensors import SensorReading
 from sarah.tasks import TASKS
 from sarah.workers import Executor, Job, run, stand
 
 
 class _Running(NamedTuple):
     spec: EpisodeSpec
+    following: EpisodeSpec | None
     observation: np.ndarray
     action: np.ndarray
     job: Job
@@ -55,7 +59,7 @@ class EpisodeVecEnv(VecEnv):
         self._slots = slots
         self._workers = workers
         self._running: deque[_Running] = deque()
-        self._standing: deque[tuple[int, Job]] = deque()
+        self._standing: deque[tuple[EpisodeSpec, Callable[[], SensorReading]]] = deque()
 
     def reset(self) -> np.ndarray:
         """Begin anew, with the episodes that follow from the seed of :meth:`seed`.
@@ -68,8 +72,9 @@ class EpisodeVecEnv(VecEnv):
         self._running.clear()
         self._standing.clear()
         self._steps = self._begun = 0
-        for _ in range(self._slots):
-            self._stand_another()
+        for _ in range(min(self._slots, self._episodes)):
+            spec = self._next_spec()
+            self._standing.append((spec, self._workers.submit(stand, spec).result))
         self._observe()
         return self._observation[None]
 
@@ -81,11 +86,12 @@ class EpisodeVecEnv(VecEnv):
         self._steps += 1
         if self._steps > self._episodes:
             return
-        self._stand_another()
-        seed, _ = self._standing.popleft()
-        spec = self._spec(seed, parameters_from(actions[0], TASKS[self._task]))
-        job = self._workers.submit(run, spec)
-        self._running.append(_Running(spec, self._observation, actions[0].copy(), job))
+        spec, _ = self._standing.popleft()
+        spec = replace(spec, parameters=parameters_from(actions[0], TASKS[self._task]))
+        # Whoever runs it then lets the episode stand that the agent acts on when this one's outcome is there.
+        following = self._next_spec() if self._begun < self._episodes else None
+        job = self._workers.submit(run, spec, following)
+        self._running.append(_Running(spec, following, self._observation, actions[0].copy(), job))
 
     def step_wait(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
         """Wait for the oldest episode in flight, if there are as many as there are slots, and for the next to stand."""
@@ -95,29 +101,26 @@ class EpisodeVecEnv(VecEnv):
         self._observe()
         return self._observation[None], np.array([reward], np.float32), np.array([True]), [info]
 
-    def _stand_another(self) -> None:
-        if self._begun == self._episodes:
-            return
+    def _next_spec(self) -> EpisodeSpec:
+        """Of the next episode, which stands before its parameters are known: until then any do."""
         self._begun += 1
-        seed = draw_seed(self._env.np_random)
-        # Any parameters do: only those of the run matter.
         anything = (0.0,) * len(TASKS[self._task].parameter_names)
-        self._standing.append((seed, self._workers.submit(stand, self._spec(seed, anything))))
+        return EpisodeSpec(anything, draw_seed(self._env.np_random), self._task, self._config)
 
     def _observe(self) -> None:
         """See how the next episode stands; after the last one the observation stays."""
         if self._standing:
-            self._observation = observation_from(self._standing[0][1].result())
+            _, reading = self._standing[0]
+            self._observation = observation_from(reading())
 
     def _oldest_outcome(self) -> tuple[float, dict[str, Any]]:
-        spec, observation, action, job = self._running.popleft()
-        result, reading = job.result()
+        spec, following, observation, action, job = self._running.popleft()
+        result, reading, following_reading = job.result()
+        if following is not None:
+            self._standing.append((following, lambda: following_reading))
         transition = (observation, action, observation_from(reading))
         info = {"seed": spec.seed, "parameters": spec.parameters, "transition": transition, **result.fields()}
         return result.episode_return, info
-
-    def _spec(self, seed: int, parameters: tuple[float, ...]) -> EpisodeSpec:
-        return EpisodeSpec(parameters, seed, self._task, self._config)
 
     def close(self) -> None:
         """Nothing is left open: the workers belong to whoever made them."""

@@ -36,6 +36,13 @@ SAFE_PATH = "PYTHONSAFEPATH"
 """Keeps Python from putting the working folder on its search path, from Python 3.11 on."""
 NICENESS = 5
 """By which worker processes of this machine go behind the one that learns."""
+UNWATCHED = {
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
+    "distributed.admin.system-monitor.interval": "10s",
+}
+"""How little the processes of this machine watch themselves. As Dask has it, every 10 to 500 ms, that takes a
+thirtieth of the processor from the episodes."""
 MOST_WORKERS = 1000
 """On one machine."""
 ATTEMPTS = 20
@@ -49,10 +56,12 @@ class Outcome(NamedTuple):
 
     :param result: what came of it
     :param reading: the sensors' last one
+    :param following: the last reading of the episode that was to stand after it, if one was
     """
 
     result: EpisodeResult
     reading: SensorReading
+    following: SensorReading | None = None
 
 
 class Job(Protocol):
@@ -78,16 +87,18 @@ def stand(spec: EpisodeSpec) -> SensorReading:
     return episode.last_reading
 
 
-def run(spec: EpisodeSpec) -> Outcome:
+def run(spec: EpisodeSpec, following: EpisodeSpec | None = None) -> Outcome:
     """Run an episode to its end: the one that stands here, or, if none does, one from the beginning.
 
     :param spec: of the episode
+    :param following: of another one, to let stand afterwards; a task of its own would cost the scheduler as much
     """
     episode = _standing.pop(_key(spec), None) or _stood(spec)
     try:
-        return Outcome(episode.run(spec.parameters), episode.last_reading)
+        result = episode.run(spec.parameters)
     finally:
         episode.close()
+    return Outcome(result, episode.last_reading, None if following is None else stand(following))
 
 
 def _stood(spec: EpisodeSpec) -> Episode:
@@ -114,11 +125,11 @@ class Executor(ABC):
     """Whoever has things simulated."""
 
     @abstractmethod
-    def submit(self, function: Callable[[Any], Any], subject: Any) -> Job:
+    def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
         """Have something done.
 
         :param function: :func:`stand`, :func:`run`, :func:`sarah.simulate`, or another one of a module
-        :param subject: of the function: an episode's specification, or what else it takes
+        :param subjects: of the function: specifications of episodes, or what else it takes
         """
 
     def simulate_all(self, specs: Sequence[EpisodeSpec]) -> Iterator[EpisodeResult]:
@@ -175,20 +186,20 @@ class Workers(Executor):
             self._cluster.close()
             os.environ[SAFE_PATH] = self._safe_path  # empty is as good as unset
 
-    def submit(self, function: Callable[[Any], Any], subject: Any) -> Job:
+    def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
         """Have something done: simulated, or trained.
 
         :param function: :func:`stand`, :func:`run`, :func:`sarah.simulate`, or another one of a module
-        :param subject: of the function: an episode's specification, or what else it takes
+        :param subjects: of the function: specifications of episodes, or what else it takes
         """
         if self._client is None:
-            return _LocalJob(function, subject)
-        return _RemoteJob(functools.partial(self._client.submit, function, subject, pure=False))
+            return _LocalJob(function, *subjects)
+        return _RemoteJob(functools.partial(self._client.submit, function, *subjects, pure=False))
 
 
 class _LocalJob:
-    def __init__(self, function: Callable[[Any], Any], subject: Any) -> None:
-        self.result = functools.partial(function, subject)
+    def __init__(self, function: Callable[..., Any], *subjects: Any) -> None:
+        self.result = functools.partial(function, *subjects)
 
 
 class _RemoteJob:
@@ -243,6 +254,7 @@ def _client_in_time(address: str) -> Client:
 
 
 def _start(count: int) -> tuple[LocalCluster, Client]:
+    import dask
     from distributed import Client, LocalCluster, WorkerPlugin
 
     class Serve(WorkerPlugin):
@@ -252,15 +264,16 @@ def _start(count: int) -> tuple[LocalCluster, Client]:
             signal.signal(signal.SIGINT, signal.SIG_IGN)
             os.nice(NICENESS)
 
-    cluster = LocalCluster(
-        n_workers=count,
-        threads_per_worker=1,
-        host="127.0.0.1",
-        dashboard_address="127.0.0.1:0",  # any free port; otherwise 8787, which another may hold
-        security=True,  # others on this machine reach the ports too
-        memory_limit=0,
-        silence_logs=logging.CRITICAL,
-    )
+    with dask.config.set(UNWATCHED):
+        cluster = LocalCluster(
+            n_workers=count,
+            threads_per_worker=1,
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",  # any free port; otherwise 8787, which another may hold
+            security=True,  # others on this machine reach the ports too
+            memory_limit=0,
+            silence_logs=logging.CRITICAL,
+        )
     try:
         client = Client(cluster)
         client.register_plugin(Serve())
