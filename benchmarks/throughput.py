@@ -92,6 +92,7 @@ def loops(limit: float, rounds: int) -> dict[str, float]:
     """Every round measures everything once; ratios are medians of the rounds' ratios."""
     standard, reference = Physics(), PHYSICS["reference"]
     ticks, reference_ticks = commands(standard, limit), commands(reference, limit)
+    former_ticks = commands(FORMER_START, limit)
     measured = [
         {
             "closed": closed_loop(standard, limit),
@@ -100,6 +101,7 @@ def loops(limit: float, rounds: int) -> dict[str, float]:
             "reference": closed_loop(reference, limit),
             "bare_reference": bare_loop(reference, limit, reference_ticks),
             "former": closed_loop(FORMER_START, limit),
+            "bare_former": bare_loop(FORMER_START, limit, former_ticks),
         }
         for _ in range(rounds)
     ]
@@ -113,6 +115,7 @@ def loops(limit: float, rounds: int) -> dict[str, float]:
         "reference_times_real_time": median(one["reference"] for one in measured),
         "closed_loop_over_bare": ratio("closed", "bare"),
         "calls_alone_over_bare": ratio("read", "bare"),
+        "closed_loop_over_bare_at_500_hz_30_iterations": ratio("former", "bare_former"),
         "closed_loop_over_bare_at_reference": ratio("reference", "bare_reference"),
         "default_over_reference": ratio("closed", "reference"),
         "default_over_500_hz_30_iterations": ratio("closed", "former"),
@@ -165,15 +168,16 @@ def independent_processes(specs: list[EpisodeSpec], folder: Path) -> float:
     return max(float(child.communicate()[0]) for child in children)
 
 
-def trainings(simulations: int, folder: Path) -> dict[str, float]:
-    config = TrainingConfig(simulations=simulations)
+def trainings(simulations: int, seed: int, folder: Path) -> dict[str, float]:
+    """The same training with one worker and with two, and its episodes without learner or scheduler."""
+    config = TrainingConfig(simulations=simulations, seed=seed)
     taken, share = {}, 0.0
     for count in (1, 2):
         with Workers(count) as workers:
             list(workers.simulate_all([EpisodeSpec(TRAINED_STEPPING, seed) for seed in range(2 * count)]))  # warm up
             taken[count], learner = training_seconds(config, workers, folder / f"workers-{count}")
             share = learner / taken[count]
-    specs = []  # the same episodes, without learner or scheduler
+    specs = []
     for row in RunFolder(folder / "workers-1").episodes():
         specs.append(EpisodeSpec(tuple(float(row[name]) for name in STEPPING.parameter_names), int(row["seed"])))
     independent = independent_processes(specs, folder)
@@ -191,12 +195,15 @@ def main() -> None:
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     parser.add_argument("--rounds", type=int, default=5, help="of the loops")
     parser.add_argument("--seconds", type=float, default=11.0, help="of each loop's episode")
+    parser.add_argument("--trainings", type=int, default=3, help="of different seeds; figures are their medians")
     parser.add_argument(
-        "--simulations", type=int, default=60, help="of each training; below 100, which has no closing comparison"
+        "--simulations", type=int, default=99, help="of each training; below 100, which has no closing comparison"
     )
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        figures = {**loops(options.seconds, options.rounds), **trainings(options.simulations, Path(folder))}
+        rounds = [trainings(options.simulations, seed, Path(folder, str(seed))) for seed in range(options.trainings)]
+    figures = loops(options.seconds, options.rounds)
+    figures |= {name: median(one[name] for one in rounds) for name in rounds[0]}
     if options.json:
         print(json.dumps(figures))
         return

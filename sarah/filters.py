@@ -14,12 +14,21 @@ class LowPass:
 
     def __init__(self, time_constant: float, dt: float) -> None:
         self.value = 0.0
-        self._gain = 1.0 - math.exp(-dt / time_constant)
+        self._gain = low_pass_gain(time_constant, dt)
 
     def __call__(self, sample: float) -> float:
         """Take one sample and return the filtered value."""
         self.value += self._gain * (sample - self.value)
         return self.value
+
+
+def low_pass_gain(time_constant: float, dt: float) -> float:
+    """Share of the way to a constant signal that a first-order low-pass goes in one tick.
+
+    :param time_constant: in s
+    :param dt: control period in s
+    """
+    return 1.0 - math.exp(-dt / time_constant)
 
 
 def ramped(now: float, goal: float, largest_change: float) -> float:
@@ -29,4 +38,7 @@ def ramped(now: float, goal: float, largest_change: float) -> float:
     :param goal: where it is to go
     :param largest_change: of this tick, not negative
     """
-    return now + max(-largest_change, min(largest_change, goal - now))
+    change = goal - now
+    if change > largest_change:
+        return now + largest_change
+    return now + change if change > -largest_change else now - largest_change

@@ -97,6 +97,11 @@ class PatternGenerator:
     :param hips: the hip law; without one the hips are locked, as in the first training
     """
 
+    support: Side
+    """The leg that carries the robot."""
+    swing: Side
+    """The other one."""
+
     def __init__(
         self,
         parameters: SteppingParameters,
@@ -107,7 +112,7 @@ class PatternGenerator:
         self.parameters = parameters
         self.hips = hips
         self.phase = Phase.STAND
-        self.support = Side.RIGHT
+        self.support, self.swing = Side.RIGHT, Side.LEFT
         self._pad_threshold = pad_threshold
         self._dt = dt
         self._ticks_in_phase = 0
@@ -116,11 +121,6 @@ class PatternGenerator:
         self._rate_y = LowPass(RATE_TIME_CONSTANT, dt)
         self._lengths = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
         self._loads = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
-
-    @property
-    def swing(self) -> Side:
-        """The leg that is not the support leg."""
-        return self.support.other
 
     @property
     def stable_x(self) -> float:
@@ -213,7 +213,7 @@ class PatternGenerator:
 
     def _enter_next_phase(self) -> None:
         if self.phase is Phase.LAND:
-            self.support = self.support.other
+            self.support, self.swing = self.swing, self.support
         self.phase = {Phase.SHIFT: Phase.LIFT, Phase.LIFT: Phase.LAND}.get(self.phase, Phase.SHIFT)
         self._ticks_in_phase = 0
         if self.phase is Phase.SHIFT:
@@ -226,5 +226,6 @@ class PatternGenerator:
         """Move both leg targets towards where the phase wants them; positive lengths retract."""
         swing_length = -PUSH_LENGTH if self.phase is Phase.SHIFT else LIFT_LENGTH if self.phase is Phase.LIFT else 0.0
         largest = LEG_SPEED * self._dt
-        for side, goal in ((self.swing, swing_length), (self.support, 0.0)):
-            self._lengths[side] = ramped(self._lengths[side], goal, largest)
+        lengths, swing, support = self._lengths, self.swing, self.support
+        lengths[swing] = ramped(lengths[swing], swing_length, largest)
+        lengths[support] = ramped(lengths[support], 0.0, largest)

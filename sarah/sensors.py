@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sarah.filters import LowPass
+from sarah.filters import low_pass_gain
 
 Vector = tuple[float, float, float]
 LARGEST_SIGNAL = 1e6
@@ -68,9 +68,8 @@ class ImperfectSensors:
         self._generator = np.random.default_rng(seed)
         self._noise: Iterator[list[float]] = iter(())
         self._pending: deque[SensorReading] = deque(maxlen=delay_ticks + 1)
-        self._imu: tuple[LowPass, ...] = ()
-        if math.isfinite(imu_bandwidth):
-            self._imu = tuple(LowPass(1.0 / (2.0 * math.pi * imu_bandwidth), dt) for _ in range(6))
+        self._imu_gain = low_pass_gain(1.0 / (2.0 * math.pi * imu_bandwidth), dt) if imu_bandwidth < math.inf else 1.0
+        self._imu = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
     def __call__(self, truth: SensorReading) -> SensorReading:
         """Take the true reading of this tick and return what the controller gets to see."""
@@ -85,13 +84,19 @@ class ImperfectSensors:
         )
 
     def _band_limited(self, truth: SensorReading) -> SensorReading:
-        if not self._imu:
+        gain = self._imu_gain
+        if gain == 1.0:
             return truth
-        (ax, ay, az), (wx, wy, wz) = truth.acceleration, truth.angular_rate
         x, y, z, about_x, about_y, about_z = self._imu
-        return SensorReading(
-            (x(ax), y(ay), z(az)), (about_x(wx), about_y(wy), about_z(wz)), truth.pressures, truth.joints
-        )
+        (ax, ay, az), (wx, wy, wz), pressures, joints = truth
+        x += gain * (ax - x)
+        y += gain * (ay - y)
+        z += gain * (az - z)
+        about_x += gain * (wx - about_x)
+        about_y += gain * (wy - about_y)
+        about_z += gain * (wz - about_z)
+        self._imu = (x, y, z, about_x, about_y, about_z)
+        return SensorReading((x, y, z), (about_x, about_y, about_z), pressures, joints)
 
     def _next_noise(self) -> list[float]:
         """One tick's noise of the ten noisy signals; drawn for many ticks at once, which is faster."""

@@ -96,9 +96,8 @@ class Simulation:
         self._retracted = dict.fromkeys(SIDES, True)
         # PyBullet takes them as impulses over the whole tick, and lets every substep spend all of it.
         self._efforts = [self.robot.efforts[name] / self._substeps for name in ACTUATED_JOINTS]
-        self._torso = self._torso_state()
+        self._look()
         self._velocity_before = self._torso.velocity
-        self._joint_states = self._actuator_states()
         self._targets: tuple[float, ...] = ()
         self.set_targets((0.0,) * len(self._joints))
 
@@ -188,8 +187,7 @@ class Simulation:
         self._velocity_before = self._torso.velocity
         pybullet.stepSimulation(physicsClientId=self._client)
         self.time += self._dt
-        self._torso = self._torso_state()
-        self._joint_states = self._actuator_states()
+        self._look()
 
     def torso_state(self) -> TorsoState:
         """Where the torso really is; no sensor of the robot knows it."""
@@ -206,7 +204,7 @@ class Simulation:
             specific_force(torso, self._velocity_before, self._dt),
             rotate_to_body(torso.orientation, torso.angular_velocity),
             self._pressures(),
-            tuple([state[0] for state in self._joint_states]),  # type: ignore[arg-type]  # six of them
+            self._positions,
         )
 
     def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
@@ -220,14 +218,15 @@ class Simulation:
 
     def actuator_motion(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Speeds (rad/s, m/s) and efforts (Nm, N) of the actuators, in the order of ``ACTUATED_JOINTS``."""
-        states = self._joint_states
         # As with contacts, PyBullet reports the impulse of the last substep over the whole tick.
-        return tuple([state[1] for state in states]), tuple([state[3] * self._substeps for state in states])
+        return self._speeds, tuple([effort * self._substeps for effort in self._joint_efforts])
 
-    def _actuator_states(self) -> tuple[tuple[float, ...], ...]:
-        """PyBullet's position, speed, reaction and effort of each actuator."""
-        states: tuple[tuple[float, ...], ...] = pybullet.getJointStates(self._body, self._joints, self._client)
-        return states
+    def _look(self) -> None:
+        """Ask PyBullet where torso and actuators are, and how they move."""
+        self._torso = self._torso_state()
+        self._positions, self._speeds, _, self._joint_efforts = zip(
+            *pybullet.getJointStates(self._body, self._joints, self._client), strict=True
+        )
 
     def _pressures(self) -> tuple[float, float, float, float]:
         loads = [0.0, 0.0, 0.0, 0.0]
@@ -246,13 +245,11 @@ class Simulation:
         states = pybullet.getLinkStates(self._body, links, computeForwardKinematics=1, physicsClientId=self._client)
         for state, contacts in zip(states, soles, strict=True):
             frame_height, (x, y, z, w) = state[4][2], state[5]
+            up_x, up_y, up_z = 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
             for sole_x, sole_y, sole_z in contacts:
-                height = frame_height + (
-                    2.0 * (x * z - w * y) * sole_x
-                    + 2.0 * (y * z + w * x) * sole_y
-                    + (1.0 - 2.0 * (x * x + y * y)) * sole_z
-                )
-                lowest = min(lowest, height)
+                height = frame_height + (up_x * sole_x + up_y * sole_y + up_z * sole_z)
+                if height < lowest:
+                    lowest = height
         return lowest - self.robot.contact_radius
 
     def close(self) -> None:

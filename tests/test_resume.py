@@ -50,9 +50,9 @@ class Counting(Executor):
         self.run = 0
         self._workers = Workers()
 
-    def submit(self, function: Callable[[Any], Any], subject: Any) -> Job:
+    def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
         self.run += function is not stand
-        return self._workers.submit(function, subject)
+        return self._workers.submit(function, *subjects)
 
 
 def everything(folder: RunFolder) -> dict[str, Any]:
@@ -177,18 +177,16 @@ def test_two_trainings_do_not_share_a_run_folder(whole: RunFolder, tmp_path: Pat
         train(whole.config(), begun, interrupted=interrupted_after(1))
 
 
-@pytest.mark.parametrize(("function", "read"), [(stand, repr), (run, repr), (simulate, repr)])
-def test_the_journal_gives_back_every_bit(
-    function: Callable[[Any], Any], read: Callable[[Any], str], tmp_path: Path
-) -> None:
-    spec = EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), seed=3, config=EpisodeConfig(time_limit=3.0))
+@pytest.mark.parametrize(("function", "seeds"), [(stand, [3]), (run, [3]), (run, [3, 4]), (simulate, [3])])
+def test_the_journal_gives_back_every_bit(function: Callable[..., Any], seeds: list[int], tmp_path: Path) -> None:
+    specs = [EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), seed, config=EpisodeConfig(time_limit=3.0)) for seed in seeds]
     path = tmp_path / "journal.jsonl"
     path.touch()
     with Journal(path, Workers()) as journal:
-        simulated = journal.submit(function, spec).result()
+        simulated = journal.submit(function, *specs).result()
     with Journal(path, Workers()) as journal:
         assert journal.replaying
-        known = journal.submit(function, spec).result()
+        known = journal.submit(function, *specs).result()
         assert not journal.replaying
     assert repr(known) == repr(simulated) and type(known) is type(simulated)
 

@@ -1,5 +1,8 @@
 """Episodes in flight: outcomes in order, each stored with the action that it came from."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -8,7 +11,7 @@ from sarah.envs import FIRST_TRAINING_SEED, parameters_from
 from sarah.episode import EpisodeSpec, simulate
 from sarah.tasks import STEPPING
 from sarah.vec_env import EpisodeVecEnv, LateRankReplayBuffer, LateReplayBuffer
-from sarah.workers import Workers
+from sarah.workers import Job, Workers
 
 SHORT = EpisodeConfig(time_limit=1.5)
 ACTIONS = np.random.default_rng(0).uniform(-1.0, 1.0, (6, 5)).astype(np.float32)
@@ -47,6 +50,25 @@ def test_slots_change_no_episode() -> None:
     one, three = played(1)[2], played(3)[2][2:]
     for here, there in zip(one, three, strict=True):
         assert {**here, "transition": None} == {**there, "transition": None}
+
+
+def test_a_task_an_episode_and_one_for_each_that_stands_at_first() -> None:
+    """Tasks cost a scheduler, so standing is not another one for every episode."""
+
+    class Counting(Workers):
+        tasks = 0
+
+        def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
+            self.tasks += 1
+            return super().submit(function, *subjects)
+
+    for episodes in (1, 5):
+        workers = Counting()
+        env = EpisodeVecEnv("stepping", SHORT, episodes, 3, workers)
+        env.reset()
+        for _ in range(episodes + 2):
+            env.step(ACTIONS[:1])
+        assert workers.tasks == episodes + min(episodes, 3)
 
 
 def test_seed_decides_and_a_second_reset_goes_on() -> None:

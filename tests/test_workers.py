@@ -127,6 +127,16 @@ def test_an_episode_continues_where_it_stands_or_begins_anew() -> None:
     assert run(SPEC).result == expected  # that stands nowhere
 
 
+def test_who_ran_an_episode_lets_the_following_one_stand() -> None:
+    following = EpisodeSpec(SPEC.parameters, 2, config=SPEC.config)
+    outcome = run(SPEC, following)
+    assert outcome.result == simulate(SPEC)
+    assert len(workers_module._standing) == 1
+    assert run(following).result == simulate(following)
+    assert not workers_module._standing
+    assert outcome.following == stand(following)
+
+
 def test_whoever_stands_twice_keeps_one_world() -> None:
     def worlds() -> int:
         return sum(bullet.pybullet.isConnected(client) for client in range(200))
