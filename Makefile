@@ -64,9 +64,10 @@ tables: install  ## the tables of the README and docs: hours of simulation
 	$(BIN)/python benchmarks/landscape.py --task balance --engines pybullet mujoco --episodes 12 --seconds 8
 	$(BIN)/python benchmarks/engines.py
 	$(BIN)/python benchmarks/clock.py
-	$(BIN)/python benchmarks/physics.py 1.1,0,0,0 0.8,0,0.4,0 1.29,0.23,-0.02,-1.97 --seeds 10 \
-		--settings 1000,100 300,40 200,50 200,40 200,30
-	$(BIN)/python benchmarks/first_training.py --algo naf --episodes 12 --reference-episodes 2
+	$(BIN)/python benchmarks/physics.py
+	$(BIN)/python benchmarks/physics.py --random 40 --seeds 4
+	$(BIN)/python benchmarks/physics.py 0.2,0,0,0 0.3,0,0,0 0.4,0,0,0 0.5,0,0,0 0.6,0,0,0 0.7,0,0,0 --newtons 100
+	$(BIN)/python benchmarks/first_training.py --algo naf --episodes 12 --reference-episodes 4
 	$(BIN)/python benchmarks/robot.py --pushes 20 --unpushed 2
 	$(BIN)/python benchmarks/hip_laws.py pitch:swing:1 acceleration:both:1 acceleration:held:1 acceleration:sampled:1 \
 		angle:swing:1 --newtons 105 --pushes 200 --unpushed 2

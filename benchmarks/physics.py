@@ -1,15 +1,17 @@
 """How fine must the physics be? Mean score of parameter sets at several settings, and the speed of each.
 
-Good sets, poor ones, and sets at the edge of stalling; further ones, such as what a training learned at a cheap one,
-follow as arguments. Every setting simulates the same seeds, for 12 s, without pushes unless --newtons asks for them.
+Good sets, poor ones, and what trainings at a cheap one learned; others, as arguments, take their place. Every setting
+simulates the same seeds, for 12 s, without pushes unless --newtons asks for them.
 Scores come with their distance from the first setting's, and its standard error; a second table has steps per second,
-sole clearance and the share that is up at the end.
+sole clearance and the share that is up at the end. With --random the sets are drawn from the whole box of P1 to P5
+instead, and one table says how far their scores are from the first setting's.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
+import random
 import sys
 import time
 from statistics import mean, stdev
@@ -28,7 +30,14 @@ STEPPING_SETS = (
     (0.5, 0.8, 0.1, 1.0, 1.0),
     (0.8, 1.2, 0.1, 1.0, 1.0),
 )
-BALANCE_SETS = ((0.0, 0.0, 0.0, 0.0), (1.1, 0.34, -0.04, -1.72), (1.8, 0.0, 1.0, 0.0))
+BALANCE_SETS = (
+    (0.0, 0.0, 0.0, 0.0),
+    (1.1, 0.34, -0.04, -1.72),
+    (1.8, 0.0, 1.0, 0.0),
+    (1.1, 0.0, 0.0, 0.0),
+    (0.8, 0.0, 0.4, 0.0),
+    (1.29, 0.23, -0.02, -1.97),
+)
 SETTINGS = ("1000,100,0", "1000,100,0.005", "500,30,0", "300,40,0", "200,40,0", "200,25,0.005")
 """Physics steps per second, solver iterations and added plate inertia; scores are compared with those of the first."""
 
@@ -59,6 +68,27 @@ def compared(results: list[EpisodeResult], finest: list[EpisodeResult]) -> str:
     return f"{score:.3f} ({score / fine - 1:+.1%} ± {error / fine:.1%})"
 
 
+def drawn(count: int) -> list[tuple[float, ...]]:
+    """Sets of P1 to P5, uniformly from their box."""
+    generator = random.Random(7)
+    return [tuple(generator.uniform(0.0, 2.0) for _ in range(5)) for _ in range(count)]
+
+
+def print_distances(head: str, columns: list[list[list[EpisodeResult]]]) -> None:
+    """How far the sets' mean scores are from those of the first setting, over all sets."""
+    scores = [[mean(result.score for result in results) for results in column] for column in columns]
+    distances = [[abs(one - finest) for one, finest in zip(column, scores[0], strict=True)] for column in scores]
+    rows = {
+        "mean score": [f"{mean(column):.3f}" for column in scores],
+        "root mean square distance": [f"{mean(d * d for d in column) ** 0.5:.3f}" for column in distances],
+        "largest": [f"{max(column):.3f}" for column in distances],
+        "sets within 0.02": [f"{sum(d < 0.02 for d in column)} of {len(column)}" for column in distances],
+    }
+    print(head)
+    for name, cells in rows.items():
+        print(f"| {name} | {' | '.join(cells)} |")
+
+
 def gait(results: list[EpisodeResult]) -> str:
     """Mean steps per second and sole clearance, and the share that survived."""
     steps, clearance = mean(r.steps_per_second for r in results), mean(r.sole_clearance for r in results)
@@ -67,8 +97,9 @@ def gait(results: list[EpisodeResult]) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("sets", nargs="*", help="further sets: P1 to P5, or V1 to V4, separated by commas")
+    parser.add_argument("sets", nargs="*", help="P1 to P5, or V1 to V4, separated by commas")
     parser.add_argument("--seeds", type=int, default=20, help="at least 2")
+    parser.add_argument("--random", type=int, default=0, metavar="COUNT", help="sets to draw instead")
     parser.add_argument("--newtons", type=float, default=0.0, help="of a push from anywhere, in the sets of four")
     parser.add_argument(
         "--settings",
@@ -78,7 +109,8 @@ def main() -> None:
         help="the first is compared with",
     )
     options = parser.parse_args()
-    sets = [*STEPPING_SETS, *BALANCE_SETS, *(tuple(map(float, text.split(","))) for text in options.sets)]
+    given = [tuple(map(float, text.split(","))) for text in options.sets]
+    sets = drawn(options.random) or given or [*STEPPING_SETS, *BALANCE_SETS]
     columns, speeds = [], []
     with Workers(os.cpu_count() or 1) as workers:
         for setting in options.settings:
@@ -89,6 +121,9 @@ def main() -> None:
             speeds.append(f"{speed:.0f}")
             print(f"{setting} done", file=sys.stderr)
     head = f"| Hz, iterations, kg m^2 | {' | '.join(options.settings)} |\n{'|---' * (len(options.settings) + 1)}|"
+    if options.random:
+        print_distances(head, columns)
+        return
     print(head)
     for index, parameters in enumerate(sets):
         cells = [compared(results[index], columns[0][index]) for results in columns]

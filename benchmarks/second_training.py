@@ -1,5 +1,8 @@
 """The Second Training over many seeds: what each algorithm learned, pushed by 100 N, and stepping without a push.
 
+Some of the pushes are simulated at the reference physics too: its last columns are survival there, and how much of the
+mean score at the standard physics it keeps.
+
 All trainings keep the P1 to P5 of --stepping, last 10 s an episode and push by 75 to 125 N: softer pushes hardly tell
 controllers apart. Run folders go to --runs; a training that is
 finished there is not run again. Every controller meets the same pushes.
@@ -15,7 +18,7 @@ from statistics import median
 
 from trainings import learned
 
-from sarah.config import ALGORITHMS, TRAINED_STEPPING, EpisodeConfig, Push, TrainingConfig
+from sarah.config import ALGORITHMS, PHYSICS, TRAINED_STEPPING, EpisodeConfig, Push, TrainingConfig
 from sarah.evaluation import summarise
 from sarah.robustness import push_many, robustness_table
 from sarah.tasks import BALANCE
@@ -32,6 +35,7 @@ def main() -> None:
     parser.add_argument("--stepping", type=float, nargs=5, default=TRAINED_STEPPING)
     parser.add_argument("--newtons", type=float, nargs=2, default=(75.0, 125.0), help="range of the trainings' pushes")
     parser.add_argument("--pushes", type=int, default=50)
+    parser.add_argument("--reference-pushes", type=int, default=12, help="of them, at the reference physics")
     parser.add_argument("--unpushed", type=int, default=4)
     parser.add_argument("--runs", type=Path, default=Path("runs/benchmark"))
     options = parser.parse_args()
@@ -42,11 +46,15 @@ def main() -> None:
 def compare(options: argparse.Namespace, workers: Workers) -> None:
     hard = Push(newtons=tuple(options.newtons))
     episode = EpisodeConfig(stepping=tuple(options.stepping), push=hard, time_limit=10.0)
+    fine = dataclasses.replace(episode, physics=PHYSICS["reference"])
     free = dataclasses.replace(episode, push=Push(newtons=(0.0, 0.0)), time_limit=30.0)
 
     def row(name: str, parameters: tuple[float, ...]) -> float:
         (pushed,) = push_many([parameters], episode, workers, forces=(100.0,), episodes=options.pushes)
         everywhere, lateral, sagittal = robustness_table(pushed)
+        (at_reference,) = push_many([parameters], fine, workers, forces=(100.0,), episodes=options.reference_pushes)
+        reference = summarise(push.result for push in at_reference)
+        same = summarise(push.result for push in pushed[: options.reference_pushes])
         unpushed = TrainingConfig(task=BALANCE.name, episode=free)
         stepping = evaluate(parameters, unpushed, range(options.unpushed), workers)
         together = summarise(push.result for push in pushed)
@@ -55,15 +63,17 @@ def compare(options: argparse.Namespace, workers: Workers) -> None:
             f"| {lateral.survival:.2f} | {sagittal.survival:.2f} | {together.score_mean:.3f} "
             f"| {stepping.score_mean:.3f} | {stepping.steps_per_second_mean:.2f} "
             f"| {1000 * stepping.sole_clearance_mean:.0f} mm "
-            f"| {together.vibration_median:.1f}, {stepping.vibration_median:.1f} |",
+            f"| {together.vibration_median:.1f}, {stepping.vibration_median:.1f} "
+            f"| {reference.survival_rate:.2f} | {reference.score_mean / same.score_mean:.0%} |",
             flush=True,
         )
         return everywhere.survival
 
     head = (
         "| run | V1 | V2 | V3 | V4 | survival | lateral | sagittal | score | unpushed | steps/s | clearance | vibration"
+        " | reference | kept |"
     )
-    print(f"{head} |\n{'|---' * 13}|")
+    print(f"{head}\n{'|---' * 15}|")
     row("V = 0", BALANCE.neutral or ())
     for algo in options.algo:
         survivals = []
