@@ -278,29 +278,28 @@ class Episode:
         """Add this tick's reward, and see whether the episode ends."""
         elapsed = self._ticks * self._dt
         torso = self.simulation.torso_state()
-        displacement = self._displacement(torso)
-        self.termination = self._termination(torso, displacement, STAND_SECONDS + elapsed)
+        self.termination = self._termination(torso, self._gait.steps, STAND_SECONDS + elapsed)
         if self.termination == "diverged":  # the result keeps to the last finite state
             return
         self._last = torso
         frequency = self._gait.steps_per_second(self._ticks)
-        self._return += reward_rate(*displacement, frequency, self.config.reward_form) * self._dt
+        self._return += reward_rate(*self._displacement(torso), frequency, self.config.reward_form) * self._dt
 
     def _displacement(self, torso: TorsoState) -> tuple[float, float, float]:
         """Torso position as equation 2 wants it: x and y from the start, z over the floor."""
         x, y, z = torso.position
         return (x - self._first.position[0], y - self._first.position[1], z)
 
-    def _termination(self, torso: TorsoState, displacement: Vector, time: float) -> str | None:
+    def _termination(self, torso: TorsoState, steps: int, time: float) -> str | None:
         if not torso.is_finite:
             return "diverged"
-        x, y, height = displacement
-        if max(abs(x), abs(y), abs(height - self._first.position[2])) > BOX_HALF_WIDTH:
+        (x, y, z), (start_x, start_y, start_z) = torso.position, self._first.position
+        if max(abs(x - start_x), abs(y - start_y), abs(z - start_z)) > BOX_HALF_WIDTH:
             return "left_box"
         if torso.upright < LEAST_UPRIGHT:
             return "fell"
         half_tick = self._dt / 2
-        if self._gait.steps < OSCILLATION_STEPS and time > OSCILLATION_SECONDS - half_tick:
+        if steps < OSCILLATION_STEPS and time > OSCILLATION_SECONDS - half_tick:
             return "no_oscillation"
         return "time_limit" if time > self.config.time_limit - half_tick else None
 
