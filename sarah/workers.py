@@ -41,8 +41,8 @@ UNWATCHED = {
     "distributed.admin.tick.interval": "1s",
     "distributed.admin.system-monitor.interval": "10s",
 }
-"""How little the processes of this machine watch themselves. As Dask has it, every 10 to 500 ms, that takes a
-thirtieth of the processor from the episodes."""
+"""How little the processes of this machine watch themselves. As Dask has it, every 10 to 500 ms, it takes the
+processor from the episodes."""
 MOST_WORKERS = 1000
 """On one machine."""
 ATTEMPTS = 20

@@ -167,7 +167,7 @@ def die_twice(folder: str) -> str:
 
 def test_what_a_scheduler_gives_up_is_handed_in_again(tmp_path: Path) -> None:
     with dask.config.set({"distributed.scheduler.allowed-failures": 0}), Workers(1) as workers:
-        assert workers.submit(die_twice, str(tmp_path)).result() == "xxx"  # type: ignore[arg-type]
+        assert workers.submit(die_twice, str(tmp_path)).result() == "xxx"
 
 
 def test_workers_are_left_alone_by_an_interrupt() -> None:
