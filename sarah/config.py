@@ -70,9 +70,9 @@ class Physics:
     """
 
     rate: int = 200
-    solver_iterations: int = 25
+    solver_iterations: int = 32
     control_rate: int = 100
-    added_plate_inertia: float = 0.005
+    added_plate_inertia: float = 0.008
 
     def __post_init__(self) -> None:
         """Refuse rates that do not divide into each other."""

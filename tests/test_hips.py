@@ -88,9 +88,10 @@ def test_any_readings_keep_hips_bounded_and_slow(
         assert all(abs(a - b) <= HIP_SPEED * DT + 1e-12 for a, b in zip(now, before, strict=True))
 
 
-@pytest.mark.parametrize("seed", [0, 1])
-def test_papers_p1_to_p5_go_on_stepping_with_the_hip_law(seed: int) -> None:
+def test_papers_p1_to_p5_go_on_stepping_with_the_hip_law() -> None:
+    """Pushed to the right, so hard that a few of eight fall."""
     push = Push(newtons=(100.0, 100.0), degrees=(0.0, 0.0))
     episode = EpisodeConfig(time_limit=8.0, stepping=PAPER_PARAMETERS, push=push)
-    result = simulate(EpisodeSpec((0.8, 0.0, 0.0, 0.0), seed, "balance", episode))
-    assert result.survived and result.event_driven_shift > 0.9 and result.steps_per_second > 2.0
+    results = [simulate(EpisodeSpec((0.8, 0.0, 0.0, 0.0), seed, "balance", episode)) for seed in range(8)]
+    assert sum(result.survived for result in results) >= 5
+    assert all(result.event_driven_shift > 0.9 and result.steps_per_second > 2.0 for result in results)

@@ -56,7 +56,10 @@ def test_inertia_added_to_standing_plates_keeps_good_scores_and_clearance_at_the
         )
         for config in (
             EpisodeConfig(physics=physics, push=Push(newtons=(0.0, 0.0)), time_limit=12.0)
-            for physics in (dataclasses.replace(PHYSICS["reference"], added_plate_inertia=0.005), PHYSICS["reference"])
+            for physics in (
+                dataclasses.replace(PHYSICS["reference"], added_plate_inertia=PHYSICS["standard"].added_plate_inertia),
+                PHYSICS["reference"],
+            )
         )
     )
     assert added.score_mean == pytest.approx(reference.score_mean, rel=0.02)
