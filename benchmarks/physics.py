@@ -16,7 +16,7 @@ import sys
 import time
 from statistics import mean, stdev
 
-from sarah.config import TRAINED_STEPPING, EpisodeConfig, Physics, Push
+from sarah.config import PHYSICS, TRAINED_STEPPING, EpisodeConfig, Physics, Push
 from sarah.episode import EpisodeResult, EpisodeSpec, simulate
 from sarah.tasks import TASKS
 from sarah.workers import Workers
@@ -41,7 +41,14 @@ BALANCE_SETS = (
     (0.4, 0.0, 0.0, 0.0),
     (0.5, 0.0, 0.0, 0.0),
 )
-SETTINGS = ("1000,100,0", "1000,100,0.008", "500,30,0", "200,40,0", "200,32,0.008")
+STANDARD = PHYSICS["standard"]
+SETTINGS = (
+    "1000,100,0",
+    f"1000,100,{STANDARD.added_plate_inertia}",
+    "500,30,0",
+    "200,40,0",
+    f"{STANDARD.rate},{STANDARD.solver_iterations},{STANDARD.added_plate_inertia}",
+)
 """Physics steps per second, solver iterations and added plate inertia; scores are compared with those of the first."""
 
 
