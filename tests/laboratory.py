@@ -9,7 +9,8 @@ import pybullet
 import pytest
 
 from sarah.errors import ConfigurationError
-from sarah.robot.description import PLATES, SIDES
+from sarah.robot.description import PLATES
+from sarah.robot.reading import Side
 from sarah.simulation.engines import check_engine
 
 
@@ -48,7 +49,7 @@ class BulletLaboratory:
 
     def frictions(self, simulation: Any) -> set[float]:
         """Of all soles."""
-        return {self._dynamics(simulation, f"{side}_{plate}")[1] for side, plate in product(SIDES, PLATES)}
+        return {self._dynamics(simulation, f"{side}_{plate}")[1] for side, plate in product(Side, PLATES)}
 
     def link_position(self, simulation: Any, link: str) -> np.ndarray:
         """Of a link's frame, in the world's."""
@@ -105,7 +106,7 @@ class MujocoLaboratory:
 
     def remove_pads(self, simulation: Any) -> None:
         """Let the plates pass where the pads were."""
-        for side, plate in product(SIDES, PLATES):
+        for side, plate in product(Side, PLATES):
             simulation._model.geom(f"{side}_{plate}_pad").pos[2] += 1.0
 
     def mass(self, simulation: Any, link: str) -> float:
