@@ -23,7 +23,7 @@ PROGRAM = (
 def built(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     """An sdist of the checkout, and the wheel made from that sdist; built in a copy, without what others built."""
     copy, folder = tmp_path_factory.mktemp("copy") / "sarah", tmp_path_factory.mktemp("dist")
-    left_out = shutil.ignore_patterns(".git", ".venv", ".*_cache", ".hypothesis", "*.egg-info", "build", "dist", "runs")
+    left_out = shutil.ignore_patterns(".git", ".venv*", ".*_cache", ".hypothesis", "*.egg-info", "build", "dist", "runs")
     shutil.copytree(ROOT, copy, symlinks=True, ignore=left_out)
     command = [sys.executable, "-m", "build", "--no-isolation", "--outdir", str(folder), str(copy)]
     subprocess.run(command, check=True, capture_output=True)
