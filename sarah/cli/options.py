@@ -17,6 +17,7 @@ import tyro
 from sarah.episode.spec import EpisodeConfig
 from sarah.episode.tasks import STEPPING
 from sarah.errors import ConfigurationError, SarahError, unknown_name
+from sarah.simulation.engines import default_engine
 from sarah.simulation.physics import PHYSICS
 
 if TYPE_CHECKING:
@@ -86,6 +87,16 @@ def with_engine(episode: EpisodeConfig, engine: str | None) -> EpisodeConfig:
     :param engine: of --engine; without one the settings keep theirs
     """
     return episode if engine is None else dataclasses.replace(episode, engine=engine)  # type: ignore[arg-type]  # checked
+
+
+def say_engine(config: EpisodeConfig, asked: str | None) -> None:
+    """Say on standard error that MuJoCo simulates because PyBullet is missing, unless an engine was asked for.
+
+    :param config: the settings
+    :param asked: what --engine was given
+    """
+    if asked is None and config.engine == default_engine() != "pybullet":
+        print("PyBullet is not installed: MuJoCo simulates", file=sys.stderr)
 
 
 def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
@@ -163,6 +174,7 @@ def changed_episodes(
     :raises ConfigurationError: if one of them is not allowed
     """
     config = with_engine(config, engine)
+    say_engine(config, engine)
     if physics is not None:
         if physics not in PHYSICS:
             raise ConfigurationError(unknown_name("physics", physics, PHYSICS))

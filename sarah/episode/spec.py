@@ -14,7 +14,7 @@ from sarah.episode.push import LONGEST_EPISODE, Push
 from sarah.episode.reward import RewardForm
 from sarah.episode.tasks import STEPPING, TASKS
 from sarah.errors import ConfigurationError, check_range, unknown_name
-from sarah.simulation.engines import Engine
+from sarah.simulation.engines import Engine, default_engine
 from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.randomisation import Randomisation
 
@@ -29,7 +29,7 @@ class EpisodeConfig:
     """What all episodes of an experiment share.
 
     :param physics: how finely to integrate
-    :param engine: what integrates: ``"pybullet"``, the reference, or ``"mujoco"``
+    :param engine: what integrates: ``"pybullet"``, the reference, or ``"mujoco"``, the default without PyBullet
     :param randomisation: what to draw from each episode's seed
     :param dimensions: of the robot, names and values where they differ from the xacro's; by default none do
     :param time_limit: of an episode, in s; the paper's first criterion
@@ -39,7 +39,7 @@ class EpisodeConfig:
     """
 
     physics: Physics = PHYSICS["standard"]
-    engine: Engine = "pybullet"
+    engine: Engine = field(default_factory=default_engine)
     randomisation: Randomisation = Randomisation()
     dimensions: Mapping[str, float] = field(default_factory=dict)
     time_limit: float = 30.0

@@ -20,6 +20,7 @@ from sarah.episode.evaluation import Evaluation
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS
 from sarah.episode.workers import Executor
+from sarah.errors import ConfigurationError
 from sarah.files import replace_text
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
 from sarah.reports.all_figures import draw_all_figures
@@ -27,6 +28,7 @@ from sarah.reports.training_figures import ALGORITHM_LABELS
 from sarah.robot.description import describe_robot
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
+from sarah.simulation.renderer import check_renderer
 from sarah.training.recommendation import Parameters
 from sarah.training.train import evaluate
 
@@ -95,10 +97,7 @@ def write_report(
         figures = [
             (text, _address(drawn[stem].read_bytes(), "image/png")) for stem, text in CAPTIONS.items() if stem in drawn
         ]
-        video = folder / ("episode.mp4" if find_spec("imageio_ffmpeg") else "episode.gif")
-        caption = _film(EpisodeSpec(learned, 0, config.task, config.episode), video, seconds)
-        is_mp4 = video.suffix == ".mp4"
-        film = _address(video.read_bytes(), "video/mp4" if is_mp4 else "image/gif")
+        film, caption = _film(EpisodeSpec(learned, 0, config.task, config.episode), folder, seconds)
     page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True).from_string(
         (files("sarah.reports") / "report.html").read_text(encoding="utf-8")
     )
@@ -113,7 +112,6 @@ def write_report(
         warnings=_warnings(ours, None if task.neutral is None else theirs),
         figures=figures,
         film=film,
-        is_mp4=is_mp4,
         film_caption=caption,
         settings=run.config_text(),
         settings_address=_address(run.config_text().encode(), "text/yaml"),
@@ -169,8 +167,13 @@ def _warnings(learned: Evaluation, without: Evaluation | None) -> list[str]:
     return found
 
 
-def _film(spec: EpisodeSpec, path: Path, seconds: tuple[float, float]) -> str:
-    """Film a part of an episode, and say in a line what there is to see."""
+def _film(spec: EpisodeSpec, folder: Path, seconds: tuple[float, float]) -> tuple[str, str]:
+    """Film a part of an episode, if there is what draws it, and say in a line what there is to see."""
+    try:
+        check_renderer()
+    except ConfigurationError as missing:
+        return "", f"No video: {missing}."
+    path, kind = (folder / "film.mp4", "video/mp4") if find_spec("imageio_ffmpeg") else (folder / "film.gif", "image/gif")
     result = simulate(spec, record_trace=True)
     trace = result.trace
     assert trace is not None
@@ -179,7 +182,8 @@ def _film(spec: EpisodeSpec, path: Path, seconds: tuple[float, float]) -> str:
     times = frame_times(begin, end, FRAMES_PER_SECOND[path.suffix])
     progress = tqdm(times, desc="filming", unit=" frames")
     write_video(frames(trace, describe_robot(spec.config.dimensions), progress), path)
-    return f"The learned parameters on seed {spec.seed}, from {begin:.1f} to {end:.1f} s of {result.duration:.1f} s."
+    caption = f"The learned parameters on seed {spec.seed}, from {begin:.1f} to {end:.1f} s of {result.duration:.1f} s."
+    return _address(path.read_bytes(), kind), caption
 
 
 def _commands(run: RunFolder, config: TrainingConfig) -> list[str]:

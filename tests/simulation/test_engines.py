@@ -9,7 +9,7 @@ from importlib.machinery import ModuleSpec
 from pathlib import Path
 
 import pytest
-from laboratory import need_mujoco
+from laboratory import need
 
 from sarah.control.pattern_generator import PAPER_PARAMETERS
 from sarah.episode.episode import Episode, simulate
@@ -28,7 +28,7 @@ MUJOCO_IS_MISSING = "import sys\nsys.modules['mujoco'] = None\n"
 @pytest.fixture
 def mujoco_engine() -> None:
     """MuJoCo is installed, or the test is skipped."""
-    need_mujoco()
+    need("mujoco")
 
 
 @pytest.mark.parametrize("parameters", [PAPER_PARAMETERS, TRAINED_STEPPING])
