@@ -173,7 +173,8 @@ def _film(spec: EpisodeSpec, folder: Path, seconds: tuple[float, float]) -> tupl
         check_renderer()
     except ConfigurationError as missing:
         return "", f"No video: {missing}."
-    path, kind = (folder / "film.mp4", "video/mp4") if find_spec("imageio_ffmpeg") else (folder / "film.gif", "image/gif")
+    name, kind = ("film.mp4", "video/mp4") if find_spec("imageio_ffmpeg") else ("film.gif", "image/gif")
+    path = folder / name
     result = simulate(spec, record_trace=True)
     trace = result.trace
     assert trace is not None
