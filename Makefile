@@ -1,6 +1,6 @@
 # `make train` and `make test` work as the first command in a fresh clone.
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
-VENV ?= .venv
+VENV ?= $(if $(filter file,$(origin PYTHON)),.venv,.venv-$(notdir $(PYTHON)))
 BIN := $(VENV)/bin
 SIMULATIONS ?= 100
 BALANCE_SIMULATIONS ?= 300
@@ -16,7 +16,7 @@ RUN ?= runs/$(shell date +%Y%m%d-%H%M%S)
 help:  ## show what can be made
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
 
-install: $(VENV)/installed  ## create the environment in .venv, with the tested versions; another Python: make PYTHON=python3.13 VENV=.venv313
+install: $(VENV)/installed  ## create the environment in .venv, with the tested versions; with PYTHON=python3.13, in .venv-python3.13
 
 $(VENV)/installed: setup.cfg pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; (3, 10) <= sys.version_info[:2] <= (3, 13) or sys.exit("sarah is tested with Python 3.10 to 3.13: make PYTHON=python3.11")'
