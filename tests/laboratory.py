@@ -5,13 +5,14 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-import pybullet
 import pytest
 
-from sarah.errors import ConfigurationError
 from sarah.robot.description import PLATES
 from sarah.robot.reading import Side
-from sarah.simulation.engines import check_engine
+from sarah.simulation.engines import is_installed
+from sarah.simulation.pybullet_client import pybullet
+
+NEEDS_PYBULLET = pytest.mark.skipif(not is_installed("pybullet"), reason="needs pybullet")
 
 
 class BulletLaboratory:
@@ -142,15 +143,11 @@ class MujocoLaboratory:
 
 def laboratory(engine: str) -> BulletLaboratory | MujocoLaboratory:
     """An engine's laboratory; a test of an engine that is not installed is skipped."""
-    if engine == "pybullet":
-        return BulletLaboratory()
-    need_mujoco()
-    return MujocoLaboratory()
+    need(engine)
+    return BulletLaboratory() if engine == "pybullet" else MujocoLaboratory()
 
 
-def need_mujoco() -> None:
-    """Skip the test that calls it if MuJoCo is not installed."""
-    try:
-        check_engine("mujoco")
-    except ConfigurationError as missing:
-        pytest.skip(str(missing))
+def need(engine: str) -> None:
+    """Skip the test that calls it if an engine is not installed."""
+    if not is_installed(engine):
+        pytest.skip(f"needs {engine}")

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import tyro
 
-from sarah.cli.options import episode_of, given_options, parse_options, run_command, with_engine
+from sarah.cli.options import episode_of, given_options, parse_options, run_command, say_engine, with_engine
 from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError, check_range
 from sarah.runs.config import ALGORITHMS, TrainingConfig
@@ -88,12 +88,10 @@ def _compare(arguments: Sequence[str]) -> None:
     base = TrainingConfig(task=options.task, episodes=options.episodes, slots=options.slots, episode=episode)
     from sarah.robot.description import describe_robot
     from sarah.simulation.engines import check_engine
-    from sarah.training.optimisers import check_installed
 
     describe_robot(options.episode.dimensions)
     check_engine(episode.engine)
-    for algo in options.algorithms:
-        check_installed(algo)
+    say_engine(episode, options.engine)
     from sarah.episode.workers import Workers
     from sarah.reports.race import as_markdown, entries_of, race, rankings, write_csv
     from sarah.reports.training_figures import draw_race

@@ -19,7 +19,7 @@ from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import STEPPING, TASKS
 from sarah.errors import ConfigurationError, SarahError, unknown_name
-from sarah.simulation.engines import Engine
+from sarah.simulation.engines import Engine, default_engine
 from sarah.simulation.physics import PHYSICS
 
 if TYPE_CHECKING:
@@ -89,6 +89,16 @@ def with_engine(episode: EpisodeConfig, engine: str | None) -> EpisodeConfig:
     :param engine: of --engine; without one the settings keep theirs
     """
     return episode if engine is None else dataclasses.replace(episode, engine=engine)  # type: ignore[arg-type]  # checked
+
+
+def say_engine(config: EpisodeConfig, asked: str | None) -> None:
+    """Say on standard error that MuJoCo simulates because PyBullet is missing, unless an engine was asked for.
+
+    :param config: the settings
+    :param asked: what --engine was given
+    """
+    if asked is None and config.engine == default_engine() != "pybullet":
+        print("PyBullet is not installed: MuJoCo simulates", file=sys.stderr)
 
 
 def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
@@ -166,6 +176,7 @@ def changed_episodes(
     :raises ConfigurationError: if one of them is not allowed, or the task does not have it
     """
     config = with_engine(config, engine)
+    say_engine(config, engine)
     changes: dict[str, Any] = {}
     if physics is not None:
         if physics not in PHYSICS:

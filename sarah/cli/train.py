@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.interruption import Interruption
-from sarah.cli.options import episode_of, given_options, parse_options, run_command, with_engine
+from sarah.cli.options import episode_of, given_options, parse_options, run_command, say_engine, with_engine
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS
 from sarah.errors import ConfigurationError, RunFolderError, SarahError, TrainingInterruptedError
@@ -79,14 +79,17 @@ def _train(arguments: Sequence[str]) -> None:
     from sarah.episode.workers import Workers
     from sarah.runs.run_folder import RunFolder, new_run_path
     from sarah.simulation.engines import check_engine
-    from sarah.training.optimisers import check_installed
 
-    check_installed(config.algo)
     check_engine(config.episode.engine)
+    if options.pictures:
+        from sarah.simulation.renderer import check_renderer
+
+        check_renderer()
     if options.resume is not None and _resumed(options.resume, options).is_finished:
         print(f"{options.resume} is finished: there is nothing to resume")
         return
 
+    say_engine(config.episode, options.engine)
     with Workers(options.workers, options.scheduler) as workers:
         if options.resume is not None:
             run = RunFolder.resumable(options.resume)

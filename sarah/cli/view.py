@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.options import episodes_of, parse_options, run_command, with_engine
+from sarah.cli.options import episodes_of, parse_options, run_command, say_engine, with_engine
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.errors import ConfigurationError
 
@@ -72,6 +72,7 @@ def _view(arguments: Sequence[str]) -> None:
     from sarah.simulation.engines import check_engine
 
     check_engine(chosen.spec.config.engine)
+    say_engine(chosen.spec.config, options.engine)
     if options.seed is not None:
         spec = dataclasses.replace(chosen.spec, seed=options.seed)
         chosen = dataclasses.replace(chosen, label=f"{chosen.label}, with seed {spec.seed}", spec=spec, score=None)

@@ -10,7 +10,7 @@ from sarah.control.constants import ControllerConstants
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.reward import RewardForm
 from sarah.errors import ConfigurationError, check_range, unknown_name
-from sarah.simulation.engines import Engine
+from sarah.simulation.engines import Engine, default_engine
 from sarah.simulation.physics import PHYSICS, Physics, physics_for, physics_type
 from sarah.simulation.randomisation import Randomisation
 
@@ -23,7 +23,7 @@ class EpisodeConfig:
     """What all episodes of an experiment share, whatever the task.
 
     :param physics: fineness of the integration; what another engine knows is taken as this one can
-    :param engine: physics engine: ``"pybullet"``, the reference, or ``"mujoco"``
+    :param engine: physics engine: ``"pybullet"``, the reference, or ``"mujoco"``, the default without PyBullet
     :param randomisation: ranges that each episode's seed draws from
     :param controller: constants of pattern generator and hip law
     :param dimensions: dimensions of the robot, names and values where they differ from the xacro's; by default none do
@@ -32,7 +32,7 @@ class EpisodeConfig:
     """
 
     physics: Physics = PHYSICS["standard"]
-    engine: Engine = "pybullet"
+    engine: Engine = field(default_factory=default_engine)
     randomisation: Randomisation = Randomisation()
     controller: ControllerConstants = ControllerConstants()
     dimensions: Mapping[str, float] = field(default_factory=dict)
@@ -64,4 +64,4 @@ class EpisodeConfig:
 
         :param content: values of some fields, as a file gives them
         """
-        return {"physics": physics_type(content.get("engine", cls.engine))}
+        return {"physics": physics_type(content.get("engine", default_engine()))}

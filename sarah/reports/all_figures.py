@@ -29,12 +29,21 @@ def draw_all_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
     :raises RunFolderError: if a run has no episodes, or damaged ones; nothing is drawn then
     """
     files = draw_figures(runs, folder)
-    files += draw_robot(describe_robot(runs[0].config().episode.dimensions), folder / "figure_2_robot")
+    files += _draw_robot(runs[0], folder / "figure_2_robot")
     files += draw_state_machine(folder / "figure_3_pattern_generator")
     first_of_task = {run.config().task: run for run in reversed(runs)}
     for task, run in first_of_task.items():
         files += _draw_cycle(run, folder / f"gait_cycle_{task}")
     return files
+
+
+def _draw_robot(run: RunFolder, path: Path) -> list[Path]:
+    """Draw a run's robot, where there is what draws it."""
+    try:
+        return draw_robot(describe_robot(run.config().episode.dimensions), path)
+    except ConfigurationError as error:
+        _log.warning("no %s: %s", path.name, error)
+        return []
 
 
 def _draw_cycle(run: RunFolder, path: Path) -> list[Path]:

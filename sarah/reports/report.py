@@ -19,6 +19,7 @@ from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import TASKS, Task
 from sarah.episode.workers import Executor
+from sarah.errors import ConfigurationError
 from sarah.files import replace_text
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
 from sarah.reports.all_figures import draw_all_figures
@@ -26,6 +27,7 @@ from sarah.reports.training_figures import ALGORITHM_LABELS
 from sarah.robot.description import describe_robot
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
+from sarah.simulation.renderer import check_renderer
 from sarah.training.recommendation import Parameters
 
 CAPTIONS = {
@@ -81,10 +83,7 @@ def write_report(
         figures = [
             (text, _address(drawn[stem].read_bytes(), "image/png")) for stem, text in CAPTIONS.items() if stem in drawn
         ]
-        video = folder / ("episode.mp4" if find_spec("imageio_ffmpeg") else "episode.gif")
-        caption = _film(EpisodeSpec(learned, 0, config.task, config.episode), video, seconds)
-        is_mp4 = video.suffix == ".mp4"
-        film = _address(video.read_bytes(), "video/mp4" if is_mp4 else "image/gif")
+        film, caption = _film(EpisodeSpec(learned, 0, config.task, config.episode), folder, seconds)
     page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True).from_string(
         (files("sarah.reports") / "report.html").read_text(encoding="utf-8")
     )
@@ -99,7 +98,6 @@ def write_report(
         warnings=_warnings(ours, None if task.neutral is None else theirs),
         figures=figures,
         film=film,
-        is_mp4=is_mp4,
         film_caption=caption,
         settings=run.config_text(),
         settings_address=_address(run.config_text().encode(), "text/yaml"),
@@ -154,8 +152,14 @@ def _warnings(learned: Evaluation, baseline: Evaluation | None) -> list[str]:
     return found
 
 
-def _film(spec: EpisodeSpec, path: Path, seconds: tuple[float, float]) -> str:
-    """Film a part of an episode, and say in a line what there is to see."""
+def _film(spec: EpisodeSpec, folder: Path, seconds: tuple[float, float]) -> tuple[str, str]:
+    """Film a part of an episode, if there is what draws it, and say in a line what there is to see."""
+    try:
+        check_renderer()
+    except ConfigurationError as missing:
+        return "", f"No video: {missing}."
+    name, kind = ("film.mp4", "video/mp4") if find_spec("imageio_ffmpeg") else ("film.gif", "image/gif")
+    path = folder / name
     result = simulate(spec, record_trace=True)
     trace = result.trace
     assert trace is not None
@@ -164,7 +168,8 @@ def _film(spec: EpisodeSpec, path: Path, seconds: tuple[float, float]) -> str:
     times = frame_times(begin, end, FRAMES_PER_SECOND[path.suffix])
     progress = tqdm(times, desc="filming", unit=" frames")
     write_video(frames(trace, describe_robot(spec.config.dimensions), progress), path)
-    return f"The learned parameters on seed {spec.seed}, from {begin:.1f} to {end:.1f} s of {result.duration:.1f} s."
+    caption = f"The learned parameters on seed {spec.seed}, from {begin:.1f} to {end:.1f} s of {result.duration:.1f} s."
+    return _address(path.read_bytes(), kind), caption
 
 
 def _commands(run: RunFolder, config: TrainingConfig) -> list[str]:

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from laboratory import need_mujoco
+from laboratory import need
 
 from sarah.cli.eval import EvalOptions, _changed
 from sarah.episode.settings import EpisodeConfig
@@ -80,7 +80,7 @@ def test_eval_summarises_a_run(trained: tuple[Path, subprocess.CompletedProcess[
 def test_transfer_compares_the_engines_on_the_same_seeds(
     trained: tuple[Path, subprocess.CompletedProcess[str]], tmp_path: Path
 ) -> None:
-    need_mujoco()
+    need("mujoco")
     folder, _ = trained
     process = run("sarah-transfer", str(folder), "--episodes", "2", "--out", "out", "--workers", "2", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
@@ -97,7 +97,7 @@ def test_transfer_compares_the_engines_on_the_same_seeds(
 
 
 def test_mujoco_trains_and_its_run_is_evaluated_in_it(tmp_path: Path) -> None:
-    need_mujoco()
+    need("mujoco")
     arguments = ("--algo", "random", "--episodes", "2", "--engine", "mujoco", "--run-dir", "mine")
     process = run("sarah-train", *arguments, *SHORT, "--workers", "2", cwd=tmp_path)
     assert process.returncode == 0, process.stderr

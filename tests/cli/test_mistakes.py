@@ -10,7 +10,7 @@ import pytest
 import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from laboratory import need_mujoco
+from laboratory import need
 
 from sarah.errors import ConfigurationError
 from sarah.runs.config import TrainingConfig
@@ -171,7 +171,7 @@ def test_command_lines(line: str, message: str, answer: Callable[[str], str], tm
 
 
 def test_transfer_of_no_training(answer: Callable[[str], str], tmp_path: Path) -> None:
-    need_mujoco()
+    need("mujoco")
     (tmp_path / "full").mkdir()
     assert "not the folder of a finished training" in answer("sarah-transfer full")
 

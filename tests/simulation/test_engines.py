@@ -9,7 +9,7 @@ from importlib.machinery import ModuleSpec
 from pathlib import Path
 
 import pytest
-from laboratory import need_mujoco
+from laboratory import need
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import Episode, simulate
@@ -29,7 +29,7 @@ MUJOCO_IS_MISSING = "import sys\nsys.modules['mujoco'] = None\n"
 @pytest.fixture
 def mujoco_engine() -> None:
     """MuJoCo is installed, or the test is skipped."""
-    need_mujoco()
+    need("mujoco")
 
 
 @pytest.mark.parametrize("parameters", [PAPER_STEPPING, TRAINED_STEPPING])
