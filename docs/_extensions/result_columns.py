@@ -92,7 +92,15 @@ def shown(column: str, text: str, texts: Sequence[str]) -> str:
         number = float(text)
     except ValueError:
         return text
-    return format(number, with_decimals(format_of(column), most_decimals(texts))).replace("%", " %").replace("-", "−")
+    return typeset(format(number, with_decimals(format_of(column), most_decimals(texts))))
+
+
+def typeset(number: str) -> str:
+    """A number with a minus sign and a space before the percent sign, none of which breaks a line.
+
+    :param number: as Python writes it
+    """
+    return number.replace("%", "\N{NO-BREAK SPACE}%").replace("-", "\N{MINUS SIGN}")
 
 
 def format_of(column: str) -> str:
@@ -100,6 +108,7 @@ def format_of(column: str) -> str:
 
     :param column: its name
     """
+    column = re.sub("_(low|high)$", "", column)
     if PARAMETER.fullmatch(column):
         return ".2f"
     fitting = [end for end in FORMATS if column == end or column.endswith(f"_{end}")]

@@ -46,13 +46,11 @@ def second_training(rows: Rows) -> Figure:
     learned = chosen(rows, "run!=V = 0")
     (neutral,) = chosen(rows, "run=V = 0")
     figure, (left, right) = panels(2, 0.35, width_ratios=(4, 3))
-    for axis, columns in (
-        (left, ["V1", "V2", "V3", "V4"]),
-        (right, ["survival", "lateral_survival", "sagittal_survival"]),
-    ):
-        values = {heading(column): numbers(learned, column) for column in columns}
-        draw_strips(axis, values, {heading(column): float(neutral[column]) for column in columns}, "V = 0")
-    right.set_ylim(0.0, 1.05)
+    survival = {"survival": "all", "lateral_survival": "lateral", "sagittal_survival": "sagittal"}
+    for axis, columns in ((left, {name: name for name in ("V1", "V2", "V3", "V4")}), (right, survival)):
+        values = {label: numbers(learned, column) for column, label in columns.items()}
+        draw_strips(axis, values, {label: float(neutral[column]) for column, label in columns.items()}, "V = 0")
+    right.set(ylim=(0.0, 1.05), ylabel="survival of pushes")
     legend(figure, left)
     return figure
 
@@ -117,7 +115,7 @@ def flexion_laws(rows: Rows) -> Figure:
 def stepping_and_hips(rows: Rows) -> Figure:
     """Scores of twelve sets of P1 to P5."""
     figure, (axis,) = panels(1, 0.35)
-    groups = grouped(rows, "told {told},\nV1 = {V1}")
+    groups = grouped(rows, "{told},\nV1 = {V1}")
     columns = {"V1 = 0" if "V1 = 0" in name.splitlines() else name: numbers(group, "score") for name, group in groups.items()}
     draw_strips(axis, columns, {}, "")
     axis.set_ylabel("score under pushes")

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 from fnmatch import fnmatchcase
 from statistics import mean, median
 
-from result_columns import format_of, most_decimals, shown, with_decimals
+from result_columns import format_of, most_decimals, shown, typeset, with_decimals
 
 from experiments import record
 
@@ -58,12 +58,22 @@ def figure(sentence: str) -> str:
     if function == "value":
         if len(rows) != 1:
             raise ValueError(f"{sentence!r} finds {len(rows)} rows instead of one")
-        return format(float(texts[0]), spec).replace("%", " %") if spec else shown(column, texts[0], texts)
+        return typeset(format(float(texts[0]), spec)) if spec else shown(column, texts[0], texts)
     numbers = [float(text) for text in texts]
     spec = spec or with_decimals(format_of(column), most_decimals(texts))
     if function == "range":
-        ends = [format(end, spec).replace("-", "−") for end in (min(numbers), max(numbers))]
-        return " to ".join(ends).replace("%", "", 1).replace("%", " %")
+        low, high = (typeset(format(end, spec)) for end in (min(numbers), max(numbers)))
+        return f"{without_percent(low, high)} to {high}"
     if function not in SUMMARIES:
         raise ValueError(f"{sentence!r} begins with none of value, count, range, {', '.join(SUMMARIES)}")
-    return format(SUMMARIES[function](numbers), spec).replace("%", " %").replace("-", "−")
+    return typeset(format(SUMMARIES[function](numbers), spec))
+
+
+def without_percent(first: str, second: str) -> str:
+    """The first of two numbers without its percent sign, if the second says it.
+
+    :param first: of the numbers
+    :param second: of the numbers
+    """
+    sign = "\N{NO-BREAK SPACE}%"
+    return first.removesuffix(sign) if second.endswith(sign) else first

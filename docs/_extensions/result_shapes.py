@@ -16,6 +16,8 @@ from sarah.print_style import COLUMN_WIDTH
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 """Told apart by the colour-blind (Okabe and Ito)."""
 WIDTH = 2 * COLUMN_WIDTH
+LEGEND_CHARACTERS = 120
+"""As many stand side by side in a legend."""
 Rows = list[Row]
 
 
@@ -127,4 +129,5 @@ def legend(figure: Figure, axis: Axes) -> None:
     :param axis: whose lines are named
     """
     handles, labels = axis.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), 4))
+    columns = LEGEND_CHARACTERS // (max(map(len, labels)) + 6)
+    figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), columns))

@@ -34,7 +34,7 @@ from docutils.parsers.rst import directives
 from docutils.statemachine import StringList
 from result_columns import heading, shown
 from result_pictures import draw
-from result_rows import Row, chosen, figure
+from result_rows import Row, chosen, figure, without_percent
 from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective, SphinxRole
@@ -45,6 +45,8 @@ INTERVALS = {"low": "{} ({} to {})", "high": "", "error": "{} ± {}"}
 """How the columns of an interval's ends, or of an error, stand with the column that they belong to."""
 PATHS = {"test"}
 """Columns that hold names of files."""
+LONG = 30
+"""Characters of a cell beyond which it may be broken into lines."""
 
 
 class ResultDirective(SphinxDirective):
@@ -68,7 +70,23 @@ class ResultDirective(SphinxDirective):
         text += nodes.Text(f"{result.stale} ")
         text += nodes.literal("", f"make results NAME={result.name}")
         text += nodes.Text(" makes it again.")
-        return [nodes.warning("", text)]
+        title = nodes.title("", "Not of today's project")
+        return [nodes.admonition("", title, text, classes=["warning"])]
+
+    def source(self, result: record.Result) -> list[nodes.Node]:
+        """The line below a table, once a page: how to make it again, when it was made, and its data."""
+        said = self.env.temp_data.setdefault("sources_of_results", set())
+        if result.name in said:
+            return []
+        said.add(result.name)
+        line = nodes.paragraph(classes=["result-source"])
+        line += nodes.literal("", f"make results NAME={result.name}")
+        line += nodes.Text(f" · made on {result.date} · ")
+        data = os.path.relpath(record.RESULTS / f"{result.name}.csv", Path(self.env.doc2path(self.env.docname)).parent)
+        link = addnodes.download_reference("", "", reftarget=data, refdoc=self.env.docname)
+        link += nodes.Text("data")
+        line += link
+        return [line]
 
 
 class ResultTable(ResultDirective):
@@ -90,7 +108,7 @@ class ResultTable(ResultDirective):
         table = table_node(head, body)
         title = nodes.title("", *self.state.inline_text(self.options.get("caption", result.question), self.lineno)[0])
         table.insert(0, title)
-        return [*self.banner(result), table, source(result, self.env.docname, self.env.srcdir)]
+        return [*self.banner(result), table, *self.source(result)]
 
     def _straight(self, rows: list[Row]) -> tuple[list[str], list[list[str]]]:
         columns = listed(self.options["columns"]) if "columns" in self.options else list(rows[0])
@@ -99,11 +117,11 @@ class ResultTable(ResultDirective):
 
     def _turned(self, rows: list[Row]) -> tuple[list[str], list[list[str]]]:
         kept, across, template = listed(self.options["rows"]), self.options["across"], self.options["cell"]
-        across_names = list(dict.fromkeys(filled(across, row, rows) for row in rows))
+        across_names = list(dict.fromkeys(across.format(**row) for row in rows))
         lines: dict[tuple[str, ...], dict[str, str]] = {}
         for row in rows:
             line = lines.setdefault(tuple(cell(column, row, rows) for column in kept), {})
-            line[filled(across, row, rows)] = filled(template, row, rows)
+            line[across.format(**row)] = filled(template, row, rows)
         body = [[*line, *(cells.get(name, "") for name in across_names)] for line, cells in lines.items()]
         return [*map(heading, kept), *across_names], body
 
@@ -187,7 +205,7 @@ def cell(column: str, row: Row, rows: list[Row]) -> str:
     for end, template in INTERVALS.items():
         if row.get(f"{column}_{end}"):
             ends = [column, f"{column}_low", f"{column}_high"] if end == "low" else [column, f"{column}_{end}"]
-            return template.format(*map(text, ends))
+            return template.format(without_percent(text(ends[0]), text(ends[-1])), *map(text, ends[1:]))
     return text(column)
 
 
@@ -221,20 +239,8 @@ def table_row(cells: list[str], kinds: list[Callable[[str], nodes.Node]]) -> nod
     row = nodes.row()
     for text, kind in zip(cells, kinds, strict=True):
         content = nodes.literal("", text) if kind is nodes.literal else nodes.Text(text)
-        row += nodes.entry("", nodes.paragraph("", "", content))
+        row += nodes.entry("", nodes.paragraph("", "", content), classes=["long"] if len(text) > LONG else [])
     return row
-
-
-def source(result: record.Result, docname: str, srcdir: Path) -> nodes.paragraph:
-    """The line below a table: how to make it again, when it was made, and its data."""
-    line = nodes.paragraph(classes=["result-source"])
-    line += nodes.literal("", f"make results NAME={result.name}")
-    line += nodes.Text(f" · made on {result.date} · ")
-    data = os.path.relpath(record.RESULTS / f"{result.name}.csv", (Path(srcdir) / docname).parent)
-    link = addnodes.download_reference("", "", reftarget=data, refdoc=docname)
-    link += nodes.Text("data")
-    line += link
-    return line
 
 
 def picture_folder(app: Sphinx) -> Path:
@@ -250,4 +256,5 @@ def setup(app: Sphinx) -> dict[str, Any]:
     app.add_directive("result-figure", ResultFigure)
     app.add_directive("result-index", ResultIndex)
     app.add_role("result", FigureRole())
+    app.add_css_file("results.css")
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
