@@ -11,19 +11,23 @@ from __future__ import annotations
 import hashlib
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import astuple
 from functools import lru_cache
 from typing import Any, get_args
 from xml.etree import ElementTree
 
-from sarah import hips, mujoco_simulation, pattern_generator, simulation, simulator
-from sarah.config import PHYSICS, Engine, EpisodeConfig, Push, Randomisation
-from sarah.description import describe_robot
-from sarah.engines import check_engine
-from sarah.episode import EpisodeSpec, simulate
+from sarah.control import hip_law, pattern_generator
+from sarah.control.pattern_generator import PAPER_PARAMETERS
+from sarah.episode.episode import simulate
+from sarah.episode.push import Push
+from sarah.episode.spec import EpisodeConfig, EpisodeSpec
 from sarah.errors import ConfigurationError
-from sarah.pattern_generator import PAPER_PARAMETERS
+from sarah.robot.description import describe_robot
+from sarah.simulation.engines import Engine, check_engine
+from sarah.simulation.physics import PHYSICS
+from sarah.simulation.randomisation import Randomisation
+from sarah.simulation.simulator import GRAVITY
 
 TOLERANCE = 1e-6
 PROBE_SECONDS = 4.0
@@ -34,9 +38,12 @@ PROBES = {"stepping": PAPER_PARAMETERS, "balance": (0.9, 0.1, 0.1, 0.1)}
 
 @lru_cache
 def made_with() -> dict[str, Any]:
-    """Fingerprint of today's project: hashes of ``physics``, ``controller`` and ``robot``, and the ``probe``."""
+    """Fingerprint of today's project: hashes of ``physics``, ``controller`` and ``robot``, and the ``probe``.
+
+    Of an engine that is not installed here nothing is known.
+    """
     return {
-        "physics": short_hash(_physics()),
+        "physics": {name: short_hash(values) for name, values in _physics().items()},
         "controller": short_hash(_controller()),
         "robot": short_hash(canonical(describe_robot().urdf)),
         "probe": {f"{task}, {engine}": outcome(task, engine) for task in PROBES for engine in installed_engines()},
@@ -49,15 +56,22 @@ def differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
     :param then: fingerprint of a result
     :param now: fingerprint of today's project; an engine that is not installed here is not compared
     """
-    parts = [part for part in ("physics", "controller", "robot") if then[part] != now[part]]
-    compared = then["probe"].keys() & now["probe"].keys()
-    if not parts and any(
-        abs(before - after) > TOLERANCE
-        for episode in compared
-        for before, after in zip(then["probe"][episode], now["probe"][episode], strict=True)
-    ):
+    parts = [part for part in ("controller", "robot") if then[part] != now[part]]
+    if any(then["physics"][name] != now["physics"][name] for name in then["physics"].keys() & now["physics"].keys()):
+        parts.insert(0, "physics")
+    episodes = then["probe"].keys() & now["probe"].keys()
+    if not parts and any(far(then["probe"][episode], now["probe"][episode]) for episode in episodes):
         parts.append("code of an episode")
     return parts
+
+
+def far(then: Sequence[float], now: Sequence[float]) -> bool:
+    """Whether two outcomes of an episode differ by more than processors do.
+
+    :param then: outcome of the probe when a result was made
+    :param now: outcome of the probe today
+    """
+    return any(abs(before - after) > TOLERANCE for before, after in zip(then, now, strict=True))
 
 
 def outcome(task: str, engine: Engine) -> list[float]:
@@ -101,21 +115,28 @@ def short_hash(values: Any) -> str:
     return hashlib.sha256(json.dumps(values).encode()).hexdigest()[:12]
 
 
-def _physics() -> list[Any]:
-    """Values of the named physics, the engines' constants and what is drawn for each episode."""
+def _physics() -> dict[str, list[Any]]:
+    """Values of the named physics and of what is drawn for each episode, and each engine's constants."""
+    named = [astuple(physics) for physics in PHYSICS.values()]
+    engines = {engine: _constants(engine) for engine in installed_engines()}
+    return {"settings": [named, GRAVITY, astuple(Randomisation())], **engines}
+
+
+def _constants(engine: Engine) -> list[float]:
+    if engine == "pybullet":
+        from sarah.simulation import pybullet_simulator as pybullet
+
+        return [pybullet.CONTACT_SECONDS, pybullet.CONTACT_MARGIN]
+    from sarah.simulation import mujoco_simulator as mujoco
+
     return [
-        [astuple(physics) for physics in PHYSICS.values()],
-        [simulator.GRAVITY, simulation.CONTACT_SECONDS, simulation.CONTACT_MARGIN],
-        [
-            mujoco_simulation.CONTACT_STEPS,
-            mujoco_simulation.CONTACT_SECONDS,
-            mujoco_simulation.CONTACT_IMPEDANCE,
-            mujoco_simulation.HIP_DAMPING,
-            mujoco_simulation.LEG_DAMPING,
-            mujoco_simulation.JOINT_DAMPING,
-            mujoco_simulation.LOWEST_RATE,
-        ],
-        astuple(Randomisation()),
+        mujoco.CONTACT_STEPS,
+        mujoco.CONTACT_SECONDS,
+        mujoco.CONTACT_IMPEDANCE,
+        mujoco.HIP_DAMPING,
+        mujoco.LEG_DAMPING,
+        mujoco.JOINT_DAMPING,
+        mujoco.LOWEST_RATE,
     ]
 
 
@@ -132,13 +153,13 @@ def _controller() -> list[Any]:
         pattern_generator.RATE_TIME_CONSTANT,
         pattern_generator.ABDUCTION_TILT,
         pattern_generator.ABDUCTION_RATE_SHARE,
-        hips.ABDUCTION_SCALE,
-        hips.PITCH_SCALE,
-        hips.FLEXION_SCALE,
-        hips.LARGEST_ANGLE,
-        hips.HIP_SPEED,
-        hips.STABLE_TIME_CONSTANT,
-        hips.PITCH_TIME_CONSTANT,
-        hips.LARGEST_ACCELERATION,
-        hips.LARGEST_RATE,
+        hip_law.ABDUCTION_SCALE,
+        hip_law.PITCH_SCALE,
+        hip_law.FLEXION_SCALE,
+        hip_law.LARGEST_ANGLE,
+        hip_law.HIP_SPEED,
+        hip_law.STABLE_TIME_CONSTANT,
+        hip_law.PITCH_TIME_CONSTANT,
+        hip_law.LARGEST_ACCELERATION,
+        hip_law.LARGEST_RATE,
     ]

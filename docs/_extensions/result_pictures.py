@@ -26,7 +26,7 @@ from result_shapes import (
 )
 
 from experiments import record
-from sarah.print_style import COLUMN_WIDTH, STYLE
+from sarah.pictures.style import COLUMN_WIDTH, STYLE
 
 
 def first_training(rows: Rows) -> Figure:

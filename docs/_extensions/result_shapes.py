@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from result_columns import heading
 from result_rows import Row
 
-from sarah.print_style import COLUMN_WIDTH
+from sarah.pictures.style import COLUMN_WIDTH
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 """Told apart by the colour-blind (Okabe and Ito)."""
