@@ -21,9 +21,10 @@ UNITS = {
 }
 """Unit by the end of a column's name."""
 HEADINGS = {
-    "kept": "kept at the reference",
+    "time_out_s": "time-out (s)",
+    "sets_above_half": "sets above 0.5",
+    "clocks_above_half": "clocks above 0.5",
     "told": "the generator is told",
-    "difference": "distance from the finest",
     "episodes_to_80": "80 % after (episodes)",
     "episodes_to_90": "90 % after (episodes)",
     "episodes_to_95": "95 % after (episodes)",
@@ -33,6 +34,7 @@ HEADINGS = {
     "sets_within_0_02": "sets within 0.02",
     "rms_distance": "root mean square distance",
     "naf_over_td3": "NAF over TD3",
+    "mujoco_over_pybullet": "MuJoCo over PyBullet",
     "longer": "longer by",
 }
 """Headings that do not follow from the column's name."""
@@ -60,9 +62,10 @@ FORMATS = {
     "replayed_in_s": ".1f",
     "time": ".0f",
     "td3": ".2f",
-    "value": ".3g",
 }
 """Format by the end of a column's name; the longest that fits counts."""
+DIGITS = 5
+"""Characters of a number that is shown as it stands unless its column says otherwise."""
 PARAMETER = re.compile(r"[PV]\d")
 
 
@@ -92,7 +95,8 @@ def shown(column: str, text: str, texts: Sequence[str]) -> str:
         number = float(text)
     except ValueError:
         return text
-    return typeset(format(number, with_decimals(format_of(column), most_decimals(texts))))
+    spec = with_decimals(format_of(column), most_decimals(texts))
+    return typeset(text if spec.endswith("g") and len(text.strip("-0.")) <= DIGITS else format(number, spec))
 
 
 def typeset(number: str) -> str:
@@ -112,7 +116,7 @@ def format_of(column: str) -> str:
     if PARAMETER.fullmatch(column):
         return ".2f"
     fitting = [end for end in FORMATS if column == end or column.endswith(f"_{end}")]
-    return FORMATS[max(fitting, key=len)] if fitting else ".6g"
+    return FORMATS[max(fitting, key=len)] if fitting else ".3g"
 
 
 def most_decimals(texts: Sequence[str]) -> int:

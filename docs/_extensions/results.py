@@ -60,16 +60,17 @@ class ResultDirective(SphinxDirective):
             self.env.note_dependency(str(record.RESULTS / f"{name}.{suffix}"))
         return record.read(name)
 
-    def banner(self, result: record.Result) -> list[nodes.Node]:
-        """A note that a result is not of today's project, once a page."""
+    def banner(self, *results: record.Result) -> list[nodes.Node]:
+        """A note that results are not of today's project, once a page."""
         said = self.env.temp_data.setdefault("stale_results", set())
-        if result.stale is None or result.name in said:
+        stale = [result for result in results if result.stale and result.name not in said]
+        said.update(result.name for result in stale)
+        if not stale:
             return []
-        said.add(result.name)
-        text = nodes.paragraph()
-        text += nodes.Text(f"{result.stale} ")
-        text += nodes.literal("", f"make results NAME={result.name}")
-        text += nodes.Text(" makes it again.")
+        text = nodes.paragraph("", " ".join(dict.fromkeys(str(result.stale) for result in stale)) + " Made again by ")
+        for result in stale:
+            text += nodes.literal("", f"make results NAME={result.name}")
+            text += nodes.Text("." if result is stale[-1] else ", ")
         title = nodes.title("", "Not of today's project")
         return [nodes.admonition("", title, text, classes=["warning"])]
 
@@ -146,7 +147,7 @@ class ResultFigure(ResultDirective):
         if self.content:
             caption = " ".join(self.content)
             picture += nodes.caption("", "", *self.state.inline_text(caption, self.lineno)[0])
-        return [*(banner for result in results for banner in self.banner(result)), picture]
+        return [*self.banner(*results), picture]
 
 
 class ResultIndex(ResultDirective):
