@@ -34,8 +34,9 @@ def first_training(rows: Rows) -> Figure:
     names, learned = ["P1", "P2", "P3", "P4", "P5"], chosen(rows, "run!=paper")
     (paper,) = chosen(rows, "run=paper")
     figure, (left, right) = panels(2, 0.35, width_ratios=(3, 1))
-    draw_strips(left, {name: numbers(learned, name) for name in names}, {n: float(paper[n]) for n in names}, "the paper")
-    draw_strips(right, {"score": numbers(learned, "score")}, {"score": float(paper["score"])}, "the paper")
+    for axis, columns in ((left, names), (right, ["score"])):
+        values = {column: numbers(learned, column) for column in columns}
+        draw_strips(axis, values, {column: float(paper[column]) for column in columns}, "the paper")
     right.set_ylim(0.0, 1.0)
     legend(figure, left)
     return figure
@@ -92,7 +93,8 @@ def naf_preset(rows: Rows) -> Figure:
 def robustness(rows: Rows) -> Figure:
     """Survival by force, from the sides and from front and back."""
     figure, axes = panels(2, 0.4, sharey=True)
-    for axis, (direction, group) in zip(axes, grouped(chosen(rows, "direction!=all"), "{direction}").items(), strict=True):
+    directions = grouped(chosen(rows, "direction!=all"), "{direction}")
+    for axis, (direction, group) in zip(axes, directions.items(), strict=True):
         draw_lines(axis, group, "push_n", "survival", "{controller}")
         axis.set_title(f"{direction} pushes")
     axes[1].set_ylabel("")
@@ -115,9 +117,9 @@ def flexion_laws(rows: Rows) -> Figure:
 def stepping_and_hips(rows: Rows) -> Figure:
     """Scores of twelve sets of P1 to P5."""
     figure, (axis,) = panels(1, 0.35)
-    groups = grouped(rows, "{told},\nV1 = {V1}")
-    columns = {"V1 = 0" if "V1 = 0" in name.splitlines() else name: numbers(group, "score") for name, group in groups.items()}
-    draw_strips(axis, columns, {}, "")
+    neutral = {"V1 = 0": numbers(chosen(rows, "V1=0"), "score")}
+    groups = grouped(chosen(rows, "V1>0"), "{told},\nV1 = {V1}")
+    draw_strips(axis, neutral | {name: numbers(group, "score") for name, group in groups.items()}, {}, "")
     axis.set_ylabel("score under pushes")
     return figure
 
@@ -228,7 +230,8 @@ def long_training(rows: Rows) -> Figure:
     """Memory along a training."""
     figure, (axis,) = panels(1, 0.3)
     for colour, name in zip(COLOURS, ("training", "worker_1", "worker_2"), strict=False):
-        axis.plot(numbers(rows, "episodes"), numbers(rows, f"{name}_memory_mib"), ".-", color=colour, label=heading(name))
+        memory = numbers(rows, f"{name}_memory_mib")
+        axis.plot(numbers(rows, "episodes"), memory, ".-", color=colour, label=heading(name))
     axis.set(xlabel="episodes", ylabel="memory (MiB)")
     axis.set_ylim(bottom=0.0)
     legend(figure, axis)

@@ -114,7 +114,8 @@ class ResultTable(ResultDirective):
     def _straight(self, rows: list[Row]) -> tuple[list[str], list[list[str]]]:
         columns = listed(self.options["columns"]) if "columns" in self.options else list(rows[0])
         columns = [column for column in columns if not is_end(column, rows[0])]
-        return [heading(column) for column in columns], [[cell(column, row, rows) for column in columns] for row in rows]
+        body = [[cell(column, row, rows) for column in columns] for row in rows]
+        return [heading(column) for column in columns], body
 
     def _turned(self, rows: list[Row]) -> tuple[list[str], list[list[str]]]:
         kept, across, template = listed(self.options["rows"]), self.options["across"], self.options["cell"]
