@@ -17,7 +17,7 @@ sys.path[:0] = [str(HERE / "_extensions"), str(HERE.parent)]  # what renders res
 project = "sarah"
 author = "the sarah contributors"
 release = metadata.version("sarah")
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.apidoc", "results"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "results"]
 html_theme = "furo"
 html_static_path = ["_static"]
 html_css_files = ["tables.css"]
@@ -31,16 +31,6 @@ suppress_warnings = ["toc.duplicate_entry"]
 WIDTH = 86
 """Of a command's help, in characters: as wide as the page."""
 GENERATED = HERE / "reference" / "generated"
-apidoc_modules = [
-    {
-        "path": str(HERE.parent / "sarah"),
-        "destination": str(GENERATED.relative_to(HERE)),
-        "follow_links": True,
-        "separate_modules": True,
-        "module_first": True,
-        "automodule_options": {"members", "show-inheritance"},
-    }
-]
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_typehints_format = "short"
@@ -65,6 +55,15 @@ def write_commands(app: Sphinx) -> None:
     (GENERATED / "commands.md").write_text("\n".join(sections), encoding="utf-8")
 
 
+def write_api(app: Sphinx) -> None:
+    """Write a page for every module; by the command, as the extension needs Python 3.11."""
+    command = [Path(sys.executable).with_name("sphinx-apidoc"), "-q", "--force", "--separate", "--module-first"]
+    environment = {**os.environ, "SPHINX_APIDOC_OPTIONS": "members,show-inheritance"}
+    arguments = ["--follow-links", "--output-dir", str(GENERATED), str(HERE.parent / "sarah")]
+    subprocess.run([*command, *arguments], env=environment, check=True)
+
+
 def setup(app: Sphinx) -> None:
-    """Have the command reference written before the pages are read."""
+    """Have the references of commands and modules written before the pages are read."""
+    app.connect("builder-inited", write_api)
     app.connect("builder-inited", write_commands)

@@ -17,14 +17,15 @@ from functools import lru_cache
 from typing import Any, get_args
 from xml.etree import ElementTree
 
-from sarah.control import hip_law, pattern_generator
-from sarah.control.pattern_generator import PAPER_PARAMETERS
+from sarah.control.constants import ControllerConstants
+from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import simulate
 from sarah.episode.push import Push
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
-from sarah.errors import ConfigurationError
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BalanceConfig
 from sarah.robot.description import describe_robot
-from sarah.simulation.engines import Engine, check_engine
+from sarah.simulation.engines import Engine, is_installed
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import Randomisation
 from sarah.simulation.simulator import GRAVITY
@@ -32,7 +33,7 @@ from sarah.simulation.simulator import GRAVITY
 TOLERANCE = 1e-6
 PROBE_SECONDS = 4.0
 PROBE_PUSH = Push(newtons=(80.0, 80.0), at_seconds=(1.5, 1.5))
-PROBES = {"stepping": PAPER_PARAMETERS, "balance": (0.9, 0.1, 0.1, 0.1)}
+PROBES = {"stepping": PAPER_STEPPING, "balance": (0.9, 0.1, 0.1, 0.1)}
 """Parameters by task; the rest of the episode is the project's own standard."""
 
 
@@ -44,7 +45,7 @@ def made_with() -> dict[str, Any]:
     """
     return {
         "physics": {name: short_hash(values) for name, values in _physics().items()},
-        "controller": short_hash(_controller()),
+        "controller": short_hash(astuple(ControllerConstants())),
         "robot": short_hash(canonical(describe_robot().urdf)),
         "probe": {f"{task}, {engine}": outcome(task, engine) for task in PROBES for engine in installed_engines()},
     }
@@ -80,22 +81,15 @@ def outcome(task: str, engine: Engine) -> list[float]:
     :param task: name of the task
     :param engine: name of the engine
     """
-    push = PROBE_PUSH if task == "balance" else Push()
-    config = EpisodeConfig(engine=engine, time_limit=PROBE_SECONDS, push=push)
+    shared: dict[str, Any] = {"engine": engine, "time_limit": PROBE_SECONDS}
+    config = BalanceConfig(push=PROBE_PUSH, **shared) if task == "balance" else EpisodeConfig(**shared)
     result = simulate(EpisodeSpec(PROBES[task], 0, task, config))
     return [round(value, 9) for value in (result.score, *result.final_position)]
 
 
 def installed_engines() -> list[Engine]:
     """Engines that can be asked here."""
-    found: list[Engine] = []
-    for engine in get_args(Engine):
-        try:
-            check_engine(engine)
-        except ConfigurationError:
-            continue
-        found.append(engine)
-    return found
+    return [engine for engine in get_args(Engine) if is_installed(engine)]
 
 
 def canonical(urdf: str) -> str:
@@ -137,29 +131,4 @@ def _constants(engine: Engine) -> list[float]:
         mujoco.LEG_DAMPING,
         mujoco.JOINT_DAMPING,
         mujoco.LOWEST_RATE,
-    ]
-
-
-def _controller() -> list[Any]:
-    """Values of the constants of the pattern generator and the hip law."""
-    return [
-        pattern_generator.MINIMUM_PHASE_SECONDS,
-        pattern_generator.TIME_OUT_SECONDS,
-        pattern_generator.RATE_SCALE,
-        pattern_generator.PUSH_LENGTH,
-        pattern_generator.LIFT_LENGTH,
-        pattern_generator.LEG_SPEED,
-        pattern_generator.TILT_TIME_CONSTANT,
-        pattern_generator.RATE_TIME_CONSTANT,
-        pattern_generator.ABDUCTION_TILT,
-        pattern_generator.ABDUCTION_RATE_SHARE,
-        hip_law.ABDUCTION_SCALE,
-        hip_law.PITCH_SCALE,
-        hip_law.FLEXION_SCALE,
-        hip_law.LARGEST_ANGLE,
-        hip_law.HIP_SPEED,
-        hip_law.STABLE_TIME_CONSTANT,
-        hip_law.PITCH_TIME_CONSTANT,
-        hip_law.LARGEST_ACCELERATION,
-        hip_law.LARGEST_RATE,
     ]

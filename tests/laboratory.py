@@ -5,12 +5,14 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-import pybullet
 import pytest
 
-from sarah.errors import ConfigurationError
-from sarah.robot.description import PLATES, SIDES
-from sarah.simulation.engines import check_engine
+from sarah.robot.description import PLATES
+from sarah.robot.reading import Side
+from sarah.simulation.engines import is_installed
+from sarah.simulation.pybullet_client import pybullet
+
+NEEDS_PYBULLET = pytest.mark.skipif(not is_installed("pybullet"), reason="needs pybullet")
 
 
 class BulletLaboratory:
@@ -48,7 +50,7 @@ class BulletLaboratory:
 
     def frictions(self, simulation: Any) -> set[float]:
         """Of all soles."""
-        return {self._dynamics(simulation, f"{side}_{plate}")[1] for side, plate in product(SIDES, PLATES)}
+        return {self._dynamics(simulation, f"{side}_{plate}")[1] for side, plate in product(Side, PLATES)}
 
     def link_position(self, simulation: Any, link: str) -> np.ndarray:
         """Of a link's frame, in the world's."""
@@ -105,7 +107,7 @@ class MujocoLaboratory:
 
     def remove_pads(self, simulation: Any) -> None:
         """Let the plates pass where the pads were."""
-        for side, plate in product(SIDES, PLATES):
+        for side, plate in product(Side, PLATES):
             simulation._model.geom(f"{side}_{plate}_pad").pos[2] += 1.0
 
     def mass(self, simulation: Any, link: str) -> float:
@@ -141,15 +143,11 @@ class MujocoLaboratory:
 
 def laboratory(engine: str) -> BulletLaboratory | MujocoLaboratory:
     """An engine's laboratory; a test of an engine that is not installed is skipped."""
-    if engine == "pybullet":
-        return BulletLaboratory()
-    need_mujoco()
-    return MujocoLaboratory()
+    need(engine)
+    return BulletLaboratory() if engine == "pybullet" else MujocoLaboratory()
 
 
-def need_mujoco() -> None:
-    """Skip the test that calls it if MuJoCo is not installed."""
-    try:
-        check_engine("mujoco")
-    except ConfigurationError as missing:
-        pytest.skip(str(missing))
+def need(engine: str) -> None:
+    """Skip the test that calls it if an engine is not installed."""
+    if not is_installed(engine):
+        pytest.skip(f"needs {engine}")

@@ -6,10 +6,9 @@ import logging
 from collections.abc import Sequence
 from pathlib import Path
 
-from sarah.control.pattern_generator import SteppingParameters
 from sarah.episode.episode import simulate
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import STEPPING
+from sarah.episode.tasks import TASKS
 from sarah.errors import ConfigurationError
 from sarah.pictures.gait_figure import draw_gait_cycle
 from sarah.pictures.robot_figure import draw_robot
@@ -27,10 +26,10 @@ def draw_all_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
     :param runs: finished trainings
     :param folder: where to; made if it is not there
     :return: the files, PNG and PDF
-    :raises RunFolderError: if a run has no simulations, or damaged ones; nothing is drawn then
+    :raises RunFolderError: if a run has no episodes, or damaged ones; nothing is drawn then
     """
     files = draw_figures(runs, folder)
-    files += draw_robot(describe_robot(runs[0].config().episode.dimensions), folder / "figure_2_robot")
+    files += _draw_robot(runs[0], folder / "figure_2_robot")
     files += draw_state_machine(folder / "figure_3_pattern_generator")
     first_of_task = {run.config().task: run for run in reversed(runs)}
     for task, run in first_of_task.items():
@@ -38,14 +37,23 @@ def draw_all_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
     return files
 
 
+def _draw_robot(run: RunFolder, path: Path) -> list[Path]:
+    """Draw a run's robot, where there is what draws it."""
+    try:
+        return draw_robot(describe_robot(run.config().episode.dimensions), path)
+    except ConfigurationError as error:
+        _log.warning("no %s: %s", path.name, error)
+        return []
+
+
 def _draw_cycle(run: RunFolder, path: Path) -> list[Path]:
     """Draw a gait cycle with a run's learned parameters, if they make one."""
     config, learned = run.config(), run.parameters()
     trace = simulate(EpisodeSpec(learned, 0, config.task, config.episode), record_trace=True).trace
     assert trace is not None
-    stepping = learned if config.task == STEPPING.name else config.episode.stepping
+    stepping, _ = TASKS[config.task].controller_parameters(learned, config.episode)
     try:
-        return draw_gait_cycle(trace, SteppingParameters(*stepping), path)
+        return draw_gait_cycle(trace, stepping, path, config.episode.controller)
     except ConfigurationError as error:
         _log.warning("no gait cycle of %s: %s", run.path, error)
         return []

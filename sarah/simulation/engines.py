@@ -13,6 +13,11 @@ from sarah.simulation.randomisation import Conditions
 from sarah.simulation.simulator import Simulator
 
 Engine = Literal["pybullet", "mujoco"]
+INSTALLATION = {
+    "pybullet": "pip install pybullet (from Python 3.12 on it is compiled, which takes some minutes)",
+    "mujoco": "pip install 'sarah[mujoco]'",
+}
+"""How to get an engine."""
 BuildSimulator = Callable[[RobotDescription, Physics, Conditions], Simulator]
 
 
@@ -32,12 +37,25 @@ def simulator_of(engine: str) -> BuildSimulator:
     return PyBulletSimulator
 
 
+def default_engine() -> Engine:
+    """PyBullet, the reference; MuJoCo where PyBullet is not installed."""
+    return "pybullet" if is_installed("pybullet") else "mujoco"
+
+
+def is_installed(engine: str) -> bool:
+    """Whether an engine can be imported.
+
+    :param engine: ``"pybullet"`` or ``"mujoco"``
+    """
+    spec = find_spec(engine)
+    return spec is not None and spec.origin is not None  # `pip uninstall` may leave a folder, but no package
+
+
 def check_engine(engine: str) -> None:
     """Refuse an engine that is not installed.
 
     :param engine: ``"pybullet"`` or ``"mujoco"``
     :raises ConfigurationError: naming how to install it
     """
-    spec = find_spec(engine)
-    if spec is None or spec.origin is None:  # `pip uninstall mujoco` leaves a folder of that name, but no package
-        raise ConfigurationError(f"engine {engine!r} needs the package {engine}: pip install 'sarah[{engine}]'")
+    if not is_installed(engine):
+        raise ConfigurationError(f"engine {engine!r} needs the package {engine}: {INSTALLATION[engine]}")

@@ -5,13 +5,16 @@ from __future__ import annotations
 import os
 import tempfile
 from importlib import import_module
-from types import ModuleType
+from typing import Any
 
 from sarah.errors import SimulationError
+from sarah.simulation.engines import is_installed
 
 
-def _import_pybullet() -> ModuleType:
-    """Import PyBullet without the build time that it writes to the process's standard error."""
+def _import_pybullet() -> Any:
+    """Import PyBullet without the build time that it writes to the process's standard error; None if it is missing."""
+    if not is_installed("pybullet"):
+        return None
     try:
         kept = os.dup(2)
     except OSError:  # closed: nothing will be written

@@ -6,15 +6,10 @@ They see no observation: they are asked for an action, a task's parameters scale
 from __future__ import annotations
 
 from collections import deque
-from importlib.util import find_spec
 from typing import Any, Protocol
 
 import numpy as np
 
-from sarah.errors import ConfigurationError
-
-PACKAGES = {"cma-es": "cma", "gp": "optuna", "tpe": "optuna"}
-"""Which package an optimiser comes from; the extra ``compare`` installs them."""
 CMA_DEVIATION = 0.6
 """CMA-ES' first standard deviation, in scaled actions."""
 CMA_POPULATION = 8
@@ -161,14 +156,3 @@ def make_searcher(algo: str, dimensions: int, seed: int) -> Searcher:
     from optuna.samplers import GPSampler, TPESampler
 
     return OptunaSearch(dimensions, GPSampler(seed=seed) if algo == "gp" else TPESampler(seed=seed))
-
-
-def check_installed(algo: str) -> None:
-    """Refuse an optimiser whose package is not installed.
-
-    :param algo: any algorithm's name
-    :raises ConfigurationError: naming the package and how to install it
-    """
-    package = PACKAGES.get(algo)
-    if package is not None and find_spec(package) is None:
-        raise ConfigurationError(f"algo {algo!r} needs the package {package}: pip install 'sarah[compare]'")

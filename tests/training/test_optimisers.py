@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from sarah.errors import ConfigurationError
 from sarah.training import optimisers as search
-from sarah.training.optimisers import check_installed, make_searcher
+from sarah.training.optimisers import make_searcher
 
 OPTIMISERS = ("cma-es", "gp", "tpe", "random")
 BEST = np.array([0.3, -0.4])
@@ -55,11 +54,3 @@ def test_a_generation_is_told_before_the_next_is_asked_for() -> None:
         assert not searcher.ready()
         searcher.tell(action, trial(action))
     assert searcher.ready()
-
-
-def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(search, "find_spec", lambda name: None)
-    check_installed("naf")
-    check_installed("random")
-    with pytest.raises(ConfigurationError, match=r"algo 'gp' needs the package optuna: pip install 'sarah\[compare\]'"):
-        check_installed("gp")
