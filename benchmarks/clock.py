@@ -9,9 +9,11 @@ from __future__ import annotations
 import argparse
 import random
 
-from sarah import pattern_generator
-from sarah.episode import EpisodeResult, EpisodeSpec, simulate
-from sarah.evaluation import SMALLEST_EVENT_SHARE
+from sarah.control import pattern_generator
+from sarah.episode.episode import simulate
+from sarah.episode.evaluation import SMALLEST_EVENT_SHARE
+from sarah.episode.result import EpisodeResult
+from sarah.episode.spec import EpisodeSpec
 
 CLOCKS = ((0.05, 2.0, 2.0, 0.0, 0.0), (0.2, 0.0, 2.0, 0.0, 0.0), (1.0, 1.0, 1.0, 0.0, 0.0), (1.5, 0.5, 0.1, 0.0, 0.0))
 

@@ -13,11 +13,14 @@ import time
 from statistics import median
 from typing import get_args
 
-from sarah.config import PHYSICS, TRAINED_STEPPING, Engine, EpisodeConfig, Push
-from sarah.episode import EpisodeSpec, simulate
-from sarah.evaluation import Evaluation, summarise
-from sarah.pattern_generator import PAPER_PARAMETERS
-from sarah.workers import Workers
+from sarah.control.pattern_generator import PAPER_PARAMETERS
+from sarah.episode.episode import simulate
+from sarah.episode.evaluation import Evaluation, summarise
+from sarah.episode.push import Push
+from sarah.episode.spec import TRAINED_STEPPING, EpisodeConfig, EpisodeSpec
+from sarah.episode.workers import Workers
+from sarah.simulation.engines import Engine
+from sarah.simulation.physics import PHYSICS
 
 STEPPING_SETS = (
     PAPER_PARAMETERS,

@@ -13,11 +13,12 @@ from statistics import median
 
 from trainings import learned
 
-from sarah.config import ALGORITHMS, PHYSICS, TrainingConfig
-from sarah.evaluation import Evaluation
-from sarah.pattern_generator import PAPER_PARAMETERS
-from sarah.training import evaluate
-from sarah.workers import Workers
+from sarah.control.pattern_generator import PAPER_PARAMETERS
+from sarah.episode.evaluation import Evaluation
+from sarah.episode.workers import Workers
+from sarah.runs.config import ALGORITHMS, TrainingConfig
+from sarah.simulation.physics import PHYSICS
+from sarah.training.train import evaluate
 
 
 def row(name: str, parameters: tuple[float, ...], standard: Evaluation, reference: Evaluation) -> str:

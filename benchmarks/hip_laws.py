@@ -16,13 +16,16 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from statistics import mean
 
-from sarah.config import TRAINED_STEPPING, EpisodeConfig, Physics, Push
-from sarah.episode import Episode, EpisodeResult
-from sarah.filters import LowPass, ramped
-from sarah.hips import HIP_SPEED, LARGEST_ANGLE, BalanceParameters, HipLaw, Side
-from sarah.robustness import wilson_interval
-from sarah.sensors import SensorReading
-from sarah.tasks import BALANCE
+from sarah.control.hip_law import HIP_SPEED, LARGEST_ANGLE, BalanceParameters, HipLaw
+from sarah.episode.episode import Episode
+from sarah.episode.push import Push
+from sarah.episode.result import EpisodeResult
+from sarah.episode.spec import TRAINED_STEPPING, EpisodeConfig
+from sarah.episode.tasks import BALANCE
+from sarah.reports.robustness import wilson_interval
+from sarah.robot.filters import LowPass, ramped
+from sarah.robot.reading import SensorReading, Side
+from sarah.simulation.physics import Physics
 
 SCALES = {"acceleration": 0.05, "angle": 0.5, "pitch": 2.5, "rate": 0.15}
 """Radians of flexion per unit of the signal, at V3 = 1."""

@@ -11,12 +11,12 @@ import time
 import zipfile
 from pathlib import Path
 
-from sarah.config import TrainingConfig
-from sarah.episode import EpisodeSpec
-from sarah.pattern_generator import PAPER_PARAMETERS
-from sarah.runs import RunFolder
-from sarah.training import train
-from sarah.workers import Workers
+from sarah.control.pattern_generator import PAPER_PARAMETERS
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.workers import Workers
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.training.train import train
 
 
 def kill_every(seconds: float | None, workers: Workers, done: threading.Event, killed: list[int]) -> None:

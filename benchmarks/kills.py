@@ -17,9 +17,11 @@ from pathlib import Path
 
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
-from sarah.config import EpisodeConfig, Physics, TrainingConfig
-from sarah.runs import RunFolder
-from sarah.training import train
+from sarah.episode.spec import EpisodeConfig
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.simulation.physics import Physics
+from sarah.training.train import train
 
 SIMULATIONS = 50
 """Of which agents learn from those after the warm-up, 6 or 30."""

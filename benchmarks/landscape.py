@@ -16,13 +16,15 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-from sarah.config import PHYSICS, Engine, EpisodeConfig, Push
-from sarah.episode import EpisodeSpec
-from sarah.evaluation import Evaluation, summarise
-from sarah.print_style import COLUMN_WIDTH, STYLE
-from sarah.tasks import BALANCE, TASKS
-from sarah.transfer_figure import ENGINE_COLOURS
-from sarah.workers import Workers
+from sarah.episode.evaluation import Evaluation, summarise
+from sarah.episode.push import Push
+from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.tasks import BALANCE, TASKS
+from sarah.episode.workers import Workers
+from sarah.pictures.style import COLUMN_WIDTH, STYLE
+from sarah.reports.transfer_figure import ENGINE_COLOURS
+from sarah.simulation.engines import Engine
+from sarah.simulation.physics import PHYSICS
 
 CENTRES = {"stepping": (0.4, 1.0, 0.1, 1.0, 1.0), "balance": (1.0, 0.0, 0.0, 0.0)}
 VALUES = {

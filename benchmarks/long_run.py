@@ -13,12 +13,14 @@ from pathlib import Path
 
 import psutil
 
-from sarah.config import EpisodeConfig, Physics, TrainingConfig
-from sarah.episode import EpisodeSpec, simulate
-from sarah.pattern_generator import PAPER_PARAMETERS
-from sarah.runs import RunFolder
-from sarah.training import train
-from sarah.workers import Workers
+from sarah.control.pattern_generator import PAPER_PARAMETERS
+from sarah.episode.episode import simulate
+from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.workers import Workers
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.simulation.physics import Physics
+from sarah.training.train import train
 
 SHORT = EpisodeConfig(time_limit=1.3, physics=Physics(rate=100, solver_iterations=5))
 

@@ -12,12 +12,13 @@ from statistics import mean, stdev
 
 import numpy as np
 
-from sarah.config import EpisodeConfig, Push, TrainingConfig
-from sarah.episode import EpisodeSpec
-from sarah.recommendation import Parameters, candidates, merit
-from sarah.tasks import BALANCE
-from sarah.training import evaluate
-from sarah.workers import Workers
+from sarah.episode.push import Push
+from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.tasks import BALANCE
+from sarah.episode.workers import Workers
+from sarah.runs.config import TrainingConfig
+from sarah.training.recommendation import Parameters, candidates, merit
+from sarah.training.train import evaluate
 
 UNSEEN = 5000
 """First seed of the judging episodes."""

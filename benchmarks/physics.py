@@ -16,10 +16,13 @@ import sys
 import time
 from statistics import mean, stdev
 
-from sarah.config import PHYSICS, TRAINED_STEPPING, EpisodeConfig, Physics, Push
-from sarah.episode import EpisodeResult, EpisodeSpec, simulate
-from sarah.tasks import TASKS
-from sarah.workers import Workers
+from sarah.episode.episode import simulate
+from sarah.episode.push import Push
+from sarah.episode.result import EpisodeResult
+from sarah.episode.spec import TRAINED_STEPPING, EpisodeConfig, EpisodeSpec
+from sarah.episode.tasks import TASKS
+from sarah.episode.workers import Workers
+from sarah.simulation.physics import PHYSICS, Physics
 
 STEPPING_SETS = (
     (0.4, 1.3, 0.1, 1.0, 1.0),

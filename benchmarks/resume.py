@@ -7,9 +7,11 @@ import tempfile
 import time
 from pathlib import Path
 
-from sarah.config import ALGORITHMS, EpisodeConfig, Physics, TrainingConfig
-from sarah.runs import RunFolder
-from sarah.training import train
+from sarah.episode.spec import EpisodeConfig
+from sarah.runs.config import ALGORITHMS, TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.simulation.physics import Physics
+from sarah.training.train import train
 
 # What is replayed does not depend on how long or how finely it was simulated.
 SHORT = EpisodeConfig(time_limit=1.1, physics=Physics(rate=50, solver_iterations=5, control_rate=50))

@@ -12,9 +12,11 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from statistics import mean
 
-from sarah import pattern_generator
-from sarah.config import TRAINED_STEPPING, EpisodeConfig, Push
-from sarah.episode import EpisodeResult, EpisodeSpec, simulate
+from sarah.control import pattern_generator
+from sarah.episode.episode import simulate
+from sarah.episode.push import Push
+from sarah.episode.result import EpisodeResult
+from sarah.episode.spec import TRAINED_STEPPING, EpisodeConfig, EpisodeSpec
 
 DEFAULT_LEGS = (pattern_generator.PUSH_LENGTH, pattern_generator.LIFT_LENGTH)
 CONTROLLERS = ((0.0, 0.0, 0.0, 0.0), (1.0, 0.0, 1.0, 0.0))

@@ -18,12 +18,15 @@ from statistics import median
 
 from trainings import learned
 
-from sarah.config import ALGORITHMS, PHYSICS, TRAINED_STEPPING, EpisodeConfig, Push, TrainingConfig
-from sarah.evaluation import summarise
-from sarah.robustness import push_many, robustness_table
-from sarah.tasks import BALANCE
-from sarah.training import evaluate
-from sarah.workers import Workers
+from sarah.episode.evaluation import summarise
+from sarah.episode.push import Push
+from sarah.episode.spec import TRAINED_STEPPING, EpisodeConfig
+from sarah.episode.tasks import BALANCE
+from sarah.episode.workers import Workers
+from sarah.reports.robustness import push_many, robustness_table
+from sarah.runs.config import ALGORITHMS, TrainingConfig
+from sarah.simulation.physics import PHYSICS
+from sarah.training.train import evaluate
 
 
 def main() -> None:

@@ -11,7 +11,7 @@ import random
 from collections.abc import Sequence
 from pathlib import Path
 
-from sarah.runs import RunFolder
+from sarah.runs.run_folder import RunFolder
 
 WORKERS = (2, 8, 64, 1000)
 SLOTS_PER_WORKER = (1, 1.5, 2, 3, 4, 8)

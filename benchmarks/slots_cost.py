@@ -11,10 +11,12 @@ from typing import get_args
 from trainings import learned
 
 from sarah.agents.naf import PRESETS
-from sarah.config import Engine, EpisodeConfig, TrainingConfig
-from sarah.runs import RunFolder
-from sarah.training import evaluate
-from sarah.workers import Workers
+from sarah.episode.spec import EpisodeConfig
+from sarah.episode.workers import Workers
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.simulation.engines import Engine
+from sarah.training.train import evaluate
 
 WARM_UP = PRESETS["one-step"]["learning_starts"]
 

@@ -13,11 +13,14 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from statistics import mean
 
-from sarah import pattern_generator
-from sarah.config import TRAINED_STEPPING, EpisodeConfig, Push, Randomisation
-from sarah.episode import EpisodeResult, EpisodeSpec, simulate
-from sarah.pattern_generator import ABDUCTION_RATE_SHARE, ABDUCTION_TILT, PAPER_PARAMETERS
-from sarah.tasks import BALANCE
+from sarah.control import pattern_generator
+from sarah.control.pattern_generator import ABDUCTION_RATE_SHARE, ABDUCTION_TILT, PAPER_PARAMETERS
+from sarah.episode.episode import simulate
+from sarah.episode.push import Push
+from sarah.episode.result import EpisodeResult
+from sarah.episode.spec import TRAINED_STEPPING, EpisodeConfig, EpisodeSpec
+from sarah.episode.tasks import BALANCE
+from sarah.simulation.randomisation import Randomisation
 
 STEPPING = (
     PAPER_PARAMETERS,

@@ -22,15 +22,17 @@ from typing import Any
 
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
-from sarah.bullet import pybullet
-from sarah.config import PHYSICS, STAND_SECONDS, TRAINED_STEPPING, EpisodeConfig, Physics, TrainingConfig
-from sarah.episode import Episode, EpisodeSpec
-from sarah.pattern_generator import Phase
-from sarah.runs import RunFolder
-from sarah.tasks import STEPPING
-from sarah.training import train
-from sarah.vec_env import EpisodeVecEnv
-from sarah.workers import Workers
+from sarah.control.pattern_generator import STAND_SECONDS, Phase
+from sarah.envs.episode_vec_env import EpisodeVecEnv
+from sarah.episode.episode import Episode
+from sarah.episode.spec import TRAINED_STEPPING, EpisodeConfig, EpisodeSpec
+from sarah.episode.tasks import STEPPING
+from sarah.episode.workers import Workers
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.simulation.physics import PHYSICS, Physics
+from sarah.simulation.pybullet_client import pybullet
+from sarah.training.train import train
 
 FORMER_START = Physics(500, 30, added_plate_inertia=0.0)
 """What most prototypes of this robot ran at."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from sarah.config import TrainingConfig
-from sarah.runs import RunFolder
-from sarah.training import train
-from sarah.workers import Workers
+from sarah.episode.workers import Workers
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.training.train import train
 
 
 def learned(config: TrainingConfig, path: Path, workers: Workers) -> tuple[float, ...]:

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import playwright.sync_api as playwright
 
-from sarah.choices import choice_of_parameters
+from sarah.runs.run_episodes import choice_of_parameters
 from sarah.viewer.page import Page
 from sarah.viewer.server import serving
 

@@ -6,14 +6,15 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from sarah.config import TRAINED_STEPPING, EpisodeConfig, Randomisation
-from sarah.description import describe_robot
-from sarah.episode import EpisodeSpec, simulate
-from sarah.gait_figure import draw_gait_cycle, gait_cycle
-from sarah.pattern_generator import SteppingParameters
-from sarah.robot_figure import draw_robot
-from sarah.state_machine_figure import draw_state_machine
-from sarah.video import FRAMES_PER_SECOND, frame_times, frames, write_video
+from sarah.control.pattern_generator import SteppingParameters
+from sarah.episode.episode import simulate
+from sarah.episode.spec import TRAINED_STEPPING, EpisodeConfig, EpisodeSpec
+from sarah.pictures.gait_figure import draw_gait_cycle, gait_cycle
+from sarah.pictures.robot_figure import draw_robot
+from sarah.pictures.state_machine_figure import draw_state_machine
+from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
+from sarah.robot.description import describe_robot
+from sarah.simulation.randomisation import Randomisation
 
 HERE = Path(__file__).parent
 CYCLES = 4

@@ -3,8 +3,8 @@
     >>> import sarah
     >>> result = sarah.simulate(sarah.EpisodeSpec(parameters=(0.4, 1.3, 0.1, 1.0, 1.0), seed=0))
 
-The names below are loaded when they are first used, so that importing the package is fast. Importing it also makes
-``gymnasium.make("SarahStepping-v0")`` and ``gymnasium.make("SarahBalance-v0")`` work.
+Importing it registers ``SarahStepping-v0`` and ``SarahBalance-v0`` with gymnasium. The names below are loaded when they
+are first used, so that importing the package is fast.
 """
 
 from __future__ import annotations
@@ -12,12 +12,16 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from sarah.registration import register_with_gymnasium
+from sarah.envs.registration import register_environments
 
 if TYPE_CHECKING:
-    from sarah.config import PHYSICS, EpisodeConfig, Physics, Push, Randomisation
-    from sarah.episode import EpisodeResult, EpisodeSpec, simulate
+    from sarah.episode.episode import simulate
+    from sarah.episode.push import Push
+    from sarah.episode.result import EpisodeResult
+    from sarah.episode.spec import EpisodeConfig, EpisodeSpec
     from sarah.errors import SarahError
+    from sarah.simulation.physics import PHYSICS, Physics
+    from sarah.simulation.randomisation import Randomisation
 
 __all__ = [
     "PHYSICS",
@@ -32,15 +36,15 @@ __all__ = [
 ]
 
 _HOMES = {
-    "PHYSICS": "config",
-    "EpisodeConfig": "config",
-    "Physics": "config",
-    "Push": "config",
-    "Randomisation": "config",
-    "EpisodeResult": "episode",
-    "EpisodeSpec": "episode",
-    "simulate": "episode",
+    "PHYSICS": "simulation.physics",
+    "EpisodeConfig": "episode.spec",
+    "EpisodeResult": "episode.result",
+    "EpisodeSpec": "episode.spec",
+    "Physics": "simulation.physics",
+    "Push": "episode.push",
+    "Randomisation": "simulation.randomisation",
     "SarahError": "errors",
+    "simulate": "episode.episode",
 }
 
 
@@ -50,4 +54,4 @@ def __getattr__(name: str) -> Any:
     return getattr(import_module(f"sarah.{_HOMES[name]}"), name)
 
 
-register_with_gymnasium()
+register_environments()

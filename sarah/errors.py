@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import reprlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 
 LONGEST_NAME = 100
@@ -58,6 +58,18 @@ def check_range(key: str, value: float | tuple[float, float], low: float, high: 
         raise ConfigurationError(
             f"{key} must be between {low:g} and {high:g}{unit and f' {unit}'}{order}, not {shortened(value)}"
         )
+
+
+def check_fields(key: str, config: object, plausible: Mapping[str, tuple[float, float, str]]) -> None:
+    """Refuse a configuration one of whose fields is out of its range.
+
+    :param key: what the names of the fields begin with
+    :param config: the configuration
+    :param plausible: lowest and highest value and unit of the fields, by name
+    :raises ConfigurationError: naming key, value and range
+    """
+    for name, (low, high, unit) in plausible.items():
+        check_range(f"{key}.{name}", getattr(config, name), low, high, unit)
 
 
 def shortened(value: object) -> str:

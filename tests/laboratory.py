@@ -8,9 +8,9 @@ import numpy as np
 import pybullet
 import pytest
 
-from sarah.description import PLATES, SIDES
-from sarah.engines import check_engine
 from sarah.errors import ConfigurationError
+from sarah.robot.description import PLATES, SIDES
+from sarah.simulation.engines import check_engine
 
 
 class BulletLaboratory:

@@ -6,9 +6,10 @@ from pathlib import Path
 import psutil
 import pytest
 
-from sarah.config import EpisodeConfig, Physics
-from sarah.episode import EpisodeSpec, simulate
+from sarah.episode.episode import simulate
+from sarah.episode.spec import EpisodeConfig, EpisodeSpec
 from sarah.files import replace_text, replacing
+from sarah.simulation.physics import Physics
 
 
 def test_a_file_keeps_its_content_until_the_new_one_is_complete(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ import pytest
 ROOT = Path(__file__).parent.parent
 PROGRAM = (
     "import sarah, sarah.agents.naf, sarah.urdf\n"
-    "from sarah.description import describe_robot\n"
+    "from sarah.robot.description import describe_robot\n"
     "print(sarah.__file__, describe_robot().standing_height, sorted(sarah.agents.naf.PRESETS))"
 )
 
@@ -23,7 +23,11 @@ PROGRAM = (
 def built(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     """An sdist of the checkout, and the wheel made from that sdist; built in a copy, without what others built."""
     copy, folder = tmp_path_factory.mktemp("copy") / "sarah", tmp_path_factory.mktemp("dist")
-    left_out = shutil.ignore_patterns(".git", ".venv", ".*_cache", ".hypothesis", "*.egg-info", "build", "dist", "runs")
+    everywhere = shutil.ignore_patterns(".git", ".venv*", ".*_cache", ".hypothesis", "*.egg-info", "build", "dist")
+
+    def left_out(folder: str, names: list[str]) -> set[str]:
+        return everywhere(folder, names) | ({"runs"} if Path(folder) == ROOT else set())
+
     shutil.copytree(ROOT, copy, symlinks=True, ignore=left_out)
     command = [sys.executable, "-m", "build", "--no-isolation", "--outdir", str(folder), str(copy)]
     subprocess.run(command, check=True, capture_output=True)

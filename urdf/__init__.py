@@ -1,1 +1,1 @@
-"""The robot as a xacro; see :mod:`sarah.description`."""
+"""The robot as a xacro; see :mod:`sarah.robot.description`."""

@@ -10,8 +10,9 @@ from typing import Annotated
 import tyro
 
 from sarah.cli.options import parse_options, run_command, with_engine
-from sarah.config import ALGORITHMS, EpisodeConfig, TrainingConfig
+from sarah.episode.spec import EpisodeConfig
 from sarah.errors import ConfigurationError, check_range
+from sarah.runs.config import ALGORITHMS, TrainingConfig
 
 COMMAND = "sarah-compare"
 MOST_SEEDS = 1000
@@ -78,17 +79,17 @@ def _compare(arguments: Sequence[str]) -> None:
         raise ConfigurationError(f"algorithms must be different ones, at least one, not {options.algorithms!r}")
     episode = with_engine(options.episode, options.engine)
     base = TrainingConfig(task=options.task, simulations=options.simulations, slots=options.slots, episode=episode)
-    from sarah.description import describe_robot
-    from sarah.engines import check_engine
-    from sarah.search import check_installed
+    from sarah.robot.description import describe_robot
+    from sarah.simulation.engines import check_engine
+    from sarah.training.optimisers import check_installed
 
     describe_robot(options.episode.dimensions)
     check_engine(episode.engine)
     for algo in options.algorithms:
         check_installed(algo)
-    from sarah.comparison import as_markdown, entries_of, race, standings, write_csv
-    from sarah.figures import draw_race
-    from sarah.workers import Workers
+    from sarah.episode.workers import Workers
+    from sarah.reports.race import as_markdown, entries_of, race, standings, write_csv
+    from sarah.reports.training_figures import draw_race
 
     seeds = range(options.first_seed, options.first_seed + options.seeds)
     entries = entries_of(options.algorithms, seeds, base, options.episodes, options.out)

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.options import changed_episodes, numbers, parse_options, run_command
-from sarah.config import EpisodeConfig
+from sarah.episode.spec import EpisodeConfig
+from sarah.episode.tasks import BALANCE, STEPPING, TASKS
 from sarah.errors import ConfigurationError, check_range, unknown_name
-from sarah.tasks import BALANCE, STEPPING, TASKS
 
 if TYPE_CHECKING:
-    from sarah.evaluation import Evaluation
-    from sarah.workers import Workers
+    from sarah.episode.evaluation import Evaluation
+    from sarah.episode.workers import Workers
 
 COMMAND = "sarah-eval"
 LARGEST_SEED = 2**32 - 1
@@ -81,7 +81,7 @@ def _evaluate(arguments: Sequence[str]) -> None:
     options = parse_options(EvalOptions, COMMAND, arguments, EvalOptions())
     task, algorithm, parameters, config = _subject(options)
     config = _changed(config, options, task)
-    from sarah.workers import Workers
+    from sarah.episode.workers import Workers
 
     with Workers(options.workers, options.scheduler) as workers:
         if options.robustness is not None:
@@ -107,8 +107,8 @@ def _evaluate(arguments: Sequence[str]) -> None:
 def _evaluation(
     task: str, parameters: tuple[float, ...], config: EpisodeConfig, options: EvalOptions, workers: Workers
 ) -> Evaluation:
-    from sarah.episode import EpisodeSpec
-    from sarah.evaluation import summarise
+    from sarah.episode.evaluation import summarise
+    from sarah.episode.spec import EpisodeSpec
 
     seeds = range(options.first_seed, options.first_seed + options.episodes)
     return summarise(workers.simulate_all([EpisodeSpec(parameters, seed, task, config) for seed in seeds]))
@@ -119,7 +119,7 @@ def _subject(options: EvalOptions) -> tuple[str, str | None, tuple[float, ...], 
     if (options.run is None) == (options.parameters is None):
         raise ConfigurationError("give either a run folder or --parameters")
     if options.run is not None:
-        from sarah.runs import RunFolder
+        from sarah.runs.run_folder import RunFolder
 
         run = RunFolder.open(options.run)
         training = run.config()
@@ -190,8 +190,8 @@ def _show_robustness(
     parameters: tuple[float, ...], config: EpisodeConfig, options: EvalOptions, workers: Workers
 ) -> None:
     """Print the table as Markdown, and write it and the polar plot."""
-    from sarah.figures import draw_survival
-    from sarah.robustness import FORCES, push_many, robustness_table
+    from sarah.reports.robustness import FORCES, push_many, robustness_table
+    from sarah.reports.training_figures import draw_survival
 
     folder, neutral = options.robustness, BALANCE.neutral
     assert folder is not None and neutral is not None

@@ -44,11 +44,11 @@ def _draw(arguments: Sequence[str]) -> None:
         raise ConfigurationError("give at least one run folder")
     if options.out is None and len(options.runs) > 1:
         raise ConfigurationError("several runs need a folder for their figures: --out DIR")
-    from sarah.runs import RunFolder
+    from sarah.runs.run_folder import RunFolder
 
     runs = [RunFolder.open(path) for path in options.runs]
     folder = options.out or runs[0].figures_path
-    from sarah.run_figures import draw_all_figures
+    from sarah.reports.all_figures import draw_all_figures
 
     for file in sorted(draw_all_figures(runs, folder)):
         print(file)

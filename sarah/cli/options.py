@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING, NoReturn, TypeVar
 
 import tyro
 
-from sarah.config import PHYSICS, EpisodeConfig
+from sarah.episode.spec import EpisodeConfig
+from sarah.episode.tasks import STEPPING
 from sarah.errors import ConfigurationError, SarahError, unknown_name
-from sarah.tasks import STEPPING
+from sarah.simulation.physics import PHYSICS
 
 if TYPE_CHECKING:
-    from sarah.choices import Choice
+    from sarah.runs.run_episodes import Choice
 
 OptionsType = TypeVar("OptionsType")
 USAGE_ERROR = 2
@@ -128,10 +129,10 @@ def episodes_of(subject: str, episode: str | None) -> tuple[list[Choice], Choice
         none is named
     :raises ConfigurationError: if there is no such thing
     """
-    from sarah.choices import choice_of_parameters, choices_of_run, choose
+    from sarah.runs.run_episodes import choice_of_parameters, choices_of_run, choose
 
     if Path(subject).is_dir():
-        from sarah.runs import RunFolder
+        from sarah.runs.run_folder import RunFolder
 
         choices = choices_of_run(RunFolder.open(Path(subject), unfinished=True))
         return choices, choose(choices, episode)
@@ -156,7 +157,7 @@ def changed_episodes(
     :param config: the settings
     :param stepping: P1 to P5 of the balance task, separated by commas
     :param push_newtons: force of every push
-    :param physics: name of a setting in :data:`~sarah.config.PHYSICS`
+    :param physics: name of a setting in :data:`~sarah.simulation.physics.PHYSICS`
     :param randomisation: whether to leave it on
     :param engine: of the physics
     :raises ConfigurationError: if one of them is not allowed

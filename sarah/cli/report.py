@@ -53,9 +53,9 @@ def _report(arguments: Sequence[str]) -> None:
     options = parse_options(ReportOptions, COMMAND, arguments, ReportOptions())
     if options.run is None:
         raise ConfigurationError("give a run folder")
-    from sarah.report import write_report
-    from sarah.runs import RunFolder
-    from sarah.workers import Workers
+    from sarah.episode.workers import Workers
+    from sarah.reports.report import write_report
+    from sarah.runs.run_folder import RunFolder
 
     run = RunFolder.open(options.run)
     path = options.out or run.report_path

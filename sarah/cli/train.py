@@ -16,15 +16,16 @@ import tyro
 
 from sarah.cli.interruption import Interruption
 from sarah.cli.options import parse_options, run_command, with_engine
-from sarah.config import EpisodeConfig, TrainingConfig
-from sarah.config_files import first_difference, read_config
+from sarah.episode.spec import EpisodeConfig
+from sarah.episode.tasks import BALANCE, STEPPING, TASKS
 from sarah.errors import ConfigurationError, RunFolderError, SarahError, TrainingInterruptedError
-from sarah.tasks import BALANCE, STEPPING, TASKS
+from sarah.runs.config import TrainingConfig
+from sarah.runs.config_files import first_difference, read_config
 
 if TYPE_CHECKING:
-    from sarah.runs import RunFolder
-    from sarah.training import Learned
-    from sarah.workers import Workers
+    from sarah.episode.workers import Workers
+    from sarah.runs.run_folder import RunFolder
+    from sarah.training.train import Learned
 
 COMMAND = "sarah-train"
 
@@ -72,13 +73,13 @@ def _train(arguments: Sequence[str]) -> None:
     config = dataclasses.replace(config, episode=with_engine(config.episode, options.engine))
     if options.from_run is not None and config.task != BALANCE.name:
         raise ConfigurationError(f"--from is for --task {BALANCE.name}, not {config.task!r}")
-    from sarah.description import describe_robot
+    from sarah.robot.description import describe_robot
 
     describe_robot(config.episode.dimensions)  # a bad dimension is refused before anything is written
-    from sarah.engines import check_engine
-    from sarah.runs import RunFolder, new_run_path
-    from sarah.search import check_installed
-    from sarah.workers import Workers
+    from sarah.episode.workers import Workers
+    from sarah.runs.run_folder import RunFolder, new_run_path
+    from sarah.simulation.engines import check_engine
+    from sarah.training.optimisers import check_installed
 
     check_installed(config.algo)
     check_engine(config.episode.engine)
@@ -98,7 +99,7 @@ def _train(arguments: Sequence[str]) -> None:
 
 def _resumed(path: Path, options: TrainOptions) -> RunFolder:
     """The run folder to go on with; warns if versions are not what they were."""
-    from sarah.runs import RunFolder
+    from sarah.runs.run_folder import RunFolder
     from sarah.versions import versions
 
     run = RunFolder.resumable(path)
@@ -121,7 +122,7 @@ def _resumed(path: Path, options: TrainOptions) -> RunFolder:
 
 def _learned(config: TrainingConfig, run: RunFolder, workers: Workers, picture_interval: int) -> Learned:
     """Train; whatever stops it, the message says how to go on."""
-    from sarah.training import train
+    from sarah.training.train import train
 
     go_on = f"go on with {COMMAND} --resume {shlex.quote(str(run.path))}"
     with Interruption(COMMAND) as interruption:
@@ -145,7 +146,7 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
     except argparse.ArgumentError:  # an option without its file, which the real parser reports
         return TrainOptions()
     if files.resume is not None:
-        from sarah.runs import RunFolder
+        from sarah.runs.run_folder import RunFolder
 
         return TrainOptions(RunFolder.resumable(files.resume).config())
     training = TrainingConfig() if files.config is None else read_config(TrainingConfig, files.config)
@@ -156,7 +157,7 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
 
 def _stepping_of(path: Path, episode: EpisodeConfig) -> EpisodeConfig:
     """Episode settings with what a First Training learned, and the robot that it learned on."""
-    from sarah.runs import RunFolder
+    from sarah.runs.run_folder import RunFolder
 
     run = RunFolder.open(path)
     learned = run.config()

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.options import parse_options, run_command
+from sarah.episode.tasks import BALANCE
 from sarah.errors import ConfigurationError
-from sarah.tasks import BALANCE
 
 if TYPE_CHECKING:
-    from sarah.runs import RunFolder
-    from sarah.transfer import Subject
+    from sarah.reports.transfer import Subject
+    from sarah.runs.run_folder import RunFolder
 
 COMMAND = "sarah-transfer"
 
@@ -63,15 +63,15 @@ def _transfer(arguments: Sequence[str]) -> None:
         raise ConfigurationError(f"episodes must be at least 1, not {options.episodes!r}")
     if options.first_seed < 0:
         raise ConfigurationError(f"first-seed must not be negative, not {options.first_seed!r}")
-    from sarah.engines import check_engine
-    from sarah.transfer import ENGINES
+    from sarah.reports.transfer import ENGINES
+    from sarah.simulation.engines import check_engine
 
     for engine in ENGINES:
         check_engine(engine)
-    from sarah.runs import RunFolder
-    from sarah.transfer import as_markdown, transfer
-    from sarah.transfer_figure import draw_transfer
-    from sarah.workers import Workers
+    from sarah.episode.workers import Workers
+    from sarah.reports.transfer import as_markdown, transfer
+    from sarah.reports.transfer_figure import draw_transfer
+    from sarah.runs.run_folder import RunFolder
 
     runs = [RunFolder.open(path) for path in options.runs]
     subjects = [_subject(run, options.push_newtons) for run in runs]
@@ -88,7 +88,7 @@ def _transfer(arguments: Sequence[str]) -> None:
 
 
 def _subject(run: RunFolder, push_newtons: float | None) -> Subject:
-    from sarah.transfer import Subject
+    from sarah.reports.transfer import Subject
 
     training = run.config()
     episode = training.episode

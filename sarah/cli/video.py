@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.options import changed_episodes, episodes_of, parse_options, run_command
+from sarah.episode.tasks import STEPPING, TASKS
 from sarah.errors import ConfigurationError
-from sarah.tasks import STEPPING, TASKS
 
 if TYPE_CHECKING:
-    from sarah.episode import EpisodeResult, EpisodeSpec
+    from sarah.episode.result import EpisodeResult
+    from sarah.episode.spec import EpisodeSpec
 
 COMMAND = "sarah-video"
 
@@ -71,14 +72,14 @@ def _film(arguments: Sequence[str]) -> None:
     options = parse_options(VideoOptions, COMMAND, arguments, VideoOptions())
     if options.subject is None or options.out is None:
         raise ConfigurationError("give a run folder or parameters, and the file to write")
-    from sarah.video import FRAMES_PER_SECOND, check_path, frame_times, frames, write_video
+    from sarah.pictures.video import FRAMES_PER_SECOND, check_path, frame_times, frames, write_video
 
     check_path(options.out)
     spec = _spec(options, options.subject)
     from tqdm import tqdm
 
-    from sarah.description import describe_robot
-    from sarah.episode import simulate
+    from sarah.episode.episode import simulate
+    from sarah.robot.description import describe_robot
 
     result = simulate(spec, record_trace=True)
     assert result.trace is not None
@@ -107,7 +108,7 @@ def _spec(options: VideoOptions, subject: str) -> EpisodeSpec:
 
 def _caption(spec: EpisodeSpec, result: EpisodeResult) -> str:
     """What is filmed, in one line."""
-    from sarah.choices import ENDINGS
+    from sarah.episode.ending import ENDINGS
 
     names = TASKS[spec.task].parameter_names
     learned = ", ".join(f"{name} {value:.2f}" for name, value in zip(names, spec.parameters, strict=True))

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.options import episodes_of, parse_options, run_command, with_engine
-from sarah.config import TRAINED_STEPPING
+from sarah.episode.spec import TRAINED_STEPPING
 from sarah.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from sarah.choices import Choice
+    from sarah.runs.run_episodes import Choice
 
 COMMAND = "sarah-view"
 DEFAULT_PORT = 8080
@@ -69,7 +69,7 @@ def _view(arguments: Sequence[str]) -> None:
     choices, chosen = episodes_of(options.subject, options.episode)
     if options.engine is not None:
         choices, chosen = [_in_engine(choice, options.engine) for choice in choices], _in_engine(chosen, options.engine)
-    from sarah.engines import check_engine
+    from sarah.simulation.engines import check_engine
 
     check_engine(chosen.spec.config.engine)
     if options.seed is not None:

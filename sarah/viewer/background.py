@@ -6,9 +6,11 @@ import threading
 from collections.abc import Callable
 from typing import NamedTuple
 
-from sarah.episode import Episode, EpisodeResult, EpisodeSpec
+from sarah.episode.episode import Episode
+from sarah.episode.result import EpisodeResult
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import TASKS
 from sarah.errors import SarahError
-from sarah.tasks import TASKS
 
 TICKS_BETWEEN_LOOKS = 50
 """Control ticks after which progress is told, and whether something newer is wished for is looked up."""

@@ -11,11 +11,13 @@ from typing import Any, NamedTuple
 
 import viser
 
-from sarah.choices import ENDINGS, Choice
-from sarah.description import describe_robot
-from sarah.episode import EpisodeResult, EpisodeSpec
-from sarah.tasks import BALANCE, STEPPING, Task
-from sarah.trace import Trace
+from sarah.episode.ending import ENDINGS
+from sarah.episode.result import EpisodeResult
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BALANCE, STEPPING, Task
+from sarah.episode.trace import Trace
+from sarah.robot.description import describe_robot
+from sarah.runs.run_episodes import Choice
 from sarah.viewer.background import BackgroundSimulation, Wish
 from sarah.viewer.playback import Playback
 from sarah.viewer.plots import Plots

@@ -9,9 +9,9 @@ import numpy as np
 import viser
 from viser import uplot
 
-from sarah.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
-from sarah.pattern_generator import RATE_SCALE
-from sarah.trace import Trace
+from sarah.control.pattern_generator import RATE_SCALE
+from sarah.episode.trace import Trace
+from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.viewer.scenario import Scenario
 from sarah.viewer.scene import PAD_COLOURS
 

@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import viser
 
-from sarah.description import describe_robot
-from sarah.episode import EpisodeSpec, simulate
+from sarah.episode.episode import simulate
+from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError
+from sarah.robot.description import describe_robot
 from sarah.viewer.playback import FRAMES_PER_SECOND
 from sarah.viewer.scene import RobotScene
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from sarah.config import EpisodeConfig, Push
-from sarah.episode import EpisodeSpec
-from sarah.randomisation import draw_push
-from sarah.tasks import BALANCE
+from sarah.episode.push import Push, draw_push
+from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.tasks import BALANCE
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ import viser
 import yourdfpy
 from viser.extras import ViserUrdf
 
-from sarah.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
-from sarah.description import ACTUATED_JOINTS, PASSIVE_JOINTS, RobotDescription
-from sarah.trace import Trace
+from sarah.episode.trace import Trace
+from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
+from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, RobotDescription
 
 Colour = tuple[int, int, int]
 
@@ -44,10 +44,10 @@ class RobotScene:
         self._server = server
         self._scene = server.scene
         self._model = yourdfpy.URDF.load(io.StringIO(robot.urdf), load_meshes=False)
-        self._order = [(*ACTUATED_JOINTS, *PASSIVE_JOINTS).index(name) for name in self._model.actuated_joint_names]
+        self._order = [(*ACTUATED_JOINTS, *ANKLE_JOINTS).index(name) for name in self._model.actuated_joint_names]
         self._torso = self._scene.add_frame("/robot", show_axes=False, position=(0.0, 0.0, robot.standing_height))
         self._robot = ViserUrdf(server, self._model, root_node_name="/robot")
-        self._loads = [self._add_load(robot, *pad) for pad in zip(PASSIVE_JOINTS, PAD_COLOURS, strict=True)]
+        self._loads = [self._add_load(robot, *pad) for pad in zip(ANKLE_JOINTS, PAD_COLOURS, strict=True)]
         self._support = self._scene.add_cylinder(
             "/support", radius=0.17, height=0.004, color=channels(PHASE_COLOURS["shift"]), opacity=0.7, visible=False
         )

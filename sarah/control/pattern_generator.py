@@ -1,0 +1,233 @@
+"""The sensor-driven central pattern generator: sensor readings in, joint targets out.
+
+A reconstruction of the paper's Figure 3, which is not public. The robot rocks from foot to foot about the torso's
+y axis, and the sensors, not a clock, decide when each phase of a step ends::
+
+    STAND   for the first second                                                             -> SHIFT
+    SHIFT   the swing leg pushes the robot over the support leg                              -> LIFT
+            until tilt > P2, rate > 0.2 P3 and the support foot is loaded, or 0.5 (1 + P5) s
+    LIFT    the swing leg retracts                                                           -> LAND
+            until rate < -P1 (the robot rocks back), or 0.5 (1 + P4) s
+    LAND    both legs straight                                                               -> SHIFT, legs swapped
+            until the swing foot is loaded, or 0.5 (1 + P5) s
+
+Tilt is the low-passed lateral acceleration and rate the low-passed angular rate about y, both positive towards the
+support leg; the hip law's abduction, which the torso does not feel, is added to both. The time-outs are slow on
+purpose: with faster ones a learner uses them as an open-loop clock and ignores the sensors (benchmarks/clock.py
+compares 0.3 s and 0.5 s). Plain floats only: it runs once per control tick, and on a robot.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from sarah.control.hip_law import LARGEST_ACCELERATION, HipLaw
+from sarah.robot.filters import LowPass, ramped
+from sarah.robot.reading import SensorReading, Side
+
+PAPER_PARAMETERS = (0.4, 1.3, 0.1, 1.0, 1.0)
+"""Where the paper's P1-P3 settled; its P4 and P5 did not matter and are set to 1 here."""
+
+STAND_SECONDS = 1.0
+"""How long the robot stands before it begins to step, in s; the paper's."""
+MINIMUM_PHASE_SECONDS = 0.04
+TIME_OUT_SECONDS = 0.5
+RATE_SCALE = 0.2
+"""Of P3 in the condition that ends SHIFT."""
+PUSH_LENGTH = 0.008
+"""How far the swing leg extends in SHIFT, in m."""
+LIFT_LENGTH = 0.030
+"""How far the swing leg retracts in LIFT, in m."""
+LEG_SPEED = 1.0
+"""Of the ramp that leg length targets follow, in m/s."""
+TILT_TIME_CONSTANT = 0.10
+RATE_TIME_CONSTANT = 0.01
+ABDUCTION_TILT = 150.0
+"""How much tilt a radian of the hip law's abduction, without its constant, counts for, in m/s^2."""
+ABDUCTION_RATE_SHARE = 0.2
+"""How much of the abduction's own rate counts as rate. Both are measured: benchmarks/stepping_and_hips.py."""
+
+
+class Phase(Enum):
+    """Of the state machine."""
+
+    STAND = "stand"
+    SHIFT = "shift"
+    LIFT = "lift"
+    LAND = "land"
+
+
+@dataclass(frozen=True)
+class SteppingParameters:
+    """The five parameters of the first training, each within 0 and 2.
+
+    :param P1: rate of rocking back at which the swing foot is put down, in rad/s
+    :param P2: tilt (lateral acceleration) over the support leg at which the swing foot may leave, in m/s^2
+    :param P3: five times the rate towards the support leg at which it may leave, in rad/s
+    :param P4: stretches the time-out of LIFT
+    :param P5: stretches the time-outs of SHIFT and LAND
+    """
+
+    P1: float
+    P2: float
+    P3: float
+    P4: float
+    P5: float
+
+
+@dataclass(frozen=True)
+class PhaseChange:
+    """What ended a phase.
+
+    :param ended: the phase that ended
+    :param by_sensors: whether its sensor condition ended it, and not its time-out
+    :param is_step: whether a step was completed: a swing foot that was off the floor has landed
+    """
+
+    ended: Phase
+    by_sensors: bool
+    is_step: bool = False
+
+
+class PatternGenerator:
+    """The state machine. Call :meth:`tick` once per control tick with a fresh reading.
+
+    :param parameters: P1 to P5
+    :param pad_threshold: load above which a foot counts as carrying, in N
+    :param dt: control period in s
+    :param hips: the hip law; without one the hips are locked, as in the first training
+    """
+
+    support: Side
+    """The leg that carries the robot."""
+    swing: Side
+    """The other one."""
+
+    def __init__(
+        self,
+        parameters: SteppingParameters,
+        pad_threshold: float = 30.0,
+        dt: float = 0.01,
+        hips: HipLaw | None = None,
+    ) -> None:
+        self.parameters = parameters
+        self.hips = hips
+        self.phase = Phase.STAND
+        self.support, self.swing = Side.RIGHT, Side.LEFT
+        self._pad_threshold = pad_threshold
+        self._dt = dt
+        self._ticks_in_phase = 0
+        self._swing_foot_was_off = False
+        self._stable_x = LowPass(TILT_TIME_CONSTANT, dt)
+        self._rate_y = LowPass(RATE_TIME_CONSTANT, dt)
+        self._lengths = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
+        self._loads = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
+
+    @property
+    def stable_x(self) -> float:
+        """Low-passed lateral acceleration, in m/s^2 (the paper's stable_X)."""
+        return self._stable_x.value
+
+    @property
+    def tilt(self) -> float:
+        """Lateral acceleration towards the support leg, in m/s^2: leaning over it is positive.
+
+        Abduction keeps the torso upright while the legs lean, and counts as tilt too.
+        """
+        sway = 0.0 if self.hips is None else self.hips.sway
+        return self.support.value * (ABDUCTION_TILT * sway - self._stable_x.value)
+
+    @property
+    def rate(self) -> float:
+        """Angular rate about y towards the support leg, in rad/s; the abduction's has a share in it."""
+        abduction_rate = 0.0 if self.hips is None else self.hips.abduction_rate
+        return self.support.value * (self._rate_y.value + ABDUCTION_RATE_SHARE * abduction_rate)
+
+    def sense(self, reading: SensorReading) -> None:
+        """Filter one reading without acting on it, as while standing. One that is not finite is passed over."""
+        if not reading.is_finite:
+            return
+        self._stable_x(max(-LARGEST_ACCELERATION, min(LARGEST_ACCELERATION, reading.acceleration[0])))
+        self._rate_y(reading.angular_rate[1])
+        left_fore, left_hind, right_fore, right_hind = reading.pressures
+        self._loads[Side.LEFT] = left_fore + left_hind
+        self._loads[Side.RIGHT] = right_fore + right_hind
+        if self.hips is not None:
+            self.hips.sense(reading)
+
+    def tick(self, reading: SensorReading) -> PhaseChange | None:
+        """Advance by one control tick.
+
+        :param reading: what the sensors say now
+        :return: the phase change that this tick made, if it made one; :attr:`targets` follow the new phase
+        """
+        self.sense(reading)
+        self._ticks_in_phase += 1
+        if self.phase in (Phase.LIFT, Phase.LAND) and not self._is_loaded(self.swing):
+            self._swing_foot_was_off = True
+        change = self._phase_change()
+        if change is not None:
+            self._enter_next_phase()
+        self._ramp_legs()
+        if self.hips is not None:
+            self.hips.tick(self.swing)
+        return change
+
+    @property
+    def targets(self) -> tuple[float, float, float, float, float, float]:
+        """Joint targets in the order of ``ACTUATED_JOINTS``."""
+        left, right = self._lengths[Side.LEFT], self._lengths[Side.RIGHT]
+        if self.hips is None:
+            return (0.0, 0.0, 0.0, 0.0, left, right)
+        abduction, flexion = self.hips.abduction, self.hips.flexion
+        return (abduction, abduction, flexion[Side.LEFT], flexion[Side.RIGHT], left, right)
+
+    def _phase_change(self) -> PhaseChange | None:
+        elapsed = self._ticks_in_phase * self._dt
+        if self.phase is Phase.STAND:
+            return PhaseChange(Phase.STAND, by_sensors=False)
+        if elapsed < MINIMUM_PHASE_SECONDS - self._dt / 2:
+            return None
+        by_sensors = self._condition_holds()
+        if not by_sensors and elapsed < self.time_out(self.phase) - self._dt / 2:
+            return None
+        is_step = self.phase is Phase.LAND and by_sensors and self._swing_foot_was_off
+        return PhaseChange(self.phase, by_sensors, is_step)
+
+    def _condition_holds(self) -> bool:
+        """Whether the sensors end the present phase."""
+        parameters = self.parameters
+        if self.phase is Phase.SHIFT:
+            is_over_support = self.tilt > parameters.P2 and self.rate > RATE_SCALE * parameters.P3
+            return is_over_support and self._is_loaded(self.support)
+        if self.phase is Phase.LIFT:
+            return self.rate < -parameters.P1
+        return self._is_loaded(self.swing)
+
+    def time_out(self, phase: Phase) -> float:
+        """Longest duration of a phase, in s.
+
+        :param phase: SHIFT, LIFT or LAND
+        """
+        stretch = self.parameters.P4 if phase is Phase.LIFT else self.parameters.P5
+        return TIME_OUT_SECONDS * (1.0 + stretch)
+
+    def _enter_next_phase(self) -> None:
+        if self.phase is Phase.LAND:
+            self.support, self.swing = self.swing, self.support
+        self.phase = {Phase.SHIFT: Phase.LIFT, Phase.LIFT: Phase.LAND}.get(self.phase, Phase.SHIFT)
+        self._ticks_in_phase = 0
+        if self.phase is Phase.SHIFT:
+            self._swing_foot_was_off = False
+
+    def _is_loaded(self, side: Side) -> bool:
+        return self._loads[side] > self._pad_threshold
+
+    def _ramp_legs(self) -> None:
+        """Move both leg targets towards where the phase wants them; positive lengths retract."""
+        swing_length = -PUSH_LENGTH if self.phase is Phase.SHIFT else LIFT_LENGTH if self.phase is Phase.LIFT else 0.0
+        largest = LEG_SPEED * self._dt
+        lengths, swing, support = self._lengths, self.swing, self.support
+        lengths[swing] = ramped(lengths[swing], swing_length, largest)
+        lengths[support] = ramped(lengths[support], 0.0, largest)

@@ -1,0 +1,139 @@
+"""Many episodes at once, as one environment of stable-baselines3 that answers in the order it was asked.
+
+Stepping many environments side by side waits for the slowest of each round, and episodes last from 2 to 30 s. Here a
+fixed number of episodes is in flight instead: a step hands one more in, and waits only for the oldest. What it returns
+is therefore the outcome of an action some steps before, and :class:`LateReplayBuffer` and :class:`LateRankReplayBuffer`
+store it with that action. The order of the outcomes, and so the training, does not depend on who simulates them.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import gymnasium
+import numpy as np
+from stable_baselines3.common.vec_env import VecEnv
+from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices
+
+from sarah.envs.sarah_env import SarahEnv, draw_seed, observation_from, parameters_from
+from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.tasks import TASKS
+from sarah.episode.workers import Executor, Job, run, stand
+from sarah.robot.reading import SensorReading
+
+
+class _Running(NamedTuple):
+    spec: EpisodeSpec
+    following: EpisodeSpec | None
+    observation: np.ndarray
+    action: np.ndarray
+    job: Job
+
+
+class EpisodeVecEnv(VecEnv):
+    """Episodes of one :class:`~sarah.envs.sarah_env.SarahEnv`, several of them in flight.
+
+    Step k hands in the episode of its action and returns the outcome of step ``k - slots + 1``: its return is the
+    reward, and ``info["transition"]`` holds its observation, action and last observation. The first ``slots - 1``
+    steps have no outcome, and an empty ``info``. The last ``slots - 1`` steps hand nothing in.
+
+    :param task: ``"stepping"`` or ``"balance"``
+    :param config: settings of the episodes
+    :param episodes: how many there are; they take ``episodes + slots - 1`` steps
+    :param slots: how many are in flight
+    :param workers: that simulate them
+    """
+
+    def __init__(self, task: str, config: EpisodeConfig, episodes: int, slots: int, workers: Executor) -> None:
+        self._env = SarahEnv(task, config)
+        super().__init__(1, self._env.observation_space, self._env.action_space)
+        self._task = task
+        self._config = config
+        self._episodes = episodes
+        self._slots = slots
+        self._workers = workers
+        self._running: deque[_Running] = deque()
+        self._standing: deque[tuple[EpisodeSpec, Callable[[], SensorReading]]] = deque()
+
+    def reset(self) -> np.ndarray:
+        """Begin anew, with the episodes that follow from the seed of :meth:`seed`.
+
+        :return: the observation of the first, of shape (1, 16)
+        """
+        if self._seeds[0] is not None:  # as SarahEnv: without a new seed its generator goes on
+            self._env.np_random = np.random.default_rng(self._seeds[0])
+        self._reset_seeds()
+        self._running.clear()
+        self._standing.clear()
+        self._steps = self._begun = 0
+        for _ in range(min(self._slots, self._episodes)):
+            spec = self._next_spec()
+            self._standing.append((spec, self._workers.submit(stand, spec).result))
+        self._observe()
+        return self._observation[None]
+
+    def step_async(self, actions: np.ndarray) -> None:
+        """Hand in the episode of an action, unless there have been enough.
+
+        :param actions: one action, of shape (1, number of parameters)
+        """
+        self._steps += 1
+        if self._steps > self._episodes:
+            return
+        spec, _ = self._standing.popleft()
+        spec = replace(spec, parameters=parameters_from(actions[0], TASKS[self._task]))
+        # Whoever runs it then lets the episode stand that the agent acts on when this one's outcome is there.
+        following = self._next_spec() if self._begun < self._episodes else None
+        job = self._workers.submit(run, spec, following)
+        self._running.append(_Running(spec, following, self._observation, actions[0].copy(), job))
+
+    def step_wait(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
+        """Wait for the oldest episode in flight, if there are as many as there are slots, and for the next to stand."""
+        reward, info = 0.0, dict[str, Any]()
+        if self._steps >= self._slots:
+            reward, info = self._oldest_outcome()
+        self._observe()
+        return self._observation[None], np.array([reward], np.float32), np.array([True]), [info]
+
+    def _next_spec(self) -> EpisodeSpec:
+        """Of the next episode, which stands before its parameters are known: until then any do."""
+        self._begun += 1
+        anything = (0.0,) * len(TASKS[self._task].parameter_names)
+        return EpisodeSpec(anything, draw_seed(self._env.np_random), self._task, self._config)
+
+    def _observe(self) -> None:
+        """See how the next episode stands; after the last one the observation stays."""
+        if self._standing:
+            _, reading = self._standing[0]
+            self._observation = observation_from(reading())
+
+    def _oldest_outcome(self) -> tuple[float, dict[str, Any]]:
+        spec, following, observation, action, job = self._running.popleft()
+        result, reading, following_reading = job.result()
+        if following is not None:
+            self._standing.append((following, lambda: following_reading))
+        transition = (observation, action, observation_from(reading))
+        info = {"seed": spec.seed, "parameters": spec.parameters, "transition": transition, **result.fields()}
+        return result.episode_return, info
+
+    def close(self) -> None:
+        """Nothing is left open: the workers belong to whoever made them."""
+
+    def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
+        """An attribute of the environment, as a list of one."""
+        return [getattr(self._env, attr_name)]
+
+    def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
+        """Refused: an episode's settings are those of its specification."""
+        raise NotImplementedError("episodes are simulated elsewhere: make another environment instead")
+
+    def env_method(self, method_name: str, *args: Any, indices: VecEnvIndices = None, **kwargs: Any) -> list[Any]:
+        """Refused, as :meth:`set_attr`."""
+        raise NotImplementedError("episodes are simulated elsewhere: there is no environment to call")
+
+    def env_is_wrapped(self, wrapper_class: type[gymnasium.Wrapper], indices: VecEnvIndices = None) -> list[bool]:
+        """No wrapper is around the episodes."""
+        return [False]

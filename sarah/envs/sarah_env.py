@@ -1,0 +1,141 @@
+"""The gymnasium environments of the two trainings: one episode of the robot is one step of the agent."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import gymnasium
+import numpy as np
+
+from sarah.episode.episode import Episode
+from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeConfig
+from sarah.episode.tasks import TASKS, Task
+from sarah.errors import ConfigurationError, SimulationError, unknown_name
+from sarah.robot.reading import SensorReading
+from sarah.simulation.simulator import GRAVITY
+
+if TYPE_CHECKING:
+    from sarah.simulation.renderer import Renderer
+
+OBSERVATION_BOUND = 5.0
+OBSERVATION_SCALES = (*(GRAVITY,) * 3, *(1.0,) * 3, *(100.0,) * 4, *(1.0,) * 4, *(0.1,) * 2)
+"""What each signal is divided by to be of order 1, in SI units."""
+
+
+class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
+    """Choose the task's parameters once, and see what comes of it.
+
+    ``reset`` lets the robot stand for one second, ``step`` runs the pattern generator to the episode's end and
+    always terminates. The observation is the 16 sensor signals after standing, each divided by its
+    ``OBSERVATION_SCALES`` and clipped; the action is P1 to P5, or V1 to V4, with the box of the parameters scaled to
+    [-1, 1]; the reward is the episode's return. ``info`` holds the episode's seed, and after the step every field of
+    :class:`~sarah.episode.result.EpisodeResult` and the parameters.
+
+    :param task: ``"stepping"``: choose P1 to P5; ``"balance"``: choose V1 to V4 and be pushed
+    :param config: settings of the episodes; the defaults if ``None``
+    :param render_mode: ``"rgb_array"``, or ``None``
+    """
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 1}
+
+    def __init__(
+        self, task: str = "stepping", config: EpisodeConfig | None = None, render_mode: str | None = None
+    ) -> None:
+        if task not in TASKS:
+            raise ConfigurationError(unknown_name("task", task, TASKS))
+        self.task = TASKS[task]
+        self.observation_space = gymnasium.spaces.Box(-OBSERVATION_BOUND, OBSERVATION_BOUND, (16,), np.float32)
+        self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(self.task.parameter_names),), np.float32)
+        self.config = config or EpisodeConfig()
+        self.render_mode = render_mode
+        self._episode: Episode | None = None
+        self._renderer: Renderer | None = None
+        self._seed = 0
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        """Build a new world and stand for one second.
+
+        :param seed: of the generator that draws the episodes' seeds; ``info["seed"]`` is the one drawn, with which
+            :func:`sarah.simulate` repeats the episode
+        :param options: none are known
+        """
+        super().reset(seed=seed)
+        self._close_episode()
+        self._seed = draw_seed(self.np_random)
+        self._episode = Episode(self.config, self._seed, self.task)
+        return observation_from(self._episode.stand()), {"seed": self._seed}
+
+    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        """Run the pattern generator to the episode's end.
+
+        :param action: of the task, scaled to [-1, 1]
+        :raises ConfigurationError: if the action is not finite or out of its box, or the episode is over
+        """
+        if self._episode is None or self._episode.termination is not None:
+            raise ConfigurationError("the episode is over: call reset before step")
+        parameters = parameters_from(action, self.task)
+        result = self._episode.run(parameters)
+        info = {"seed": self._seed, "parameters": parameters, **result.fields()}
+        return observation_from(self._episode.last_reading), result.episode_return, True, False, info
+
+    def render(self) -> np.ndarray | None:
+        """Draw the robot as it stands now: uint8 of shape (480, 640, 3).
+
+        The picture of :mod:`sarah.pictures.video` without what is written over it, so that others can write their own.
+        """
+        if self.render_mode is None or self._episode is None:
+            return None
+        if self._renderer is None:
+            from sarah.simulation.renderer import Renderer
+
+            self._renderer = Renderer(self._episode.robot)
+        return self._renderer.draw_simulator(self._episode.simulation)
+
+    def close(self) -> None:
+        """Give the physics engine's resources back."""
+        self._close_episode()
+        if self._renderer is not None:
+            self._renderer.close()
+            self._renderer = None
+
+    def _close_episode(self) -> None:
+        if self._episode is not None:
+            self._episode.close()
+            self._episode = None
+
+
+def draw_seed(generator: np.random.Generator) -> int:
+    """Draw the seed of a training's next episode.
+
+    :param generator: of the environment
+    """
+    return int(generator.integers(FIRST_TRAINING_SEED, 2**32))
+
+
+def observation_from(reading: SensorReading) -> np.ndarray:
+    """Turn 16 sensor signals into an observation.
+
+    :param reading: in SI units
+    :return: float32 of shape (16,), of order 1
+    """
+    signals = (*reading.acceleration, *reading.angular_rate, *reading.pressures, *reading.joints)
+    if not reading.is_finite:
+        raise SimulationError(f"an observation must be finite, not {reading!r}")
+    scaled = np.array(signals) / OBSERVATION_SCALES
+    return np.clip(scaled, -OBSERVATION_BOUND, OBSERVATION_BOUND).astype(np.float32)
+
+
+def parameters_from(action: np.ndarray, task: Task) -> tuple[float, ...]:
+    """Turn an action into a task's parameters.
+
+    :param action: one number within [-1, 1] for each parameter
+    :param task: whose parameters
+    :raises ConfigurationError: if the action is not finite or out of its box
+    """
+    values = np.asarray(action, dtype=float)
+    count = len(task.parameter_names)
+    if values.shape != (count,) or not (np.abs(values) <= 1.0).all():
+        raise ConfigurationError(f"an action must be {count} numbers within -1 and 1, not {action!r}")
+    return tuple(float(task.low + task.width * (value + 1.0) / 2.0) for value in values)

@@ -1,0 +1,76 @@
+"""Step detection: steps per second, sole clearance, and how much of the gait the sensors drive."""
+
+from __future__ import annotations
+
+from collections import deque
+from statistics import median
+
+from sarah.control.pattern_generator import Phase, PhaseChange
+
+WINDOW_SECONDS = 2.0
+"""Over which steps per second are counted."""
+SHORTEST_WINDOW_SECONDS = 0.5
+"""What the time since the start counts as at least."""
+
+
+class GaitRecord:
+    """Follows one episode's gait. Ticks are control ticks since the pattern generator's start.
+
+    :param control_rate: control ticks per second
+    """
+
+    def __init__(self, control_rate: int) -> None:
+        self.steps = 0
+        self._control_rate = control_rate
+        self._window = round(WINDOW_SECONDS * control_rate)
+        self._shortest_window = round(SHORTEST_WINDOW_SECONDS * control_rate)
+        self._recent: deque[int] = deque()
+        self._swing_height = 0.0
+        self._clearances: list[float] = []
+        self._ends = {Phase.SHIFT: 0, Phase.LIFT: 0, Phase.LAND: 0}
+        self._ends_by_sensors = {Phase.SHIFT: 0, Phase.LIFT: 0, Phase.LAND: 0}
+
+    def swing(self, sole_height: float) -> None:
+        """Note how high the swing foot's lowest sole contact is, while a foot swings.
+
+        :param sole_height: over the floor, in m
+        """
+        self._swing_height = max(self._swing_height, sole_height)
+
+    def phase_change(self, tick: int, change: PhaseChange) -> None:
+        """Note the end of a phase, and the step that it may complete.
+
+        :param tick: in which the phase ended, from 0
+        :param change: what the pattern generator reported
+        """
+        if change.ended is Phase.STAND:
+            return
+        self._ends[change.ended] += 1
+        self._ends_by_sensors[change.ended] += change.by_sensors
+        if change.is_step:
+            self.steps += 1
+            self._recent.append(tick)
+            self._clearances.append(self._swing_height)
+        if change.ended is Phase.LAND:
+            self._swing_height = 0.0
+
+    def steps_per_second(self, ticks: int) -> float:
+        """The f of equation 2: steps of the last 2 s; at first, of the time that has passed, at least 0.5 s.
+
+        :param ticks: that have passed; must not run backwards
+        """
+        while self._recent and self._recent[0] < ticks - self._window:
+            self._recent.popleft()
+        return len(self._recent) * self._control_rate / max(self._shortest_window, min(self._window, ticks))
+
+    def event_driven(self, phase: Phase) -> float:
+        """Share of a phase's ends that its sensor condition made, and not its time-out; 0 if it never ended.
+
+        :param phase: SHIFT, LIFT or LAND
+        """
+        return self._ends_by_sensors[phase] / self._ends[phase] if self._ends[phase] else 0.0
+
+    @property
+    def sole_clearance(self) -> float:
+        """Median over the steps of the largest height of the swing foot's lowest sole contact, in m."""
+        return median(self._clearances) if self._clearances else 0.0

@@ -1,0 +1,139 @@
+"""An episode as a video: the robot from its front, a close look at its feet, and what the pattern generator does."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, ImageColor
+
+from sarah.episode.trace import Trace
+from sarah.errors import ConfigurationError
+from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
+from sarah.pictures.overlay import Overlay
+from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, RobotDescription
+from sarah.simulation.renderer import Renderer
+from sarah.simulation.scenery import STANDARD_CAMERA, Camera, View
+
+SUFFIXES = (".mp4", ".gif")
+WIDTH, HEIGHT = 1024, 576
+SAMPLES = 2 / 3
+"""Of the robot along each side of a pixel: most of a frame's time goes into them."""
+FEET_CAMERA = Camera(height=0.11, distance=0.85, yaw=180.0, pitch=-4.0)
+FEET_WIDTH, FEET_HEIGHT, FEET_MARGIN = 280, 165, 20
+"""Of the close look at the feet, in the lower right corner, in pixels."""
+FRAMES_PER_SECOND = {".mp4": 25.0, ".gif": 20.0}
+GIF_SIZE = (640, 360)
+"""Smaller, for a GIF is big."""
+GIF_COLOURS = 200
+
+
+def frame_times(begin: float, end: float, frames_per_second: float, speed: float = 1.0) -> np.ndarray:
+    """Simulated times of the frames of a video, in s.
+
+    :param begin: of the first one
+    :param end: that none is behind
+    :param frames_per_second: of the video
+    :param speed: of the video: 0.5 shows everything half as fast
+    """
+    count = int((end - begin) * frames_per_second / speed + 1e-6) + 1
+    return begin + np.arange(count) * speed / frames_per_second
+
+
+def frames(trace: Trace, robot: RobotDescription, times: Iterable[float], caption: str = "") -> Iterator[Image.Image]:
+    """Draw an episode; only the frames that are asked for.
+
+    :param trace: of the episode
+    :param robot: that was simulated
+    :param times: of the frames, in s
+    :param caption: to write below
+    :return: RGB pictures of 1024 x 576 pixels
+    """
+    renderer = Renderer(robot, SAMPLES)
+    try:
+        overlay = Overlay(trace, View(WIDTH, HEIGHT, STANDARD_CAMERA), caption)
+        for time in times:
+            tick = trace.tick_at(time)
+            joints = dict(zip(ACTUATED_JOINTS + ANKLE_JOINTS, (*trace.joints[tick], *trace.ankles[tick]), strict=True))
+            pose = (tuple(trace.position[tick]), tuple(trace.orientation[tick]), joints)
+            picture = renderer.draw(*pose, WIDTH, HEIGHT)
+            feet = renderer.draw(*pose, FEET_WIDTH, FEET_HEIGHT, FEET_CAMERA)
+            bottom, right = HEIGHT - FEET_MARGIN, WIDTH - FEET_MARGIN
+            top, left = bottom - FEET_HEIGHT, right - FEET_WIDTH
+            picture[top - 2 : bottom + 2, left - 2 : right + 2] = 170
+            picture[top:bottom, left:right] = feet
+            frame = Image.fromarray(picture)
+            overlay.draw(frame, tick)
+            yield frame
+    finally:
+        renderer.close()
+
+
+def check_path(path: Path) -> None:
+    """Refuse what no video can be written to, before it is drawn.
+
+    :param path: of the file
+    :raises ConfigurationError: if it is neither MP4 nor GIF, its folder is not there, or the extra is not installed
+    """
+    if path.suffix not in SUFFIXES:
+        raise ConfigurationError(f"a video must end in {' or '.join(SUFFIXES)}, not {path.name!r}")
+    if not path.parent.is_dir():
+        raise ConfigurationError(f"cannot write {path}: folder {path.parent} does not exist")
+    if path.suffix == ".mp4":
+        try:
+            import imageio_ffmpeg  # noqa: F401
+        except ImportError:
+            raise ConfigurationError("MP4 needs the extra video: pip install 'sarah[video]'") from None
+
+
+def write_video(pictures: Iterable[Image.Image], path: Path) -> None:
+    """Write frames as MP4 (H.264) or as GIF that repeats, which is smaller.
+
+    The file appears when it is complete.
+
+    :param pictures: of 1024 x 576 pixels, as many per second as :data:`FRAMES_PER_SECOND` says
+    :param path: of the file
+    """
+    unfinished = path.with_name(f".{path.stem}.unfinished{path.suffix}")
+    try:
+        (_write_mp4 if path.suffix == ".mp4" else _write_gif)(pictures, unfinished)
+        os.replace(unfinished, path)
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+def _write_mp4(pictures: Iterable[Image.Image], path: Path) -> None:
+    from imageio_ffmpeg import write_frames
+
+    fps = FRAMES_PER_SECOND[".mp4"]
+    options = ["-preset", "veryfast", "-tune", "animation", "-movflags", "+faststart", "-threads", "1"]
+    writer = write_frames(path, (WIDTH, HEIGHT), fps=fps, codec="libx264", quality=6, output_params=options)
+    writer.send(None)
+    try:
+        for picture in pictures:
+            writer.send(picture.tobytes())
+    finally:
+        writer.close()
+
+
+def _write_gif(pictures: Iterable[Image.Image], path: Path) -> None:
+    shrunk = [picture.resize(GIF_SIZE, Image.Resampling.LANCZOS) for picture in pictures]
+    palette = _palette(shrunk)
+    first, *others = (picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in shrunk)
+    first.save(path, save_all=True, append_images=others, duration=round(1000 / FRAMES_PER_SECOND[".gif"]), loop=0)
+
+
+def _palette(pictures: list[Image.Image]) -> Image.Image:
+    """One palette for all frames, which would flicker otherwise: colours of some, and all that mean something."""
+    samples = pictures[:: max(1, len(pictures) // 6)]
+    width, height = samples[0].size
+    sheet = Image.new("RGB", (width, (len(samples) + 1) * height))
+    for index, sample in enumerate(samples):
+        sheet.paste(sample, (0, index * height))
+    colours = (LEFT, RIGHT, PUSH, *PHASE_COLOURS.values())
+    for index, colour in enumerate(colours):
+        box = (index * width // len(colours), len(samples) * height, width, sheet.height)
+        sheet.paste(ImageColor.getrgb(colour), box)
+    return sheet.quantize(GIF_COLOURS)

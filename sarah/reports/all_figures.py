@@ -1,0 +1,51 @@
+"""All figures of run folders: the paper's 2 to 7, and a gait cycle."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from pathlib import Path
+
+from sarah.control.pattern_generator import SteppingParameters
+from sarah.episode.episode import simulate
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import STEPPING
+from sarah.errors import ConfigurationError
+from sarah.pictures.gait_figure import draw_gait_cycle
+from sarah.pictures.robot_figure import draw_robot
+from sarah.pictures.state_machine_figure import draw_state_machine
+from sarah.reports.training_figures import draw_figures
+from sarah.robot.description import describe_robot
+from sarah.runs.run_folder import RunFolder
+
+_log = logging.getLogger(__name__)
+
+
+def draw_all_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
+    """Draw Figures 4 to 7 of all runs, the robot of the first run, the state machine, and a gait cycle of each task.
+
+    :param runs: finished trainings
+    :param folder: where to; made if it is not there
+    :return: the files, PNG and PDF
+    :raises RunFolderError: if a run has no simulations, or damaged ones; nothing is drawn then
+    """
+    files = draw_figures(runs, folder)
+    files += draw_robot(describe_robot(runs[0].config().episode.dimensions), folder / "figure_2_robot")
+    files += draw_state_machine(folder / "figure_3_pattern_generator")
+    first_of_task = {run.config().task: run for run in reversed(runs)}
+    for task, run in first_of_task.items():
+        files += _draw_cycle(run, folder / f"gait_cycle_{task}")
+    return files
+
+
+def _draw_cycle(run: RunFolder, path: Path) -> list[Path]:
+    """Draw a gait cycle with a run's learned parameters, if they make one."""
+    config, learned = run.config(), run.parameters()
+    trace = simulate(EpisodeSpec(learned, 0, config.task, config.episode), record_trace=True).trace
+    assert trace is not None
+    stepping = learned if config.task == STEPPING.name else config.episode.stepping
+    try:
+        return draw_gait_cycle(trace, SteppingParameters(*stepping), path)
+    except ConfigurationError as error:
+        _log.warning("no gait cycle of %s: %s", run.path, error)
+        return []

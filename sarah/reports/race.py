@@ -1,0 +1,282 @@
+"""A race: several algorithms, several seeds each, judged by what each would recommend along the way.
+
+Each training is a run folder. What it would have recommended after every five simulations is evaluated on seeds that no
+training sees, and written beside it in ``race.csv``; a training whose ``race.csv`` is there is not run again, only
+evaluated again if the number of unseen seeds has changed.
+"""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import io
+import os
+import shutil
+import time
+from collections.abc import Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import mean, median
+
+import numpy as np
+
+from sarah.episode.episode import simulate
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import TASKS
+from sarah.episode.workers import Workers
+from sarah.errors import RunFolderError
+from sarah.files import replace_text
+from sarah.runs.config import TrainingConfig
+from sarah.runs.journal import Journal
+from sarah.runs.run_folder import RunFolder
+from sarah.training.train import train
+
+RACE_FILE = "race.csv"
+"""In every run folder of a race: the score of what was recommended, along the way and in the end."""
+HELD = 3
+"""Evaluations in a row that must reach a share of the best known score."""
+SHARES = (0.9, 0.95)
+"""Of the best known score, whose simulations are counted."""
+CONFIDENCE = 0.95
+BOOTSTRAP_DRAWS = 2000
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One training of the race.
+
+    :param config: of the training
+    :param folder: its run folder
+    :param episodes: unseen seeds that every choice is evaluated on
+    """
+
+    config: TrainingConfig
+    folder: Path
+    episodes: int
+
+
+@dataclass(frozen=True)
+class Curve:
+    """What became of one training.
+
+    :param algo: the algorithm
+    :param simulations: after which something was evaluated, rising; the last is what was recommended in the end
+    :param scores: mean over the unseen seeds, of the same length
+    :param seconds: that the training took, without the evaluations
+    """
+
+    algo: str
+    simulations: tuple[int, ...]
+    scores: tuple[float, ...]
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Standing:
+    """How one algorithm did.
+
+    :param algo: its name
+    :param runs: how many seeds
+    :param reached: by share of the best known score: how many of the runs reached it
+    :param simulations: by share: the median number of simulations until then, infinite for runs that did not
+    :param final: interquartile mean of the final scores, and the ends of its 95 % bootstrap interval
+    :param seconds: median wall time of a training
+    """
+
+    algo: str
+    runs: int
+    reached: dict[float, int]
+    simulations: dict[float, float]
+    final: tuple[float, float, float]
+    seconds: float
+
+
+def race(entries: Sequence[Entry], workers: Workers) -> list[Curve]:
+    """Run the trainings that are not there yet, each in one process, and read them all.
+
+    :param entries: the trainings; on a cluster their folders must be on a file system that all workers share
+    :param workers: that train
+    :raises RunFolderError: if a folder holds something else, or a training with other settings
+    """
+    for entry in entries:
+        if entry.folder.exists() and not is_run(entry):
+            raise RunFolderError(f"{entry.folder} is not of a race: name another folder")
+        if is_run(entry) and RunFolder(entry.folder).config() != entry.config:
+            raise RunFolderError(f"{entry.folder} is a training with other settings: name another folder")
+    jobs = [workers.submit(run_entry, entry) for entry in entries if not is_evaluated(entry)]
+    for job in jobs:
+        job.result()
+    return [read_curve(entry) for entry in entries]
+
+
+def is_run(entry: Entry) -> bool:
+    """Whether a training and an evaluation of it are complete."""
+    return (entry.folder / RACE_FILE).is_file()
+
+
+def is_evaluated(entry: Entry) -> bool:
+    """Whether the evaluation is complete too on as many unseen seeds as the race asks for."""
+    return is_run(entry) and _rows(entry.folder)[0].get("episodes") == str(entry.episodes)
+
+
+def run_entry(entry: Entry) -> None:
+    """Train, and evaluate every choice, in a folder that gets its name when it is complete.
+
+    A training that is complete is only evaluated.
+
+    :param entry: the training
+    :raises RunFolderError: if another race is training it
+    """
+    if is_run(entry):
+        _evaluate_choices(entry, entry.folder, read_curve(entry).seconds)
+        return
+    unfinished = entry.folder.with_name(f"{entry.folder.name}.unfinished")
+    if unfinished.exists():  # an interrupted race left it, or another one is at it
+        journal = RunFolder(unfinished).journal_path
+        with Journal(journal, Workers()) if journal.exists() else nullcontext():
+            shutil.rmtree(unfinished)
+    start = time.perf_counter()
+    run = RunFolder.create(unfinished, entry.config)
+    train(entry.config, run)
+    _evaluate_choices(entry, unfinished, time.perf_counter() - start)
+    os.replace(unfinished, entry.folder)
+
+
+def _evaluate_choices(entry: Entry, folder: Path, seconds: float) -> None:
+    """Write what everything that was recommended along the way, and in the end, scores."""
+    run = RunFolder(folder)
+    names = TASKS[entry.config.task].parameter_names
+    choices = [(int(row["simulations"]), tuple(float(row[name]) for name in names)) for row in run.choices()]
+    known: dict[tuple[float, ...], float] = {}
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    writer.writerow(("simulations", "score", "seconds", "episodes"))
+    for simulations, parameters in [*choices, (entry.config.simulations, run.parameters())]:
+        if parameters not in known:
+            specs = (
+                EpisodeSpec(parameters, seed, entry.config.task, entry.config.episode) for seed in range(entry.episodes)
+            )
+            known[parameters] = mean(simulate(spec).score for spec in specs)
+        writer.writerow((simulations, known[parameters], seconds, entry.episodes))
+    replace_text(folder / RACE_FILE, text.getvalue())
+
+
+def read_curve(entry: Entry) -> Curve:
+    """Read what :func:`run_entry` wrote.
+
+    :param entry: a training that is complete
+    """
+    rows = _rows(entry.folder)
+    return Curve(
+        entry.config.algo,
+        tuple(int(row["simulations"]) for row in rows),
+        tuple(float(row["score"]) for row in rows),
+        float(rows[0]["seconds"]),
+    )
+
+
+def _rows(folder: Path) -> list[dict[str, str]]:
+    with (folder / RACE_FILE).open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def simulations_until(curve: Curve, score: float) -> float:
+    """Simulations after which a score is reached and held over :data:`HELD` evaluations; infinite if it never is.
+
+    :param curve: of a training
+    :param score: to reach
+    """
+    reached = [value >= score for value in curve.scores]
+    for index in range(len(reached) - HELD + 1):
+        if all(reached[index : index + HELD]):
+            return float(curve.simulations[index])
+    return float("inf")
+
+
+def standings(curves: Sequence[Curve], best_known: float | None = None) -> list[Standing]:
+    """Sum up the race.
+
+    :param curves: of all trainings
+    :param best_known: score that shares are taken of; by default the best final one of the race
+    :return: one for each algorithm, the quickest to the higher share first
+    """
+    best = max(curve.scores[-1] for curve in curves) if best_known is None else best_known
+    table = []
+    for algo in dict.fromkeys(curve.algo for curve in curves):
+        runs = [curve for curve in curves if curve.algo == algo]
+        until = {share: [simulations_until(curve, share * best) for curve in runs] for share in SHARES}
+        table.append(
+            Standing(
+                algo,
+                len(runs),
+                {share: sum(np.isfinite(counts).tolist()) for share, counts in until.items()},
+                {share: median(counts) for share, counts in until.items()},
+                interquartile_mean([curve.scores[-1] for curve in runs]),
+                median(curve.seconds for curve in runs),
+            )
+        )
+    return sorted(table, key=lambda row: (row.simulations[SHARES[-1]], -row.final[0]))
+
+
+def interquartile_mean(values: Sequence[float]) -> tuple[float, float, float]:
+    """Mean of the middle half, with its bootstrap interval (Agarwal et al. 2021).
+
+    :param values: of the runs
+    :return: the mean and the ends of its 95 % interval; of a single value, it three times
+    """
+    cut = len(values) // 4
+    draws = np.random.default_rng(0).choice(np.asarray(values), (BOOTSTRAP_DRAWS, len(values)))
+    middle_halves = np.sort(np.vstack([values, draws]), axis=1)[:, cut : len(values) - cut]
+    found, *drawn = middle_halves.mean(axis=1)
+    low, high = np.quantile(drawn, ((1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2))
+    return (float(found), float(low), float(high))
+
+
+def as_markdown(table: Sequence[Standing]) -> str:
+    """The standings as a Markdown table.
+
+    :param table: from :func:`standings`
+    """
+    shares = "".join(f" {share:.0%} of the best after | reached by |" for share in SHARES)
+    lines = [f"| algorithm | runs |{shares} final score | wall time |", "|---" * (4 + 2 * len(SHARES)) + "|"]
+    for row in table:
+        cells = "".join(f" {row.simulations[share]:.0f} | {row.reached[share]} |" for share in SHARES)
+        score, low, high = row.final
+        lines.append(
+            f"| {row.algo} | {row.runs} |{cells} {score:.3f} ({low:.3f} to {high:.3f}) | {row.seconds:.0f} s |"
+        )
+    return "\n".join(lines)
+
+
+def write_csv(table: Sequence[Standing], path: Path) -> None:
+    """Write the standings as CSV.
+
+    :param table: from :func:`standings`
+    :param path: of the file
+    """
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        counted = [f"{name}_{share:.0%}" for share in SHARES for name in ("simulations", "reached")]
+        writer.writerow(("algorithm", "runs", *counted, "final_score", "final_low", "final_high", "seconds"))
+        for row in table:
+            counts = [value for share in SHARES for value in (row.simulations[share], row.reached[share])]
+            writer.writerow((row.algo, row.runs, *counts, *row.final, row.seconds))
+
+
+def entries_of(
+    algorithms: Sequence[str], seeds: Sequence[int], base: TrainingConfig, episodes: int, folder: Path
+) -> list[Entry]:
+    """Every algorithm with every seed.
+
+    :param algorithms: their names
+    :param seeds: of the trainings
+    :param base: settings that they share
+    :param episodes: unseen seeds that every choice is evaluated on
+    :param folder: that holds the run folders
+    """
+    return [
+        Entry(dataclasses.replace(base, algo=algo, seed=seed), folder / f"{algo}-s{seed}", episodes)
+        for seed in seeds
+        for algo in algorithms
+    ]

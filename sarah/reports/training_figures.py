@@ -1,0 +1,244 @@
+"""The paper's Figures 4 to 7 from run folders, and survival against direction and force of a push.
+
+Figures 4 to 7 show what was tried, and what came of it, against training steps. A training step is one simulation. One
+run shows its simulations as dots and their running median as a line; several runs of an algorithm show the median over
+the runs of that line, and the band between their quartiles. The simulations that compare the best candidates at the end
+are no steps of learning: a single run shows them as hollow dots, and no line goes through them.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.patheffects import withStroke
+
+from sarah.control.pattern_generator import PAPER_PARAMETERS
+from sarah.episode.tasks import BALANCE, STEPPING, Task
+from sarah.errors import RunFolderError
+from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
+from sarah.reports.robustness import PushedEpisode, finest_sectors, survival_by_direction
+from sarah.runs.run_folder import RunFolder
+
+if TYPE_CHECKING:  # it brings the trainings with it
+    from sarah.reports.race import Curve
+
+WINDOW = 15
+"""Simulations that the running median is over."""
+CHORDS = 8
+"""That the arc of a sector is drawn with."""
+COLOURS = {
+    "naf": "#0072B2",
+    "td3": "#D55E00",
+    "sac": "#009E73",
+    "ddpg": "#CC79A7",
+    "cma-es": "#E69F00",
+    "gp": "#56B4E9",
+    "tpe": "#F0E442",
+    "random": "#000000",
+}
+"""Of each algorithm; told apart by the colour-blind (Okabe and Ito)."""
+ALGORITHM_LABELS = {algo: algo.upper() for algo in COLOURS} | {"random": "random search"}
+"""What pictures and pages call each algorithm."""
+
+Panels = list[tuple[str, str]]
+"""Column of ``episodes.csv`` and label of each panel, from top to bottom."""
+RETURN = ("return", "return (m³ s)")
+FIGURES: dict[Task, dict[str, Panels]] = {
+    STEPPING: {
+        "figure_4_reward_and_frequency": [RETURN, ("steps_per_second", "steps per second")],
+        "figure_5_parameters": [
+            ("P1", "P1 (rad/s)"),
+            ("P2", "P2 (m/s²)"),
+            ("P3", "P3 (rad/s)"),
+            ("P4", "P4"),
+            ("P5", "P5"),
+        ],
+    },
+    BALANCE: {
+        "figure_6_reward_and_position": [RETURN, ("x", "final x (m)"), ("y", "final y (m)")],
+        "figure_7_parameters": [("V1", "V1"), ("V2", "V2 (m/s²)"), ("V3", "V3"), ("V4", "V4")],
+    },
+}
+"""The paper's figures of each training."""
+PAPER = dict(zip(STEPPING.parameter_names[:3], PAPER_PARAMETERS[:3], strict=True))
+"""Where the paper's parameters settled, of those that matter."""
+
+
+@dataclass(frozen=True)
+class Curves:
+    """What the runs of one algorithm went through.
+
+    :param algorithm: its name
+    :param columns: of ``episodes.csv`` as numbers, each of shape (runs, simulations)
+    :param learning: how many of the simulations come before the comparison of candidates
+    """
+
+    algorithm: str
+    columns: dict[str, np.ndarray]
+    learning: int
+
+
+def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
+    """Draw Figures 4 and 5 of First Trainings, and 6 and 7 of Second Trainings, as PNG and PDF.
+
+    :param runs: whose simulations to draw
+    :param folder: where to; made if it is not there
+    :return: the files
+    :raises RunFolderError: if a run has no simulations, or damaged ones; nothing is drawn then
+    """
+    curves = {task: _curves([run for run in runs if run.config().task == task.name], task) for task in FIGURES}
+    folder.mkdir(parents=True, exist_ok=True)
+    files = []
+    with plt.rc_context(STYLE):
+        for task, figures in FIGURES.items():
+            for name, panels in figures.items() if curves[task] else ():
+                files += _draw(curves[task], panels, folder / name)
+    return files
+
+
+def _curves(runs: Sequence[RunFolder], task: Task) -> list[Curves]:
+    by_algorithm: dict[str, list[dict[str, list[float]]]] = {}
+    learning: dict[str, int] = {}
+    names = ("return", "steps_per_second", "x", "y", *task.parameter_names)
+    for run in runs:
+        rows = list(run.episodes())
+        if not rows:
+            raise RunFolderError(f"{run.path} has no simulations to draw")
+        try:
+            columns = {name: [_number(row[name]) for row in rows] for name in names}
+        except (KeyError, TypeError, ValueError) as error:
+            raise RunFolderError(f"the simulations of {run.path} cannot be read: {error!r}") from error
+        config = run.config()
+        by_algorithm.setdefault(config.algo, []).append(columns)
+        before_comparison = min(len(rows), config.simulations - config.compared_simulations)
+        learning[config.algo] = min(learning.get(config.algo, before_comparison), before_comparison)
+    curves = []
+    for algorithm, tables in by_algorithm.items():
+        shortest = min(len(table["return"]) for table in tables)
+        stacked = {name: np.array([table[name][:shortest] for table in tables]) for name in names}
+        curves.append(Curves(algorithm, stacked, learning[algorithm]))
+    return curves
+
+
+def _number(text: str) -> float:
+    number = float(text)
+    if not math.isfinite(number):
+        raise ValueError(f"{text} where a number must be")
+    return number
+
+
+def _draw(curves: Sequence[Curves], panels: Panels, path: Path) -> list[Path]:
+    figure, axes = plt.subplots(
+        len(panels),
+        1,
+        sharex=True,
+        squeeze=False,
+        figsize=(COLUMN_WIDTH, 0.6 + 1.1 * len(panels)),
+        layout="constrained",
+    )
+    for axis, (column, label) in zip(axes[:, 0], panels, strict=True):
+        for curve in curves:
+            _draw_panel(axis, curve, column)
+        if column in PAPER:
+            axis.axhline(PAPER[column], color="black", linewidth=0.8, linestyle=":", label="paper")
+        axis.set_ylabel(label)
+    axes[-1, 0].set_xlabel("training steps (simulations)")
+    figure.align_ylabels()
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper right", ncols=len(curves) + 1)
+    return save(figure, path)
+
+
+def _draw_panel(axis: Axes, curves: Curves, column: str) -> None:
+    values, learning, colour = curves.columns[column], curves.learning, COLOURS[curves.algorithm]
+    steps = np.arange(1, values.shape[1] + 1)
+    smooth = np.array([running_median(run) for run in values[:, :learning]])
+    label = ALGORITHM_LABELS[curves.algorithm]
+    if len(values) == 1:
+        dots: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 1.6, "color": colour, "alpha": 0.5}
+        axis.plot(steps[:learning], values[0, :learning], markeredgewidth=0, **dots)
+        axis.plot(steps[learning:], values[0, learning:], markerfacecolor="none", markeredgewidth=0.4, **dots)
+    else:
+        low, high = np.quantile(smooth, (0.25, 0.75), axis=0)
+        axis.fill_between(steps[:learning], low, high, color=colour, alpha=0.25, linewidth=0)
+        label += f", {len(values)} runs"
+    axis.plot(steps[:learning], np.median(smooth, axis=0), color=colour, linewidth=1.2, label=label)
+
+
+def running_median(values: np.ndarray) -> np.ndarray:
+    """Median of each value and those around it, fewer at the ends.
+
+    :param values: of shape (n,)
+    :return: of shape (n,)
+    """
+    half = WINDOW // 2
+    return np.array([np.median(values[max(0, i - half) : i + half + 1]) for i in range(len(values))])
+
+
+def draw_race(curves: Sequence[Curve], path: Path) -> list[Path]:
+    """Draw the score of what each algorithm would choose against simulations: median and quartiles over its runs.
+
+    :param curves: of all trainings
+    :param path: of the picture, without suffix
+    :return: the files, PNG and PDF
+    """
+    with plt.rc_context(STYLE):
+        figure, axis = plt.subplots(figsize=(COLUMN_WIDTH, 0.9 * COLUMN_WIDTH), layout="constrained")
+        for algo in dict.fromkeys(curve.algo for curve in curves):
+            runs = [curve for curve in curves if curve.algo == algo]
+            simulations = runs[0].simulations
+            low, middle, high = np.quantile([run.scores for run in runs], (0.25, 0.5, 0.75), axis=0)
+            axis.fill_between(simulations, low, high, color=COLOURS[algo], alpha=0.15, linewidth=0)
+            label = f"{ALGORITHM_LABELS[algo]} ({len(runs)})"
+            axis.plot(simulations, middle, color=COLOURS[algo], linewidth=1.2, label=label)
+        axis.set_xlabel("simulations")
+        axis.set_ylabel("score on unseen seeds")
+        figure.legend(loc="outside upper center", ncols=2)  # three columns of all eight do not fit
+        return save(figure, path)
+
+
+def draw_survival(controllers: Mapping[str, Sequence[PushedEpisode]], path: Path) -> list[Path]:
+    """Draw survival against direction and force of the push, one polar plot for each controller.
+
+    :param controllers: pushed episodes by the controller's name
+    :param path: of the picture, without suffix
+    :return: the files, PNG and PDF
+    """
+    with plt.rc_context({**STYLE, "axes.grid": False}):
+        figure, axes = plt.subplots(
+            1,
+            len(controllers),
+            squeeze=False,
+            figsize=(COLUMN_WIDTH * len(controllers), 1.1 * COLUMN_WIDTH),
+            subplot_kw={"projection": "polar"},
+            layout="constrained",
+        )
+        for axis, (name, episodes) in zip(axes[0], controllers.items(), strict=True):
+            mesh = _draw_survival(axis, survival_by_direction(episodes, finest_sectors(episodes)))
+            axis.set_title(name)
+        figure.colorbar(mesh, ax=axes, label="survival (white: no push this way)", orientation="horizontal", shrink=0.6)
+        return save(figure, path)
+
+
+def _draw_survival(axis: Any, survival: Mapping[float, Sequence[float | None]]) -> QuadMesh:
+    forces = list(survival)
+    middles = [(low + high) / 2 for low, high in itertools.pairwise(forces)]
+    rings = [0.0, *middles, forces[-1] + (forces[-1] - middles[-1] if middles else 0.0)]
+    shares = np.array([[np.nan if share is None else share for share in row] for row in survival.values()])
+    sectors = shares.shape[1]
+    edges = (np.arange(sectors * CHORDS + 1) / CHORDS - 0.5) * 2 * np.pi / sectors
+    mesh: QuadMesh = axis.pcolormesh(edges, rings, shares.repeat(CHORDS, axis=1), cmap="cividis", vmin=0.0, vmax=1.0)
+    axis.set_rmax(rings[-1])
+    labels = axis.set_rgrids(forces, [f"{force:.0f} N" for force in forces], angle=67.5, fontsize=6)[1]
+    for label in labels:  # readable on every colour
+        label.set_path_effects([withStroke(linewidth=2, foreground="white")])
+    axis.set_thetagrids((0, 90, 180, 270), ("right", "forward", "left", "back"))
+    return mesh

@@ -1,0 +1,49 @@
+"""The score in one physics engine against the score in the other."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+
+from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
+from sarah.reports.transfer import Transfer
+
+ENGINE_COLOURS = {"pybullet": "#0072B2", "mujoco": "#D55E00"}
+"""Told apart by the colour-blind (Okabe and Ito)."""
+TASK_MARKERS = {"stepping": "o", "balance": "^"}
+
+
+def draw_transfer(transfers: Sequence[Transfer], path: Path) -> list[Path]:
+    """Draw the score in one engine against the score in the other: a point for each run.
+
+    Equal scores lie on the line; between the dotted ones the worse is at least 90 % of the better.
+
+    :param transfers: of the runs
+    :param path: of the picture, without suffix
+    :return: the files, PNG and PDF
+    """
+    across, up = ENGINE_COLOURS
+    with plt.rc_context(STYLE):
+        figure, axis = plt.subplots(figsize=(COLUMN_WIDTH, COLUMN_WIDTH), layout="constrained")
+        axis.axline((0.0, 0.0), slope=1.0, color="grey", linewidth=0.8)
+        for slope, label in ((0.9, "90 % kept"), (1.0 / 0.9, None)):
+            axis.axline((0.0, 0.0), slope=slope, color="grey", linewidth=0.8, linestyle=":", label=label)
+        for (engine, colour), (task, marker) in itertools.product(ENGINE_COLOURS.items(), TASK_MARKERS.items()):
+            runs = [
+                [one.evaluations[name].score_mean for name in (across, up)]  # type: ignore[index]
+                for one in transfers
+                if (one.subject.config.engine, one.subject.task) == (engine, task)
+            ]
+            if runs:
+                label = f"{task}, learned in {engine} ({len(runs)})"
+                axis.plot(*zip(*runs, strict=True), marker, color=colour, markersize=4, alpha=0.8, label=label)
+        lowest = min(min(e.score_mean for e in one.evaluations.values()) for one in transfers)
+        highest = max(max(e.score_mean for e in one.evaluations.values()) for one in transfers)
+        axis.set(xlim=(lowest - 0.05, highest + 0.05), ylim=(lowest - 0.05, highest + 0.05), aspect="equal")
+        axis.set_xlabel(f"score in {across}")
+        axis.set_ylabel(f"score in {up}")
+        figure.legend(loc="outside upper center", ncols=1)
+        return save(figure, path)

@@ -1,0 +1,261 @@
+"""The robot: from the xacro to a checked URDF text.
+
+PyBullet crashes on some malformed URDFs and silently accepts others, so every text is checked here before any
+engine sees it: by yourdfpy for its syntax, and by rules of our own for what makes it SARAH.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+import threading
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib import resources
+from typing import Any
+
+from sarah.errors import DescriptionError, shortened, unknown_name
+
+SIDES = ("left", "right")
+PLATES = ("forefoot", "hindfoot")
+ACTUATED_JOINTS = tuple(f"{side}_{joint}" for joint in ("hip_abduction", "hip_flexion", "leg_length") for side in SIDES)
+"""The six actuators, in the order of every list of joint values: left before right."""
+ANKLE_JOINTS = tuple(f"{side}_{plate}" for side in SIDES for plate in PLATES)
+"""The four ankle joints, each named like the plate it carries."""
+JOINT_TYPES = {
+    joint: "prismatic" if joint.endswith("leg_length") else "revolute" for joint in (*ACTUATED_JOINTS, *ANKLE_JOINTS)
+}
+JOINT_AXES = {
+    **dict.fromkeys(("left_hip_abduction", "right_hip_abduction"), (0.0, 1.0, 0.0)),
+    **dict.fromkeys(("left_hip_flexion", "right_hip_flexion"), (1.0, 0.0, 0.0)),
+    **dict.fromkeys(("left_leg_length", "right_leg_length"), (0.0, 0.0, 1.0)),
+    **dict.fromkeys(("left_forefoot", "right_forefoot"), (1.0, 0.0, 0.0)),
+    **dict.fromkeys(("left_hindfoot", "right_hindfoot"), (-1.0, 0.0, 0.0)),
+}
+"""In the torso's frame: positive swings a leg to the left, forward, retracts it, and turns a plate against its pad."""
+GROUPS = {
+    "top": ("torso", "left_hip", "right_hip"),
+    "left leg": ("left_thigh", "left_shank", "left_forefoot", "left_hindfoot"),
+    "right leg": ("right_thigh", "right_shank", "right_forefoot", "right_hindfoot"),
+}
+"""The paper's three groups of links, of equal mass."""
+GROUP_MASS = 10.0
+DIMENSION_FACTOR = 10.0
+"""How much smaller or larger than its default a dimension may be: beyond, somebody has mistaken the unit."""
+
+_XACRO_NAMESPACE = "{http://www.ros.org/wiki/xacro}"
+_xacro_lock = threading.Lock()  # xacro keeps its state in globals
+
+
+@dataclass(frozen=True)
+class RobotDescription:
+    """A checked robot.
+
+    :param urdf: the URDF text
+    :param standing_height: height of the torso's centre over the floor with all joints at zero, in m
+    :param limits: lowest and highest position of each joint, in rad or m
+    :param efforts: largest force or torque of each joint, in N or Nm
+    :param soles: centres of the sole contacts of each foot plate, in the plate's frame, in m
+    :param contact_radius: radius of the sole contacts, in m
+    """
+
+    urdf: str
+    standing_height: float
+    limits: Mapping[str, tuple[float, float]]
+    efforts: Mapping[str, float]
+    soles: Mapping[str, tuple[tuple[float, float, float], ...]]
+    contact_radius: float
+
+
+def default_dimensions() -> dict[str, float]:
+    """Every dimension of the robot that can be set, with its default, in SI units.
+
+    :return: the xacro's arguments, in the order of the file
+    """
+    return dict(_default_dimensions())
+
+
+@lru_cache(maxsize=1)
+def _default_dimensions() -> tuple[tuple[str, float], ...]:
+    root = ElementTree.fromstring(_xacro_text())
+    return tuple((arg.attrib["name"], float(arg.attrib["default"])) for arg in root.iter(f"{_XACRO_NAMESPACE}arg"))
+
+
+def describe_robot(dimensions: Mapping[str, float] | None = None) -> RobotDescription:
+    """Build and check the robot.
+
+    :param dimensions: values for some of :func:`default_dimensions`; the others keep their defaults
+    :return: the checked robot; equal dimensions give the same object
+    :raises DescriptionError: if a dimension is unknown or no number near its default, or the robot is refused
+    """
+    given = dict(dimensions or {})
+    check_dimensions(given)
+    return _describe_cached(tuple(sorted((name, float(value)) for name, value in given.items())))
+
+
+def check_dimensions(dimensions: Mapping[str, Any]) -> None:
+    """Refuse dimensions that the robot does not have.
+
+    :param dimensions: names and values, as a user gave them
+    :raises DescriptionError: for an unknown name, or a value that is no number near the default
+    """
+    allowed = default_dimensions()
+    for name, value in dimensions.items():
+        if name not in allowed:
+            raise DescriptionError(unknown_name("robot dimension", str(name), allowed))
+        low, high = allowed[name] / DIMENSION_FACTOR, allowed[name] * DIMENSION_FACTOR
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not low <= value <= high:
+            raise DescriptionError(
+                f"robot dimension {name!r} must be a number between {low:g} and {high:g}, not {shortened(value)} "
+                f"(default: {allowed[name]:g}; metres, kilograms, seconds and radians)"
+            )
+
+
+@lru_cache(maxsize=16)
+def _describe_cached(dimensions: tuple[tuple[str, float], ...]) -> RobotDescription:
+    return check_urdf(_expand_xacro(dict(dimensions)))
+
+
+def _xacro_text() -> str:
+    return resources.files("sarah.urdf").joinpath("sarah.urdf.xacro").read_text(encoding="utf-8")
+
+
+def _expand_xacro(dimensions: Mapping[str, float]) -> str:
+    import xacro
+
+    with (
+        resources.as_file(resources.files("sarah.urdf").joinpath("sarah.urdf.xacro")) as path,
+        _xacro_lock,
+    ):
+        document = xacro.process_file(str(path), mappings={name: repr(value) for name, value in dimensions.items()})
+    # Only the robot element: xacro's leading comment holds the path of the source.
+    return document.documentElement.toprettyxml(indent="  ")
+
+
+def check_urdf(urdf: str) -> RobotDescription:
+    """Check that a URDF text is SARAH, and read off what a simulation needs to know.
+
+    :param urdf: the text
+    :return: the checked robot
+    :raises DescriptionError: naming the first rule that the text breaks
+    """
+    try:
+        root = ElementTree.fromstring(urdf)
+    except ElementTree.ParseError as error:
+        raise DescriptionError(f"URDF is not well-formed XML: {error}") from error
+    _check_tree(root)
+    import yourdfpy
+
+    try:
+        model = yourdfpy.URDF.load(io.StringIO(urdf), load_meshes=False)
+        valid = model.validate()
+    except Exception as error:  # yourdfpy raises whatever its XML handling meets
+        raise DescriptionError(f"yourdfpy cannot read the URDF: {error}") from error
+    if not valid:
+        raise DescriptionError(
+            f"yourdfpy finds the URDF invalid: {'; '.join(str(problem) for problem in model.errors)}"
+        )
+    _check_joints(model)
+    _check_inertials(model)
+    return _read_off(urdf, model)
+
+
+def _check_tree(root: ElementTree.Element) -> None:
+    """Unique names, known parents, and one root from which every link is reached."""
+    links = [link.get("name", "") for link in root.findall("link")]
+    joints = [joint.get("name", "") for joint in root.findall("joint")]
+    for kind, names in (("link", links), ("joint", joints)):
+        for name in names:
+            if names.count(name) > 1:
+                raise DescriptionError(f"URDF has more than one {kind} named {name!r}")
+    parent_of: dict[str, str] = {}
+    for joint in root.findall("joint"):
+        ends = [
+            element.get("link", "") if (element := joint.find(end)) is not None else "" for end in ("parent", "child")
+        ]
+        for link in ends:
+            if link not in links:
+                raise DescriptionError(f"URDF joint {joint.get('name')!r} names a link {link!r} that does not exist")
+        if ends[1] in parent_of:
+            raise DescriptionError(f"URDF link {ends[1]!r} has more than one parent")
+        parent_of[ends[1]] = ends[0]
+    roots = [link for link in links if link not in parent_of]
+    if len(roots) != 1:
+        raise DescriptionError(f"URDF must have one root link, not {len(roots)}: {', '.join(roots) or 'a loop'}")
+    for link in links:
+        visited = {link}
+        while link in parent_of:
+            link = parent_of[link]
+            if link in visited:
+                raise DescriptionError(f"URDF has a loop through link {link!r}")
+            visited.add(link)
+
+
+def _check_joints(model: Any) -> None:
+    """The ten joints, of the right kinds, with limits around zero."""
+    joints = model.joint_map
+    for name, kind in JOINT_TYPES.items():
+        if name not in joints:
+            raise DescriptionError(f"URDF has no joint {name!r}")
+        if joints[name].type != kind:
+            raise DescriptionError(f"URDF joint {name!r} must be {kind}, not {joints[name].type}")
+        if tuple(joints[name].axis) != JOINT_AXES[name]:
+            raise DescriptionError(f"URDF joint {name!r} must turn about {JOINT_AXES[name]}, not {joints[name].axis}")
+        limit = joints[name].limit
+        if limit is None or limit.lower is None or limit.upper is None or not limit.lower <= 0.0 <= limit.upper:
+            raise DescriptionError(f"URDF joint {name!r} must have limits with zero between them")
+    for name in joints:
+        if name not in JOINT_TYPES:
+            raise DescriptionError(f"URDF joint {name!r} is not one of the robot's ten")
+    for name in ACTUATED_JOINTS:
+        if not (joints[name].limit.effort or 0.0) > 0.0:
+            raise DescriptionError(f"URDF joint {name!r} must have a positive effort limit")
+
+
+def _check_inertials(model: Any) -> None:
+    """Positive masses, positive definite inertias, and three groups of 10 kg."""
+    import numpy as np
+
+    links = model.link_map
+    expected = {name for group in GROUPS.values() for name in group}
+    if set(links) != expected:
+        raise DescriptionError(f"URDF links differ from the robot's: {', '.join(sorted(set(links) ^ expected))}")
+    for name, link in links.items():
+        if link.inertial is None or link.inertial.mass is None or link.inertial.inertia is None:
+            raise DescriptionError(f"URDF link {name!r} has no mass or inertia")
+        mass, inertia = link.inertial.mass, link.inertial.inertia
+        if not (math.isfinite(mass) and mass > 0.0):
+            raise DescriptionError(f"URDF link {name!r} must have a positive mass, not {mass}")
+        if not np.isfinite(inertia).all() or not (np.linalg.eigvalsh(inertia) > 0.0).all():
+            raise DescriptionError(f"URDF link {name!r} must have a positive definite inertia")
+    for group, names in GROUPS.items():
+        mass = sum(links[name].inertial.mass for name in names)
+        if abs(mass - GROUP_MASS) > 1e-6:
+            raise DescriptionError(
+                f"URDF group {group!r} ({', '.join(names)}) must weigh {GROUP_MASS:g} kg, not {mass:g}"
+            )
+
+
+def _read_off(urdf: str, model: Any) -> RobotDescription:
+    soles: dict[str, tuple[tuple[float, float, float], ...]] = {}
+    lowest, lowest_box, radius = 0.0, 0.0, 0.0
+    for plate in ANKLE_JOINTS:
+        spheres = [shape for shape in model.link_map[plate].collisions if shape.geometry.sphere is not None]
+        if not spheres:
+            raise DescriptionError(f"URDF link {plate!r} has no sole contact (a collision sphere)")
+        radius = spheres[0].geometry.sphere.radius
+        soles[plate] = tuple((float(s.origin[0, 3]), float(s.origin[1, 3]), float(s.origin[2, 3])) for s in spheres)
+        to_torso = model.get_transform(plate, "torso")
+        lowest = min(lowest, *((to_torso @ [*sole, 1.0])[2] - radius for sole in soles[plate]))
+        boxes = [shape for shape in model.link_map[plate].collisions if shape.geometry.box is not None]
+        for box in boxes:
+            lowest_box = min(lowest_box, to_torso[2, 3] + box.origin[2, 3] - box.geometry.box.size[2] / 2)
+    if lowest_box < lowest:
+        raise DescriptionError(
+            "the foot plates must lie above the soles: raise hinge_height or make the plates thinner"
+        )
+    limits = {name: (joint.limit.lower, joint.limit.upper) for name, joint in model.joint_map.items()}
+    efforts = {name: joint.limit.effort for name, joint in model.joint_map.items()}
+    return RobotDescription(urdf, float(-lowest), limits, efforts, soles, radius)

@@ -1,0 +1,128 @@
+"""Settings as YAML files: read with every mistake named, written so that they are read back."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+
+from sarah.errors import ConfigurationError, SarahError, shortened, unknown_name
+from sarah.files import replace_text
+from sarah.robot.description import check_dimensions
+from sarah.runs.config import TrainingConfig
+
+ConfigType = TypeVar("ConfigType")
+
+
+def first_difference(config: Any, other: Any, key: str = "") -> tuple[str, Any, Any] | None:
+    """Where two configurations of a kind differ.
+
+    :param config: a dataclass of :mod:`sarah.runs.config`
+    :param other: another one
+    :param key: what the names begin with
+    :return: the key and both values; nothing if they are equal
+    """
+    for item in dataclasses.fields(config):
+        value, there = getattr(config, item.name), getattr(other, item.name)
+        if value == there:
+            continue
+        if dataclasses.is_dataclass(value):
+            return first_difference(value, there, f"{key}{item.name}.")
+        return key + item.name, value, there
+    return None
+
+
+def read_config(config_type: type[ConfigType], path: Path) -> ConfigType:
+    """Read a configuration from a YAML file. What the file does not name keeps its default.
+
+    :param config_type: the dataclass to make
+    :param path: of the file
+    :raises ConfigurationError: naming file, key and value, if something in it is not allowed
+    """
+    import yaml
+
+    try:
+        text = path.read_text(encoding="utf-8")
+        content = yaml.safe_load(text)
+        repeated = _repeated_key(yaml.compose(text, yaml.SafeLoader))
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConfigurationError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from error
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        raise ConfigurationError(f"{path} is not YAML: {' '.join(str(error).split())}") from error
+    if repeated is not None:
+        raise ConfigurationError(f"{path}: key {shortened(repeated)} stands there twice")
+    try:
+        config = _from_mapping(config_type, {} if content is None else content, "")
+        if isinstance(config, TrainingConfig):
+            check_dimensions(config.episode.dimensions)
+        return config
+    except SarahError as error:
+        raise ConfigurationError(f"{path}: {error}") from error
+
+
+def _repeated_key(node: Any) -> str | None:
+    """A key that a mapping has more than once, of which YAML would keep the last; only mappings in mappings count."""
+    seen = set()
+    for key, value in node.value if node is not None and node.id == "mapping" else ():
+        if key.value in seen:
+            return str(key.value)
+        seen.add(key.value)
+        if (found := _repeated_key(value)) is not None:
+            return found
+    return None
+
+
+def write_config(config: Any, path: Path) -> None:
+    """Write a configuration as YAML, every value spelled out, so that :func:`read_config` gives it back.
+
+    :param config: a dataclass of :mod:`sarah.runs.config`
+    :param path: of the file
+    """
+    import yaml
+
+    replace_text(path, yaml.safe_dump(_to_plain(dataclasses.asdict(config)), sort_keys=False))
+
+
+def _to_plain(value: Any) -> Any:
+    """YAML's own types only: safe loaders refuse tuples."""
+    if isinstance(value, Mapping):
+        return {key: _to_plain(item) for key, item in value.items()}
+    return [_to_plain(item) for item in value] if isinstance(value, tuple) else value
+
+
+def _from_mapping(config_type: type[ConfigType], content: Any, key: str) -> ConfigType:
+    if not isinstance(content, Mapping):
+        raise ConfigurationError(f"{key or 'the file'} must hold keys and values, not {shortened(content)}")
+    types = get_type_hints(config_type)
+    values = {}
+    for name, value in content.items():
+        if name not in types:
+            raise ConfigurationError(unknown_name("key", f"{key}{name}", (key + allowed for allowed in types)))
+        values[name] = _converted(types[name], value, key + name)
+    return config_type(**values)
+
+
+def _converted(expected: Any, value: Any, key: str) -> Any:
+    """A value of the expected type, or an error that names the key."""
+    if dataclasses.is_dataclass(expected):
+        return _from_mapping(expected, value, f"{key}.")  # type: ignore[arg-type]
+    if get_origin(expected) is tuple:
+        parts = get_args(expected)
+        if not isinstance(value, (list, tuple)) or len(value) != len(parts):
+            raise ConfigurationError(f"{key} must be a list of {len(parts)} values, not {shortened(value)}")
+        return tuple(_converted(part, item, key) for part, item in zip(parts, value, strict=True))
+    if get_origin(expected) is Mapping:
+        if not isinstance(value, Mapping):
+            raise ConfigurationError(f"{key} must hold names and values, not {shortened(value)}")
+        return {name: _converted(get_args(expected)[1], item, f"{key}.{name}") for name, item in value.items()}
+    allowed = {float: (float, int), int: (int,), bool: (bool,)}.get(expected, (str,))
+    if not isinstance(value, allowed) or (isinstance(value, bool) and expected is not bool):
+        kind = {float: "a number", int: "a whole number", bool: "true or false"}.get(expected, "a text")
+        raise ConfigurationError(f"{key} must be {kind}, not {shortened(value)}")
+    if get_origin(expected) is Literal and value not in get_args(expected):
+        raise ConfigurationError(unknown_name(key, str(value), get_args(expected)))
+    try:
+        return float(value) if expected is float else value
+    except OverflowError:
+        raise ConfigurationError(f"{key} must be a number that a float can hold, not {shortened(value)}") from None

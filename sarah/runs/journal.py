@@ -1,0 +1,216 @@
+"""The journal of a training: what came of every simulation, so that an interrupted training can be resumed exactly.
+
+A training is deterministic: what it simulates next follows from its configuration and from what came of the
+simulations before. So a resumed training runs again from its beginning, and what the journal knows is taken from there
+instead of being simulated. That costs the learner's share of the time, a few per cent, and gives back everything,
+whatever learns: generators, replay buffer, optimiser and schedules are where they were because they went there again.
+
+A row is a checksum and a JSON object, and is on the disk before the training goes on. A damaged row is left out, and
+its simulation simulated again.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import logging
+import os
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any, BinaryIO
+
+from sarah.episode.episode import simulate
+from sarah.episode.result import EpisodeResult
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.workers import Executor, Job, Outcome, run, stand
+from sarah.errors import RunFolderError, SarahError, TrainingInterruptedError
+from sarah.robot.reading import SensorReading
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """How what a function returns is written and read.
+
+    :param plain: to what JSON knows
+    :param value: back
+    """
+
+    plain: Callable[[Any], Any]
+    value: Callable[[Any], Any]
+
+
+def _reading(plain: Any) -> SensorReading:
+    return SensorReading(*map(tuple, plain))
+
+
+def _result(plain: Any) -> EpisodeResult:
+    return EpisodeResult(**{**plain, "final_position": tuple(plain["final_position"])})
+
+
+_KINDS = {
+    "stand": _Kind(lambda reading: reading, _reading),
+    "run": _Kind(
+        lambda outcome: [outcome.result.fields(), *outcome[1:]],
+        lambda p: Outcome(_result(p[0]), _reading(p[1]), p[2] and _reading(p[2])),
+    ),
+    "simulate": _Kind(lambda result: result.fields(), _result),
+}
+_NAMES: dict[Callable[..., Any], str] = {stand: "stand", run: "run", simulate: "simulate"}
+
+
+@dataclass(frozen=True)
+class _Row:
+    """What is known.
+
+    :param request: number, kind, seed and parameters of a simulation
+    :param value: what came of it
+    """
+
+    request: dict[str, Any]
+    value: Any
+
+
+class Journal(Executor):
+    """Has episodes simulated that it does not know yet. A context, in which no other training can use the file.
+
+    :param path: of the file, which must be there
+    :param executor: that simulates
+    :param interrupted: asked after every simulation whether the training shall stop
+    :raises RunFolderError: on entering, if the file is missing, or another training uses it
+    """
+
+    def __init__(self, path: Path, executor: Executor, interrupted: Callable[[], bool] = lambda: False) -> None:
+        self._path = path
+        self._executor = executor
+        self._interrupted = interrupted
+        self._submitted = 0
+        self._known: dict[int, _Row] = {}
+        self._file: BinaryIO
+
+    @property
+    def replaying(self) -> bool:
+        """Whether there is something left that is known and has not been asked for."""
+        return bool(self._known)
+
+    def __enter__(self) -> Journal:
+        """Lock the file and read it."""
+        try:
+            descriptor = os.open(self._path, os.O_RDWR | os.O_APPEND)
+        except FileNotFoundError:
+            raise RunFolderError(f"{self._path.parent} cannot be resumed: it has no {self._path.name}") from None
+        self._file = open(descriptor, "r+b", buffering=0)  # closed on leaving
+        try:
+            # The lock goes with the process, however it ends.
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            self._read()
+        except BaseException as error:
+            self._file.close()
+            if isinstance(error, BlockingIOError):
+                raise RunFolderError(f"run folder {self._path.parent} is in use by another training") from None
+            raise
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close the file, and give the lock back."""
+        self._file.close()
+
+    def _read(self) -> None:
+        content = self._file.read()
+        whole = content.rfind(b"\n") + 1
+        damaged = int(whole < len(content))
+        if damaged:
+            self._file.truncate(whole)
+        for line in content[:whole].splitlines():
+            row = _read_row(line)
+            if row is None:
+                damaged += 1
+            else:
+                self._known[row.request["index"]] = row
+        if damaged:
+            _log.warning("%s: damaged rows: %d; what they held is simulated again", self._path, damaged)
+
+    def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
+        """Have an episode simulated, unless it is known what comes of it.
+
+        :param function: :func:`~sarah.episode.workers.stand`, :func:`~sarah.episode.workers.run` or
+            :func:`sarah.simulate`
+        :param subjects: the episode's specification, and what else the function takes
+        :raises RunFolderError: if the training asks for something else than it did when the journal was written
+        """
+        request = _request(self._submitted, function, subjects[0])
+        row = self._known.pop(self._submitted, None)
+        self._submitted += 1
+        if row is None:
+            return _NewJob(self, request, self._executor.submit(function, *subjects))
+        if row.request != request:
+            raise RunFolderError(
+                f"{self._path.parent} cannot be resumed here: it does not repeat what it did before its interruption, "
+                "because versions or the kind of processor differ, or its config.yaml was changed"
+            )
+        return _KnownJob(self, row.value)
+
+    def add(self, request: dict[str, Any], value: Any) -> None:
+        """Write what came of a simulation.
+
+        :param request: its number, kind, seed and parameters
+        :param value: what came of it
+        """
+        row = {**request, "outcome": _KINDS[request["kind"]].plain(value)}
+        text = json.dumps(row, allow_nan=False, separators=(",", ":")).encode()
+        left = memoryview(b"%08x %s\n" % (zlib.crc32(text), text))
+        while left:  # a disk that is nearly full takes a part
+            left = left[self._file.write(left) :]
+        if request["kind"] != "stand":  # that is cheap to do again
+            os.fsync(self._file.fileno())
+
+    def stop_if_interrupted(self) -> None:
+        """Raise :class:`~sarah.errors.TrainingInterruptedError` if the training shall stop."""
+        if self._interrupted():
+            raise TrainingInterruptedError("the training was interrupted")
+
+
+@dataclass(frozen=True)
+class _KnownJob:
+    journal: Journal
+    value: Any
+
+    def result(self) -> Any:
+        self.journal.stop_if_interrupted()
+        return self.value
+
+
+@dataclass(frozen=True)
+class _NewJob:
+    journal: Journal
+    request: dict[str, Any]
+    job: Job
+
+    def result(self) -> Any:
+        value = self.job.result()
+        self.journal.add(self.request, value)
+        self.journal.stop_if_interrupted()
+        return value
+
+
+def _request(index: int, function: Callable[..., Any], spec: EpisodeSpec) -> dict[str, Any]:
+    return {"index": index, "kind": _NAMES[function], "seed": spec.seed, "parameters": list(spec.parameters)}
+
+
+def _read_row(line: bytes) -> _Row | None:
+    """A row of the journal, or nothing if it is damaged."""
+    checksum, _, text = line.partition(b" ")
+    try:
+        if int(checksum, 16) != zlib.crc32(text):
+            return None
+        request = json.loads(text)
+        value = _KINDS[request["kind"]].value(request.pop("outcome"))
+        return _Row({"index": int(request["index"]), **request}, value)
+    except (ValueError, TypeError, LookupError, SarahError, RecursionError):
+        return None

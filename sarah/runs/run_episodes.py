@@ -1,0 +1,93 @@
+"""Which episodes there are to choose from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from sarah.episode.ending import ENDINGS
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import TASKS
+from sarah.errors import ConfigurationError, RunFolderError
+from sarah.runs.run_folder import RunFolder
+
+
+@dataclass(frozen=True)
+class Choice:
+    """An episode to choose.
+
+    :param name: what ``--episode`` calls it
+    :param label: what the page's list calls it
+    :param spec: the episode
+    :param score: that the run noted, if it has been simulated there
+    """
+
+    name: str
+    label: str
+    spec: EpisodeSpec
+    score: float | None = None
+
+
+def choices_of_run(run: RunFolder) -> list[Choice]:
+    """A run's learned parameters, its best simulation, and then all of them.
+
+    :param run: of a training, which need not be finished
+    :raises RunFolderError: if a row of ``episodes.csv`` cannot be read, or there is nothing at all
+    """
+    training = run.config()
+    task = TASKS[training.task]
+    simulated = []
+    for row in run.episodes():
+        try:
+            parameters = tuple(float(row[name]) for name in task.parameter_names)
+            spec = EpisodeSpec(parameters, int(row["seed"]), task.name, training.episode)
+            score, ending = float(row["score"]), ENDINGS[row["termination"]]
+            label = f"simulation {row['index']} · score {score:.2f} · {ending}"
+            simulated.append(Choice(row["index"], label, spec, score))
+        except (KeyError, TypeError, ValueError) as error:
+            raise RunFolderError(f"the simulations of {run.path} cannot be read: {error!r}") from error
+    choices = []
+    if run.is_finished:
+        spec = EpisodeSpec(run.parameters(), 0, task.name, training.episode)
+        choices.append(Choice("learned", "learned parameters · seed 0", spec))
+    if simulated:
+        best = max(simulated, key=lambda choice: choice.score or 0.0)
+        choices.append(Choice("best", f"best: {best.label}", best.spec, best.score))
+    if not choices:
+        raise RunFolderError(f"{run.path} has no simulations to show yet")
+    return choices + simulated
+
+
+def choice_of_parameters(parameters: Sequence[float]) -> Choice:
+    """The episode of given parameters with seed 0.
+
+    :param parameters: P1 to P5, or V1 to V4 of the balance task
+    :raises ConfigurationError: if there are other than five or four of them, or one is not allowed
+    """
+    for task in TASKS.values():
+        if len(parameters) == len(task.parameter_names):
+            label = f"{task.parameter_names[0][0]} = {', '.join(f'{value:g}' for value in parameters)} · seed 0"
+            return Choice("given", label, EpisodeSpec(tuple(parameters), 0, task.name))
+    counts = " or ".join(
+        f"{len(task.parameter_names)} numbers ({task.parameter_names[0]} to {task.parameter_names[-1]})"
+        for task in TASKS.values()
+    )
+    raise ConfigurationError(f"parameters must be {counts}, not {len(parameters)}")
+
+
+def choose(choices: list[Choice], name: str | None) -> Choice:
+    """Find an episode by its name.
+
+    :param choices: to choose from
+    :param name: ``learned``, ``best`` or the index of a simulation; the first choice if there is none
+    :raises ConfigurationError: if there is no such episode
+    """
+    if name is None:
+        return choices[0]
+    for choice in choices:
+        if choice.name == name:
+            return choice
+    words = [choice.name for choice in choices if not choice.name.isdigit()]
+    simulated = [choice.name for choice in choices if choice.name.isdigit()]
+    numbers = [f"{simulated[0]} to {simulated[-1]}"] if simulated else []
+    raise ConfigurationError(f"unknown episode {name!r} (allowed: {', '.join(words + numbers)})")

@@ -1,0 +1,272 @@
+"""The run folder: the only file that knows its layout.
+
+    config.yaml  command.txt  versions.txt     what was run, how, and with which versions
+    journal.jsonl                              what came of every simulation, in full: what a training is resumed from
+    episodes.csv                               one row per simulation; any row can be simulated again
+    choices.csv                                what would have been chosen, every five simulations
+    progress.csv  events.out.tfevents.*        the learning curves, for tables and for TensorBoard
+    model.zip                                  the agent, in stable-baselines3's format; optimisers have none
+    parameters.json                            the learned parameters: what a robot would be sent
+    figures/  report.html                      what sarah-figures and sarah-report make of this run
+
+Everything but the model is read without unpickling, and no command reads the model: opening somebody's run executes
+none of its code.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import shlex
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from sarah.episode.tasks import TASKS
+from sarah.errors import RunFolderError
+from sarah.files import replace_text
+from sarah.runs.config import TrainingConfig
+from sarah.runs.config_files import read_config, write_config
+from sarah.versions import versions
+
+EVENTS = "events.out.tfevents."
+"""What the names of TensorBoard's files begin with."""
+EPISODE_FIELDS = (
+    "return",
+    "score",
+    "steps_per_second",
+    "x",
+    "y",
+    "duration",
+    "termination",
+    "event_driven_shift",
+    "event_driven_lift",
+    "sole_clearance",
+    "vibration",
+    "actuator_power",
+    "peak_hip_rate",
+    "peak_leg_speed",
+)
+
+
+def new_run_path(task: str, algo: str, seed: int) -> Path:
+    """A run folder's default place, ``runs/<task>/<algo>-s<seed>``, with a number behind it if that is taken.
+
+    :param task: what is learned
+    :param algo: what learns
+    :param seed: of the training
+    """
+    base = Path("runs") / task / f"{algo}-s{seed}"
+    path, number = base, 2
+    while path.exists():
+        path, number = base.with_name(f"{base.name}-{number}"), number + 1
+    return path
+
+
+class RunFolder:
+    """A run's files.
+
+    :param path: of the folder; :meth:`create` makes a new one, :meth:`open` checks one that is there
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.model_path = path / "model.zip"
+        self.figures_path = path / "figures"
+        self.report_path = path / "report.html"
+        self.journal_path = path / "journal.jsonl"
+        self._versions_path = path / "versions.txt"
+        self._progress_path = path / "progress.csv"
+        self._config_path = path / "config.yaml"
+        self._episodes_path = path / "episodes.csv"
+        self._choices_path = path / "choices.csv"
+        self._parameters_path = path / "parameters.json"
+
+    @classmethod
+    def create(cls, path: Path, config: TrainingConfig) -> RunFolder:
+        """Make a new run folder and note what will be run.
+
+        :param path: of the folder, which must be new or empty
+        :param config: of the training
+        :raises RunFolderError: if the folder is not empty or cannot be written
+        """
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+            run = cls(path)
+            if any(path.iterdir()) or not run._claim():
+                raise RunFolderError(f"run folder {path} is not empty: name another with --run-dir")
+            replace_text(path / "command.txt", shlex.join(sys.argv) + "\n")
+            lines = (f"{name} {version}\n" for name, version in versions().items())
+            replace_text(run._versions_path, "".join(lines))
+            write_config(config, run._config_path)  # last: what has one can be resumed
+        except RunFolderError:
+            raise
+        except OSError as error:
+            raise RunFolderError(f"cannot write run folder {path}: {error.strerror or error}") from error
+        return run
+
+    def _claim(self) -> bool:
+        """Make the journal, unless another training made it at the same time."""
+        try:
+            self.journal_path.touch(exist_ok=False)
+        except FileExistsError:
+            return False
+        return True
+
+    @classmethod
+    def open(cls, path: Path, unfinished: bool = False) -> RunFolder:
+        """Open the folder of a training.
+
+        :param path: of the folder
+        :param unfinished: whether one without learned parameters will do
+        :raises RunFolderError: if it is not there, or has no learned parameters
+        """
+        run = cls(path)
+        if not path.is_dir():
+            raise RunFolderError(f"run folder {path} does not exist")
+        kind = "training" if unfinished else "finished training"
+        for file in (run._config_path,) if unfinished else (run._config_path, run._parameters_path):
+            if not file.is_file():
+                raise RunFolderError(f"{path} is not the folder of a {kind}: it has no {file.name}")
+        return run
+
+    @classmethod
+    def resumable(cls, path: Path) -> RunFolder:
+        """Open the folder of a training that was interrupted, or is finished.
+
+        :param path: of the folder
+        :raises RunFolderError: if it is not there, or lacks what a training is resumed from
+        """
+        run = cls(path)
+        if not path.is_dir():
+            raise RunFolderError(f"run folder {path} does not exist")
+        for file in (run._config_path, run.journal_path):
+            if not file.is_file():
+                raise RunFolderError(f"{path} cannot be resumed: it has no {file.name}")
+        return run
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether the training has ended, with learned parameters."""
+        return self._parameters_path.is_file()
+
+    def versions(self) -> dict[str, str]:
+        """Read which versions the training began with, by name."""
+        try:
+            lines = self._versions_path.read_text(encoding="utf-8").splitlines()
+        except (OSError, UnicodeDecodeError) as error:
+            raise RunFolderError(f"cannot read {self._versions_path}: {error}") from error
+        return {name: version for name, _, version in (line.partition(" ") for line in lines)}
+
+    def config(self) -> TrainingConfig:
+        """Read the training's configuration."""
+        return read_config(TrainingConfig, self._config_path)
+
+    def config_text(self) -> str:
+        """Read ``config.yaml`` as it stands."""
+        return self._config_path.read_text(encoding="utf-8")
+
+    def append_episode(self, index: int, parameter_names: Sequence[str], info: Mapping[str, Any]) -> None:
+        """Add one simulation to ``episodes.csv``.
+
+        :param index: of the simulation, from 0
+        :param parameter_names: column names of the parameters
+        :param info: what the environment's step returned
+        """
+        fields = ("index", "seed", *parameter_names, *EPISODE_FIELDS)
+        x, y, _ = info["final_position"]
+        row = {
+            **{name: info[name] for name in EPISODE_FIELDS if name in info},
+            "index": index,
+            "seed": info["seed"],
+            "return": info["episode_return"],
+            "x": x,
+            "y": y,
+            **dict(zip(parameter_names, info["parameters"], strict=True)),
+        }
+        _append_row(self._episodes_path, fields, row)
+
+    def episodes(self) -> Iterator[dict[str, str]]:
+        """Read ``episodes.csv``, row by row, as text; nothing if nothing has been simulated yet."""
+        return _rows(self._episodes_path)
+
+    def append_choice(self, simulations: int, parameter_names: Sequence[str], parameters: Sequence[float]) -> None:
+        """Add a row to ``choices.csv``.
+
+        :param simulations: that the choice knows of
+        :param parameter_names: column names of the parameters
+        :param parameters: that would be chosen
+        """
+        row = {"simulations": simulations, **dict(zip(parameter_names, parameters, strict=True))}
+        _append_row(self._choices_path, ("simulations", *parameter_names), row)
+
+    def choices(self) -> Iterator[dict[str, str]]:
+        """Read ``choices.csv``, row by row, as text."""
+        return _rows(self._choices_path)
+
+    def append_progress(self, columns: Sequence[str], values: Mapping[str, Any]) -> None:
+        """Add a row to ``progress.csv``.
+
+        :param columns: of the file
+        :param values: by column; those that are not named stay empty
+        """
+        _append_row(self._progress_path, columns, values)
+
+    def widen_progress(self, columns: Sequence[str]) -> None:
+        """Give ``progress.csv`` more columns.
+
+        :param columns: those that it has, and new ones
+        """
+        text = io.StringIO(newline="")
+        writer = csv.DictWriter(text, columns)
+        writer.writeheader()
+        writer.writerows(_rows(self._progress_path))
+        replace_text(self._progress_path, text.getvalue())
+
+    def remove_records(self) -> None:
+        """Remove what is written along with the simulations: a resumed training writes all of it anew."""
+        for path in (self._episodes_path, self._choices_path, self._progress_path, *self.path.glob(f"{EVENTS}*")):
+            path.unlink(missing_ok=True)
+
+    def write_parameters(self, content: Mapping[str, Any]) -> None:
+        """Write ``parameters.json``.
+
+        :param content: with at least the learned ``parameters`` by name
+        """
+        replace_text(self._parameters_path, json.dumps(content, indent=2) + "\n")
+
+    def parameters(self) -> tuple[float, ...]:
+        """Read the learned parameters, in the order of the task.
+
+        :raises RunFolderError: if the file does not hold exactly these
+        """
+        task = TASKS[self.config().task]
+        names = task.parameter_names
+        try:
+            learned = json.loads(self._parameters_path.read_text(encoding="utf-8"))["parameters"]
+            if set(learned) != set(names):
+                raise ValueError(f"it names {', '.join(map(str, learned)) or 'none'} instead of {', '.join(names)}")
+            return task.checked([learned[name] for name in names])
+        except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+            raise RunFolderError(f"{self._parameters_path} does not hold learned parameters: {error}") from error
+
+
+def _append_row(path: Path, fields: Sequence[str], row: Mapping[str, Any]) -> None:
+    is_new = not path.exists()
+    with path.open("a", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, fields)
+        if is_new:
+            writer.writeheader()
+        writer.writerow(row)
+
+
+def _rows(path: Path) -> Iterator[dict[str, str]]:
+    if not path.exists():
+        return
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            yield from csv.DictReader(file)
+    except (csv.Error, UnicodeDecodeError) as error:
+        raise RunFolderError(f"{path} cannot be read: {error}") from error

@@ -1,0 +1,286 @@
+"""One robot in its world, in MuJoCo: build, act, sense, push.
+
+A process compiles the model of a robot once. Every episode changes a copy of its own: friction, masses, servos.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from functools import lru_cache
+
+import mujoco
+import numpy as np
+
+from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, PLATES, SIDES, RobotDescription
+from sarah.robot.reading import SensorReading, Vector
+from sarah.simulation.physics import PHYSICS, Physics
+from sarah.simulation.randomisation import NOMINAL, Conditions
+from sarah.simulation.simulator import GRAVITY, TorsoState, rotate_to_body, specific_force
+
+CONTACT_STEPS = 0.5
+"""Time constant in which a contact stops what comes towards it, in physics steps."""
+CONTACT_SECONDS = 0.015
+"""Time constant in which contacts push errors of position back. MuJoCo finds a contact when it has been passed, and
+pushing back faster would throw the foot up again."""
+CONTACT_IMPEDANCE = 0.99
+"""Share of that which a contact achieves against the loads on it."""
+HIP_DAMPING, LEG_DAMPING = 10_000.0, 20_000.0
+"""Effort per deviation from the speed that a servo wants, in Nms/rad and Ns/m."""
+JOINT_DAMPING = 2.0
+"""Factor on the URDF's joint damping: PyBullet, the reference, takes it twice."""
+LOWEST_RATE = 300
+"""Physics steps per second that are taken at least: contacts are softer at lower rates."""
+STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS | mujoco.mjtState.mjSTATE_WARMSTART
+"""What a physics step begins with."""
+
+# A state that is not finite ends the episode; MuJoCo would also write a file to wherever the process runs.
+mujoco.set_mju_user_warning(lambda message: None)
+
+
+class MujocoSimulator:
+    """A :class:`~sarah.simulation.simulator.Simulator` in MuJoCo.
+
+    :param robot: the checked robot
+    :param physics: how finely to integrate, at least at 300 Hz; the solver stops before its last iteration when it has
+        converged
+    :param conditions: friction, masses, servo bandwidth and start velocity of this episode
+    """
+
+    def __init__(
+        self,
+        robot: RobotDescription,
+        physics: Physics = PHYSICS["standard"],
+        conditions: Conditions = NOMINAL,
+    ) -> None:
+        self.robot = robot
+        self.time = 0.0
+        self._dt = physics.control_dt
+        self._substeps = math.ceil(max(physics.rate, LOWEST_RATE) / physics.control_rate)
+        rate = self._substeps * physics.control_rate
+        self._model = copy.copy(_compiled(robot.urdf, rate, physics.solver_iterations))
+        self._data = mujoco.MjData(self._model)
+        self._apply_conditions(rate, conditions)
+        self._addresses = {name: int(self._model.joint(name).qposadr[0]) for name in (*ACTUATED_JOINTS, *ANKLE_JOINTS)}
+        self._positions = [self._addresses[name] for name in ACTUATED_JOINTS]
+        self._speeds = [int(self._model.joint(name).dofadr[0]) for name in ACTUATED_JOINTS]
+        self._limits = [robot.efforts[name] for name in ACTUATED_JOINTS]
+        shares = [damping / limit for damping, limit in zip(self._damping, self._limits, strict=True)]
+        self._servos = list(zip(shares, self._positions, self._speeds, strict=True))
+        self._feet = {
+            side: [
+                self._model.geom(_sole(side, plate, index)).id
+                for plate in PLATES
+                for index in range(len(robot.soles[f"{side}_{plate}"]))
+            ]
+            for side in SIDES
+        }
+        self._before = np.empty(mujoco.mj_stateSize(self._model, STATE))
+        self._data.qpos[2] = robot.standing_height
+        self._data.qvel[:2] = conditions.start_velocity
+        # Views of MuJoCo's memory.
+        self._qpos, self._qvel, self._pads = self._data.qpos, self._data.qvel, self._data.sensordata
+        self._pushed = self._data.xfrc_applied[self._model.body("torso").id, :3]
+        self._is_pushed = False
+        self._targets: tuple[float, ...] = (0.0,) * len(ACTUATED_JOINTS)
+        self._shares = list(self._targets)
+        self._torso = self._torso_state()
+        self._velocity_before = self._torso.velocity
+
+    def _apply_conditions(self, rate: int, conditions: Conditions) -> None:
+        model = self._model
+        for link, factor in conditions.mass_factors.items():
+            index = model.body(link).id
+            model.body_mass[index] *= factor
+            model.body_inertia[index] *= factor
+        mujoco.mj_setConst(model, self._data)  # what MuJoCo derives from them
+        mujoco.mj_resetData(model, self._data)
+        model.pair_friction[:, :2] = conditions.friction
+        # MuJoCo takes the position at a step's end: with this rate a servo is the same first-order lag at every step.
+        self._rate = (math.exp(conditions.actuator_bandwidth / rate) - 1.0) * rate
+        self._damping = [LEG_DAMPING if name.endswith("leg_length") else HIP_DAMPING for name in ACTUATED_JOINTS]
+        for actuator in range(len(ACTUATED_JOINTS)):
+            self._let_follow(actuator)
+
+    def _let_follow(self, actuator: int) -> None:
+        """Let a servo follow its target."""
+        damping = self._damping[actuator]
+        self._model.actuator_gainprm[actuator, 0] = damping * self._rate
+        self._model.actuator_biasprm[actuator, :3] = (0.0, -damping * self._rate, -damping)
+
+    def _let_give(self, actuator: int, effort: float) -> None:
+        """Let a servo give an effort, whatever its target."""
+        self._model.actuator_gainprm[actuator, 0] = 0.0
+        self._model.actuator_biasprm[actuator, :3] = (effort, 0.0, 0.0)
+
+    def set_targets(self, targets: tuple[float, ...]) -> None:
+        """Set where the servos move the joints from now on.
+
+        :param targets: positions in the order of ``ACTUATED_JOINTS``, in rad and m
+        """
+        if targets != self._targets:  # the servos keep them
+            self._targets = targets
+            self._data.ctrl[:] = targets
+
+    def push(self, force: Vector) -> None:
+        """Push the torso at its centre during the next control tick.
+
+        :param force: in the world's frame, in N
+        """
+        self._pushed[:] = force
+        self._is_pushed = True
+
+    def advance(self) -> None:
+        """Simulate one control tick."""
+        model, data, before = self._model, self._data, self._before
+        self._velocity_before = self._torso.velocity
+        for _ in range(self._substeps):
+            mujoco.mj_getState(model, data, before, STATE)
+            mujoco.mj_step(model, data)
+            shares = self._effort_shares()
+            if max(shares) > 1.0 or min(shares) < -1.0:
+                shares = self._step_again(shares)
+        self._shares = shares
+        if self._is_pushed:  # MuJoCo would go on
+            self._pushed[:] = 0.0
+            self._is_pushed = False
+        self.time += self._dt
+        self._torso = self._torso_state()
+
+    def _step_again(self, shares: list[float]) -> list[float]:
+        """Take a physics step again, in which servos that exceeded their limits give what they can.
+
+        :param shares: of the servos' limits that they took
+        :return: that they take now
+        """
+        limited: dict[int, float] = {}
+        while max(shares) > 1.0 or min(shares) < -1.0:
+            for actuator, share in enumerate(shares):
+                if abs(share) > 1.0:
+                    limited[actuator] = math.copysign(1.0, share)
+                    self._let_give(actuator, limited[actuator] * self._limits[actuator])
+            mujoco.mj_setState(self._model, self._data, self._before, STATE)
+            mujoco.mj_step(self._model, self._data)
+            shares = self._effort_shares()
+            for actuator, share in limited.items():
+                shares[actuator] = share
+        for actuator in limited:
+            self._let_follow(actuator)
+        return shares
+
+    def _effort_shares(self) -> list[float]:
+        """Efforts of servos that follow their targets, at the end of the last physics step, over their limits."""
+        positions, speeds, rate = self._qpos.tolist(), self._qvel.tolist(), self._rate
+        return [
+            damping * (rate * (target - positions[position]) - speeds[speed])
+            for target, (damping, position, speed) in zip(self._targets, self._servos, strict=True)
+        ]
+
+    def torso_state(self) -> TorsoState:
+        """Where the torso really is; no sensor of the robot knows it."""
+        return self._torso
+
+    def _torso_state(self) -> TorsoState:
+        x, y, z, orientation_w, orientation_x, orientation_y, orientation_z = self._qpos[:7].tolist()
+        orientation = (orientation_x, orientation_y, orientation_z, orientation_w)
+        velocity_x, velocity_y, velocity_z, *rate = self._qvel[:6].tolist()
+        self._angular_rate: Vector = tuple(rate)  # MuJoCo's is in the torso's frame
+        to_world = (-orientation_x, -orientation_y, -orientation_z, orientation_w)
+        angular_velocity = rotate_to_body(to_world, self._angular_rate)
+        return TorsoState((x, y, z), orientation, (velocity_x, velocity_y, velocity_z), angular_velocity)
+
+    def read(self) -> SensorReading:
+        """The true sensor signals of the last control tick, without noise or delay."""
+        positions = self._qpos.tolist()
+        return SensorReading(
+            specific_force(self._torso, self._velocity_before, self._dt),
+            self._angular_rate,
+            tuple(self._pads[::3].tolist()),  # the normal forces
+            tuple([positions[index] for index in self._positions]),
+        )
+
+    def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
+        """Positions of some joints, in rad and m.
+
+        :param names: of the joints
+        :return: a tuple in the same order
+        """
+        return tuple(float(self._qpos[self._addresses[name]]) for name in names)
+
+    def actuator_motion(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Speeds (rad/s, m/s) and efforts (Nm, N) of the actuators, in the order of ``ACTUATED_JOINTS``."""
+        speeds = self._qvel.tolist()
+        efforts = [share * limit for share, limit in zip(self._shares, self._limits, strict=True)]
+        return tuple([speeds[index] for index in self._speeds]), tuple(efforts)
+
+    def sole_height(self, side: str) -> float:
+        """Height of a foot's lowest sole contact over the floor, in m.
+
+        :param side: ``"left"`` or ``"right"``
+        """
+        mujoco.mj_kinematics(self._model, self._data)  # a step leaves the positions of its beginning
+        heights = self._data.geom_xpos[:, 2].tolist()
+        return min([heights[sole] for sole in self._feet[side]]) - self.robot.contact_radius
+
+    def close(self) -> None:
+        """Nothing is left open: MuJoCo's memory goes with the object."""
+
+
+def _sole(side: str, plate: str, index: int) -> str:
+    return f"{side}_{plate}_sole_{index}"
+
+
+@lru_cache(maxsize=8)
+def _compiled(urdf: str, rate: int, solver_iterations: int) -> mujoco.MjModel:
+    """A robot on a plane, as designed. Only soles touch the floor, and only pads their plates."""
+    spec = mujoco.MjSpec.from_string(urdf)
+    spec.compiler.fusestatic = False  # otherwise the torso becomes a part of the world
+    spec.body("torso").add_freejoint()
+    spec.option.timestep = 1.0 / rate
+    spec.option.gravity = (0.0, 0.0, -GRAVITY)
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
+    spec.option.iterations = solver_iterations
+    spec.option.disableflags |= (
+        mujoco.mjtDisableBit.mjDSBL_REFSAFE  # contacts are as hard as asked
+        | mujoco.mjtDisableBit.mjDSBL_AUTORESET  # who diverges ends, and does not begin anew
+        | mujoco.mjtDisableBit.mjDSBL_ISLAND  # there is one robot
+    )
+    damping = rate / CONTACT_STEPS
+    hardness = {"solref": (-damping / CONTACT_SECONDS, -damping), "solimp": (*[CONTACT_IMPEDANCE] * 2, 0.001, 0.5, 2.0)}
+    for geom in spec.geoms:
+        geom.contype = geom.conaffinity = 0
+    spec.worldbody.add_geom(name="floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0, 0, 1), contype=0, conaffinity=0)
+    for side in SIDES:
+        # In the order of the URDF: the forefoot's first.
+        for plate, pad in zip(PLATES, spec.body(f"{side}_shank").geoms, strict=True):
+            pad.name = f"{side}_{plate}_pad"
+            soles = 0
+            for geom in spec.body(f"{side}_{plate}").geoms:
+                if geom.type == mujoco.mjtGeom.mjGEOM_BOX:
+                    geom.name = f"{side}_{plate}"
+                    # Without friction: the hinge leaves nothing to slide.
+                    spec.add_pair(geomname1=pad.name, geomname2=geom.name, condim=1, **hardness)
+                    spec.add_sensor(
+                        name=pad.name,
+                        type=mujoco.mjtSensor.mjSENS_CONTACT,
+                        objtype=mujoco.mjtObj.mjOBJ_GEOM,
+                        objname=pad.name,
+                        intprm=(1 << mujoco.mjtConDataField.mjCONDATA_FORCE.value, 2, 1),
+                    )
+                else:
+                    geom.name = _sole(side, plate, soles)
+                    soles += 1
+                    spec.add_pair(geomname1="floor", geomname2=geom.name, condim=3, **hardness)
+    for name in (*ACTUATED_JOINTS, *ANKLE_JOINTS):
+        joint = spec.joint(name)
+        joint.actfrclimited = mujoco.mjtLimited.mjLIMITED_FALSE  # would cut what MuJoCo computes before a step
+        joint.damping *= JOINT_DAMPING
+        joint.solref_limit, joint.solimp_limit = hardness["solref"], hardness["solimp"]
+    for name in ACTUATED_JOINTS:
+        spec.add_actuator(
+            name=name,
+            target=name,
+            trntype=mujoco.mjtTrn.mjTRN_JOINT,
+            biastype=mujoco.mjtBias.mjBIAS_AFFINE,
+        )
+    return spec.compile()

@@ -1,0 +1,260 @@
+"""One PyBullet world with one robot: build, act, sense, push.
+
+A world is built for one episode and closed after it: poses reset in place, or a restored state, do not repeat
+bit for bit, a world built anew does.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import product
+
+from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, PLATES, SIDES, RobotDescription
+from sarah.robot.reading import SensorReading, Vector
+from sarah.simulation.physics import PHYSICS, Physics
+from sarah.simulation.pybullet_client import give_back_client, load_robot, pybullet, take_client
+from sarah.simulation.randomisation import NOMINAL, Conditions
+from sarah.simulation.simulator import GRAVITY, TorsoState, rotate_to_body, specific_force
+
+CONTACT_SECONDS = 0.0015
+"""Time in which contacts push errors of position back to 1/e. PyBullet takes a share per physics step instead; with the
+same share at every rate, coarse steps would make the floor soft. With 1 ms a standing robot creeps at 1 kHz."""
+CONTACT_MARGIN = 0.0003
+"""Distance from which on the solver considers a contact, in m. With 2 mm coarse steps damp the rocking more; PyBullet's
+0.02 also costs time for feet in the air."""
+
+
+class PyBulletSimulator:
+    """A :class:`~sarah.simulation.simulator.Simulator` in PyBullet.
+
+    :param robot: the checked robot
+    :param physics: how finely to integrate
+    :param conditions: friction, masses, servo bandwidth and start velocity of this episode
+    """
+
+    def __init__(
+        self,
+        robot: RobotDescription,
+        physics: Physics = PHYSICS["standard"],
+        conditions: Conditions = NOMINAL,
+    ) -> None:
+        self.robot = robot
+        self.time = 0.0
+        self._dt = physics.control_dt
+        self._substeps = physics.rate // physics.control_rate
+        self._client = take_client()
+        try:
+            self._build(physics, conditions)
+        except BaseException:
+            self.close()
+            raise
+
+    def _build(self, physics: Physics, conditions: Conditions) -> None:
+        corrected = 1.0 - math.exp(-1.0 / (physics.rate * CONTACT_SECONDS))
+        pybullet.setPhysicsEngineParameter(
+            fixedTimeStep=self._dt,
+            numSubSteps=self._substeps,
+            numSolverIterations=physics.solver_iterations,
+            contactERP=corrected,
+            contactBreakingThreshold=CONTACT_MARGIN,
+            numNonContactInnerIterations=2,  # motors settle before contacts do: without, standing soles creep
+            enableConeFriction=0,  # as good as friction cones here, and cheaper
+            enableFileCaching=0,
+            physicsClientId=self._client,
+        )
+        pybullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self._client)
+        self._build_floor()
+        self._body, self._links = load_robot(
+            self._client,
+            self.robot.urdf,
+            self.robot.standing_height,
+            flags=pybullet.URDF_USE_INERTIA_FROM_FILE
+            | pybullet.URDF_IGNORE_VISUAL_SHAPES
+            # PyBullet gives parent-child contact (pad and plate) only with both of these.
+            | pybullet.URDF_USE_SELF_COLLISION
+            | pybullet.URDF_USE_SELF_COLLISION_INCLUDE_PARENT,
+        )
+        self._joints = [self._links[name] for name in ACTUATED_JOINTS]
+        self._pads: dict[tuple[int, int], int] = {}
+        for index, (side, plate) in enumerate(product(SIDES, PLATES)):
+            shank, foot = self._links[f"{side}_shank"], self._links[f"{side}_{plate}"]
+            self._pads[shank, foot] = self._pads[foot, shank] = index
+        self._feet = {}
+        for side in SIDES:
+            plates = [f"{side}_{plate}" for plate in PLATES]
+            self._feet[side] = ([self._links[name] for name in plates], [self.robot.soles[name] for name in plates])
+        self._keep_only_pad_contacts()
+        self._apply_conditions(conditions)
+        # A servo's share of the way in one physics step, so that it is the same first-order lag at every rate.
+        gain = 1.0 - math.exp(-conditions.actuator_bandwidth / physics.rate)
+        self._gains = [gain] * len(self._joints)
+        self._added_plate_inertia = physics.added_plate_inertia
+        self._plate_inertias = {
+            link: pybullet.getDynamicsInfo(self._body, link, physicsClientId=self._client)[2]
+            for links, _ in self._feet.values()
+            for link in links
+        }
+        self._retracted = dict.fromkeys(SIDES, True)
+        # PyBullet takes them as impulses over the whole tick, and lets every substep spend all of it.
+        self._efforts = [self.robot.efforts[name] / self._substeps for name in ACTUATED_JOINTS]
+        self._look()
+        self._velocity_before = self._torso.velocity
+        self._targets: tuple[float, ...] = ()
+        self.set_targets((0.0,) * len(self._joints))
+
+    def _build_floor(self) -> None:
+        shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self._client)
+        floor = pybullet.createMultiBody(0.0, shape, physicsClientId=self._client)
+        pybullet.changeDynamics(floor, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=self._client)
+
+    def _keep_only_pad_contacts(self) -> None:
+        links = sorted(set(self._links.values()))
+        for first in links:
+            for second in links:
+                if first < second and (first, second) not in self._pads:
+                    pybullet.setCollisionFilterPair(self._body, self._body, first, second, 0, self._client)
+
+    def _apply_conditions(self, conditions: Conditions) -> None:
+        client = self._client
+        for link, factor in conditions.mass_factors.items():  # of every link
+            index = self._links[link]
+            dynamics = pybullet.getDynamicsInfo(self._body, index, physicsClientId=client)
+            pybullet.changeDynamics(
+                self._body,
+                index,
+                mass=dynamics[0] * factor,
+                localInertiaDiagonal=[inertia * factor for inertia in dynamics[2]],
+                lateralFriction=conditions.friction,
+                restitution=0.0,
+                linearDamping=0.0,
+                angularDamping=0.0,
+                physicsClientId=client,
+            )
+        # In a call of its own: together with other settings PyBullet applies those to the base instead of the link.
+        pybullet.changeDynamics(
+            self._body, -1, activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING, physicsClientId=client
+        )
+        for name in ANKLE_JOINTS:  # otherwise PyBullet's default motor holds them
+            pybullet.setJointMotorControl2(
+                self._body, self._links[name], pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client
+            )
+        pybullet.resetBaseVelocity(self._body, (*conditions.start_velocity, 0.0), physicsClientId=client)
+
+    def set_targets(self, targets: tuple[float, ...]) -> None:
+        """Set where the servos move the joints from now on.
+
+        :param targets: positions in the order of ``ACTUATED_JOINTS``, in rad and m
+        """
+        if targets == self._targets:  # the servos keep them
+            return
+        self._targets = targets
+        pybullet.setJointMotorControlArray(
+            self._body,
+            self._joints,
+            pybullet.POSITION_CONTROL,
+            targetPositions=targets,
+            forces=self._efforts,
+            positionGains=self._gains,
+            physicsClientId=self._client,
+        )
+        for side, length in zip(SIDES, targets[-len(SIDES) :], strict=True):  # the legs' lengths come last
+            if (length > 0.0) != self._retracted[side]:
+                self._retract(side, length > 0.0)
+
+    def _retract(self, side: str, retracted: bool) -> None:
+        """Leave the plates of a leg that is retracted their own inertia, and give those of another leg the added one.
+
+        Light plates between the floor and pads that carry a whole robot make the solver converge slowly. While they
+        stand they hardly turn, and their inertia changes little else (docs/robot.md has how much).
+        """
+        self._retracted[side] = retracted
+        added = 0.0 if retracted else self._added_plate_inertia
+        for link in self._feet[side][0]:
+            about_hinge, *others = self._plate_inertias[link]
+            inertia = (about_hinge + added, *others)
+            pybullet.changeDynamics(self._body, link, localInertiaDiagonal=inertia, physicsClientId=self._client)
+
+    def push(self, force: Vector) -> None:
+        """Push the torso at its centre during the next control tick.
+
+        :param force: in the world's frame, in N
+        """
+        pybullet.applyExternalForce(
+            self._body, -1, force, self._torso.position, pybullet.WORLD_FRAME, physicsClientId=self._client
+        )
+
+    def advance(self) -> None:
+        """Simulate one control tick."""
+        self._velocity_before = self._torso.velocity
+        pybullet.stepSimulation(physicsClientId=self._client)
+        self.time += self._dt
+        self._look()
+
+    def torso_state(self) -> TorsoState:
+        """Where the torso really is; no sensor of the robot knows it."""
+        return self._torso
+
+    def _torso_state(self) -> TorsoState:
+        position, orientation = pybullet.getBasePositionAndOrientation(self._body, physicsClientId=self._client)
+        return TorsoState(position, orientation, *pybullet.getBaseVelocity(self._body, physicsClientId=self._client))
+
+    def read(self) -> SensorReading:
+        """The true sensor signals of the last control tick, without noise or delay."""
+        torso = self._torso
+        return SensorReading(
+            specific_force(torso, self._velocity_before, self._dt),
+            rotate_to_body(torso.orientation, torso.angular_velocity),
+            self._pressures(),
+            self._positions,
+        )
+
+    def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
+        """Positions of some joints, in rad and m.
+
+        :param names: of the joints
+        :return: a tuple in the same order
+        """
+        indices = [self._links[name] for name in names]
+        return tuple(state[0] for state in pybullet.getJointStates(self._body, indices, self._client))
+
+    def actuator_motion(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Speeds (rad/s, m/s) and efforts (Nm, N) of the actuators, in the order of ``ACTUATED_JOINTS``."""
+        # As with contacts, PyBullet reports the impulse of the last substep over the whole tick.
+        return self._speeds, tuple([effort * self._substeps for effort in self._joint_efforts])
+
+    def _look(self) -> None:
+        """Ask PyBullet where torso and actuators are, and how they move."""
+        self._torso = self._torso_state()
+        self._positions, self._speeds, _, self._joint_efforts = zip(
+            *pybullet.getJointStates(self._body, self._joints, self._client), strict=True
+        )
+
+    def _pressures(self) -> tuple[float, float, float, float]:
+        loads = [0.0, 0.0, 0.0, 0.0]
+        for contact in pybullet.getContactPoints(self._body, self._body, physicsClientId=self._client):
+            # PyBullet reports the impulse of the last substep over the whole tick.
+            loads[self._pads[contact[3], contact[4]]] += contact[9] * self._substeps
+        return (loads[0], loads[1], loads[2], loads[3])
+
+    def sole_height(self, side: str) -> float:
+        """Height of a foot's lowest sole contact over the floor, in m.
+
+        :param side: ``"left"`` or ``"right"``
+        """
+        lowest = math.inf
+        links, soles = self._feet[side]
+        states = pybullet.getLinkStates(self._body, links, computeForwardKinematics=1, physicsClientId=self._client)
+        for state, contacts in zip(states, soles, strict=True):
+            frame_height, (x, y, z, w) = state[4][2], state[5]
+            up_x, up_y, up_z = 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
+            for sole_x, sole_y, sole_z in contacts:
+                height = frame_height + (up_x * sole_x + up_y * sole_y + up_z * sole_z)
+                if height < lowest:
+                    lowest = height
+        return lowest - self.robot.contact_radius
+
+    def close(self) -> None:
+        """Give PyBullet's clients back; the simulation cannot be used any more."""
+        if self._client >= 0:
+            give_back_client(self._client)
+            self._client = -1

@@ -1,0 +1,121 @@
+"""What an episode needs of a physics engine, whichever it is."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple, Protocol
+
+from sarah.robot.reading import SensorReading, Vector
+
+GRAVITY = 9.81
+"""In m/s^2."""
+LARGEST_STATE = 1e3
+"""In any SI unit: a torso that is farther away, or faster, is in a simulation that diverges."""
+
+
+class TorsoState(NamedTuple):
+    """Where the torso really is, in the world's frame.
+
+    :param position: of its centre, in m
+    :param orientation: unit quaternion (x, y, z, w)
+    :param velocity: in m/s
+    :param angular_velocity: in rad/s
+    """
+
+    position: Vector
+    orientation: tuple[float, float, float, float]
+    velocity: Vector
+    angular_velocity: Vector
+
+    @property
+    def upright(self) -> float:
+        """Cosine of the angle between the torso's axis and the vertical."""
+        x, y, _, _ = self.orientation
+        return 1.0 - 2.0 * (x * x + y * y)
+
+    @property
+    def tilt(self) -> float:
+        """Angle between the torso's axis and the vertical, in rad."""
+        return math.acos(max(-1.0, min(1.0, self.upright)))
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether the physics engine still returns numbers that a robot's state can have."""
+        position, orientation, velocity, angular_velocity = self
+        return math.hypot(*position, *orientation, *velocity, *angular_velocity) < LARGEST_STATE
+
+
+class Simulator(Protocol):
+    """A robot in its world, built for one episode: it stands on a plane, soles just touching, all joints at zero."""
+
+    @property
+    def time(self) -> float:
+        """Simulated so far, in s."""
+
+    def set_targets(self, targets: tuple[float, ...]) -> None:
+        """Set where the servos move the joints from now on.
+
+        :param targets: positions in the order of ``ACTUATED_JOINTS``, in rad and m
+        """
+
+    def push(self, force: Vector) -> None:
+        """Push the torso at its centre during the next control tick.
+
+        :param force: in the world's frame, in N
+        """
+
+    def advance(self) -> None:
+        """Simulate one control tick."""
+
+    def read(self) -> SensorReading:
+        """The true sensor signals of the last control tick, without noise or delay."""
+
+    def torso_state(self) -> TorsoState:
+        """Where the torso really is; no sensor of the robot knows it."""
+
+    def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
+        """Positions of some joints, in rad and m.
+
+        :param names: of the joints
+        """
+
+    def actuator_motion(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Speeds (rad/s, m/s) and efforts (Nm, N) of the actuators, in the order of ``ACTUATED_JOINTS``."""
+
+    def sole_height(self, side: str) -> float:
+        """Height of a foot's lowest sole contact over the floor, in m.
+
+        :param side: ``"left"`` or ``"right"``
+        """
+
+    def close(self) -> None:
+        """Give the engine's resources back; the simulator cannot be used any more."""
+
+
+def rotate_to_body(orientation: tuple[float, float, float, float], vector: Vector) -> Vector:
+    """Turn a vector from the world's frame into a body's.
+
+    :param orientation: the body's unit quaternion (x, y, z, w)
+    :param vector: in the world's frame
+    :return: the same vector in the body's frame
+    """
+    x, y, z, w = orientation
+    a, b, c = vector
+    return (
+        (1.0 - 2.0 * (y * y + z * z)) * a + 2.0 * (x * y + w * z) * b + 2.0 * (x * z - w * y) * c,
+        2.0 * (x * y - w * z) * a + (1.0 - 2.0 * (x * x + z * z)) * b + 2.0 * (y * z + w * x) * c,
+        2.0 * (x * z + w * y) * a + 2.0 * (y * z - w * x) * b + (1.0 - 2.0 * (x * x + y * y)) * c,
+    )
+
+
+def specific_force(torso: TorsoState, velocity_before: Vector, dt: float) -> Vector:
+    """What an ideal accelerometer in the torso reads: the mean over a control tick, without gravity.
+
+    :param torso: at the end of the tick
+    :param velocity_before: at its beginning, in the world's frame, in m/s
+    :param dt: of the tick, in s
+    :return: in the torso's frame, in m/s^2
+    """
+    now, before = torso.velocity, velocity_before
+    force = ((now[0] - before[0]) / dt, (now[1] - before[1]) / dt, (now[2] - before[2]) / dt + GRAVITY)
+    return rotate_to_body(torso.orientation, force)

@@ -1,0 +1,113 @@
+"""Learning curves, for tables and for TensorBoard.
+
+Written here and not by stable-baselines3's writers: their CSV has its columns in another order in every process, and
+TensorBoard's own writer has a thread that alone learns of a full disk.
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+import time
+from typing import TYPE_CHECKING, Any
+
+from stable_baselines3.common.logger import filter_excluded_keys
+from tensorboard.compat.proto.event_pb2 import Event
+from tensorboard.compat.proto.summary_pb2 import Summary
+from tensorboard.plugins.hparams import summary_v2 as hparams
+from tensorboard.summary.writer.record_writer import RecordWriter
+
+from sarah.episode.tasks import BALANCE
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import EVENTS, RunFolder
+
+if TYPE_CHECKING:
+    from sarah.pictures.gait_snapshot import Picture
+
+RGB = 3
+"""What TensorBoard calls the colours of a picture."""
+LEARNED = ("learned/score", "learned/steps_per_second", "learned/survival_rate", "learned/sole_clearance")
+"""What a training ends with, beside its hyper-parameters."""
+
+
+class LearningCurves:
+    """``progress.csv`` and TensorBoard's event file of a run.
+
+    :param run: the run folder
+    """
+
+    def __init__(self, run: RunFolder) -> None:
+        self._run = run
+        self._columns: list[str] = []
+        # TensorBoard goes by the name: what comes later in the alphabet is newer.
+        name = f"{EVENTS}{time.time():.0f}.{socket.gethostname()}.{os.getpid()}"
+        self._file = (run.path / name).open("wb")
+        self._events = RecordWriter(self._file)
+        self._add(Event(file_version="brain.Event:2"))
+        config = hyper_parameters(run.config())
+        metrics = [hparams.Metric(name) for name in LEARNED]
+        self._add(Event(summary=hparams.hparams_config_pb([hparams.HParam(name) for name in config], metrics)))
+        self._add(Event(summary=hparams.hparams_pb(config, trial_id=str(run.path))))
+
+    def write(self, values: dict[str, Any], excluded: dict[str, tuple[str, ...]], step: int) -> None:
+        """Add a point to each curve.
+
+        :param values: by name of the curve
+        :param excluded: by name: where a value is not wanted, ``"csv"`` or ``"tensorboard"``
+        :param step: simulations so far
+        """
+        row = filter_excluded_keys(values, excluded, "csv")
+        new = sorted(row.keys() - set(self._columns))
+        if new:
+            is_widened, self._columns = bool(self._columns), [*self._columns, *new]
+            if is_widened:
+                self._run.widen_progress(self._columns)
+        if row:
+            self._run.append_progress(self._columns, row)
+        shown = filter_excluded_keys(values, excluded, "tensorboard")
+        points = [Summary.Value(tag=name, simple_value=float(value)) for name, value in sorted(shown.items())]
+        self._add(Event(step=step, summary=Summary(value=points)))
+
+    def show(self, pictures: list[Picture], step: int) -> None:
+        """Add pictures, which only TensorBoard shows.
+
+        :param pictures: to add
+        :param step: simulations so far
+        """
+        values = [
+            Summary.Value(
+                tag=picture.name,
+                image=Summary.Image(
+                    width=picture.width, height=picture.height, colorspace=RGB, encoded_image_string=picture.content
+                ),
+            )
+            for picture in pictures
+        ]
+        self._add(Event(step=step, summary=Summary(value=values)))
+
+    def _add(self, event: Event) -> None:
+        event.wall_time = time.time()
+        self._events.write(event.SerializeToString())
+        self._file.flush()
+
+    def close(self) -> None:
+        """Close the event file."""
+        self._file.close()
+
+
+def hyper_parameters(config: TrainingConfig) -> dict[str, str | int | float]:
+    """What TensorBoard's table of hyper-parameters shows of a training: few, and the same columns for every one.
+
+    :param config: of the training
+    """
+    episode = config.episode
+    return {
+        "task": config.task,
+        "algorithm": config.algo,
+        "simulations": config.simulations,
+        "seed": config.seed,
+        "slots": config.slots,
+        "engine": episode.engine,
+        "time_limit": episode.time_limit,
+        "push_newtons": "{:g} to {:g}".format(*episode.push.newtons) if config.task == BALANCE.name else "none",
+    }

@@ -1,0 +1,191 @@
+"""What a training leaves behind while it runs: every simulation, and what it would recommend at the time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any, NoReturn
+
+import torch
+from stable_baselines3.common.base_class import BaseAlgorithm
+from stable_baselines3.common.callbacks import BaseCallback
+from stable_baselines3.common.logger import KVWriter, Logger
+from tqdm import tqdm
+
+from sarah.episode.evaluation import Evaluation
+from sarah.episode.tasks import Task
+from sarah.errors import LearningError
+from sarah.runs.journal import Journal
+from sarah.runs.run_folder import RunFolder
+from sarah.training.learning_curves import LEARNED, LearningCurves
+from sarah.training.recommendation import Parameters, candidates, merit
+
+LOGGED_FIELDS = {
+    "score": "episode",
+    "steps_per_second": "episode",
+    "duration": "episode",
+    "event_driven_shift": "gait",
+    "event_driven_lift": "gait",
+    "sole_clearance": "gait",
+    "vibration": "actuators",
+    "actuator_power": "actuators",
+}
+"""Fields of a result that are logged under their own names, and in which group."""
+SIMULATIONS_PER_CHOICE = 5
+"""How often it is noted what would be recommended."""
+
+
+class EpisodeRecorder(BaseCallback):
+    """Writes every simulation to ``episodes.csv`` and to the learning curves.
+
+    While a resumed training replays what it knows, nothing is written; once it goes on, all files are written anew, so
+    that they hold what they would without the interruption.
+
+    :param run: where to
+    :param task: whose parameters they are
+    :param journal: of the training
+    :param progress: bar that every simulation moves
+    :param picture_interval: simulations between pictures, for TensorBoard, of what would be chosen; 0 for none
+    """
+
+    log: Logger
+    """Of the learning curves, which the agent writes to as well."""
+    tried: list[tuple[Parameters, float]]
+    """Parameters and merit of every simulation so far."""
+    diverged: int
+    """Simulations so far that ended because no number came back."""
+    choose: Callable[[], Parameters] | None
+    """Tells what the algorithm would choose now; while there is such a thing, what a training would recommend is noted
+    in ``choices.csv``."""
+
+    def __init__(
+        self, run: RunFolder, task: Task, journal: Journal, progress: tqdm[NoReturn], picture_interval: int = 0
+    ) -> None:
+        super().__init__()
+        self.log = Logger(folder=None, output_formats=[_CurveWriter(self)])
+        self.tried = []
+        self.diverged = 0
+        self.choose = None
+        self._task = task
+        self._run = run
+        self._journal = journal
+        self._progress = progress
+        self._picture_interval = picture_interval
+        self._curves: LearningCurves | None = None
+        self._held: list[Callable[[], None]] = []
+
+    def _on_rollout_start(self) -> None:
+        check_weights(self.model)
+
+    def _on_step(self) -> bool:
+        for info in self.locals["infos"]:
+            if info:  # the first steps only fill the slots
+                self.record(info)
+        return True
+
+    def record(self, info: dict[str, Any]) -> None:
+        """Write one simulation.
+
+        :param info: what the environment's step returned
+        """
+        self._write(partial(self._run.append_episode, len(self.tried), self._task.parameter_names, info))
+        self.tried.append((info["parameters"], merit(info)))
+        self.diverged += info["termination"] == "diverged"
+        x, y, _ = info["final_position"]
+        for name, value in {"return": info["episode_return"], "x": x, "y": y}.items():
+            self.log.record(f"episode/{name}", value)
+        for name, group in LOGGED_FIELDS.items():
+            self.log.record(f"{group}/{name}", info[name])
+        for name, value in zip(self._task.parameter_names, info["parameters"], strict=True):
+            self.log.record(f"parameters/{name}", value)
+        if self.choose is not None:
+            self._record_choice(self.choose, len(self.tried))
+        self.log.dump(len(self.tried))
+        self._progress.set_postfix(score=f"{info['score']:.2f}", refresh=False)
+        self._progress.update()
+
+    def _record_choice(self, choose: Callable[[], Parameters], simulations: int) -> None:
+        """Note what would be recommended, and show it, whenever it is time."""
+        names = self._task.parameter_names
+        noted = simulations % SIMULATIONS_PER_CHOICE == 0
+        drawn = self._picture_interval and simulations % self._picture_interval == 0
+        if not noted and not drawn:
+            return
+        (choice,) = candidates(choose(), self.tried, 1, self._task.width)
+        if noted:
+            self._write(partial(self._run.append_choice, simulations, names, choice))
+            for name, value in zip(names, choice, strict=True):
+                self.log.record(f"choice/{name}", value, exclude="csv")  # it has choices.csv
+        if drawn:
+            self._write(partial(self._draw, choice, simulations))
+
+    def _draw(self, choice: Parameters, simulations: int) -> None:
+        from sarah.pictures.gait_snapshot import draw_gait  # matplotlib, for those who want pictures
+
+        config = self._run.config()
+        self._open_curves().show(draw_gait(choice, config.task, config.episode), simulations)
+
+    def write_curves(self, values: dict[str, Any], excluded: dict[str, tuple[str, ...]], step: int) -> None:
+        """Write a point of each learning curve.
+
+        :param values: by name
+        :param excluded: by name: where a value is not wanted
+        :param step: simulations so far
+        """
+        self._write(lambda: self._open_curves().write(values, excluded, step))
+
+    def close(self, learned: Evaluation) -> None:
+        """Write what the training ends with and all that is held back, and close the learning curves.
+
+        :param learned: how the learned parameters do on unseen seeds
+        """
+        values = (
+            learned.score_median,
+            learned.steps_per_second_median,
+            learned.survival_rate,
+            learned.sole_clearance_mean,
+        )
+        self.write_curves(dict(zip(LEARNED, values, strict=True)), dict.fromkeys(LEARNED, ("csv",)), len(self.tried))
+        self._write_held()
+        self._open_curves().close()
+
+    def _write(self, action: Callable[[], None]) -> None:
+        self._held.append(action)
+        if not self._journal.replaying:
+            self._write_held()
+
+    def _write_held(self) -> None:
+        held, self._held = self._held, []
+        self._open_curves()
+        for action in held:
+            action()
+
+    def _open_curves(self) -> LearningCurves:
+        if self._curves is None:
+            self._run.remove_records()
+            self._curves = LearningCurves(self._run)
+        return self._curves
+
+
+class _CurveWriter(KVWriter):
+    """What a logger of stable-baselines3 writes to."""
+
+    def __init__(self, recorder: EpisodeRecorder) -> None:
+        self._recorder = recorder
+
+    def write(self, key_values: dict[str, Any], key_excluded: dict[str, tuple[str, ...]], step: int = 0) -> None:
+        # The logger empties both when this returns.
+        self._recorder.write_curves(dict(key_values), dict(key_excluded), step)
+
+
+def check_weights(model: BaseAlgorithm) -> None:
+    """Stop a training that learns nothing any more.
+
+    :param model: the agent
+    :raises LearningError: if one of its weights is not finite
+    """
+    norms = torch._foreach_norm(list(model.policy.parameters()))
+    if not torch.isfinite(torch.stack(norms)).all():
+        raise LearningError(
+            f"the agent's weights are no longer finite after {model.num_timesteps} simulations: it learns nothing more"
+        )

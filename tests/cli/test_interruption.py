@@ -1,0 +1,141 @@
+"""Whole commands that are killed, interrupted, locked out, or run out of disk: nothing finished is lost."""
+
+import os
+import re
+import shlex
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+BIN = Path(sys.executable).parent
+COARSE = ("--episode.time-limit", "2", "--episode.physics.rate", "100", "--episode.physics.solver-iterations", "5")
+# Long enough to be interrupted three times also where the test itself has to wait for the processor.
+TRAINING = ("--simulations", "60", "--slots", "2", "--run-dir", "run", *COARSE)
+RECORDS = ("episodes.csv", "choices.csv", "progress.csv", "parameters.json")
+
+
+def begin(folder: Path, *arguments: str) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [BIN / "sarah-train", *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=folder,
+        start_new_session=True,
+        # Whoever starts the tests in the background may have switched Ctrl-C off, and programs inherit that.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+
+
+def wait_for_rows(process: subprocess.Popen[str], run: Path, count: int) -> None:
+    """Until so many rows are in the journal."""
+    while process.poll() is None:
+        if (run / "journal.jsonl").exists() and (run / "journal.jsonl").read_bytes().count(b"\n") >= count:
+            return
+        time.sleep(0.01)
+    raise AssertionError(process.communicate())
+
+
+def rows(run: Path) -> list[bytes]:
+    return (run / "journal.jsonl").read_bytes().splitlines()
+
+
+@pytest.fixture(scope="module")
+def expected(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    folder = tmp_path_factory.mktemp("expected")
+    process = begin(folder, *TRAINING)
+    _, errors = process.communicate(timeout=400)
+    assert process.returncode == 0, errors
+    return {name: (folder / "run" / name).read_bytes() for name in RECORDS}
+
+
+def test_killed_locked_stopped_and_resumed(expected: dict[str, bytes], tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    process = begin(tmp_path, *TRAINING)
+    wait_for_rows(process, run, 4)
+    process.send_signal(signal.SIGSTOP)  # so that it is still there when the other has started
+    intruder = begin(tmp_path, "--resume", "run")
+    _, errors = intruder.communicate(timeout=400)
+    assert intruder.returncode == 2 and "run folder run is in use by another training" in errors
+    assert process.poll() is None
+    process.kill()  # its lock dies with it
+    process.communicate()
+    kept = rows(run)
+
+    process = begin(tmp_path, "--resume", "run")
+    wait_for_rows(process, run, len(kept) + 1)
+    process.terminate()
+    _, errors = process.communicate(timeout=400)
+    assert process.returncode == 128 + signal.SIGTERM and "Traceback" not in errors
+    assert "sarah-train: interrupted; go on with sarah-train --resume run" in errors
+    assert rows(run)[: len(kept)] == kept
+    kept = rows(run)
+
+    process = begin(tmp_path, "--resume", "run", "--workers", "2")
+    wait_for_rows(process, run, len(kept) + 1)
+    os.killpg(process.pid, signal.SIGINT)  # as Ctrl-C does, to the workers too
+    _, errors = process.communicate(timeout=400)
+    assert process.returncode == 128 + signal.SIGINT and "Traceback" not in errors
+    assert rows(run)[: len(kept)] == kept
+
+    (command,) = re.findall(r"go on with (sarah-train --resume \S+)", errors)
+    process = begin(tmp_path, *shlex.split(command)[1:])
+    _, errors = process.communicate(timeout=400)
+    assert process.returncode == 0, errors
+    assert {name: (run / name).read_bytes() for name in RECORDS} == expected
+
+    process = begin(tmp_path, "--resume", "run")
+    output, errors = process.communicate(timeout=400)
+    assert (process.returncode, output, errors) == (0, "run is finished: there is nothing to resume\n", "")
+    assert {name: (run / name).read_bytes() for name in RECORDS} == expected
+
+
+@pytest.fixture
+def small_disk(tmp_path: Path) -> Iterator[Path]:
+    """A file system of its own, with 80 kB."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=80k", "none", str(folder)], capture_output=True)
+    if mounted.returncode:
+        pytest.skip(f"no file system can be mounted here: {mounted.stderr.decode().strip()}")
+    yield folder
+    subprocess.run(["umount", "--lazy", str(folder)], check=True)
+
+
+def test_a_full_disk_stops_the_training_and_space_lets_it_go_on(expected: dict[str, bytes], small_disk: Path) -> None:
+    process = begin(small_disk, *TRAINING)
+    _, errors = process.communicate(timeout=400)
+    assert process.returncode == 2 and "Traceback" not in errors
+    assert re.search(r"sarah-train: error: .*No space left on device.*go on with sarah-train --resume run\n", errors)
+    kept = rows(small_disk / "run")
+    subprocess.run(["mount", "-o", "remount,size=8m", str(small_disk)], check=True)
+    process = begin(small_disk, "--resume", "run")
+    _, errors = process.communicate(timeout=400)
+    assert process.returncode == 0, errors
+    assert {name: (small_disk / "run" / name).read_bytes() for name in RECORDS} == expected
+    assert set(kept[:-1]) <= set(rows(small_disk / "run"))  # the last one may be half a row
+
+
+def test_a_folder_that_cannot_be_written_is_one_line(small_disk: Path) -> None:
+    subprocess.run(["mount", "-o", "remount,ro", str(small_disk)], check=True)
+    process = begin(small_disk, *TRAINING)
+    _, errors = process.communicate(timeout=400)
+    assert process.returncode == 2 and errors == (
+        "sarah-train: error: cannot write run folder run: Read-only file system\n"
+    )
+    assert not list(small_disk.iterdir())
+
+
+@pytest.mark.slow
+def test_killed_at_random_moments() -> None:
+    """Fewer than by the command that docs/reliability.md names."""
+    program = Path(__file__).parents[2] / "benchmarks" / "kills.py"
+    process = subprocess.run([sys.executable, program, "--kills", "3"], capture_output=True, text=True, timeout=400)
+    found = re.search(r"3 kills, (\d+) trainings, (\d+) of them end as without", process.stdout)
+    assert found is not None, process.stderr
+    assert found[1] == found[2], process.stdout

@@ -1,0 +1,113 @@
+"""Episodes in flight: outcomes in order, each stored with the action that it came from."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sarah.envs.episode_vec_env import EpisodeVecEnv
+from sarah.envs.sarah_env import parameters_from
+from sarah.episode.episode import simulate
+from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeConfig, EpisodeSpec
+from sarah.episode.tasks import STEPPING
+from sarah.episode.workers import Job, Workers
+from sarah.training.replay import LateRankReplayBuffer, LateReplayBuffer
+
+SHORT = EpisodeConfig(time_limit=1.5)
+ACTIONS = np.random.default_rng(0).uniform(-1.0, 1.0, (6, 5)).astype(np.float32)
+
+
+def played(slots: int, episodes: int = 4, seed: int = 1) -> tuple[list[np.ndarray], list[float], list[dict]]:
+    """Observations before each step, and rewards and infos after it."""
+    env = EpisodeVecEnv("stepping", SHORT, episodes, slots, Workers())
+    env.seed(seed)
+    observations, rewards, infos = [env.reset()], [], []
+    for step in range(episodes + slots - 1):
+        observation, reward, done, info = env.step(ACTIONS[min(step, episodes - 1)][None])
+        assert done.all()
+        observations.append(observation)
+        rewards.append(float(reward[0]))
+        infos.append(info[0])
+    return observations, rewards, infos
+
+
+@pytest.mark.parametrize("slots", [1, 3])
+def test_outcomes_come_in_order_after_the_slots_are_full(slots: int) -> None:
+    observations, rewards, infos = played(slots)
+    assert not any(infos[: slots - 1])
+    for index, (reward, info) in enumerate(zip(rewards[slots - 1 :], infos[slots - 1 :], strict=True)):
+        observation, action, _ = info["transition"]
+        assert np.array_equal(action, ACTIONS[index])
+        assert np.array_equal(observation, observations[index][0])
+        assert info["parameters"] == parameters_from(ACTIONS[index], STEPPING)
+        assert info["seed"] >= FIRST_TRAINING_SEED
+        result = simulate(EpisodeSpec(info["parameters"], info["seed"], config=SHORT))
+        assert info["score"] == result.score
+        assert reward == pytest.approx(result.episode_return)
+
+
+def test_slots_change_no_episode() -> None:
+    one, three = played(1)[2], played(3)[2][2:]
+    for here, there in zip(one, three, strict=True):
+        assert {**here, "transition": None} == {**there, "transition": None}
+
+
+def test_a_task_an_episode_and_one_for_each_that_stands_at_first() -> None:
+    """Tasks cost a scheduler, so standing is not another one for every episode."""
+
+    class Counting(Workers):
+        tasks = 0
+
+        def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
+            self.tasks += 1
+            return super().submit(function, *subjects)
+
+    for episodes in (1, 5):
+        workers = Counting()
+        env = EpisodeVecEnv("stepping", SHORT, episodes, 3, workers)
+        env.reset()
+        for _ in range(episodes + 2):
+            env.step(ACTIONS[:1])
+        assert workers.tasks == episodes + min(episodes, 3)
+
+
+def test_seed_decides_and_a_second_reset_goes_on() -> None:
+    def seeds_of_two_resets(seed: int) -> list[int]:
+        env = EpisodeVecEnv("stepping", SHORT, 2, 1, Workers())
+        env.seed(seed)
+        seeds = []
+        for _ in range(2):
+            env.reset()
+            seeds += [env.step(ACTIONS[step][None])[3][0]["seed"] for step in range(2)]
+        return seeds
+
+    first = seeds_of_two_resets(1)
+    assert len(set(first)) == 4
+    assert first == seeds_of_two_resets(1) != seeds_of_two_resets(2)
+
+
+@pytest.mark.parametrize("buffer_class", [LateReplayBuffer, LateRankReplayBuffer])
+def test_buffers_store_each_outcome_with_its_own_action(buffer_class: type[LateReplayBuffer]) -> None:
+    env = EpisodeVecEnv("stepping", SHORT, 4, 2, Workers())
+    buffer = buffer_class(10, env.observation_space, env.action_space)
+    env.seed(1)
+    observation = env.reset()
+    for step in range(5):
+        action = ACTIONS[min(step, 3)][None]
+        after, reward, done, infos = env.step(action)
+        buffer.add(observation, after, action, reward, done, infos)
+        observation = after
+    assert buffer.size() == 4
+    assert np.array_equal(buffer.actions[:4, 0], ACTIONS[:4])
+    expected = [info["episode_return"] for info in played(1)[2]]
+    assert buffer.rewards[:4, 0] == pytest.approx(expected)
+    assert (buffer.dones[:4] == 1.0).all()
+
+
+def test_episodes_cannot_be_reached_into() -> None:
+    env = EpisodeVecEnv("stepping", SHORT, 1, 1, Workers())
+    with pytest.raises(NotImplementedError):
+        env.set_attr("config", SHORT)
+    with pytest.raises(NotImplementedError):
+        env.env_method("render")

@@ -1,0 +1,150 @@
+"""The gymnasium environments: what checkers, libraries and users expect of it."""
+
+import dataclasses
+import subprocess
+import sys
+import warnings
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+from stable_baselines3.common.env_checker import check_env as sb3_check_env
+
+import sarah
+from sarah.control.pattern_generator import PAPER_PARAMETERS
+from sarah.envs.registration import ENVIRONMENTS
+from sarah.envs.sarah_env import SarahEnv, parameters_from
+from sarah.episode.result import EpisodeResult
+from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeConfig
+from sarah.episode.tasks import BALANCE, STEPPING, TASKS
+from sarah.errors import ConfigurationError
+
+SHORT = EpisodeConfig(time_limit=4.0)
+PAPER_ACTION = np.array(PAPER_PARAMETERS, dtype=np.float32) - 1.0
+
+
+@pytest.mark.parametrize("imports", ["import gymnasium, sarah", "import sarah, gymnasium"])
+def test_importing_sarah_registers_it_in_either_order(imports: str) -> None:
+    program = f"{imports}; print(gymnasium.make('SarahStepping-v0').unwrapped)"
+    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert "SarahEnv" in process.stdout
+
+
+def test_environments_do_not_share_their_spaces() -> None:
+    first, second = SarahEnv(config=SHORT), SarahEnv(config=SHORT)
+    first.action_space.seed(0)
+    second.action_space.seed(0)
+    first.action_space.sample()
+    again = SarahEnv(config=SHORT)
+    again.action_space.seed(0)
+    assert (second.action_space.sample() == again.action_space.sample()).all()
+
+
+@pytest.mark.parametrize(("name", "task"), ENVIRONMENTS.items())
+def test_gymnasium_knows_them_by_name(name: str, task: str) -> None:
+    env = gymnasium.make(name, config=SHORT)
+    assert isinstance(env.unwrapped, SarahEnv) and env.unwrapped.task is TASKS[task]
+    assert env.action_space.shape == (len(TASKS[task].parameter_names),)
+    env.close()
+
+
+@pytest.mark.parametrize("name", ENVIRONMENTS)
+def test_checkers_pass_without_a_warning(name: str) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        env = gymnasium.make(name, config=SHORT, render_mode="rgb_array")
+        check_env(env.unwrapped)
+        sb3_check_env(env.unwrapped)
+        env.close()
+
+
+def test_reset_stands_and_step_simulates_to_the_end() -> None:
+    env = SarahEnv(config=SHORT)
+    observation, info = env.reset(seed=1)
+    assert observation.shape == (16,)
+    assert info["seed"] >= FIRST_TRAINING_SEED
+    _, reward, terminated, truncated, info = env.step(PAPER_ACTION)
+    assert terminated and not truncated
+    assert reward == info["episode_return"]
+    for field in dataclasses.fields(EpisodeResult):
+        assert field.name in info or field.name == "trace"
+    spec = sarah.EpisodeSpec(info["parameters"], info["seed"], config=SHORT)
+    repeated = sarah.simulate(spec)
+    assert all(info[field.name] == getattr(repeated, field.name) for field in dataclasses.fields(repeated)[:-1])
+    env.close()
+
+
+def test_observation_is_of_order_one_and_upright() -> None:
+    env = SarahEnv(config=SHORT)
+    observation, _ = env.reset(seed=1)
+    assert env.observation_space.contains(observation)
+    acceleration, rates, pressures, joints = np.split(observation, [3, 6, 10])
+    assert acceleration == pytest.approx([0, 0, 1], abs=0.1)
+    assert rates == pytest.approx([0, 0, 0], abs=0.1)
+    assert (pressures > 0.1).all() and (pressures < 1.5).all()
+    assert joints == pytest.approx(np.zeros(6), abs=0.1)
+    env.close()
+
+
+def test_same_seed_gives_the_same_series_of_episodes() -> None:
+    series = []
+    for _ in range(2):
+        env = SarahEnv(config=SHORT)
+        first, info = env.reset(seed=5)
+        second, next_info = env.reset()
+        series.append((first.tolist(), second.tolist(), info["seed"], next_info["seed"]))
+        env.close()
+    assert series[0] == series[1]
+    assert series[0][2] != series[0][3]
+
+
+def test_balance_episode_repeats_with_its_push() -> None:
+    env = SarahEnv("balance", SHORT)
+    env.reset(seed=3)
+    _, reward, terminated, _, info = env.step(np.array([0.5, 0.0, 0.5, -0.1], dtype=np.float32))
+    assert terminated and info["parameters"] == pytest.approx((1.0, 0.0, 1.0, -0.2))
+    repeated = sarah.simulate(sarah.EpisodeSpec(info["parameters"], info["seed"], "balance", SHORT))
+    assert repeated.episode_return == reward
+    env.close()
+
+
+def test_unknown_task_is_refused() -> None:
+    with pytest.raises(ConfigurationError, match="unknown task 'balanse', did you mean 'balance'"):
+        SarahEnv("balanse")
+
+
+def test_action_is_the_scaled_box() -> None:
+    assert parameters_from(np.zeros(4), BALANCE) == (0.0,) * 4
+    assert parameters_from(np.ones(4), BALANCE) == (2.0,) * 4
+    assert parameters_from(np.zeros(5), STEPPING) == (1.0,) * 5
+    assert parameters_from(-np.ones(5), STEPPING) == (0.0,) * 5
+    assert parameters_from(np.ones(5), STEPPING) == (2.0,) * 5
+
+
+@pytest.mark.parametrize("action", [np.full(5, np.nan), np.full(5, 1.5), np.zeros(4)])
+def test_impossible_actions_are_refused(action: np.ndarray) -> None:
+    env = SarahEnv(config=SHORT)
+    env.reset(seed=0)
+    with pytest.raises(ConfigurationError, match="an action must be 5 numbers within -1 and 1"):
+        env.step(action)
+    env.close()
+
+
+def test_an_episode_has_one_step() -> None:
+    env = SarahEnv(config=SHORT)
+    with pytest.raises(ConfigurationError, match="call reset"):
+        env.step(PAPER_ACTION)
+    env.reset(seed=0)
+    env.step(PAPER_ACTION)
+    with pytest.raises(ConfigurationError, match="call reset"):
+        env.step(PAPER_ACTION)
+    env.close()
+
+
+def test_render_gives_a_picture() -> None:
+    env = SarahEnv(config=SHORT, render_mode="rgb_array")
+    env.reset(seed=0)
+    picture = env.render()
+    assert picture is not None and picture.shape == (480, 640, 3) and picture.std() > 10
+    env.close()

@@ -1,0 +1,85 @@
+"""Step detection and equation 2 against hand-computed values."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sarah.control.pattern_generator import Phase, PhaseChange
+from sarah.episode.gait import GaitRecord
+from sarah.episode.reward import highest_return, reward_rate
+
+STEP = PhaseChange(Phase.LAND, by_sensors=True, is_step=True)
+
+
+def record_of_steps(ticks: list[int]) -> GaitRecord:
+    gait = GaitRecord(100)
+    for tick in ticks:
+        gait.phase_change(tick, STEP)
+    return gait
+
+
+def test_steps_per_second_counts_the_last_two_seconds() -> None:
+    gait = record_of_steps([50, 100, 150, 200, 250, 300])
+    assert gait.steps_per_second(320) == 4 / 2.0  # those at 150, 200, 250 and 300
+    assert gait.steps_per_second(351) == 3 / 2.0
+    assert gait.steps_per_second(900) == 0.0
+    assert gait.steps == 6
+
+
+def test_every_step_counts_for_two_seconds_to_the_tick() -> None:
+    for tick in (0, 7, 1234):
+        gait = record_of_steps([tick])
+        assert sum(gait.steps_per_second(now) > 0 for now in range(tick + 1, tick + 400)) == 200
+
+
+def test_steps_per_second_starts_with_the_elapsed_time() -> None:
+    gait = record_of_steps([10, 20])
+    assert gait.steps_per_second(25) == 2 / 0.5  # at least half a second
+    assert gait.steps_per_second(80) == 2 / 0.8
+
+
+def test_clearance_is_the_median_of_each_steps_highest() -> None:
+    gait = GaitRecord(100)
+    for heights in ((0.001, 0.010, 0.004), (0.020,), (0.012, 0.011)):
+        for height in heights:
+            gait.swing(height)
+        gait.phase_change(100, STEP)
+    assert gait.sole_clearance == 0.012
+    assert GaitRecord(100).sole_clearance == 0.0
+
+
+def test_shares_of_phases_that_sensors_ended() -> None:
+    gait = GaitRecord(100)
+    for by_sensors in (True, True, True, False):
+        gait.phase_change(0, PhaseChange(Phase.SHIFT, by_sensors))
+    gait.phase_change(0, PhaseChange(Phase.LIFT, by_sensors=False))
+    gait.phase_change(0, PhaseChange(Phase.STAND, by_sensors=False))
+    assert gait.event_driven(Phase.SHIFT) == 0.75
+    assert gait.event_driven(Phase.LIFT) == 0.0
+    assert gait.event_driven(Phase.LAND) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "height", "frequency", "expected"),
+    [
+        (0.0, 0.0, 0.84, 3.0, 0.25 * 0.84),
+        (0.1, -0.2, 0.8, 3.0, 0.4 * 0.3 * 0.8),
+        (-0.1, 0.2, 0.8, 3.0, 0.4 * 0.3 * 0.8),
+        (0.0, 0.0, 1.0, 4.0, 0.25 * 0.5),
+        (0.0, 0.0, 1.0, 2.0, 0.25 * 0.5),
+        (0.0, 0.0, 1.0, 5.0, 0.25 * 2.0**-16),
+        (0.6, 0.0, 1.0, 3.0, 0.0),
+    ],
+)
+def test_equation_2_symmetric(x: float, y: float, height: float, frequency: float, expected: float) -> None:
+    assert reward_rate(x, y, height, frequency) == pytest.approx(expected)
+
+
+def test_equation_2_as_printed_rewards_drifting_to_one_side() -> None:
+    assert reward_rate(0.1, 0.2, 0.8, 3.0, "printed") == pytest.approx(0.4 * 0.3 * 0.8)
+    assert reward_rate(-0.1, -0.2, 0.8, 3.0, "printed") == pytest.approx(0.6 * 0.7 * 0.8)
+
+
+@given(x=st.floats(-1, 1), y=st.floats(-1, 1), height=st.floats(0, 0.84), frequency=st.floats(0, 100))
+def test_no_symmetric_reward_is_above_the_ceiling(x: float, y: float, height: float, frequency: float) -> None:
+    assert 0.0 <= reward_rate(x, y, height, frequency) <= highest_return(0.84, 1.0)

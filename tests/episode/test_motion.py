@@ -1,0 +1,49 @@
+"""Vibration and actuators' work against hand-made motion."""
+
+import numpy as np
+import pytest
+
+from sarah.episode.motion import MotionRecord, power_above
+
+RATE = 100
+
+
+def sine(hertz: float, amplitude: float, seconds: float = 10.0) -> np.ndarray:
+    time = np.arange(round(seconds * RATE)) / RATE
+    return amplitude * np.sin(2 * np.pi * hertz * time)
+
+
+def test_power_of_a_fast_sine_is_half_its_amplitude_squared() -> None:
+    signals = np.stack([sine(35.0, 3.0), sine(25.0, 1.0)], axis=1)
+    assert power_above(signals, RATE, 20.0) == pytest.approx(4.5 + 0.5, rel=0.01)
+
+
+def test_gravity_and_slow_motion_do_not_count() -> None:
+    signals = np.stack([9.81 + sine(1.5, 5.0), sine(10.0, 2.0)], axis=1)
+    assert power_above(signals, RATE, 20.0) < 1e-5
+
+
+def test_chatter_at_half_the_control_rate_counts() -> None:
+    shaking = np.where(np.arange(1001) % 2, 4.0, -4.0)[:, None]
+    assert power_above(shaking, RATE, 20.0) == pytest.approx(16.0, rel=0.01)
+
+
+def test_a_burst_counts_alike_whenever_it_comes() -> None:
+    powers = []
+    for second in (1, 5, 9):
+        signal = np.zeros((1100, 1))
+        signal[100 * second : 100 * second + 100, 0] = sine(40.0, 6.0, 1.0)
+        powers.append(power_above(signal, RATE, 20.0))
+    assert powers == pytest.approx([18.0 / 11.0] * 3, rel=0.1)
+
+
+def test_too_short_for_a_spectrum_is_zero() -> None:
+    assert power_above(np.ones((10, 3)), RATE, 20.0) == 0.0
+
+
+def test_actuators_work_and_peaks() -> None:
+    record = MotionRecord(RATE)
+    record.tick((0.0, 0.0, 9.81), (0.5, 0.0, -2.0, 0.0, 0.3, 0.0), (10.0, 5.0, 4.0, 0.0, -100.0, 90.0))
+    record.tick((0.0, 0.0, 9.81), (0.0,) * 6, (0.0,) * 6)
+    assert record.actuator_power == pytest.approx((5.0 + 8.0 + 30.0) / 2)
+    assert record.peak_hip_rate == 2.0 and record.peak_leg_speed == 0.3

@@ -1,0 +1,222 @@
+"""Who simulates changes nothing: the same training in this process, on workers that die, and on a cluster."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import dask
+import distributed  # noqa: F401  # its settings are there before a test changes one, and stay when that ends
+import psutil
+import pytest
+
+from sarah.episode import workers as workers_module
+from sarah.episode.episode import simulate
+from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.workers import Workers, run, stand
+from sarah.errors import ConfigurationError, DescriptionError, WorkersError
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.simulation import pybullet_client as bullet
+from sarah.training.train import train
+
+# Longer than the 8 simulations of warm-up; some episodes fall, most last a second of stepping.
+TRAINING = TrainingConfig(simulations=20, slots=4, seed=5, episode=EpisodeConfig(time_limit=2.0))
+SPEC = EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), seed=1, config=EpisodeConfig(time_limit=2.0))
+
+
+def train_in(folder: Path, workers: Workers | None) -> RunFolder:
+    run_folder = RunFolder.create(folder, TRAINING)
+    train(TRAINING, run_folder, workers)
+    return run_folder
+
+
+def learned_bytes(run_folder: RunFolder) -> dict[str, bytes]:
+    """What must not depend on who simulated."""
+    weights = zipfile.ZipFile(run_folder.model_path).read("policy.pth")
+    texts = {name: (run_folder.path / name).read_bytes() for name in ("episodes.csv", "parameters.json")}
+    return {**texts, "weights": weights}
+
+
+@pytest.fixture(autouse=True)
+def _nobody_stands() -> None:
+    """Whatever other tests have left standing in this process."""
+    workers_module.forget_standing()
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    return learned_bytes(train_in(tmp_path_factory.mktemp("alone"), None))
+
+
+@pytest.mark.parametrize("count", [1, 2, 4])
+def test_training_does_not_depend_on_the_number_of_workers(count: int, alone: dict[str, bytes], tmp_path: Path) -> None:
+    with Workers(count) as workers:
+        assert learned_bytes(train_in(tmp_path, workers)) == alone
+
+
+def test_training_survives_the_death_of_workers(alone: dict[str, bytes], tmp_path: Path) -> None:
+    killed: list[int] = []
+
+    def kill_when_rows(workers: Workers, counts: list[int]) -> None:
+        for count in counts:
+            while not (tmp_path / "episodes.csv").exists() or len(list(RunFolder(tmp_path).episodes())) < count:
+                time.sleep(0.01)
+            assert workers._client is not None
+            pids: list[int] = []
+            while not pids:  # while they all restart
+                pids = list(workers._client.run(os.getpid, on_error="ignore").values())
+            pid = pids[0]
+            os.kill(pid, signal.SIGKILL)
+            killed.append(pid)
+
+    with Workers(2) as workers:
+        killer = threading.Thread(target=kill_when_rows, args=(workers, [2, 10]), daemon=True)
+        killer.start()
+        survived = learned_bytes(train_in(tmp_path, workers))
+        killer.join(timeout=30.0)
+    assert len(set(killed)) == 2
+    assert survived == alone
+
+
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[str]:
+    """A scheduler and two workers, started as on a cluster; yields the scheduler's address."""
+    file = tmp_path / "scheduler.json"
+    scheduler = ["scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file)]
+    worker = ["worker", "--nthreads", "1", "--no-dashboard", "--scheduler-file", str(file), "--death-timeout", "60"]
+    processes = [
+        subprocess.Popen([sys.executable, "-m", "dask", *arguments], stderr=subprocess.DEVNULL, cwd=tmp_path)
+        for arguments in (scheduler, worker, worker)
+    ]
+    try:
+        while not file.exists():
+            assert processes[0].poll() is None
+            time.sleep(0.1)
+        yield json.loads(file.read_text())["address"]
+    finally:
+        for process in processes:
+            process.terminate()
+        for process in processes:
+            process.wait(timeout=30)
+
+
+def test_training_on_a_cluster_is_the_same(cluster: str, alone: dict[str, bytes], tmp_path: Path) -> None:
+    with Workers(scheduler=cluster) as workers:
+        assert learned_bytes(train_in(tmp_path / "run", workers)) == alone
+
+
+def test_results_come_in_the_order_of_the_specifications() -> None:
+    specs = [EpisodeSpec(SPEC.parameters, seed, config=SPEC.config) for seed in range(6)]
+    with Workers(2) as workers:
+        assert list(workers.simulate_all(specs)) == [simulate(spec) for spec in specs]
+
+
+def test_an_episode_continues_where_it_stands_or_begins_anew() -> None:
+    expected = simulate(SPEC)
+    stand(SPEC)
+    assert len(workers_module._standing) == 1
+    assert run(SPEC).result == expected
+    assert not workers_module._standing
+    assert run(SPEC).result == expected  # that stands nowhere
+
+
+def test_who_ran_an_episode_lets_the_following_one_stand() -> None:
+    following = EpisodeSpec(SPEC.parameters, 2, config=SPEC.config)
+    outcome = run(SPEC, following)
+    assert outcome.result == simulate(SPEC)
+    assert len(workers_module._standing) == 1
+    assert run(following).result == simulate(following)
+    assert not workers_module._standing
+    assert outcome.following == stand(following)
+
+
+def test_whoever_stands_twice_keeps_one_world() -> None:
+    def worlds() -> int:
+        return sum(bullet.pybullet.isConnected(client) for client in range(200))
+
+    with Workers():
+        stand(SPEC)
+        before = worlds()
+        for _ in range(4):
+            stand(SPEC)
+        assert len(workers_module._standing) == 1
+        assert worlds() <= before + 1  # two at a time, while one takes the other's place
+
+
+def test_an_error_on_a_worker_is_raised_here() -> None:
+    bad = EpisodeSpec(SPEC.parameters, 0, config=EpisodeConfig(dimensions={"thigh_mass": 9.0}))
+    with Workers(1) as workers, pytest.raises(DescriptionError, match="must weigh 10 kg"):
+        list(workers.simulate_all([bad]))
+
+
+def die_twice(folder: str) -> str:
+    attempts = Path(folder) / "attempts"
+    with attempts.open("a") as file:
+        file.write("x")
+    if attempts.stat().st_size <= 2:
+        os._exit(1)
+    return attempts.read_text()
+
+
+def test_what_a_scheduler_gives_up_is_handed_in_again(tmp_path: Path) -> None:
+    with dask.config.set({"distributed.scheduler.allowed-failures": 0}), Workers(1) as workers:
+        assert workers.submit(die_twice, str(tmp_path)).result() == "xxx"
+
+
+def test_workers_are_left_alone_by_an_interrupt() -> None:
+    with Workers(1) as workers:
+        assert workers._client is not None
+        (pid,) = workers._client.run(os.getpid).values()
+        os.kill(pid, signal.SIGINT)
+        assert list(workers.simulate_all([SPEC])) == [simulate(SPEC)]
+        assert list(workers._client.run(os.getpid).values()) == [pid]
+
+
+def test_standing_episodes_are_bounded_and_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(workers_module, "KEPT_STANDING", 2)
+    with Workers():
+        for seed in range(4):
+            stand(EpisodeSpec(SPEC.parameters, seed, config=SPEC.config))
+        assert len(workers_module._standing) == 2
+    assert not workers_module._standing
+
+
+def test_workers_listen_to_this_machine_only() -> None:
+    with Workers(1):
+        here = psutil.Process()
+        listening = [
+            connection.laddr.ip
+            for process in (here, *here.children(recursive=True))
+            for connection in process.net_connections()
+            if connection.status == psutil.CONN_LISTEN
+        ]
+    assert listening and set(listening) == {"127.0.0.1"}
+
+
+def test_bad_workers_are_refused() -> None:
+    with pytest.raises(ConfigurationError, match="workers must be between 0 and 1000, not -1"):
+        Workers(-1)
+    with pytest.raises(ConfigurationError, match="give one of the two"):
+        Workers(2, "tcp://127.0.0.1:1")
+
+
+def test_a_scheduler_that_does_not_answer_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(workers_module, "SCHEDULER_SECONDS", 1)
+    with pytest.raises(WorkersError, match=r"no Dask scheduler answers at 'tcp://127.0.0.1:9'"):
+        Workers(scheduler="tcp://127.0.0.1:9").__enter__()
+
+
+def test_a_port_that_says_nothing_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(workers_module, "SCHEDULER_SECONDS", 1)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        with pytest.raises(WorkersError, match=f"{address}': whoever listens there says nothing"):
+            Workers(scheduler=address).__enter__()

@@ -1,0 +1,108 @@
+"""Videos of episodes."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from imageio_ffmpeg import count_frames_and_secs
+from PIL import Image
+
+from sarah.episode.episode import simulate
+from sarah.episode.push import Push
+from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.trace import Trace
+from sarah.errors import ConfigurationError
+from sarah.pictures.video import GIF_SIZE, HEIGHT, WIDTH, check_path, frame_times, frames
+from sarah.robot.description import describe_robot
+
+BIN = Path(sys.executable).parent
+PUSHED = EpisodeConfig(time_limit=2.5, push=Push((100.0, 100.0), (180.0, 180.0), (1.5, 1.5)))
+
+
+@pytest.fixture(scope="module")
+def trace() -> Trace:
+    result = simulate(EpisodeSpec((0.0, 0.0, 0.0, 0.0), 0, "balance", PUSHED), record_trace=True)
+    assert result.trace is not None
+    return result.trace
+
+
+def film(trace: Trace, *times: float, caption: str = "") -> list[np.ndarray]:
+    return [np.asarray(frame) for frame in frames(trace, describe_robot(), times, caption)]
+
+
+def purple(picture: np.ndarray) -> int:
+    red, green, blue = np.moveaxis(picture.astype(int), -1, 0)
+    return int(((red > green + 60) & (blue > green + 60)).sum())
+
+
+def test_frames_show_robot_and_words(trace: Trace) -> None:
+    first, later = film(trace, 1.0, 1.3)
+    assert first.shape == later.shape == (HEIGHT, WIDTH, 3)
+    assert (first != later).any(axis=-1).sum() > 1000
+    dark = (first < 60).all(axis=-1)
+    assert dark[:, : WIDTH // 4].sum() > 1000  # what is written on the left
+
+
+def test_caption_is_written(trace: Trace) -> None:
+    with_caption, without = film(trace, 1.0, caption="seed 17")[0], film(trace, 1.0)[0]
+    rows, columns = np.nonzero((with_caption != without).any(axis=-1))
+    assert rows.min() > 0.9 * HEIGHT and columns.max() < WIDTH / 2
+
+
+def test_push_is_marked_while_it_acts_and_a_moment_longer(trace: Trace) -> None:
+    before, during, after, long_after = (purple(picture) for picture in film(trace, 1.45, 1.55, 1.9, 2.3))
+    assert before == long_after == 0 and during > 1000 and after > 1000
+
+
+def test_speed_stretches_the_video_and_no_frame_is_behind_the_end() -> None:
+    times = frame_times(2.0, 3.0, 25.0)
+    assert times[0] == 2.0 and times[-1] == pytest.approx(3.0) and len(times) == 26
+    assert len(frame_times(2.0, 3.0, 25.0, speed=0.5)) == 51
+
+
+@pytest.mark.parametrize(
+    ("path", "message"), [("a.avi", "must end in .mp4 or .gif"), ("nowhere/a.gif", "folder nowhere does not exist")]
+)
+def test_file_that_cannot_be_written_is_refused_before_filming(path: str, message: str) -> None:
+    with pytest.raises(ConfigurationError, match=message):
+        check_path(Path(path))
+
+
+def test_mp4_without_the_extra_is_refused_by_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    with pytest.raises(ConfigurationError, match=r"pip install 'sarah\[video\]'"):
+        check_path(Path("a.mp4"))
+    check_path(Path("a.gif"))
+
+
+def run(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([BIN / "sarah-video", *arguments], capture_output=True, text=True, cwd=cwd, timeout=300)
+
+
+def test_command_films_given_parameters(tmp_path: Path) -> None:
+    process = run("0.4,1.3,0.1,1,1", "a.mp4", "--seconds", "2", "2.4", cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    assert process.stdout == "a.mp4\n" and "filming" in process.stderr
+    assert count_frames_and_secs(tmp_path / "a.mp4") == (11, pytest.approx(0.44, abs=0.05))
+    assert [path.name for path in tmp_path.iterdir()] == ["a.mp4"]
+
+
+@pytest.fixture(scope="module")
+def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("work") / "mine"
+    arguments = ("--simulations", "4", "--slots", "1", "--episode.time-limit", "1.5", "--run-dir", str(folder))
+    subprocess.run([BIN / "sarah-train", "--algo", "random", *arguments], check=True, capture_output=True)
+    return folder
+
+
+def test_command_films_any_episode_of_a_run(run_folder: Path, tmp_path: Path) -> None:
+    pictures = {}
+    for episode in ("learned", "2"):
+        process = run(str(run_folder), "a.gif", "--episode", episode, "--seconds", "1.2", "1.3", cwd=tmp_path)
+        assert process.returncode == 0, process.stderr
+        with Image.open(tmp_path / "a.gif") as film:
+            assert film.size == GIF_SIZE and film.n_frames == 3 and film.info["loop"] == 0
+            pictures[episode] = film.convert("RGB").tobytes()
+    assert len(set(pictures.values())) == 2

@@ -1,0 +1,108 @@
+"""A run as one page, and what TensorBoard shows of it."""
+
+import base64
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+from tensorboard.plugins.hparams.plugin_data_pb2 import HParamsPluginData
+
+from sarah.episode.spec import EpisodeConfig
+from sarah.episode.tasks import TASKS
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.simulation.physics import Physics
+from sarah.training import train as training
+from sarah.training.train import train
+
+COMMAND = Path(sys.executable).with_name("sarah-report")
+EPISODE = EpisodeConfig(time_limit=1.5, physics=Physics(rate=100, solver_iterations=10, control_rate=100))
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, RunFolder]:
+    """A training of each task; that of stepping draws pictures."""
+    folder = tmp_path_factory.mktemp("runs")
+    made = {}
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
+        for task in TASKS:
+            config = TrainingConfig(task, simulations=10, seed=3, slots=1, episode=EPISODE)
+            made[task] = RunFolder.create(folder / task, config)
+            train(config, made[task], picture_interval=5 if task == "stepping" else 0)
+    return made
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_report_is_a_page_that_needs_nothing_else(task: str, runs: dict[str, RunFolder], tmp_path: Path) -> None:
+    run, page = runs[task], tmp_path / "page.html"
+    arguments = (run.path, "--out", page, "--episodes", "2", "--seconds", "1", "1.2")
+    process = subprocess.run([COMMAND, *arguments], capture_output=True, text=True, cwd=tmp_path, timeout=300)
+    assert process.returncode == 0, process.stderr
+    assert process.stdout == f"{page}\n" and [path.name for path in tmp_path.iterdir()] == ["page.html"]
+    text = page.read_text()
+    addresses = re.findall(r'(?:src|href)="([^"]{0,40})', text)
+    assert addresses and all(address.startswith("data:") for address in addresses) and "url(" not in text
+    pictures = re.findall(r'data:image/png;base64,([^"]+)', text)
+    assert len(pictures) == 4  # both of the training, state machine, robot; in half a second there is no gait cycle
+    assert all(base64.b64decode(picture).startswith(b"\x89PNG") for picture in pictures)
+    (film,) = re.findall(r'data:(?:video/mp4|image/gif);base64,([^"]+)', text)
+    assert len(base64.b64decode(film)) > 1000
+    (settings,) = re.findall(r'data:text/yaml;base64,([^"]+)', text)
+    assert base64.b64decode(settings).decode() == run.config_text()
+    for name, value in zip(TASKS[task].parameter_names, run.parameters(), strict=True):
+        assert re.search(rf"<td>{name}[^<]*</td><td>{value:.2f}</td>", text)
+    noted = json.loads((run.path / "parameters.json").read_text())["evaluation"]  # of the same seeds
+    assert f"<td>{noted['score_median']:.3f}</td>" in text and f"<td>{noted['vibration_median']:.1f}</td>" in text
+    assert ("about 0.4" in text) == (task == "stepping")
+
+
+def test_report_says_what_it_cannot_do(tmp_path: Path) -> None:
+    for arguments, message in (
+        ([], "give a run folder"),
+        (["nowhere"], "run folder nowhere does not exist"),
+        (["nowhere", "--seconds", "3", "2"], "seconds must be in rising order"),
+    ):
+        process = subprocess.run([COMMAND, *arguments], capture_output=True, text=True, cwd=tmp_path, timeout=60)
+        assert process.returncode == 2 and message in process.stderr and process.stderr.count("\n") == 1
+
+
+def events(run: RunFolder) -> EventAccumulator:
+    (path,) = run.path.glob("events.out.tfevents.*")
+    accumulator = EventAccumulator(str(path), size_guidance={"images": 0, "scalars": 0})
+    accumulator.Reload()
+    return accumulator
+
+
+def test_tensorboard_shows_curves_in_groups_and_pictures_at_intervals(runs: dict[str, RunFolder]) -> None:
+    shown = events(runs["stepping"])
+    groups = {tag.split("/")[0] for tag in shown.Tags()["scalars"]}
+    assert {"episode", "gait", "actuators", "parameters", "choice", "learned"} <= groups
+    choices = [(int(row["simulations"]), float(row["P1"])) for row in runs["stepping"].choices()]
+    assert [(event.step, pytest.approx(event.value)) for event in shown.Scalars("choice/P1")] == choices
+    films = shown.Images("gait/video")
+    assert [film.step for film in films] == [simulations for simulations, _ in choices]
+    assert all(film.encoded_image_string.startswith(b"GIF89a") and film.width == 640 for film in films)
+
+
+def test_tensorboard_has_a_line_of_hyper_parameters_for_each_run(runs: dict[str, RunFolder]) -> None:
+    for task, run in runs.items():
+        content = events(run).SummaryMetadata("_hparams_/session_start_info").plugin_data.content
+        known = HParamsPluginData.FromString(content).session_start_info.hparams
+        assert known["task"].string_value == task and known["seed"].number_value == 3
+
+
+def test_pictures_change_nothing_of_a_training(
+    runs: dict[str, RunFolder], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
+    run = runs["stepping"]
+    without = RunFolder.create(tmp_path / "without", run.config())
+    train(run.config(), without)
+    for name in ("episodes.csv", "choices.csv", "progress.csv", "parameters.json"):
+        assert (without.path / name).read_bytes() == (run.path / name).read_bytes()
+    assert not events(without).Tags()["images"]

@@ -1,0 +1,103 @@
+"""Survival by force and direction: the same pushes for every controller, and honest intervals."""
+
+import dataclasses
+import math
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sarah.cli import eval as eval_command
+from sarah.episode.episode import simulate
+from sarah.episode.result import EpisodeResult
+from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.workers import Workers
+from sarah.reports import robustness
+from sarah.reports.robustness import (
+    PushedEpisode,
+    finest_sectors,
+    push_many,
+    robustness_table,
+    survival_by_direction,
+    wilson_interval,
+)
+
+RESULT = EpisodeResult(0.8, 4.0, 3.0, 30, 14.15, "time_limit", (0.03, 0.04, 0.84), 0.02, 1.0, 1.0, 9.0, 15.0, 0.5, 0.6)
+FALL = dataclasses.replace(RESULT, score=0.1, termination="left_box", final_position=(0.3, 0.0, 0.8))
+
+
+def pushed(degrees: float, result: EpisodeResult = RESULT, newtons: float = 100.0) -> PushedEpisode:
+    return PushedEpisode(newtons, math.radians(degrees), result)
+
+
+def test_controllers_meet_the_same_pushes_and_can_be_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(robustness, "SECONDS_AFTER", 0.1)
+    still, moving = push_many(
+        [(0.0,) * 4, (1.0, 0.0, 1.0, 0.0)], EpisodeConfig(), Workers(), forces=(40.0, 80.0), episodes=2
+    )
+    assert [e.newtons for e in still] == [40.0, 40.0, 80.0, 80.0]
+    assert [e.radians for e in still] == [e.radians for e in moving]
+    assert still[0].radians == pytest.approx(still[2].radians) != still[1].radians
+    assert [e.result for e in still] != [e.result for e in moving]
+    assert {e.result.duration for e in still} == {4.25}
+    push = dataclasses.replace(EpisodeConfig().push, newtons=(80.0, 80.0), at_seconds=robustness.PUSHED_BETWEEN)
+    config = EpisodeConfig(push=push, time_limit=4.25)
+    assert simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.0), 1, "balance", config)) == moving[3].result
+
+
+def test_pushes_within_45_degrees_of_the_sides_are_lateral() -> None:
+    assert [pushed(degrees).direction for degrees in (0, 40, -170, 179)] == ["lateral"] * 4
+    assert [pushed(degrees).direction for degrees in (50, 90, -90, 130)] == ["sagittal"] * 4
+
+
+def test_table_counts_by_direction() -> None:
+    rows = robustness_table([pushed(0), pushed(180, FALL), pushed(90), pushed(90), pushed(0, newtons=25.0)])
+    table = {(row.newtons, row.direction): (row.episodes, row.survival) for row in rows}
+    assert table == {
+        (25.0, "all"): (1, 1.0),
+        (25.0, "lateral"): (1, 1.0),
+        (100.0, "all"): (4, 0.75),
+        (100.0, "lateral"): (2, 0.5),
+        (100.0, "sagittal"): (2, 1.0),
+    }
+    everything = rows[2]
+    assert everything.score_median == 0.8 and everything.drift_median == pytest.approx(0.05)
+
+
+def test_wilsons_interval_is_the_published_one() -> None:
+    """Wilson's interval for 81 of 263, a textbook case: 0.2553 to 0.3662."""
+    assert wilson_interval(81, 263) == pytest.approx((0.2553, 0.3662), abs=1e-4)
+
+
+@given(trials=st.integers(1, 1000), data=st.data())
+def test_interval_holds_the_share_and_is_never_empty(trials: int, data: st.DataObject) -> None:
+    successes = data.draw(st.integers(0, trials))
+    low, high = wilson_interval(successes, trials)
+    assert 0.0 <= low <= successes / trials + 1e-12 and successes / trials - 1e-12 <= high <= 1.0 and high - low > 0.0
+
+
+def test_sectors_are_centred_on_right_forward_left_and_back() -> None:
+    episodes = [pushed(5), pushed(-5, FALL), pushed(90), pushed(180, FALL), pushed(-175, FALL)]
+    assert survival_by_direction(episodes, 4) == {100.0: [0.5, 1.0, 0.0, None]}
+
+
+@pytest.mark.parametrize("step, sectors", [(22.5, 16), (30, 8), (45, 8), (90, 4), (180, 4)])
+def test_a_plot_has_no_more_sectors_than_pushes_point_to(step: float, sectors: int) -> None:
+    assert finest_sectors([pushed(step * index) for index in range(round(360 / step))]) == sectors
+
+
+def test_eval_prints_the_table_and_leaves_it_with_a_plot(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fallen = [pushed(degrees, FALL, newtons) for newtons in (50.0, 100.0) for degrees in range(0, 360, 45)]
+    up = [dataclasses.replace(episode, result=RESULT) for episode in fallen]
+    monkeypatch.setattr(robustness, "push_many", lambda *_, **__: [fallen, up])
+    arguments = ["sarah-eval", "--task", "balance", "--parameters", "1,0,1,0", "--robustness", str(tmp_path / "out")]
+    monkeypatch.setattr("sys.argv", arguments)
+    eval_command.main()
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"robustness.md", "robustness.png", "robustness.pdf"}
+    printed = capsys.readouterr().out
+    assert (tmp_path / "out" / "robustness.md").read_text() in printed
+    row = next(line for line in printed.splitlines() if line.startswith("| 100 N | all"))
+    assert "| 8 | 0.00 (0.00 to 0.32)" in row and "1.00 (0.68 to 1.00)" in row

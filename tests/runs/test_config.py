@@ -1,0 +1,98 @@
+"""Settings: what a file may say, and what is answered when it says something else."""
+
+import dataclasses
+from pathlib import Path
+
+import pytest
+
+from sarah.episode.spec import EpisodeConfig
+from sarah.errors import ConfigurationError
+from sarah.runs.config import TrainingConfig
+from sarah.runs.config_files import read_config, write_config
+from sarah.simulation.physics import Physics
+from sarah.simulation.randomisation import Randomisation
+
+
+def test_a_written_configuration_reads_back(tmp_path: Path) -> None:
+    config = TrainingConfig(
+        algo="td3",
+        simulations=7,
+        episode=EpisodeConfig(
+            physics=Physics(rate=200, solver_iterations=10),
+            randomisation=Randomisation(friction=(0.5, 0.6), enabled=False),
+            dimensions={"thigh_length": 0.35},
+            engine="mujoco",
+            reward_form="printed",
+        ),
+    )
+    write_config(config, tmp_path / "config.yaml")
+    assert read_config(TrainingConfig, tmp_path / "config.yaml") == config
+
+
+def test_what_a_file_does_not_name_keeps_its_default(tmp_path: Path) -> None:
+    path = tmp_path / "config.yaml"
+    path.write_text("algo: sac\nepisode:\n  time_limit: 10\n")
+    config = read_config(TrainingConfig, path)
+    assert config == TrainingConfig(algo="sac", episode=EpisodeConfig(time_limit=10.0))
+    assert config.episode.engine == "pybullet"
+    path.write_text("")
+    assert read_config(TrainingConfig, path) == TrainingConfig()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("simulatons: 5", "unknown key 'simulatons', did you mean 'simulations'"),
+        ("episode: {physics: {raet: 500}}", "unknown key 'episode.physics.raet', did you mean 'episode.physics.rate'"),
+        ("simulations: many", "simulations must be a whole number, not 'many'"),
+        ("simulations: 2.5", "simulations must be a whole number, not 2.5"),
+        ("simulations: true", "simulations must be a whole number, not True"),
+        ("simulations: 0", "simulations must be between 1 and 1e+06, not 0"),
+        ("simulations: -3", "simulations must be between 1 and 1e+06, not -3"),
+        ("seed: -1", "seed must be between 0 and 2147483647, not -1"),
+        ("slots: 0", "slots must be between 1 and 10000, not 0"),
+        ("task: walking", "unknown task 'walking'"),
+        ("algo: td33", "unknown algo 'td33', did you mean 'td3'"),
+        ("algo: 3", "algo must be a text, not 3"),
+        ("episode: 5", "episode. must hold keys and values, not 5"),
+        ("[1, 2]", "the file must hold keys and values"),
+        ("episode: {time_limit: .inf}", "time_limit must be between 1 and 3600 s, not inf"),
+        ("episode: {time_limit: 1}", "time_limit must be above the 1 s of standing, not 1.0"),
+        ("episode: {engine: mujco}", "engine 'mujco', did you mean 'mujoco'?"),
+        ("episode: {reward_form: printd}", "unknown episode.reward_form 'printd', did you mean 'printed'"),
+        ("episode: {physics: {rate: 333}}", "physics.rate must be a multiple of the control rate, 100 Hz, not 333"),
+        ("episode: {physics: {solver_iterations: 0}}", "physics.solver_iterations must be between 1 and 10000, not 0"),
+        ("episode: {physics: {added_plate_inertia: -1}}", "added_plate_inertia must be between 0 and 1 kg m^2, not -1"),
+        ("episode: {randomisation: {friction: 0.9}}", "friction must be a list of 2 values, not 0.9"),
+        ("episode: {randomisation: {friction: [1.0, 0.7]}}", "friction must be between 0 and 5 and in rising order"),
+        ("episode: {randomisation: {friction: [.nan, 0.7]}}", "friction must be between 0 and 5 and in rising order"),
+        ("episode: {randomisation: {mass_deviation: 1.0}}", "mass_deviation must be between 0 and 0.9, not 1.0"),
+        (
+            "episode: {randomisation: {actuator_bandwidth: [0, 50]}}",
+            "actuator_bandwidth must be between 0.1 and 1000 per second",
+        ),
+        ("episode: {randomisation: {enabled: 1}}", "enabled must be true or false, not 1"),
+        ("episode: {dimensions: [0.3]}", "dimensions must hold names and values"),
+        ("episode: {dimensions: {thigh_length: long}}", "dimensions.thigh_length must be a number, not 'long'"),
+        ("episode: {push: {newtons: [50, 60]}}", "episode.push is for task 'balance': 'stepping' has no push"),
+        ("{task: balance, episode: {time_limit: 3, push: {at_seconds: [3, 4]}}}", "before the time_limit of 3 s"),
+        ("a: [", "is not YAML"),
+    ],
+)
+def test_mistakes_are_named_in_one_line(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "mine.yaml"
+    path.write_text(text)
+    with pytest.raises(ConfigurationError) as caught:
+        read_config(TrainingConfig, path)
+    assert message in str(caught.value)
+    assert str(caught.value).count("mine.yaml") >= 1 and "\n" not in str(caught.value)
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ConfigurationError, match=r"cannot read .*nothing.yaml: No such file"):
+        read_config(TrainingConfig, tmp_path / "nothing.yaml")
+
+
+def test_configurations_are_immutable() -> None:
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        TrainingConfig().seed = 3  # type: ignore[misc]

@@ -1,0 +1,199 @@
+"""Opening somebody's run executes nothing: a bomb in every file of a run folder, and every command that opens one."""
+
+import base64
+import io
+import json
+import os
+import pickle
+import shutil
+import subprocess
+import sys
+import zipfile
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from typing import get_args, get_type_hints
+
+import pytest
+import torch
+
+from sarah.agents.naf import NAF
+from sarah.episode.push import Push
+from sarah.episode.spec import EpisodeConfig
+from sarah.errors import DescriptionError
+from sarah.robot.description import describe_robot
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.simulation.physics import Physics
+from sarah.simulation.randomisation import Randomisation
+from sarah.training import train as training
+from sarah.training.train import train
+
+CONFIG = TrainingConfig(
+    simulations=3, slots=1, episode=EpisodeConfig(time_limit=1.1, physics=Physics(50, 5, control_rate=50))
+)
+COARSE = "--episode.time-limit 1.2 --episode.push.at-seconds 1 1 --episode.physics.solver-iterations 5"
+COMMANDS = (
+    "sarah-eval {run} --episodes 1",
+    "sarah-figures {run} --out figures",
+    "sarah-video {run} out.gif --episode best --seconds 1 1.05",
+    "sarah-view {run} --episode best --export out.html",
+    "sarah-report {run} --episodes 1 --out report.html",
+    "sarah-transfer {run} --episodes 1 --out transfer",
+    "sarah-train --resume {run}",
+    f"sarah-train --task balance --simulations 1 --slots 1 --run-dir {{run}}-mine --from {{run}} {COARSE}",
+    "sarah-compare {run}-race --algorithms random --seeds 1 --simulations 1 --episodes 1",
+)
+"""Of the last, the run is a part of the race that is complete."""
+
+
+class Bomb:
+    """Writes a file when it is unpickled."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return (Path.touch, (self.path,))
+
+
+def model_with(bomb: bytes, bomb_object: Bomb) -> bytes:
+    """A file in stable-baselines3's format, whose data and weights are bombs."""
+    weights, content = io.BytesIO(), io.BytesIO()
+    torch.save(bomb_object, weights)
+    with zipfile.ZipFile(content, "w") as archive:
+        data = {"policy_class": {":type:": "x", ":serialized:": base64.b64encode(bomb).decode()}}
+        archive.writestr("data", json.dumps(data))
+        archive.writestr("policy.pth", weights.getvalue())
+        archive.writestr("pytorch_variables.pth", weights.getvalue())
+    return content.getvalue()
+
+
+@pytest.fixture(scope="module")
+def honest(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        monkeypatch.setattr(training, "SUMMARY_EPISODES", 1)
+        run = RunFolder.create(tmp_path_factory.mktemp("honest") / "run", CONFIG)
+        train(CONFIG, run)
+    return run.path
+
+
+@pytest.fixture
+def opened(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Callable[[Path], None]:
+    """Opens a folder with every command; each works, or fails in one line."""
+    monkeypatch.setattr(training, "SUMMARY_EPISODES", 1)
+    monkeypatch.chdir(tmp_path)
+
+    def open_with_all(run: Path) -> None:
+        shutil.copytree(run, tmp_path / f"{run.name}-race" / "random-s0")
+        for template in COMMANDS:
+            line = template.format(run=run)
+            monkeypatch.setattr("sys.argv", line.split())
+            try:
+                import_module(f"sarah.cli.{line.split()[0].removeprefix('sarah-')}").main()
+            except SystemExit as ended:
+                assert ended.code == 2, line
+                assert capsys.readouterr().err.splitlines()[-1].startswith(line.split()[0] + ": error: ")
+
+    return open_with_all
+
+
+def planted(honest: Path, run: Path, bombs: dict[str, bytes], finished: bool) -> Path:
+    shutil.copytree(honest, run)
+    if not finished:
+        (run / "parameters.json").unlink()
+    for name, content in bombs.items():
+        (run / name).write_bytes(content)
+    return run
+
+
+PLANTED = ("events.out.tfevents.9.host.9", "parameters.pkl", "replay_buffer.pkl", "policy.pth")
+"""Names that somebody could hope to be opened."""
+READ_BY_RESUME = {"config.yaml", "journal.jsonl", "versions.txt"}
+
+
+@pytest.mark.parametrize("spared", [set(), {"config.yaml"}, {"config.yaml", "versions.txt"}, READ_BY_RESUME])
+@pytest.mark.parametrize("finished", [True, False])
+def test_no_file_of_a_run_is_unpickled(
+    spared: set[str], finished: bool, honest: Path, tmp_path: Path, opened: Callable[[Path], None]
+) -> None:
+    """A file that is read stops the command, so that those it reads next are spared in turn."""
+    sprung = tmp_path / "sprung"
+    names = {*(path.name for path in honest.iterdir()), *PLANTED} - spared
+    if not finished:
+        names.remove("parameters.json")
+    bomb = pickle.dumps(Bomb(sprung))
+    opened(planted(honest, tmp_path / "run", dict.fromkeys(names, bomb), finished))
+    assert {*PLANTED, "model.zip", "episodes.csv"} < names and not sprung.exists()
+
+
+def test_the_model_is_left_alone_by_commands_and_would_go_off(
+    honest: Path, tmp_path: Path, opened: Callable[[Path], None]
+) -> None:
+    sprung = tmp_path / "sprung"
+    model = model_with(pickle.dumps(Bomb(sprung)), Bomb(sprung))
+    for finished in (True, False):
+        opened(planted(honest, tmp_path / f"run-{finished}", {"model.zip": model}, finished))
+    assert not sprung.exists()
+    shutil.copy(tmp_path / "run-True" / "model.zip", tmp_path / "loaded.zip")
+    with pytest.raises(Exception):  # noqa: B017  # whatever stable-baselines3 makes of it afterwards
+        NAF.load(tmp_path / "loaded.zip")
+    assert sprung.exists()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "!!python/object/apply:pathlib.Path.touch [!!python/object/apply:pathlib.Path ['sprung']]",
+        "algo: !!python/object/apply:os.system ['touch sprung']",
+        "episode: {dimensions: {thigh_length: !!python/object/new:os.system ['touch sprung']}}",
+    ],
+)
+def test_yaml_makes_no_objects(text: str, honest: Path, tmp_path: Path, opened: Callable[[Path], None]) -> None:
+    opened(planted(honest, tmp_path / "run", {"config.yaml": text.encode()}, finished=True))
+    assert not (tmp_path / "sprung").exists()
+
+
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="Python 3.10 always looks in the working folder")
+def test_nothing_in_the_working_folder_is_imported(honest: Path, tmp_path: Path) -> None:
+    """Not by workers either, which are new processes."""
+    run = planted(honest, tmp_path / "run", {}, finished=True)
+    for module in ("pickle", "socket", "signal", "yaml", "numpy", "sarah", "sitecustomize", "distributed"):
+        (run / f"{module}.py").write_text(f"open({str(tmp_path / 'sprung')!r}, 'w')")
+    process = subprocess.run(
+        [Path(sys.executable).parent / "sarah-eval", ".", "--episodes", "1", "--workers", "1"],
+        cwd=run,
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
+        timeout=120,
+    )
+    assert process.returncode == 0, process.stderr
+    assert not (tmp_path / "sprung").exists()
+
+
+@pytest.mark.parametrize(
+    "value", ["$(find x)", "${open('sprung', 'w')}", "../../etc/passwd", float("nan"), "0.33'/><link name='x'"]
+)
+def test_dimensions_are_numbers_and_nothing_else(
+    value: object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(DescriptionError, match=r"'thigh_length' must be a number between"):
+        describe_robot({"thigh_length": value})  # type: ignore[dict-item]
+    with pytest.raises(DescriptionError, match="unknown robot dimension"):
+        describe_robot({f"x:={value}": 1.0})
+    assert not list(tmp_path.iterdir())
+
+
+def test_no_setting_is_a_path() -> None:
+    """So none leads out of the run folder."""
+    texts = set()
+    for config_type in (TrainingConfig, EpisodeConfig, Physics, Randomisation, Push):
+        for name, kind in get_type_hints(config_type).items():
+            assert kind is not Path
+            if kind is str or (str in get_args(kind)[:1] and not hasattr(kind, "__origin__")):
+                texts.add(name)
+    assert texts == {"task", "algo"}

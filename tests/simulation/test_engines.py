@@ -1,0 +1,143 @@
+"""The second engine: the same robot, the same bytes each time, and an error where it is not installed."""
+
+import dataclasses
+import json
+import math
+import subprocess
+import sys
+from importlib.machinery import ModuleSpec
+from pathlib import Path
+
+import pytest
+from laboratory import need_mujoco
+
+from sarah.control.pattern_generator import PAPER_PARAMETERS
+from sarah.episode.episode import Episode, simulate
+from sarah.episode.evaluation import summarise
+from sarah.episode.spec import TRAINED_STEPPING, EpisodeConfig, EpisodeSpec
+from sarah.errors import ConfigurationError
+from sarah.reports.transfer import Subject, Transfer
+from sarah.simulation import engines
+from sarah.simulation.engines import simulator_of
+from sarah.simulation.physics import Physics
+
+SHORT = EpisodeConfig(engine="mujoco", time_limit=6.0)
+MUJOCO_IS_MISSING = "import sys\nsys.modules['mujoco'] = None\n"
+
+
+@pytest.fixture
+def mujoco_engine() -> None:
+    """MuJoCo is installed, or the test is skipped."""
+    need_mujoco()
+
+
+@pytest.mark.parametrize("parameters", [PAPER_PARAMETERS, TRAINED_STEPPING])
+def test_robot_steps_as_well_in_mujoco_as_in_pybullet(mujoco_engine: None, parameters: tuple[float, ...]) -> None:
+    """Measured over 20 seeds: mean scores within 2 % of each other, and all survive."""
+    pybullet, mujoco = (
+        summarise(simulate(EpisodeSpec(parameters, seed, config=EpisodeConfig(engine=engine))) for seed in range(2))
+        for engine in ("pybullet", "mujoco")
+    )
+    for evaluation in (pybullet, mujoco):
+        assert evaluation.survival_rate == 1.0 and evaluation.is_gait
+        assert 2.8 < evaluation.steps_per_second_mean < 3.4
+    assert mujoco.score_mean != pybullet.score_mean
+    assert mujoco.score_mean == pytest.approx(pybullet.score_mean, rel=0.03)
+
+
+def test_same_spec_gives_identical_results_in_fresh_processes_whatever_they_simulated_before(
+    mujoco_engine: None,
+) -> None:
+    program = (
+        "import dataclasses, json, sarah\n"
+        "config = sarah.EpisodeConfig(engine='mujoco', time_limit=5.0)\n"
+        "for seed in {seeds}:\n"
+        "    result = sarah.simulate(sarah.EpisodeSpec((1.0, 0.1, 0.5, -0.2), seed, 'balance', config))\n"
+        "print(json.dumps(dataclasses.asdict(result)))"
+    )
+    runs = [
+        subprocess.run([sys.executable, "-c", program.format(seeds=seeds)], capture_output=True, check=True).stdout
+        for seeds in ([7], [8, 3, 7])
+    ]
+    assert runs[0] == runs[1]
+    assert json.loads(runs[0])["steps"] > 0
+
+
+@pytest.mark.parametrize(
+    ("asked", "taken"), [(Physics(100), Physics(300)), (Physics(200, 25, 200), Physics(400, 25, 200))]
+)
+def test_mujoco_takes_at_least_300_steps_a_second(mujoco_engine: None, asked: Physics, taken: Physics) -> None:
+    results = [
+        simulate(EpisodeSpec(PAPER_PARAMETERS, 1, config=dataclasses.replace(SHORT, time_limit=2.0, physics=physics)))
+        for physics in (asked, taken, Physics(500))
+    ]
+    assert results[0] == results[1] != results[2]
+
+
+def test_episodes_that_stand_side_by_side_do_not_touch_each_other(mujoco_engine: None) -> None:
+    expected = [simulate(EpisodeSpec(PAPER_PARAMETERS, seed, config=SHORT)) for seed in (1, 2)]
+    assert expected[0] != expected[1]
+    episodes = [Episode(SHORT, seed) for seed in (1, 2)]
+    for episode in episodes:
+        episode.stand()
+    assert [episode.run(PAPER_PARAMETERS) for episode in reversed(episodes)] == expected[::-1]
+
+
+def test_physics_that_diverges_ends_the_episode_and_writes_no_file(
+    mujoco_engine: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    episode = Episode(SHORT, seed=0)
+    episode.stand()
+    episode.start(PAPER_PARAMETERS)
+    while episode.termination is None:
+        episode.simulation.push((1e300, 0.0, 0.0))
+        episode.tick()
+    assert episode.termination == "diverged" and math.isfinite(episode.result().score)
+    episode.close()
+    assert not list(tmp_path.iterdir()) and capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize(
+    ("command", "arguments"),
+    [
+        ("train", ["--engine", "mujoco"]),
+        ("eval", ["--parameters", "0.4,1.3,0.1,1,1", "--engine", "mujoco"]),
+        ("compare", ["race", "--engine", "mujoco"]),
+        ("transfer", ["run"]),
+    ],
+)
+def test_without_the_extra_a_command_says_how_to_get_it_and_writes_nothing(
+    command: str, arguments: list[str], tmp_path: Path
+) -> None:
+    program = f"{MUJOCO_IS_MISSING}from sarah.cli.{command} import main\nsys.argv[1:] = {arguments}\nmain()"
+    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=tmp_path)
+    needed = "engine 'mujoco' needs the package mujoco: pip install 'sarah[mujoco]'"
+    assert process.returncode == 2 and process.stderr == f"sarah-{command}: error: {needed}\n"
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_pip_leaves_of_mujoco_is_no_engine(monkeypatch: pytest.MonkeyPatch) -> None:
+    folder_only = ModuleSpec("mujoco", loader=None, is_package=True)
+    monkeypatch.setattr(engines, "find_spec", lambda name: folder_only)
+    with pytest.raises(ConfigurationError, match="needs the package mujoco"):
+        simulator_of("mujoco")
+
+
+def test_without_the_extra_pybullet_works() -> None:
+    program = (
+        f"{MUJOCO_IS_MISSING}import sarah\n"
+        "spec = sarah.EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), 0, config=sarah.EpisodeConfig(time_limit=2.0))\n"
+        "print(sarah.simulate(spec).termination)"
+    )
+    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert process.stdout == "time_limit\n"
+
+
+def test_kept_is_the_share_of_the_score_that_the_other_engine_gives() -> None:
+    at_home = summarise([simulate(EpisodeSpec(PAPER_PARAMETERS, 0, config=EpisodeConfig(time_limit=1.5)))])
+    worse = dataclasses.replace(at_home, score_mean=0.5 * at_home.score_mean)
+    evaluations = {"pybullet": at_home, "mujoco": worse}
+    for engine, kept in (("pybullet", 0.5), ("mujoco", 2.0)):
+        subject = Subject("run", "stepping", PAPER_PARAMETERS, EpisodeConfig(engine=engine))
+        assert Transfer(subject, evaluations).kept == pytest.approx(kept)

@@ -1,0 +1,65 @@
+"""Black-box optimisers: asked and told in turn, with trials in flight."""
+
+import numpy as np
+import pytest
+
+from sarah.errors import ConfigurationError
+from sarah.training import optimisers as search
+from sarah.training.optimisers import check_installed, make_searcher
+
+OPTIMISERS = ("cma-es", "gp", "tpe", "random")
+BEST = np.array([0.3, -0.4])
+
+
+def trial(action: np.ndarray) -> float:
+    return 1.0 - float(np.square(action - BEST).sum())
+
+
+def tried(algo: str, seed: int, trials: int = 40, in_flight: int = 3) -> tuple[list[np.ndarray], np.ndarray]:
+    """Actions tried, and the choice in the end."""
+    searcher = make_searcher(algo, 2, seed)
+    actions: list[np.ndarray] = []
+    told = 0
+    while told < trials:
+        if len(actions) < trials and len(actions) - told < in_flight and searcher.ready():
+            actions.append(searcher.ask())
+        else:
+            searcher.tell(actions[told], trial(actions[told]))
+            told += 1
+    return actions, searcher.choice()
+
+
+@pytest.mark.parametrize("algo", OPTIMISERS)
+def test_optimisers_find_what_is_good_within_the_box(algo: str) -> None:
+    actions, choice = tried(algo, seed=1)
+    assert (np.abs(actions) <= 1.0).all() and choice.shape == (2,)
+    assert trial(choice) > 0.9
+    if algo != "random":
+        late, early = (np.median([trial(action) for action in part]) for part in (actions[30:], actions[:10]))
+        assert late > early
+
+
+@pytest.mark.parametrize("algo", OPTIMISERS)
+def test_optimisers_repeat_with_their_seed(algo: str) -> None:
+    first, second, other = (np.array(tried(algo, seed, trials=16)[0]) for seed in (1, 1, 2))
+    assert np.array_equal(first, second) and not np.array_equal(first, other)
+
+
+def test_a_generation_is_told_before_the_next_is_asked_for() -> None:
+    searcher = make_searcher("cma-es", 2, 0)
+    generation = []
+    while searcher.ready():
+        generation.append(searcher.ask())
+    assert len(generation) == search.CMA_POPULATION
+    for action in generation:
+        assert not searcher.ready()
+        searcher.tell(action, trial(action))
+    assert searcher.ready()
+
+
+def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(search, "find_spec", lambda name: None)
+    check_installed("naf")
+    check_installed("random")
+    with pytest.raises(ConfigurationError, match=r"algo 'gp' needs the package optuna: pip install 'sarah\[compare\]'"):
+        check_installed("gp")

@@ -1,0 +1,228 @@
+"""An interrupted training goes on exactly: whatever learns, wherever it was cut, whatever is left of its journal."""
+
+import csv
+import json
+import logging
+import random
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+
+import sarah.runs.config
+from sarah.agents import PRESETS
+from sarah.episode.episode import simulate
+from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.workers import Executor, Job, Workers, run, stand
+from sarah.errors import LearningError, RunFolderError, TrainingInterruptedError
+from sarah.runs.config import AGENTS, ALGORITHMS, TrainingConfig
+from sarah.runs.journal import Journal
+from sarah.runs.run_folder import RunFolder
+from sarah.simulation.physics import Physics
+from sarah.training import learners as learning
+from sarah.training import train as training
+from sarah.training.train import train
+
+# As coarse as it gets: what is tested does not depend on it.
+EPISODE = EpisodeConfig(time_limit=1.2, physics=Physics(rate=50, solver_iterations=5, control_rate=50))
+
+
+@pytest.fixture(autouse=True)
+def short(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A training that learns from its sixth simulation on, compares two candidates, and evaluates on two seeds."""
+    monkeypatch.setattr(learning, "WARM_UP", 6)
+    monkeypatch.setitem(PRESETS["one-step"], "learning_starts", 6)
+    monkeypatch.setattr(TrainingConfig, "candidate_count", 2)
+    monkeypatch.setattr(sarah.runs.config, "SIMULATIONS_PER_CANDIDATE", 2)
+    monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
+
+
+def interrupted_after(results: int) -> Callable[[], bool]:
+    """Says so after a number of results, those from the journal included."""
+    countdown = iter(range(results))
+    return lambda: next(countdown, None) is None
+
+
+class Counting(Executor):
+    """Simulates in this process, and counts."""
+
+    def __init__(self) -> None:
+        self.run = 0
+        self._workers = Workers()
+
+    def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
+        self.run += function is not stand
+        return self._workers.submit(function, *subjects)
+
+
+def everything(folder: RunFolder) -> dict[str, Any]:
+    """All that a training leaves behind, but for the time of day."""
+    names = ("episodes.csv", "choices.csv", "progress.csv", "parameters.json")
+    found: dict[str, Any] = {name: (folder.path / name).read_bytes() for name in names}
+    if folder.model_path.exists():
+        archive = zipfile.ZipFile(folder.model_path)
+        found |= {name: archive.read(name) for name in archive.namelist() if name.endswith(".pth")}
+    (events,) = folder.path.glob("events.out.tfevents.*")
+    curves = EventAccumulator(str(events), size_guidance={"scalars": 0})
+    curves.Reload()
+    found |= {tag: [(event.step, event.value) for event in curves.Scalars(tag)] for tag in curves.Tags()["scalars"]}
+    return found
+
+
+@pytest.mark.parametrize(
+    ("algo", "task"), [*((algo, "stepping") for algo in ALGORITHMS), ("naf", "balance"), ("cma-es", "balance")]
+)
+def test_a_training_interrupted_twice_ends_as_without(algo: str, task: str, tmp_path: Path) -> None:
+    config = TrainingConfig(task, algo, simulations=16, seed=7, slots=2, episode=EPISODE)
+    whole = RunFolder.create(tmp_path / "whole", config)
+    learned = train(config, whole)
+    expected = everything(whole)
+    assert len(expected["episode/score"]) == 16 and ("policy.pth" in expected) == (algo in AGENTS)
+    cut = RunFolder.create(tmp_path / "cut", config)
+    for results in sorted(random.Random(f"{algo} {task}").sample(range(1, 17), 2)):
+        with pytest.raises(TrainingInterruptedError):
+            train(config, cut, interrupted=interrupted_after(results))
+        assert not cut.is_finished
+    assert train(config, cut) == learned
+    assert everything(cut) == expected
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
+    config = TrainingConfig(simulations=16, seed=2, slots=3, episode=EPISODE)
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        short.__wrapped__(monkeypatch)  # type: ignore[attr-defined]
+        folder = RunFolder.create(tmp_path_factory.mktemp("runs") / "whole", config)
+        train(config, folder)
+    return folder
+
+
+def begun_with(path: Path, whole: RunFolder, journal: bytes) -> RunFolder:
+    """The run folder of the same training, with another journal and nothing else."""
+    begun = RunFolder.create(path, whole.config())
+    begun.journal_path.write_bytes(journal)
+    return begun
+
+
+@pytest.mark.parametrize("share", [0.0, 0.03, 0.21, 0.5, 0.77, 0.999])
+def test_a_journal_cut_at_any_byte_is_enough(
+    share: float, whole: RunFolder, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    content = whole.journal_path.read_bytes()
+    cut = content[: int(share * len(content))]
+    begun = begun_with(tmp_path / "cut", whole, cut)
+    with caplog.at_level(logging.WARNING):
+        train(whole.config(), begun)
+    assert ("damaged rows: 1" in caplog.text) == (not cut.endswith(b"\n") and bool(cut))
+    assert everything(begun) == everything(whole)
+    assert sorted(begun.journal_path.read_bytes().splitlines()) == sorted(content.splitlines())
+
+
+def test_what_is_finished_is_not_simulated_again(whole: RunFolder, tmp_path: Path) -> None:
+    lines = whole.journal_path.read_bytes().splitlines(keepends=True)
+    finished = [line for line in lines if b'"kind":"stand"' not in line]
+    half = lines[: len(lines) // 2]
+    counting = Counting()
+    train(whole.config(), begun_with(tmp_path / "half", whole, b"".join(half)), counting)
+    assert counting.run == len(set(finished) - set(half)) > 5
+    counting = Counting()
+    train(whole.config(), begun_with(tmp_path / "all", whole, b"".join(lines)), counting)
+    assert counting.run == 0
+
+
+def test_a_damaged_row_costs_its_simulation_only(
+    whole: RunFolder, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    lines = whole.journal_path.read_bytes().splitlines(keepends=True)
+    row = next(number for number, line in enumerate(lines) if number > 10 and b'"kind":"run"' in line)
+    lines[row] = lines[row].replace(b'"steps":0', b'"steps":9', 1)
+    counting = Counting()
+    begun = begun_with(tmp_path / "damaged", whole, b"".join(lines))
+    train(whole.config(), begun, counting)
+    assert counting.run == 1 and "damaged rows: 1; what they held is simulated again" in caplog.text
+    assert everything(begun) == everything(whole)
+
+
+@pytest.mark.parametrize("line", [b"", b"\n", b"rubbish\n", b"0000000 {}\n", b"\xff\x00\n", b"ffffffff []\n"])
+def test_rubbish_in_a_journal_does_no_harm(line: bytes, whole: RunFolder, tmp_path: Path) -> None:
+    content = whole.journal_path.read_bytes()
+    begun = begun_with(tmp_path / "rubbish", whole, line + content)
+    with Journal(begun.journal_path, Counting()) as journal:
+        assert len(journal._known) == content.count(b"\n")
+
+
+def test_a_training_that_does_not_repeat_is_not_resumed(whole: RunFolder, tmp_path: Path) -> None:
+    """As with other versions, whose arithmetic differs in the last bit."""
+    begun = RunFolder.create(tmp_path / "begun", whole.config())
+    with pytest.raises(TrainingInterruptedError):
+        train(whole.config(), begun, interrupted=interrupted_after(20))
+    before = {path.name: path.read_bytes() for path in begun.path.iterdir()}
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        monkeypatch.setitem(PRESETS["one-step"], "gradient_steps", 4)
+        with pytest.raises(RunFolderError, match="cannot be resumed here: it does not repeat"):
+            train(whole.config(), begun)
+    assert {path.name: path.read_bytes() for path in begun.path.iterdir()} == before
+    train(whole.config(), begun)
+    assert everything(begun) == everything(whole)
+
+
+def test_two_trainings_do_not_share_a_run_folder(whole: RunFolder, tmp_path: Path) -> None:
+    begun = RunFolder.create(tmp_path / "begun", whole.config())
+    with (
+        Journal(begun.journal_path, Workers()),
+        pytest.raises(RunFolderError, match=r"begun is in use by another training"),
+    ):
+        train(whole.config(), begun)
+    with pytest.raises(TrainingInterruptedError):
+        train(whole.config(), begun, interrupted=interrupted_after(1))
+
+
+@pytest.mark.parametrize(("function", "seeds"), [(stand, [3]), (run, [3]), (run, [3, 4]), (simulate, [3])])
+def test_the_journal_gives_back_every_bit(function: Callable[..., Any], seeds: list[int], tmp_path: Path) -> None:
+    specs = [EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), seed, config=EpisodeConfig(time_limit=3.0)) for seed in seeds]
+    path = tmp_path / "journal.jsonl"
+    path.touch()
+    with Journal(path, Workers()) as journal:
+        simulated = journal.submit(function, *specs).result()
+    with Journal(path, Workers()) as journal:
+        assert journal.replaying
+        known = journal.submit(function, *specs).result()
+        assert not journal.replaying
+    assert repr(known) == repr(simulated) and type(known) is type(simulated)
+
+
+def test_weights_that_are_not_finite_stop_the_training(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    config = TrainingConfig(simulations=16, slots=1, episode=EPISODE)
+    begun = RunFolder.create(tmp_path / "run", config)
+    original = learning.make_agent
+
+    def poisoned(*arguments: Any) -> Any:
+        model = original(*arguments)
+        collect = model.train
+
+        def train_and_poison(*args: Any, **kwargs: Any) -> None:
+            collect(*args, **kwargs)
+            if model.num_timesteps >= 9:
+                next(model.policy.parameters()).data[0] = float("nan")
+
+        model.train = train_and_poison
+        return model
+
+    monkeypatch.setattr(learning, "make_agent", poisoned)
+    with pytest.raises(LearningError, match=r"weights are no longer finite after 9 simulations"):
+        train(config, begun)
+    assert len(list(begun.episodes())) == 9 and not begun.is_finished and not begun.model_path.exists()
+    monkeypatch.setattr(learning, "make_agent", original)
+    train(config, begun)
+    assert begun.is_finished and len(list(begun.episodes())) == 16
+
+
+def test_columns_of_the_learning_curves_are_in_the_same_order_everywhere(whole: RunFolder) -> None:
+    with (whole.path / "progress.csv").open() as file:
+        columns = next(csv.reader(file))
+    first = [name for name in columns if name.startswith(("episode/", "parameters/"))]
+    assert first == sorted(first) and set(columns) > {"train/loss", "train/n_updates"}
+    assert json.loads((whole.path / "parameters.json").read_text())["simulations"] == 16

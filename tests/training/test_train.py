@@ -1,0 +1,243 @@
+"""A short training in this process: the run folder it leaves, and that it repeats."""
+
+import csv
+import dataclasses
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from stable_baselines3 import DDPG, SAC, TD3
+from stable_baselines3.common.base_class import BaseAlgorithm
+from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+
+from sarah.agents.naf import NAF
+from sarah.control.pattern_generator import PAPER_PARAMETERS
+from sarah.episode.episode import simulate
+from sarah.episode.evaluation import summarise
+from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeConfig, EpisodeSpec
+from sarah.episode.tasks import BALANCE, STEPPING
+from sarah.errors import RunFolderError
+from sarah.runs.config import SEARCHERS, TrainingConfig
+from sarah.runs.run_folder import RunFolder, new_run_path
+from sarah.training import learners as learning
+from sarah.training import train as training
+from sarah.training.recommendation import candidates, merit
+from sarah.training.train import SUMMARY_EPISODES, evaluate, train
+
+SHARES = ("event_driven_shift", "event_driven_lift")
+# Longer than the warm-up, on episodes of one second of stepping.
+SHORT = TrainingConfig(simulations=16, slots=1, seed=3, episode=EpisodeConfig(time_limit=2.0))
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
+    folder = RunFolder.create(tmp_path_factory.mktemp("runs") / "first", SHORT)
+    train(SHORT, folder)
+    return folder
+
+
+def test_run_folder_holds_what_it_should(run: RunFolder) -> None:
+    names = {path.name for path in run.path.iterdir()}
+    expected = {
+        "config.yaml",
+        "command.txt",
+        "versions.txt",
+        "episodes.csv",
+        "choices.csv",
+        "progress.csv",
+        "model.zip",
+    }
+    assert expected | {"parameters.json"} <= names
+    assert any(name.startswith("events.out.tfevents") for name in names)
+    assert run.config() == SHORT
+
+
+def test_every_simulation_has_its_row_and_can_be_repeated(run: RunFolder) -> None:
+    rows = list(run.episodes())
+    assert [int(row["index"]) for row in rows] == list(range(16))
+    assert all(int(row["seed"]) >= FIRST_TRAINING_SEED for row in rows)
+    row = rows[7]
+    parameters = tuple(float(row[name]) for name in STEPPING.parameter_names)
+    result = simulate(EpisodeSpec(parameters, int(row["seed"]), config=SHORT.episode))
+    assert float(row["return"]) == result.episode_return
+    assert (float(row["x"]), float(row["y"])) == result.final_position[:2]
+    assert row["termination"] == result.termination
+
+
+def test_what_would_be_recommended_is_noted_every_five_simulations(run: RunFolder) -> None:
+    choices = list(run.choices())
+    assert [int(row["simulations"]) for row in choices] == list(range(5, 16, 5))
+    tried = []
+    for row in run.episodes():
+        info = {name: float(row[name]) for name in ("score", *SHARES, "sole_clearance")}
+        tried.append((tuple(float(row[name]) for name in STEPPING.parameter_names), merit(info)))
+    for row in choices[:-1]:  # the last ones may be the agent's own
+        recommended = tuple(float(row[name]) for name in STEPPING.parameter_names)
+        centre = (1.0,) * 5  # the agent's own choice until it has learned
+        assert [recommended] == candidates(centre, tried[: int(row["simulations"])], 1, STEPPING.width)
+
+
+def test_tensorboard_shows_the_episodes_the_parameters_and_the_learning(run: RunFolder) -> None:
+    events = EventAccumulator(str(run.path))
+    events.Reload()
+    expected = {f"episode/{name}" for name in ("return", "score", "steps_per_second", "x", "y", "duration")}
+    expected |= {f"gait/{name}" for name in ("event_driven_shift", "event_driven_lift", "sole_clearance")}
+    expected |= {f"{group}/{name}" for group in ("parameters", "choice") for name in STEPPING.parameter_names}
+    assert expected | {"train/loss", "train/q", "train/exploration_std"} <= set(events.Tags()["scalars"])
+    assert [event.step for event in events.Scalars("episode/score")] == list(range(1, 17))
+
+
+def test_progress_has_the_same_figures_as_the_episodes(run: RunFolder) -> None:
+    with (run.path / "progress.csv").open() as file:
+        progress = list(csv.DictReader(file))
+    for row, episode in zip(progress, run.episodes(), strict=True):
+        assert float(row["episode/return"]) == pytest.approx(float(episode["return"]))
+        assert float(row["parameters/P3"]) == pytest.approx(float(episode["P3"]))
+
+
+def test_parameters_are_read_without_the_agent(run: RunFolder) -> None:
+    content = json.loads((run.path / "parameters.json").read_text())
+    assert tuple(content["parameters"]) == STEPPING.parameter_names
+    assert content["task"] == "stepping" and content["algorithm"] == "naf" and content["simulations"] == 16
+    assert tuple(content["parameters"].values()) == RunFolder.open(run.path).parameters()
+    assert all(0.0 <= value <= 2.0 for value in run.parameters())
+
+
+def test_model_loads_and_predicts(run: RunFolder) -> None:
+    action, _ = NAF.load(run.model_path).predict(np.zeros(16, dtype=np.float32), deterministic=True)
+    assert action.shape == (5,)
+
+
+def test_training_repeats_from_its_seed(run: RunFolder, tmp_path: Path) -> None:
+    again = RunFolder.create(tmp_path / "again", SHORT)
+    train(SHORT, again)
+    assert (again.path / "episodes.csv").read_bytes() == (run.path / "episodes.csv").read_bytes()
+    assert again.parameters() == run.parameters()
+
+
+def test_second_training_learns_v_with_the_legs_of_the_first(tmp_path: Path) -> None:
+    stepping = (0.35, 0.6, 0.2, 1.0, 1.0)
+    episode = EpisodeConfig(time_limit=2.0, stepping=stepping)
+    config = TrainingConfig(task="balance", simulations=16, slots=1, episode=episode)
+    run = RunFolder.create(tmp_path / "run", config)
+    learned = train(config, run)
+    first, *_, row = run.episodes()
+    assert all(float(first[name]) == 0.0 for name in BALANCE.parameter_names)
+    parameters = tuple(float(row[name]) for name in BALANCE.parameter_names)
+    assert (
+        float(row["return"]) == simulate(EpisodeSpec(parameters, int(row["seed"]), "balance", episode)).episode_return
+    )
+    assert RunFolder.open(run.path).parameters() == learned.parameters and len(learned.parameters) == 4
+    content = json.loads((run.path / "parameters.json").read_text())
+    assert content["stepping"] == list(stepping) and content["without"]["survival_rate"] == 1.0
+    assert content["without"] == dataclasses.asdict(evaluate(BALANCE.neutral, config, range(SUMMARY_EPISODES)))
+    assert NAF.load(run.model_path).action_space.shape == (4,)
+
+
+@pytest.mark.parametrize(("algo", "algorithm"), [("td3", TD3), ("sac", SAC), ("ddpg", DDPG)])
+def test_other_algorithms_run_the_same_path(
+    algo: str, algorithm: type[BaseAlgorithm], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(learning, "WARM_UP", 6)
+    config = TrainingConfig(algo=algo, simulations=12, slots=1, episode=EpisodeConfig(time_limit=1.5))
+    run = RunFolder.create(tmp_path / algo, config)
+    learned = train(config, run)
+    assert isinstance(algorithm.load(run.model_path), algorithm)
+    assert len(list(run.episodes())) == 12 and len(learned.parameters) == 5
+    assert math.isfinite(learned.evaluation.score_mean)
+
+
+@pytest.mark.parametrize("algo", SEARCHERS)
+def test_optimisers_write_the_same_run_folder(algo: str, tmp_path: Path) -> None:
+    config = TrainingConfig(algo=algo, simulations=20, slots=3, episode=EpisodeConfig(time_limit=1.2))
+    run = RunFolder.create(tmp_path / algo, config)
+    learned = train(config, run)
+    assert len(list(run.episodes())) == 20 and len({row["seed"] for row in run.episodes()}) == 20
+    assert RunFolder.open(run.path).parameters() == learned.parameters
+    assert (run.path / "progress.csv").is_file() and not run.model_path.exists()
+
+
+def test_budget_is_kept_with_episodes_in_flight(tmp_path: Path) -> None:
+    config = TrainingConfig(simulations=5, slots=2, episode=EpisodeConfig(time_limit=1.5))
+    run = RunFolder.create(tmp_path / "run", config)
+    train(config, run)
+    rows = list(run.episodes())
+    assert len(rows) == 5 and len({row["seed"] for row in rows}) == 5
+
+
+def test_trainings_of_neighbouring_seeds_share_no_episode(tmp_path: Path) -> None:
+    seeds = []
+    for seed in (0, 1):
+        config = TrainingConfig(simulations=6, slots=2, seed=seed, episode=EpisodeConfig(time_limit=1.2))
+        run = RunFolder.create(tmp_path / str(seed), config)
+        train(config, run)
+        seeds += [row["seed"] for row in run.episodes()]
+    assert len(set(seeds)) == len(seeds) == 12
+
+
+def test_candidates_are_compared_on_the_same_seeds_within_the_budget(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(TrainingConfig, "candidate_count", 2)
+    config = TrainingConfig(simulations=16, slots=1, episode=EpisodeConfig(time_limit=2.0))
+    run = RunFolder.create(tmp_path / "run", config)
+    parameters = train(config, run).parameters
+    rows = list(run.episodes())
+    assert len(rows) == 16
+    first, second = rows[6::2], rows[7::2]
+    assert [row["seed"] for row in first] == [row["seed"] for row in second]
+    assert len({row["seed"] for row in first}) == 5
+    best = max((first, second), key=lambda rivals: sum(float(row["score"]) for row in rivals))
+    assert all(tuple(float(row[name]) for name in STEPPING.parameter_names) == parameters for row in best)
+
+
+def test_run_folder_that_is_not_empty_is_refused_and_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "precious.txt").write_text("data")
+    with pytest.raises(RunFolderError, match="is not empty"):
+        RunFolder.create(tmp_path, SHORT)
+    assert [path.name for path in tmp_path.iterdir()] == ["precious.txt"]
+
+
+def test_run_folders_number_themselves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert new_run_path("stepping", "naf", 3) == Path("runs/stepping/naf-s3")
+    Path("runs/stepping/naf-s3").mkdir(parents=True)
+    assert new_run_path("stepping", "naf", 3) == Path("runs/stepping/naf-s3-2")
+
+
+def test_folders_without_a_finished_training_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(RunFolderError, match="does not exist"):
+        RunFolder.open(tmp_path / "nowhere")
+    RunFolder.create(tmp_path / "begun", SHORT)
+    with pytest.raises(RunFolderError, match=r"no parameters.json"):
+        RunFolder.open(tmp_path / "begun")
+
+
+@pytest.mark.parametrize(
+    "content",
+    ["{", "[]", "{}", '{"parameters": {"P1": 1}}', '{"parameters": {"P1": "x", "P2": 1, "P3": 1, "P4": 1, "P5": 1}}'],
+)
+def test_spoilt_parameters_are_named(tmp_path: Path, content: str) -> None:
+    run = RunFolder.create(tmp_path / "run", SHORT)
+    (run.path / "parameters.json").write_text(content)
+    with pytest.raises(RunFolderError, match=r"parameters.json does not hold learned parameters"):
+        run.parameters()
+
+
+def test_parameters_are_read_by_name_whatever_their_order(tmp_path: Path) -> None:
+    run = RunFolder.create(tmp_path / "run", SHORT)
+    run.write_parameters({"parameters": {"P5": 0.5, "P2": 0.2, "P1": 0.1, "P4": 0.4, "P3": 0.3}})
+    assert run.parameters() == (0.1, 0.2, 0.3, 0.4, 0.5)
+
+
+def test_what_chatters_or_is_no_gait_comes_last() -> None:
+    walking = simulate(EpisodeSpec(PAPER_PARAMETERS, 0, config=EpisodeConfig(time_limit=4.0)))
+    without = summarise([walking])
+    dragging = dataclasses.replace(walking, score=0.95, sole_clearance=0.0099)
+    chattering = dataclasses.replace(walking, score=0.95, vibration=2.5 * walking.vibration)
+    ranks = [training._rank([result], without) for result in (walking, dragging, chattering)]
+    assert max(ranks) == ranks[0]
+    assert training._rank([chattering], None) > ranks[0]  # where there is nothing to chatter against
+    assert training._rank([], without) < ranks[1]

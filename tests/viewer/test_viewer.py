@@ -1,0 +1,398 @@
+"""The viewer: what there is to play, and the page in a real browser."""
+
+import base64
+import io
+import re
+import shutil
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import matplotlib.image
+import numpy as np
+import psutil
+import pytest
+
+from sarah.cli import view
+from sarah.control.pattern_generator import PAPER_PARAMETERS
+from sarah.episode.ending import ENDINGS, TERMINATIONS
+from sarah.episode.episode import simulate
+from sarah.episode.push import Push
+from sarah.episode.result import EpisodeResult
+from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.tasks import BALANCE
+from sarah.errors import ConfigurationError, RunFolderError
+from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_episodes import choices_of_run, choose
+from sarah.runs.run_folder import RunFolder
+from sarah.viewer.background import BackgroundSimulation, Wish
+from sarah.viewer.playback import Playback
+from sarah.viewer.scenario import KnownPush, Scenario
+from sarah.viewer.scene import channels, describe_tick
+from sarah.viewer.server import serving
+
+BIN = Path(sys.executable).parent
+CONFIG = EpisodeConfig(time_limit=6.0, push=Push(newtons=(40.0, 60.0), at_seconds=(2.0, 3.0)))
+TRIED = ((0.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.5, 0.0), (-2.0, 1.0, 0.0, 2.0))
+LEARNED = (0.8, 0.1, 0.3, -0.1)
+CHROMIUM = shutil.which("chromium")
+SOFTWARE_WEBGL = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+PATIENCE = 120_000
+"""Milliseconds; a busy machine without a GPU draws less than one picture a second."""
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
+    """A Second Training of three simulations."""
+    path = tmp_path_factory.mktemp("runs") / "balance"
+    run = RunFolder.create(path, TrainingConfig(task="balance", simulations=3, episode=CONFIG))
+    for index, parameters in enumerate(TRIED):
+        result = simulate(EpisodeSpec(parameters, 2**31 + index, "balance", CONFIG))
+        run.append_episode(
+            index, BALANCE.parameter_names, {**result.fields(), "seed": 2**31 + index, "parameters": parameters}
+        )
+    run.write_parameters({"parameters": dict(zip(BALANCE.parameter_names, LEARNED, strict=True))})
+    return run
+
+
+# -- what there is to play
+
+
+def test_every_simulation_of_a_run_is_played_exactly(run: RunFolder) -> None:
+    choices = choices_of_run(run)
+    assert [choice.name for choice in choices] == ["learned", "best", "0", "1", "2"]
+    for choice in choices[2:]:
+        assert simulate(choice.spec).score == choice.score
+        assert f"score {choice.score:.2f}" in choice.label
+    assert choices[0].spec == EpisodeSpec(LEARNED, 0, "balance", CONFIG)
+    assert choices[1].score == max(choice.score for choice in choices[2:])
+
+
+def test_every_way_to_end_has_words() -> None:
+    assert set(ENDINGS) == set(TERMINATIONS)
+
+
+def test_an_unknown_episode_is_told_which_there_are(run: RunFolder) -> None:
+    choices = choices_of_run(run)
+    assert choose(choices, "2").spec.parameters == TRIED[2]
+    with pytest.raises(ConfigurationError, match=r"unknown episode '7' \(allowed: learned, best, 0 to 2\)"):
+        choose(choices, "7")
+
+
+def test_an_episode_in_the_other_engine_has_no_noted_score(run: RunFolder) -> None:
+    choice = choices_of_run(run)[2]
+    other = view._in_engine(choice, "mujoco")
+    assert other.spec.config.engine == "mujoco" and other.spec.seed == choice.spec.seed and other.score is None
+    assert view._in_engine(choice, "pybullet") == choice
+
+
+def test_an_unfinished_run_can_be_played_and_a_damaged_one_is_named(run: RunFolder, tmp_path: Path) -> None:
+    copy = tmp_path / "copy"
+    shutil.copytree(run.path, copy)
+    (copy / "parameters.json").unlink()
+    unfinished = RunFolder.open(copy, unfinished=True)
+    assert [choice.name for choice in choices_of_run(unfinished)] == ["best", "0", "1", "2"]
+    with (copy / "episodes.csv").open("a") as file:
+        file.write("3,torn")
+    with pytest.raises(RunFolderError, match="copy cannot be read"):
+        choices_of_run(unfinished)
+    (copy / "episodes.csv").unlink()
+    with pytest.raises(RunFolderError, match="has no simulations to show yet"):
+        choices_of_run(unfinished)
+
+
+def test_sliders_that_stand_still_change_nothing() -> None:
+    stepping = EpisodeSpec(PAPER_PARAMETERS, 3, config=EpisodeConfig(time_limit=6.0))
+    assert simulate(Scenario.of(stepping).spec()) == simulate(stepping)
+    pushed = EpisodeSpec(LEARNED, 3, "balance", CONFIG)
+    again = simulate(Scenario.of(pushed).spec())
+    # The push goes by degrees and back, which costs a bit of precision.
+    assert again.score == pytest.approx(simulate(pushed).score, abs=0.02) and again.duration == 6.0
+
+
+def test_a_given_push_is_the_push_that_is_simulated() -> None:
+    scenario = Scenario(PAPER_PARAMETERS, LEARNED, KnownPush(50.0, 90.0, 2.5), 1, EpisodeConfig(time_limit=4.0))
+    trace = simulate(scenario.spec(), record_trace=True).trace
+    assert trace is not None
+    assert trace.push[trace.tick_at(2.55)] == pytest.approx([0.0, 50.0, 0.0])
+    assert not trace.push[trace.tick_at(2.49)].any()
+
+
+def test_playback_goes_on_by_the_clock_and_stops_at_the_end() -> None:
+    shown: list[float] = []
+    ended = threading.Event()
+
+    def show(time: float) -> None:
+        shown.append(time)
+        if time == 3.0:
+            ended.set()
+
+    playback = Playback(show)
+    playback.load(1.0, 3.0, 2.5)
+    playback.speed = 2.0
+    began = time.monotonic()
+    playback.start()
+    playback.play()
+    assert ended.wait(10.0)
+    assert time.monotonic() - began >= 0.25
+    assert shown[0] < 2.9 and sorted(shown) == shown and len(shown) > 2
+    assert not playback.is_playing
+    playback.play()
+    assert playback.time < 3.0  # from the beginning
+    playback.close()
+
+
+def test_the_newest_wish_is_simulated_and_the_one_before_it_given_up() -> None:
+    done: list[EpisodeResult] = []
+    finished = threading.Event()
+    shares: list[float] = []
+    simulation = BackgroundSimulation(shares.append, pytest.fail)
+    old, new = (EpisodeSpec(PAPER_PARAMETERS, seed) for seed in (0, 1))
+    simulation.request(Wish(old, done.append))
+    while not shares:
+        time.sleep(0.01)
+    simulation.request(Wish(new, lambda result: (done.append(result), finished.set())))  # type: ignore[func-returns-value]
+    assert finished.wait(60.0)
+    assert done == [simulate(new)]
+
+
+def test_the_page_is_served_to_this_machine_only() -> None:
+    with serving(view.ViewOptions().host, view.DEFAULT_PORT) as server:
+        listening = [
+            connection.laddr
+            for connection in psutil.Process().net_connections()
+            if connection.status == psutil.CONN_LISTEN
+        ]
+        assert {address.ip for address in listening} == {"127.0.0.1"}
+        assert server.get_port() in {address.port for address in listening}
+
+
+def test_without_the_extra_the_command_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(view, "find_spec", lambda _: None)
+    monkeypatch.setattr(sys, "argv", ["sarah-view"])
+    with pytest.raises(SystemExit):
+        view.main()
+    assert capsys.readouterr().err == "sarah-view: error: this needs the extra view: pip install 'sarah[view]'\n"
+
+
+# -- the page, in a browser
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Headless Chromium."""
+    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+    if CHROMIUM is None:
+        pytest.skip("chromium is not installed (on Debian: apt-get install chromium)")
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=CHROMIUM, args=SOFTWARE_WEBGL)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def page(browser: Any, run: RunFolder) -> Iterator[Any]:
+    """The page of the run, with its first episode."""
+    server = subprocess.Popen([BIN / "sarah-view", run.path], stdout=subprocess.PIPE, text=True)
+    try:
+        assert server.stdout is not None
+        url = re.search(r"http://127\.0\.0\.1:\d+", server.stdout.readline())
+        assert url
+        page = browser.new_page(viewport={"width": 1000, "height": 500})
+        page.set_default_timeout(PATIENCE)
+        page.goto(url[0])
+        page.locator("#results").get_by_text("before").wait_for(state="attached")
+        field(page, "Show").click()
+        page.get_by_role("option").get_by_text("2 s", exact=True).click()
+        field(page, "Speed").click()  # no episode ends before a test has looked at it
+        page.get_by_role("option").get_by_text("1/10").click()
+        yield page
+    finally:
+        server.terminate()
+        server.wait(30)
+
+
+def picture(page: Any) -> np.ndarray:
+    """What WebGL has drawn: uint8 of shape (height, width, 3)."""
+    url = page.evaluate("document.querySelector('canvas[data-engine]').toDataURL('image/png')")
+    pixels = matplotlib.image.imread(io.BytesIO(base64.b64decode(url.split(",")[1])))
+    return np.asarray(255 * pixels[:, :, :3]).astype(int)
+
+
+def share(pixels: np.ndarray, red: int, green: int, blue: int, tolerance: int = 30) -> float:
+    """Share of the pixels whose channels differ from one another as those of a colour do, however it is lit."""
+    difference = pixels - pixels.mean(axis=2, keepdims=True)
+    wanted = np.array([red, green, blue]) - np.mean([red, green, blue])
+    alike = (difference * wanted).sum(axis=2) > 0.9 * np.linalg.norm(wanted) * np.linalg.norm(difference, axis=2)
+    return float((alike & (np.linalg.norm(difference, axis=2) > tolerance)).mean())
+
+
+def eventually(condition: Any, seconds: float = PATIENCE / 1000) -> None:
+    deadline = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < deadline, "waited in vain"
+        time.sleep(0.2)
+
+
+def field(page: Any, label: str) -> Any:
+    """The input beside a label."""
+    return _row(page, label, "input[not(@type='hidden')]").locator("input:not([type=hidden])").first
+
+
+def slider(page: Any, label: str) -> Any:
+    """The slider beside a label."""
+    return _row(page, label, "*[@role='slider']").get_by_role("slider")
+
+
+def _row(page: Any, label: str, content: str) -> Any:
+    """The smallest box that holds a label and what stands beside it."""
+    return page.locator("label").get_by_text(label, exact=True).locator(f"xpath=ancestor::div[.//{content}][1]")
+
+
+def scores(page: Any) -> list[str]:
+    """Now and before."""
+    return page.locator("#results tr").nth(1).locator("td").all_inner_texts()[1:]
+
+
+def choose_on_page(page: Any, text: str) -> None:
+    field(page, "Episode").click()
+    page.get_by_role("option").get_by_text(re.compile(f"^{text}")).click()
+    page.get_by_role("button", name="Back to this episode").click()  # plays it, even if it was chosen before
+
+
+def pause(page: Any) -> None:
+    page.get_by_role("button", name="Pause").click()
+    page.get_by_role("button", name="Play").wait_for()
+
+
+def go_to(page: Any, seconds: float) -> None:
+    status = page.get_by_text(re.compile(r"^\d+\.\d s · "))
+
+    def typed_and_shown() -> bool:
+        # Typed again if need be: a page that draws less than once a second loses what is typed between two drawings.
+        field(page, "Time (s)").fill(str(seconds))
+        field(page, "Time (s)").press("Enter")
+        page.wait_for_timeout(2000)
+        return abs(float(status.first.inner_text().split()[0]) - seconds) < 0.1
+
+    eventually(typed_and_shown)
+
+
+def has_plots_of(page: Any, moment: float, window: float) -> bool:
+    """Whether all plots show one window of time, with their line at a moment."""
+    ranges = page.evaluate(
+        "() => Object.values(window.__viserTestpoints.uplots).map(({chart}) => {"
+        "const left = parseFloat(getComputedStyle(chart.over, '::after').left) / chart.over.clientWidth;"
+        "return [chart.scales.x.min, chart.scales.x.max, left]})"
+    )
+    first, last, left = ranges[0]
+    is_there = first <= moment <= last and abs(last - first - window) < 0.02
+    return is_there and ranges == [ranges[0]] * 6 and abs(first + left * (last - first) - moment) < 0.05
+
+
+def test_the_robot_is_drawn_with_a_blue_and_a_red_leg(page: Any) -> None:
+    eventually(lambda: min(share(picture(page), *channels(LEFT)), share(picture(page), *channels(RIGHT))) > 0.004)
+    pixels = picture(page)
+    blue, red = (
+        (difference > 40).nonzero()[1].mean()
+        for difference in (pixels[:, :, 2] - pixels[:, :, 0], pixels[:, :, 0] - pixels[:, :, 2])
+    )
+    assert blue > red  # the camera looks at the robot's front, so its left leg is on the right
+
+
+def test_an_episode_plays(page: Any) -> None:
+    page.get_by_role("button", name="Back to this episode").click()
+    eventually(lambda: float(field(page, "Time (s)").input_value()) < 2.0)
+    begin = float(field(page, "Time (s)").input_value())
+    first: dict[tuple[int, ...], np.ndarray] = {}
+
+    def has_moved() -> bool:
+        """Since the first picture of this size: viser draws fewer pixels when frames come late."""
+        now = picture(page)
+        return (np.abs(now - first.setdefault(now.shape, now)).max(axis=2) > 40).mean() > 0.001
+
+    assert not has_moved()
+    eventually(lambda: begin + 0.2 < float(field(page, "Time (s)").input_value()))
+    eventually(has_moved)
+    pause(page)
+    paused = field(page, "Time (s)").input_value()
+    time.sleep(1.0)
+    assert field(page, "Time (s)").input_value() == paused
+
+
+def test_scrubbing_shows_that_moment_in_scene_and_plots(page: Any, run: RunFolder) -> None:
+    choose_on_page(page, "learned")
+    trace = simulate(choices_of_run(run)[0].spec, record_trace=True).trace
+    assert trace is not None
+    eventually(lambda: scores(page)[0] == f"{simulate(choices_of_run(run)[0].spec).score:.3f}")
+    pause(page)
+    for phase in ("lift", "land"):
+        tick = next(tick for tick in range(300, len(trace)) if set(trace.phase[tick - 1 : tick + 2]) == {phase})
+        moment = float(trace.time[tick])
+        go_to(page, round(moment, 2))
+        for line in describe_tick(trace, tick):
+            page.get_by_text(line, exact=False).first.wait_for()
+        eventually(lambda phase=phase: share(picture(page), *channels(PHASE_COLOURS[phase])) > 0.002)
+        eventually(lambda moment=moment: has_plots_of(page, moment, 2.0))
+
+
+def test_a_slider_changes_the_episode_and_the_old_score_stands_beside_the_new(page: Any, run: RunFolder) -> None:
+    choose_on_page(page, "simulation 1")
+    spec = choices_of_run(run)[3].spec
+    old = f"{simulate(spec).score:.3f}"
+    eventually(lambda: scores(page)[0] == old)
+    slider(page, "P1").press("End")
+    scenario = Scenario.of(spec)
+    changed = Scenario((2.0, *scenario.stepping[1:]), scenario.balance, scenario.push, scenario.seed, scenario.config)
+    new = f"{simulate(changed.spec()).score:.3f}"
+    assert new != old
+    eventually(lambda: scores(page) == [new, old])
+    page.get_by_role("button", name="Back to this episode").click()
+    eventually(lambda: scores(page) == [old, new])
+
+
+def test_a_push_is_simulated_and_drawn_as_an_arrow(page: Any, run: RunFolder) -> None:
+    choose_on_page(page, "simulation 0")
+    spec = choices_of_run(run)[2].spec
+    old = f"{simulate(spec).score:.3f}"
+    eventually(lambda: scores(page)[0] == old)
+    page.get_by_role("button", name="No push").click()
+    eventually(lambda: scores(page)[1] == old)
+    calm = scores(page)[0]
+    pause(page)
+    go_to(page, 4.0)
+    assert share(picture(page), *channels(PUSH)) < 0.0005
+    field(page, "Force (N)").fill("150")
+    field(page, "Force (N)").press("Enter")
+    page.get_by_role("button", name="Push now").click()
+    eventually(lambda: scores(page)[1] == calm and scores(page)[0] != calm)
+    pause(page)
+    go_to(page, 4.1)
+    eventually(lambda: has_plots_of(page, 4.1, 2.0))
+    eventually(lambda: share(picture(page), *channels(PUSH)) > 0.002)
+
+
+def test_an_exported_episode_plays_without_server_and_network(browser: Any, run: RunFolder, tmp_path: Path) -> None:
+    file = tmp_path / "scene.html"
+    command = [BIN / "sarah-view", run.path, "--episode", "best", "--export", file]
+    process = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert process.stdout.strip() == str(file)
+    context = browser.new_context(viewport={"width": 500, "height": 400}, offline=True)
+    requests: list[str] = []
+    context.on("request", lambda request: requests.append(request.url))
+    page = context.new_page()
+    page.set_default_timeout(PATIENCE)
+    page.goto(file.as_uri())
+    page.wait_for_selector("canvas[data-engine]")
+    eventually(lambda: min(share(picture(page), *channels(LEFT)), share(picture(page), *channels(RIGHT))) > 0.004)
+    before = picture(page)
+    eventually(lambda: (np.abs(picture(page) - before).max(axis=2) > 40).mean() > 0.001)
+    assert [url for url in requests if not url.startswith(("file:", "data:", "blob:"))] == []
+    context.close()
