@@ -11,14 +11,17 @@ import matplotlib
 import numpy as np
 from PIL import Image, ImageColor, ImageDraw, ImageFont
 
-from sarah.colours import PUSH
-from sarah.config import EpisodeConfig, Push
-from sarah.description import ACTUATED_JOINTS, PASSIVE_JOINTS, describe_robot
-from sarah.episode import EpisodeResult, EpisodeSpec, simulate
-from sarah.overlay import INK, METRES_PER_NEWTON, PALE_INK, PUSH_SHOWN_SECONDS
-from sarah.renderer import Renderer
-from sarah.scenery import Camera, View
-from sarah.trace import Trace
+from sarah.episode.ending import ENDINGS
+from sarah.episode.episode import simulate
+from sarah.episode.push import Push
+from sarah.episode.result import EpisodeResult
+from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.trace import Trace
+from sarah.pictures.colours import PUSH
+from sarah.pictures.overlay import INK, METRES_PER_NEWTON, PUSH_SHOWN_SECONDS
+from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, describe_robot
+from sarah.simulation.renderer import Renderer
+from sarah.simulation.scenery import Camera, View
 
 OUT = Path(__file__).parent / "push_recovery.gif"
 LEARNED = (0.82, 0.13, 0.62, 0.17)
@@ -62,26 +65,23 @@ def film(result: EpisodeResult, caption: str) -> list[Image.Image]:
             renderer.draw(
                 tuple(trace.position[tick]),
                 tuple(trace.orientation[tick]),
-                dict(zip(ACTUATED_JOINTS + PASSIVE_JOINTS, joints, strict=True)),
+                dict(zip(ACTUATED_JOINTS + ANKLE_JOINTS, joints, strict=True)),
                 WIDTH,
                 HEIGHT,
                 CAMERA,
             )
         )
-        write(picture, view, trace, tick, time, caption, not result.survived and time > trace.time[-1])
+        ending = ENDINGS[result.termination] if time > trace.time[-1] else ""
+        write(picture, view, trace, tick, time, f"{caption}\n{ending}")
         pictures.append(picture)
     renderer.close()
     return pictures
 
 
-def write(
-    picture: Image.Image, view: View, trace: Trace, tick: int, time: float, caption: str, has_ended: bool
-) -> None:
-    """Write over a half: whose it is, the push while it can be seen, and how the episode ended."""
+def write(picture: Image.Image, view: View, trace: Trace, tick: int, time: float, words: str) -> None:
+    """Write over a half: whose it is and how its episode ended, and the push while it can be seen."""
     pen = ImageDraw.Draw(picture)
-    pen.text((12, 10), caption, font=ImageFont.truetype(FONT, 17), fill=INK)
-    if has_ended:
-        pen.text((12, 34), "has left its place", font=ImageFont.truetype(FONT, 14), fill=PALE_INK)
+    pen.multiline_text((12, 10), words, font=ImageFont.truetype(FONT, 17), fill=INK)
     pushed = np.flatnonzero(np.linalg.norm(trace.push, axis=1))[0]
     if 0.0 <= time - trace.time[pushed] < PUSH_SHOWN_SECONDS:
         draw_push(pen, view, trace.position[tick], trace.push[pushed])

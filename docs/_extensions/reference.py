@@ -14,8 +14,8 @@ from typing import Any
 import docstring_parser
 from sphinx.application import Sphinx
 
-from sarah.config import EpisodeConfig, TrainingConfig
-from sarah.tasks import TASKS
+from sarah.episode.tasks import TASKS
+from sarah.runs.config import TrainingConfig
 
 GENERATED = Path("reference") / "generated"
 
@@ -49,7 +49,7 @@ def parameters_page() -> str:
     """A table of each task's parameters."""
     lines = []
     for task in TASKS.values():
-        lines += [f"## Task `{task.name}`", "", "| name | range | unit | meaning | in the paper |", "|---|---|---|---|---|"]
+        lines += [f"## Task `{task.name}`", "", "| name | range | unit | meaning | paper |", "|---|---|---|---|---|"]
         for p in task.parameters:
             lines.append(f"| {p.name} | {p.low:g} to {p.high:g} | {p.unit or '-'} | {p.meaning} | {p.paper or '-'} |")
         lines.append("")
