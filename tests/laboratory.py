@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 
 from sarah.robot.description import PLATES
-from sarah.robot.reading import Side
+from sarah.robot.reading import SensorReading, Side, Vector
 from sarah.simulation.engines import is_installed
+from sarah.simulation.physics import PHYSICS
 from sarah.simulation.pybullet_client import pybullet
+from sarah.simulation.simulator import TorsoState
 
+CONTROL_DT = PHYSICS["standard"].control_dt
 NEEDS_PYBULLET = pytest.mark.skipif(not is_installed("pybullet"), reason="needs pybullet")
 
 
@@ -153,3 +156,39 @@ def need(engine: str) -> None:
     """Skip the test that calls it if an engine is not installed."""
     if not is_installed(engine):
         pytest.skip(f"needs {engine}")
+
+
+class NoPhysics:
+    """A simulator in which nothing ever moves."""
+
+    def __init__(self, *_: object) -> None:
+        self.time = 0.0
+        self.closed = False
+        self.targets: list[tuple[float, ...]] = []
+
+    def set_targets(self, targets: tuple[float, ...]) -> None:
+        self.targets.append(targets)
+
+    def push(self, force: Vector) -> None:
+        raise AssertionError("nobody pushes in the First Training")
+
+    def advance(self) -> None:
+        self.time += CONTROL_DT
+
+    def read(self) -> SensorReading:
+        return SensorReading((0.0, 0.0, 9.81), (0.0, 0.0, 0.0), (75.0,) * 4, (0.0,) * 6)
+
+    def torso_state(self) -> TorsoState:
+        return TorsoState((0.0, 0.0, 0.84), (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+    def actuator_motion(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        return (0.0,) * 6, (0.0,) * 6
+
+    def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
+        return (0.0,) * len(names)
+
+    def sole_height(self, side: Side) -> float:
+        return 0.0
+
+    def close(self) -> None:
+        self.closed = True

@@ -46,7 +46,7 @@ OVER_RIGHT = reading(lateral=-3.0, rate=0.3, left=UNLOADED, right=2 * LOADED)
 ROCKING_BACK = reading(rate=-0.6, left=UNLOADED, right=2 * LOADED)
 
 
-def test_right_leg_supports_first() -> None:
+def test_right_leg_is_the_first_stance_leg() -> None:
     generator = started()
     assert generator.stance is Side.RIGHT and generator.swing is Side.LEFT
 
@@ -58,7 +58,7 @@ def test_low_pass_follows_a_step_with_its_time_constant() -> None:
     assert low_pass.value == pytest.approx(1.0 - math.exp(-1.0))
 
 
-def test_tilt_and_rate_are_positive_towards_the_support_leg() -> None:
+def test_tilt_and_rate_are_positive_towards_the_stance_leg() -> None:
     generator = started()
     generator.sense(OVER_RIGHT)
     assert generator.tilt > 0 and generator.rate > 0
@@ -66,7 +66,7 @@ def test_tilt_and_rate_are_positive_towards_the_support_leg() -> None:
     assert generator.tilt < 0 and generator.rate < 0
 
 
-def test_shift_ends_when_the_robot_leans_over_the_support_leg() -> None:
+def test_shift_ends_when_the_robot_leans_over_the_stance_leg() -> None:
     """stable_x reaches -3 (1 - exp(-t / 0.1)); it passes P2 = 1.3 after t = -0.1 ln(1 - 1.3 / 3) = 0.057 s."""
     change, ticks = tick_until_change(started(), OVER_RIGHT)
     assert change == PhaseChange(Phase.SHIFT, by_sensors=True)
