@@ -71,7 +71,8 @@ class TrainingConfig:
         :param content: values of some fields, as a file gives them
         :raises ConfigurationError: if they name no task
         """
-        return {"episode": type(task_named(str(content.get("task", cls.task))).episode)}
+        task = content.get("task", cls.task)
+        return {"episode": type(task_named(task).episode)} if isinstance(task, str) else {}
 
     @property
     def candidate_count(self) -> int:
