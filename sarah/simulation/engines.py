@@ -1,4 +1,4 @@
-"""The physics engines by name. None is imported before an episode asks for it."""
+"""The physics engines by name. An engine is imported only when an episode needs it."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ INSTALLATION = {
     "pybullet": "pip install pybullet (from Python 3.12 on it is compiled, which takes some minutes)",
     "mujoco": "pip install 'sarah[mujoco]'",
 }
-"""How to get an engine."""
+"""Instruction to install each engine."""
 BuildSimulator = Callable[[RobotDescription, Physics, Conditions], Simulator]
 
 
 def simulator_of(engine: str) -> BuildSimulator:
-    """What builds an engine's simulator.
+    """Class that builds an engine's simulator.
 
-    :param engine: ``"pybullet"`` or ``"mujoco"``
+    :param engine: name of the engine, ``"pybullet"`` or ``"mujoco"``
     :raises ConfigurationError: if the engine is not installed
     """
     check_engine(engine)
@@ -38,23 +38,23 @@ def simulator_of(engine: str) -> BuildSimulator:
 
 
 def default_engine() -> Engine:
-    """PyBullet, the reference; MuJoCo where PyBullet is not installed."""
+    """Name of the engine to use by default: PyBullet, the reference, or MuJoCo where PyBullet is not installed."""
     return "pybullet" if is_installed("pybullet") else "mujoco"
 
 
 def is_installed(engine: str) -> bool:
     """Whether an engine can be imported.
 
-    :param engine: ``"pybullet"`` or ``"mujoco"``
+    :param engine: name of the engine, ``"pybullet"`` or ``"mujoco"``
     """
     spec = find_spec(engine)
-    return spec is not None and spec.origin is not None  # `pip uninstall` may leave a folder, but no package
+    return spec is not None and spec.origin is not None  # `pip uninstall` may leave a folder without the package
 
 
 def check_engine(engine: str) -> None:
     """Refuse an engine that is not installed.
 
-    :param engine: ``"pybullet"`` or ``"mujoco"``
+    :param engine: name of the engine, ``"pybullet"`` or ``"mujoco"``
     :raises ConfigurationError: naming how to install it
     """
     if not is_installed(engine):
