@@ -27,7 +27,7 @@ from sarah.robot.reading import SensorReading, Side
 
 @dataclass(frozen=True)
 class BalanceParameters:
-    """The four parameters of the second training, each within -2 and 2; zeros lock the hips.
+    """The four parameters of the Second Training, each within -2 and 2; zeros lock the hips.
 
     :param V1: gain from the lateral acceleration to the abduction of both hips
     :param V2: constant added to that acceleration, in m/s^2

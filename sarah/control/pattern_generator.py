@@ -42,7 +42,7 @@ class Phase(Enum):
 
 @dataclass(frozen=True)
 class SteppingParameters:
-    """The five parameters of the first training, each between 0 and 2.
+    """The five parameters of the First Training, each between 0 and 2.
 
     :param P1: rate of rocking back at which the swing foot is put down, in rad/s
     :param P2: tilt (lateral acceleration) over the stance leg at which the swing foot may leave, in m/s^2
@@ -78,7 +78,7 @@ class PatternGenerator:
     :param parameters: values of P1 to P5
     :param pad_threshold: load above which a foot counts as loaded, in N
     :param dt: control period, in s
-    :param hips: hip law; without one the hips are locked, as in the first training
+    :param hips: hip law; without one the hips are locked, as in the First Training
     :param constants: time-outs, lengths, speeds and time constants of the controller
     """
 
