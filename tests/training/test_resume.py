@@ -143,7 +143,7 @@ def test_a_damaged_row_costs_its_simulation_only(
     counting = Counting()
     begun = begun_with(tmp_path / "damaged", whole, b"".join(lines))
     train(whole.config(), begun, counting)
-    assert counting.run == 1 and "damaged rows: 1; what they held is simulated again" in caplog.text
+    assert counting.run == 1 and "damaged rows: 1; their episodes are simulated again" in caplog.text
     assert everything(begun) == everything(whole)
 
 
