@@ -213,7 +213,7 @@ def test_weights_that_are_not_finite_stop_the_training(tmp_path: Path, monkeypat
         return model
 
     monkeypatch.setattr(learning, "make_agent", poisoned)
-    with pytest.raises(LearningError, match=r"weights are no longer finite after 9 simulations"):
+    with pytest.raises(LearningError, match=r"weights are no longer finite after 9 episodes"):
         train(config, begun)
     assert len(list(begun.episodes())) == 9 and not begun.is_finished and not begun.model_path.exists()
     monkeypatch.setattr(learning, "make_agent", original)
