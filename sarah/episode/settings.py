@@ -23,12 +23,15 @@ class EpisodeConfig:
     """Settings that all episodes of an experiment share, whatever the task.
 
     :param physics: resolution of the physics in time; fields that the engine does not have are ignored
-    :param engine: physics engine: ``"pybullet"``, the reference, or ``"mujoco"``, the default without PyBullet
+    :param engine: physics engine: ``pybullet``, the reference, or ``mujoco``, the default where PyBullet is not
+        installed
     :param randomisation: ranges that each episode's seed draws from
     :param controller: constants of the pattern generator and the hip law
-    :param dimensions: dimensions of the robot that differ from the xacro's defaults, by name, in SI units
+    :param dimensions: dimensions of the robot that differ from their defaults: values by name in SI units, such as
+        hinge_height 0.04
     :param time_limit: time limit of an episode, in s; the paper's first criterion
-    :param reward_form: form of equation 2: ``"symmetric"``, or ``"printed"`` for the equation to the letter
+    :param reward_form: form of the reward, the paper's equation 2: ``symmetric``, or ``printed`` for the equation to the
+        letter
     """
 
     physics: Physics = PHYSICS["standard"]

@@ -33,14 +33,14 @@ ALGORITHMS = AGENTS + OPTIMISERS
 class TrainingConfig:
     """The settings of a training.
 
-    :param task: task to learn: ``stepping`` is the paper's First Training, of P1 to P5; ``balance`` is its Second
-        Training, of V1 to V4
+    :param task: task: ``stepping`` learns P1 to P5 of the pattern generator, as the paper's First Training; ``balance``
+        learns V1 to V4 of the hip law under pushes, as its Second Training
     :param algo: algorithm: ``naf``, stable-baselines3's ``td3``, ``sac`` or ``ddpg``, or an optimiser that sees returns
         only: ``cma-es``, ``gp`` (Gaussian process), ``tpe`` or ``random``
     :param episodes: budget of the training; an episode is one action of the agent, and up to 30 s of the robot
     :param seed: seed of the training and of all its episodes
-    :param slots: number of episodes in flight: an action is chosen without the outcomes of the slots - 1 episodes
-        before it. It changes the result of a training; the number of workers does not
+    :param slots: number of episodes that are simulated at the same time: an action is chosen without the outcomes of
+        the slots - 1 episodes before it. It changes the result of a training; the number of workers does not
     :param episode: settings of the episodes; by default the task's own
     """
 

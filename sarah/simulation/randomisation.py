@@ -33,7 +33,7 @@ class Randomisation:
     Parameters learned on one exact robot exploit it, so they must hold under a little of everything. The ranges are
     reconstructed, as the paper gives none. A pair is a uniform range; equal ends fix the value.
 
-    :param enabled: whether to randomise; off leaves the robot as designed, except for a random start velocity
+    :param enabled: whether to randomise; if not, the robot is as designed, except for a random start velocity
     :param friction: range of the Coulomb friction coefficient between sole and floor
     :param mass_deviation: largest relative deviation of each link's mass and inertia
     :param actuator_bandwidth: range of the position servos' bandwidth, per second

@@ -129,7 +129,7 @@ def balanced(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> Path:
     arguments = ("--task", "balance", "--from", "mine", "--episodes", "4", "--run-dir", "second", *SHORT)
     process = run("sarah-train", *arguments, cwd=first.parent)
     assert process.returncode == 0, process.stderr
-    assert "V4 = " in process.stdout and "with V = 0" in process.stdout
+    assert "V4 = " in process.stdout and "baseline (V = 0)" in process.stdout
     return first.parent / "second"
 
 
@@ -143,7 +143,7 @@ def test_second_training_keeps_what_the_first_learned(balanced: Path) -> None:
 def test_only_a_balance_training_continues_a_first_one(balanced: Path) -> None:
     for arguments, message in (
         (("--from", "mine"), "--from is for --task balance, not 'stepping'"),
-        (("--task", "balance", "--from", "second"), "--from needs a run that learned 'stepping'"),
+        (("--task", "balance", "--from", "second"), "--from needs the run folder of a training of 'stepping'"),
     ):
         process = run("sarah-train", *arguments, cwd=balanced.parent)
         assert process.returncode == 2 and message in process.stderr and len(process.stderr.splitlines()) == 1
@@ -155,7 +155,7 @@ def test_eval_of_a_second_training_compares_with_v_at_zero(balanced: Path) -> No
     assert content["task"] == "balance" and list(content["parameters"]) == ["V1", "V2", "V3", "V4"]
     assert content["chatters"] is False and content["without"]["episodes"] == 2
     text = run("sarah-eval", *arguments, cwd=balanced.parent).stdout
-    for label in ("with V = 0", "vibration", "no chatter", "actuators"):
+    for label in ("baseline (V = 0)", "vibration", "no chatter", "actuators"):
         assert label in text
 
 

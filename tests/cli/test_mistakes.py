@@ -237,7 +237,7 @@ def test_a_file_that_is_no_text(answer: Callable[[str], str], tmp_path: Path) ->
         ("episodes.csv", "", "sarah-figures", "no episodes to draw"),
         ("episodes.csv", "a,b\n\udcff\n", "sarah-figures", "cannot be read"),
         ("journal.jsonl", None, "sarah-train --resume", "cannot be resumed: it has no journal.jsonl"),
-        ("config.yaml", "slots: 9", "sarah-train --slots 4 --resume", "slots is 9 in this run, not 4"),
+        ("config.yaml", "slots: 9", "sarah-train --slots 4 --resume", "slots is 9 in this training, not 4"),
         ("config.yaml", "slots: 4", "sarah-train --run-dir x --resume", "leave --run-dir, --config and --from out"),
         ("config.yaml", "seed: 1", "sarah-train --episode.time-limit 9 --resume", "episode.time_limit is 30.0 in this"),
     ],
