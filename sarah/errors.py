@@ -23,11 +23,11 @@ class ConfigurationError(SarahError, ValueError):
 
 
 class RunFolderError(SarahError, OSError):
-    """A run folder is missing, not empty, or does not hold what it should."""
+    """A run folder is missing, not empty, or lacks a file that it should have."""
 
 
 class SimulationError(SarahError, RuntimeError):
-    """The physics engine cannot do what is asked of it."""
+    """An episode cannot be simulated, or has no usable result."""
 
 
 class WorkersError(SarahError, RuntimeError):

@@ -1,4 +1,4 @@
-"""What all commands share: options, settings of episodes, and one line for a user's mistake."""
+"""Parts that all commands share: options, settings of episodes, and one line for a user's mistake."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How an episode ends: the paper's three criteria, a fall, and a simulation that diverges."""
+"""The end of an episode: the paper's three criteria, a fall, and a simulation that diverges."""
 
 from __future__ import annotations
 

@@ -92,7 +92,7 @@ class Evaluation:
     def chatters(self, baseline: Evaluation) -> bool:
         """Whether the hips shake the torso at frequencies that no real actuator follows.
 
-        :param baseline: the same episodes with V1 to V4 at zero; if they ended too early to measure, the answer is no
+        :param baseline: same episodes with V1 to V4 at zero; if they ended too early to measure, the answer is no
         """
         still = baseline.median("vibration")
         return self.median("vibration") > LARGEST_ACCELERATION_RATIO**2 * still > 0.0

@@ -30,8 +30,8 @@ class EpisodeConfig:
     :param dimensions: dimensions of the robot that differ from their defaults: values by name in SI units, such as
         hinge_height 0.04
     :param time_limit: time limit of an episode, in s; the paper's first criterion
-    :param reward_form: form of the reward, the paper's equation 2: ``symmetric``, or ``printed`` for the equation to the
-        letter
+    :param reward_form: form of the reward, the paper's equation 2: ``symmetric``, or ``printed`` for the equation to
+        the letter
     """
 
     physics: Physics = PHYSICS["standard"]

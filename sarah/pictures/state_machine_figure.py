@@ -86,7 +86,7 @@ def _text(value: Any, is_factor: bool = False) -> str:
 class PhaseFacts:
     """A phase of the pattern generator, and the conditions that end it.
 
-    :param phase: the phase
+    :param phase: phase of the generator
     :param following: phase after it
     :param swaps_legs: whether the other leg swings after it
     :param conditions: sensor conditions that together end it

@@ -1,4 +1,4 @@
-"""What is not known exactly about a robot and its world, and one episode's draw of it."""
+"""The uncertain properties of a robot and its world, and one episode's draw of them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ PLAUSIBLE = {
 
 @dataclass(frozen=True)
 class Randomisation:
-    """What is not known exactly about a robot and its world, drawn for each episode from its seed.
+    """Uncertain properties of the robot and its world, drawn for each episode from its seed.
 
     Parameters learned on one exact robot exploit it, so they must hold under a little of everything. The ranges are
     reconstructed, as the paper gives none. A pair is a uniform range; equal ends fix the value.
