@@ -15,37 +15,49 @@ from typing import TYPE_CHECKING, Any
 from sarah.envs.registration import register_environments
 
 if TYPE_CHECKING:
+    from sarah.control.constants import ControllerConstants
     from sarah.episode.episode import simulate
+    from sarah.episode.evaluation import Evaluation, evaluate
     from sarah.episode.push import Push
     from sarah.episode.result import EpisodeResult
-    from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+    from sarah.episode.settings import EpisodeConfig
+    from sarah.episode.spec import EpisodeSpec
+    from sarah.episode.tasks import BalanceConfig
     from sarah.errors import SarahError
     from sarah.simulation.physics import PHYSICS, Physics
     from sarah.simulation.randomisation import Randomisation
 
-__all__ = [
-    "PHYSICS",
-    "EpisodeConfig",
-    "EpisodeResult",
-    "EpisodeSpec",
-    "Physics",
-    "Push",
-    "Randomisation",
-    "SarahError",
-    "simulate",
-]
-
 _HOMES = {
     "PHYSICS": "simulation.physics",
-    "EpisodeConfig": "episode.spec",
+    "BalanceConfig": "episode.tasks",
+    "ControllerConstants": "control.constants",
+    "EpisodeConfig": "episode.settings",
     "EpisodeResult": "episode.result",
     "EpisodeSpec": "episode.spec",
+    "Evaluation": "episode.evaluation",
     "Physics": "simulation.physics",
     "Push": "episode.push",
     "Randomisation": "simulation.randomisation",
     "SarahError": "errors",
+    "evaluate": "episode.evaluation",
     "simulate": "episode.episode",
 }
+
+__all__ = [
+    "PHYSICS",
+    "BalanceConfig",
+    "ControllerConstants",
+    "EpisodeConfig",
+    "EpisodeResult",
+    "EpisodeSpec",
+    "Evaluation",
+    "Physics",
+    "Push",
+    "Randomisation",
+    "SarahError",
+    "evaluate",
+    "simulate",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -1,5 +1,6 @@
 """What tests do to a simulated robot that no episode does, in each physics engine: place it, turn it, weigh it."""
 
+import math
 from collections.abc import Sequence
 from itertools import product
 from typing import Any
@@ -7,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sarah.robot.description import PLATES, SIDES
+from sarah.robot.description import PLATES
+from sarah.robot.reading import Side
 from sarah.simulation.engines import is_installed
 from sarah.simulation.pybullet_client import pybullet
 
@@ -21,7 +23,7 @@ class BulletLaboratory:
 
     def place(self, simulation: Any, height: float = 30.0, roll: float = 0.0, pitch: float = 0.0) -> None:
         """Put the robot in the air, turned by ``roll`` about y or ``pitch`` about x."""
-        orientation = pybullet.getQuaternionFromEuler((pitch, roll, 0.0))
+        orientation = turned(roll, pitch)
         client = simulation._client
         pybullet.resetBasePositionAndOrientation(simulation._body, (0, 0, height), orientation, physicsClientId=client)
         simulation._torso = simulation._torso_state()
@@ -49,7 +51,7 @@ class BulletLaboratory:
 
     def frictions(self, simulation: Any) -> set[float]:
         """Of all soles."""
-        return {self._dynamics(simulation, f"{side}_{plate}")[1] for side, plate in product(SIDES, PLATES)}
+        return {self._dynamics(simulation, f"{side}_{plate}")[1] for side, plate in product(Side, PLATES)}
 
     def link_position(self, simulation: Any, link: str) -> np.ndarray:
         """Of a link's frame, in the world's."""
@@ -85,7 +87,7 @@ class MujocoLaboratory:
 
     def place(self, simulation: Any, height: float = 30.0, roll: float = 0.0, pitch: float = 0.0) -> None:
         """Put the robot in the air, turned by ``roll`` about y or ``pitch`` about x."""
-        x, y, z, w = pybullet.getQuaternionFromEuler((pitch, roll, 0.0))
+        x, y, z, w = turned(roll, pitch)
         simulation._data.qpos[:7] = (0.0, 0.0, height, w, x, y, z)
         simulation._torso = simulation._torso_state()
 
@@ -106,7 +108,7 @@ class MujocoLaboratory:
 
     def remove_pads(self, simulation: Any) -> None:
         """Let the plates pass where the pads were."""
-        for side, plate in product(SIDES, PLATES):
+        for side, plate in product(Side, PLATES):
             simulation._model.geom(f"{side}_{plate}_pad").pos[2] += 1.0
 
     def mass(self, simulation: Any, link: str) -> float:
@@ -138,6 +140,13 @@ class MujocoLaboratory:
             model, data, mujoco.mjtObj.mjOBJ_BODY, model.body(link).id, velocity, 0
         )  # angular, then linear
         return velocity[3:]
+
+
+def turned(roll: float, pitch: float) -> tuple[float, float, float, float]:
+    """Unit quaternion (x, y, z, w) of a turn by ``pitch`` about x, and then by ``roll`` about y."""
+    x, y = math.sin(pitch / 2), math.sin(roll / 2)
+    w_x, w_y = math.cos(pitch / 2), math.cos(roll / 2)
+    return w_y * x, y * w_x, -y * x, w_y * w_x
 
 
 def laboratory(engine: str) -> BulletLaboratory | MujocoLaboratory:

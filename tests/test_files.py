@@ -7,7 +7,8 @@ import psutil
 import pytest
 
 from sarah.episode.episode import simulate
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
 from sarah.files import replace_text, replacing
 from sarah.simulation.physics import Physics
 

@@ -9,24 +9,24 @@ from typing import Annotated
 
 import tyro
 
-from sarah.cli.options import parse_options, run_command, say_engine, with_engine
-from sarah.episode.spec import EpisodeConfig
+from sarah.cli.options import episode_of, given_options, parse_options, run_command, say_engine, with_engine
+from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError, check_range
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 
 COMMAND = "sarah-compare"
 MOST_SEEDS = 1000
-MOST_EPISODES = 1000
+MOST_EVALUATIONS = 1000
 SCORES = (0.01, 2.0)
 """What a best known score can be: 1 is the ceiling, and the printed reward can exceed it."""
 
 
 @dataclass(frozen=True)
 class CompareOptions:
-    """Train several algorithms with several seeds each, and see which needs the fewest simulations.
+    """Train several algorithms with several seeds each, and see which needs the fewest episodes.
 
-    What a training would have recommended after every five simulations is evaluated on unseen seeds. The table says
-    after how many simulations 90 % and 95 % of the best known score are reached and held over three evaluations, and
+    What a training would have recommended after every five episodes is evaluated on unseen seeds. The table says
+    after how many episodes 90 % and 95 % of the best known score are reached and held over three evaluations, and
     the final score; it is printed, and written to the folder with a plot. A race that was interrupted goes on where it
     was.
 
@@ -35,11 +35,11 @@ class CompareOptions:
     :param seeds: how many trainings of each
     :param first_seed: of the trainings
     :param task: what to learn: ``stepping`` or ``balance``
-    :param simulations: budget of each training
+    :param episodes: budget of each training
     :param slots: episodes in flight in each training
     :param episode: settings of the episodes
     :param engine: of the physics, ``pybullet`` or ``mujoco``: short for --episode.engine
-    :param episodes: unseen seeds that every choice is evaluated on
+    :param evaluations: number of unseen seeds that every recommendation is evaluated on
     :param best_known: score that shares are taken of; by default the best final one of the race
     :param workers: processes that train, on this machine, one training each; with none, this process does
     :param scheduler: address of a Dask scheduler whose workers train instead; they must share the folder
@@ -52,11 +52,11 @@ class CompareOptions:
     seeds: int = 5
     first_seed: int = 0
     task: str = "stepping"
-    simulations: int = 100
+    episodes: Annotated[int, tyro.conf.arg(aliases=["--simulations"])] = 100
     slots: int = 1
     episode: EpisodeConfig = EpisodeConfig()
     engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
-    episodes: int = 10
+    evaluations: int = 10
     best_known: Annotated[float | None, tyro.conf.arg(metavar="FLOAT")] = None
     workers: int = 0
     scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
@@ -67,34 +67,41 @@ def main() -> None:
     run_command(COMMAND, _compare)
 
 
+def _defaults(arguments: Sequence[str]) -> CompareOptions:
+    """The defaults, of the kind that task and engine take."""
+    given = given_options(arguments, "task", "engine", "episode.engine")
+    task = given.get("task", CompareOptions.task)
+    return CompareOptions(task=task, episode=episode_of(task, EpisodeConfig(), given))
+
+
 def _compare(arguments: Sequence[str]) -> None:
-    options = parse_options(CompareOptions, COMMAND, arguments, CompareOptions())
+    options = parse_options(CompareOptions, COMMAND, arguments, _defaults(arguments))
     if options.out is None:
         raise ConfigurationError("give a folder for the race")
     check_range("seeds", options.seeds, 1, MOST_SEEDS)
-    check_range("episodes", options.episodes, 1, MOST_EPISODES)
+    check_range("evaluations", options.evaluations, 1, MOST_EVALUATIONS)
     if options.best_known is not None:
         check_range("best-known", options.best_known, *SCORES)
     if not options.algorithms or len(set(options.algorithms)) < len(options.algorithms):
         raise ConfigurationError(f"algorithms must be different ones, at least one, not {options.algorithms!r}")
     episode = with_engine(options.episode, options.engine)
-    base = TrainingConfig(task=options.task, simulations=options.simulations, slots=options.slots, episode=episode)
+    base = TrainingConfig(task=options.task, episodes=options.episodes, slots=options.slots, episode=episode)
     from sarah.robot.description import describe_robot
     from sarah.simulation.engines import check_engine
 
     describe_robot(options.episode.dimensions)
     check_engine(episode.engine)
-    say_engine(episode, options.engine)
     from sarah.episode.workers import Workers
-    from sarah.reports.race import as_markdown, entries_of, race, standings, write_csv
+    from sarah.reports.race import as_markdown, entries_of, race, rankings, write_csv
     from sarah.reports.training_figures import draw_race
 
     seeds = range(options.first_seed, options.first_seed + options.seeds)
-    entries = entries_of(options.algorithms, seeds, base, options.episodes, options.out)
+    entries = entries_of(options.algorithms, seeds, base, options.evaluations, options.out)
     options.out.mkdir(parents=True, exist_ok=True)
     with Workers(options.workers, options.scheduler) as workers:
+        say_engine(episode, options.engine)
         curves = race(entries, workers)
-    table = standings(curves, options.best_known)
+    table = rankings(curves, options.best_known)
     print(as_markdown(table))
     (options.out / "race.md").write_text(as_markdown(table) + "\n", encoding="utf-8")
     write_csv(table, options.out / "race.csv")

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.options import changed_episodes, numbers, parse_options, run_command
-from sarah.episode.spec import EpisodeConfig
-from sarah.episode.tasks import BALANCE, STEPPING, TASKS
+from sarah.cli.options import changed_episodes, check_has, numbers, parse_options, run_command, say_engine
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.tasks import BALANCE, STEPPING, TASKS, BalanceConfig
 from sarah.errors import ConfigurationError, check_range, unknown_name
 
 if TYPE_CHECKING:
@@ -87,31 +87,31 @@ def _evaluate(arguments: Sequence[str]) -> None:
         if options.robustness is not None:
             _show_robustness(parameters, config, options, workers)
             return
+        say_engine(config, options.engine)
         evaluation = _evaluation(task, parameters, config, options, workers)
         neutral = TASKS[task].neutral
-        without = None if neutral is None else _evaluation(task, neutral, config, options, workers)
+        baseline = None if neutral is None else _evaluation(task, neutral, config, options, workers)
     named = dict(zip(TASKS[task].parameter_names, parameters, strict=True))
     if options.json:
-        content = {"task": task, "algorithm": algorithm, "parameters": named, **vars(evaluation)}
-        if without is not None:
-            content |= {"chatters": evaluation.chatters(without), "without": vars(without)}
+        content = {"task": task, "algorithm": algorithm, "parameters": named, **evaluation.summary()}
+        if baseline is not None:
+            content |= {"chatters": evaluation.chatters(baseline), "baseline": baseline.summary()}
         print(json_format.dumps(content))
         return
     for label, text in _rows(named, evaluation):
         print(f"{label:17}{text}")
-    if without is not None:
-        for label, text in _comparison(evaluation, without):
+    if baseline is not None:
+        for label, text in _comparison(evaluation, baseline):
             print(f"{label:17}{text}")
 
 
 def _evaluation(
     task: str, parameters: tuple[float, ...], config: EpisodeConfig, options: EvalOptions, workers: Workers
 ) -> Evaluation:
-    from sarah.episode.evaluation import summarise
-    from sarah.episode.spec import EpisodeSpec
+    from sarah.episode.evaluation import evaluate
 
     seeds = range(options.first_seed, options.first_seed + options.episodes)
-    return summarise(workers.simulate_all([EpisodeSpec(parameters, seed, task, config) for seed in seeds]))
+    return evaluate(task, parameters, config, seeds, workers)
 
 
 def _subject(options: EvalOptions) -> tuple[str, str | None, tuple[float, ...], EpisodeConfig]:
@@ -127,14 +127,13 @@ def _subject(options: EvalOptions) -> tuple[str, str | None, tuple[float, ...], 
             raise ConfigurationError(f"task is {options.task!r}, but {options.run} learned {training.task!r}")
         return training.task, training.algo, run.parameters(), training.episode
     task = options.task or STEPPING.name
-    return task, None, TASKS[task].checked(numbers("parameters", str(options.parameters))), EpisodeConfig()
+    return task, None, TASKS[task].checked(numbers("parameters", str(options.parameters))), TASKS[task].episode
 
 
 def _changed(config: EpisodeConfig, options: EvalOptions, task: str) -> EpisodeConfig:
     """The episode settings, as the options change them."""
-    for name in ("stepping", "push_newtons", "robustness"):
-        if task == STEPPING.name and getattr(options, name) is not None:
-            raise ConfigurationError(f"--{name.replace('_', '-')} is for --task balance")
+    if options.robustness is not None:
+        check_has(config, "push", "robustness")
     return changed_episodes(
         config, options.stepping, options.push_newtons, options.physics, options.randomisation, options.engine
     )
@@ -142,47 +141,39 @@ def _changed(config: EpisodeConfig, options: EvalOptions, task: str) -> EpisodeC
 
 def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[str, str]]:
     e = evaluation
+    hips, legs = e.statistic("peak_hip_rate", "max"), e.statistic("peak_leg_speed", "max")
     return [
         ("parameters", ", ".join(f"{name} = {value:.3f}" for name, value in parameters.items())),
-        (
-            "score",
-            f"{e.score_median:.3f} median, {e.score_mean:.3f} mean, {e.score_std:.3f} std, {e.score_min:.3f} min",
-        ),
-        (
-            "steps per second",
-            f"{e.steps_per_second_median:.2f} median, {e.steps_per_second_mean:.2f} mean, "
-            f"{e.steps_per_second_std:.2f} std",
-        ),
-        (
-            "drift",
-            f"{100 * e.drift_median:.1f} cm median, {100 * e.drift_mean:.1f} cm mean, {100 * e.drift_std:.1f} cm std, "
-            f"{100 * e.drift_max:.1f} cm max",
-        ),
+        ("score", _statistics(e, "score", "{:.3f}", "median", "mean", "std", "min")),
+        ("steps per second", _statistics(e, "steps_per_second", "{:.2f}", "median", "mean", "std")),
+        ("drift", _statistics(e, "drift", "{:.1f} cm", "median", "mean", "std", "max", scale=100.0)),
         (
             "survival",
-            f"{round(e.survival_rate * e.episodes)} of {e.episodes} episodes"
+            f"{e.survivors} of {e.episodes} episodes"
             + (f"; {e.diverged} diverged: no number came back" if e.diverged else ""),
         ),
-        ("by sensors", f"{e.event_driven_shift_mean:.1%} of shifts, {e.event_driven_lift_mean:.1%} of lifts"),
-        ("sole clearance", f"{1000 * e.sole_clearance_mean:.1f} mm"),
-        ("vibration", f"{e.vibration_median:.1f} m²/s⁴ above 20 Hz"),
-        (
-            "actuators",
-            f"{e.actuator_power_mean:.0f} W; peaks {e.peak_hip_rate_max:.1f} rad/s and {e.peak_leg_speed_max:.2f} m/s",
-        ),
+        ("by sensors", f"{e.mean('shifts_by_sensors'):.1%} of shifts, {e.mean('lifts_by_sensors'):.1%} of lifts"),
+        ("sole clearance", f"{1000 * e.mean('sole_clearance'):.1f} mm"),
+        ("vibration", f"{e.median('vibration'):.1f} m²/s⁴ above 20 Hz"),
+        ("actuators", f"{e.mean('actuator_power'):.0f} W; peaks {hips:.1f} rad/s and {legs:.2f} m/s"),
     ]
 
 
-def _comparison(evaluation: Evaluation, without: Evaluation) -> list[tuple[str, str]]:
+def _statistics(evaluation: Evaluation, metric: str, form: str, *names: str, scale: float = 1.0) -> str:
+    """Some statistics of a metric, in one line."""
+    return ", ".join(f"{form.format(scale * evaluation.statistic(metric, name))} {name}" for name in names)
+
+
+def _comparison(evaluation: Evaluation, baseline: Evaluation) -> list[tuple[str, str]]:
     """The same episodes with V1 to V4 at zero."""
-    survived = f"{round(without.survival_rate * without.episodes)} of {without.episodes} survive"
-    chatter = "it chatters" if evaluation.chatters(without) else "no chatter"
+    score, steps = baseline.median("score"), baseline.mean("steps_per_second")
+    chatter = "it chatters" if evaluation.chatters(baseline) else "no chatter"
     return [
         (
             "with V = 0",
-            f"score {without.score_median:.3f} median, {survived}, {without.steps_per_second_mean:.2f} steps/s",
+            f"score {score:.3f} median, {baseline.survivors} of {baseline.episodes} survive, {steps:.2f} steps/s",
         ),
-        ("", f"vibration {without.vibration_median:.1f} m²/s⁴: {chatter}"),
+        ("", f"vibration {baseline.median('vibration'):.1f} m²/s⁴: {chatter}"),
     ]
 
 
@@ -194,11 +185,12 @@ def _show_robustness(
     from sarah.reports.training_figures import draw_survival
 
     folder, neutral = options.robustness, BALANCE.neutral
-    assert folder is not None and neutral is not None
+    assert folder is not None and neutral is not None and isinstance(config, BalanceConfig)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise ConfigurationError(f"cannot write folder {folder}: {error.strerror}") from error
+    say_engine(config, options.engine)
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
     forces = FORCES if options.push_newtons is None else (options.push_newtons,)
     pushed = push_many((neutral, parameters), config, workers, forces, options.episodes, options.first_seed)

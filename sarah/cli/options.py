@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
+import argparse
 import contextlib
 import dataclasses
 import io
 import os
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar, get_args
 
 import tyro
 
-from sarah.episode.spec import EpisodeConfig
-from sarah.episode.tasks import STEPPING
+from sarah.episode.push import Push
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.tasks import STEPPING, TASKS
 from sarah.errors import ConfigurationError, SarahError, unknown_name
-from sarah.simulation.engines import default_engine
+from sarah.simulation.engines import Engine, default_engine
 from sarah.simulation.physics import PHYSICS
 
 if TYPE_CHECKING:
-    from sarah.runs.run_episodes import Choice
+    from sarah.runs.run_episodes import RunEpisode
 
 OptionsType = TypeVar("OptionsType")
 USAGE_ERROR = 2
@@ -132,26 +134,26 @@ def numbers(name: str, text: str) -> tuple[float, ...]:
         raise ConfigurationError(f"{name} must be numbers separated by commas, not {text!r}") from None
 
 
-def episodes_of(subject: str, episode: str | None) -> tuple[list[Choice], Choice]:
+def episodes_of(subject: str, episode: str | None) -> tuple[list[RunEpisode], RunEpisode]:
     """The episodes that a run or parameters amount to, and the one to show.
 
     :param subject: folder of a run, or parameters separated by commas
-    :param episode: of the run: ``learned``, ``best`` or the index of a simulation; the first of these that there is, if
-        none is named
+    :param episode: episode of the run: ``learned``, ``best`` or an index; the first of these that there is, if none is
+        named
     :raises ConfigurationError: if there is no such thing
     """
-    from sarah.runs.run_episodes import choice_of_parameters, choices_of_run, choose
+    from sarah.runs.run_episodes import choose, episode_of_parameters, episodes_of_run
 
     if Path(subject).is_dir():
         from sarah.runs.run_folder import RunFolder
 
-        choices = choices_of_run(RunFolder.open(Path(subject), unfinished=True))
+        choices = episodes_of_run(RunFolder.open(Path(subject), unfinished=True))
         return choices, choose(choices, episode)
     if not subject.strip("+-.")[:1].isdigit():
         raise ConfigurationError(f"{subject} is neither a run folder nor numbers separated by commas")
     if episode is not None:
         raise ConfigurationError("--episode is for a run folder")
-    choice = choice_of_parameters(numbers("parameters", subject))
+    choice = episode_of_parameters(numbers("parameters", subject))
     return [choice], choice
 
 
@@ -167,25 +169,76 @@ def changed_episodes(
 
     :param config: the settings
     :param stepping: P1 to P5 of the balance task, separated by commas
-    :param push_newtons: force of every push
+    :param push_newtons: force of every push, in N
     :param physics: name of a setting in :data:`~sarah.simulation.physics.PHYSICS`
     :param randomisation: whether to leave it on
-    :param engine: of the physics
-    :raises ConfigurationError: if one of them is not allowed
+    :param engine: name of the physics engine
+    :raises ConfigurationError: if one of them is not allowed, or the task does not have it
     """
     config = with_engine(config, engine)
-    say_engine(config, engine)
+    changes: dict[str, Any] = {}
     if physics is not None:
         if physics not in PHYSICS:
             raise ConfigurationError(unknown_name("physics", physics, PHYSICS))
-        finer = PHYSICS[physics].at_control_rate(config.physics.control_rate)
-        config = dataclasses.replace(config, physics=finer)
+        changes["physics"] = PHYSICS[physics].at_control_rate(config.physics.control_rate)
     if not randomisation:
-        config = dataclasses.replace(config, randomisation=dataclasses.replace(config.randomisation, enabled=False))
+        changes["randomisation"] = dataclasses.replace(config.randomisation, enabled=False)
     if stepping is not None:
-        values = STEPPING.checked(numbers("stepping", stepping), "stepping")
-        config = dataclasses.replace(config, stepping=values)  # type: ignore[arg-type]  # five of them
+        check_has(config, "stepping", "stepping")
+        changes["stepping"] = STEPPING.checked(numbers("stepping", stepping), "stepping")
     if push_newtons is not None:
-        force = (push_newtons, push_newtons)
-        config = dataclasses.replace(config, push=dataclasses.replace(config.push, newtons=force))
-    return config
+        changes["push"] = pushed_by(config, push_newtons)
+    return dataclasses.replace(config, **changes)
+
+
+def pushed_by(config: EpisodeConfig, newtons: float) -> Push:
+    """The push of some episode settings, with a fixed force.
+
+    :param config: the settings
+    :param newtons: force of every push, in N
+    :raises ConfigurationError: if the task has no push
+    """
+    check_has(config, "push", "push-newtons")
+    push: Push = getattr(config, "push")  # noqa: B009  # which task has one, only the task knows
+    return dataclasses.replace(push, newtons=(newtons, newtons))
+
+
+def check_has(config: EpisodeConfig, name: str, option: str) -> None:
+    """Refuse an option whose setting a task does not have.
+
+    :param config: settings of the task's episodes
+    :param name: name of the setting
+    :param option: name of the option, without dashes
+    """
+    if not hasattr(config, name):
+        tasks = " or ".join(task.name for task in TASKS.values() if hasattr(task.episode, name))
+        raise ConfigurationError(f"--{option} is for --task {tasks}")
+
+
+def given_options(arguments: Sequence[str], *names: str) -> dict[str, str]:
+    """Values of some options, which decide what further options there are.
+
+    :param arguments: all arguments of a command
+    :param names: names of the options, without dashes
+    :return: values by name; one that lacks its value is left to the real parser
+    """
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
+    for name in names:
+        parser.add_argument(f"--{name}", dest=name, default=argparse.SUPPRESS)
+    try:
+        return vars(parser.parse_known_args(arguments)[0])
+    except argparse.ArgumentError:
+        return {}
+
+
+def episode_of(task: str, episode: EpisodeConfig, given: Mapping[str, str]) -> EpisodeConfig:
+    """Episode settings of the kind that a task and an engine take.
+
+    :param task: name of the task; an unknown one is left to whoever uses it
+    :param episode: settings of any task's episodes
+    :param given: options that were given: of interest are ``engine`` and ``episode.engine``
+    """
+    if task in TASKS and type(episode) is not type(TASKS[task].episode):
+        episode = TASKS[task].config_of(episode)
+    engine = given.get("engine", given.get("episode.engine"))
+    return with_engine(episode, engine if engine in get_args(Engine) else None)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import dataclasses
 import shlex
 import signal
@@ -15,8 +14,8 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.interruption import Interruption
-from sarah.cli.options import parse_options, run_command, say_engine, with_engine
-from sarah.episode.spec import EpisodeConfig
+from sarah.cli.options import episode_of, given_options, parse_options, run_command, say_engine, with_engine
+from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS
 from sarah.errors import ConfigurationError, RunFolderError, SarahError, TrainingInterruptedError
 from sarah.runs.config import TrainingConfig
@@ -32,10 +31,10 @@ COMMAND = "sarah-train"
 
 @dataclass(frozen=True)
 class TrainOptions:
-    """Learn the pattern generator's parameters, one simulation per action of the agent.
+    """Learn the pattern generator's parameters, one episode per action of the agent.
 
     Settings come from the defaults below, then from the file of --config, then from the run of --from, then from the
-    command line. The run folder holds the learned parameters (parameters.json), every simulation (episodes.csv), the
+    command line. The run folder holds the learned parameters (parameters.json), every episode (episodes.csv), the
     agent (model.zip) and what TensorBoard shows.
 
     :param training: what to train
@@ -45,8 +44,8 @@ class TrainOptions:
     :param resume: go on with this run folder's training, as if it had not been interrupted; its settings
         are used
     :param from_run: balance with P1 to P5 and the robot of this First Training's run folder
-    :param pictures: every so many simulations, draw what would be chosen for TensorBoard: a gait cycle, and a video of
-        3 s. Each costs some seconds, and changes no result; 0 draws none
+    :param pictures: number of episodes after which what would be recommended is drawn for TensorBoard: a gait cycle,
+        and a video of 3 s. Each costs some seconds, and changes no result; 0 draws none
     :param workers: processes that simulate, on this machine; with none, this process does. They change no result
     :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
     """
@@ -68,6 +67,7 @@ def main() -> None:
 
 
 def _train(arguments: Sequence[str]) -> None:
+    arguments = [argument.replace("--simulations", "--episodes") for argument in arguments]  # its former name
     options = parse_options(TrainOptions, COMMAND, arguments, _defaults(arguments))
     config = options.training
     config = dataclasses.replace(config, episode=with_engine(config.episode, options.engine))
@@ -89,13 +89,13 @@ def _train(arguments: Sequence[str]) -> None:
         print(f"{options.resume} is finished: there is nothing to resume")
         return
 
-    say_engine(config.episode, options.engine)
     with Workers(options.workers, options.scheduler) as workers:
         if options.resume is not None:
             run = RunFolder.resumable(options.resume)
         else:
             run = RunFolder.create(options.run_dir or new_run_path(config.task, config.algo, config.seed), config)
-        print(f"training {config.algo} on {config.task}: {config.simulations} simulations into {run.path}", flush=True)
+        say_engine(config.episode, options.engine)
+        print(f"training {config.algo} on {config.task}: {config.episodes} episodes into {run.path}", flush=True)
         learned = _learned(config, run, workers, options.pictures)
     _summarise(config.task, learned, run.path)
 
@@ -139,26 +139,23 @@ def _learned(config: TrainingConfig, run: RunFolder, workers: Workers, picture_i
 
 
 def _defaults(arguments: Sequence[str]) -> TrainOptions:
-    """The defaults, as --config and --from change them."""
-    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
-    parser.add_argument("--config", type=Path)
-    parser.add_argument("--resume", type=Path)
-    parser.add_argument("--from", type=Path, dest="from_run")
-    try:
-        files = parser.parse_known_args(arguments)[0]
-    except argparse.ArgumentError:  # an option without its file, which the real parser reports
-        return TrainOptions()
-    if files.resume is not None:
+    """The defaults, as --config and --from change them, of the kind that task and engine take."""
+    given = given_options(arguments, "config", "resume", "from", "task", "engine", "episode.engine")
+    if "resume" in given:
         from sarah.runs.run_folder import RunFolder
 
-        return TrainOptions(RunFolder.resumable(files.resume).config())
-    training = TrainingConfig() if files.config is None else read_config(TrainingConfig, files.config)
-    if files.from_run is not None:
-        training = dataclasses.replace(training, episode=_stepping_of(files.from_run, training.episode))
-    return TrainOptions(training)
+        return TrainOptions(RunFolder.resumable(Path(given["resume"])).config())
+    training = read_config(TrainingConfig, Path(given["config"])) if "config" in given else TrainingConfig()
+    task = given.get("task", training.task)
+    if task not in TASKS:  # the real parser's options report it
+        return TrainOptions(training)
+    episode = episode_of(task, training.episode, given)
+    if "from" in given and task == BALANCE.name:
+        episode = _on_learned_stepping(Path(given["from"]), episode)
+    return TrainOptions(dataclasses.replace(training, task=task, episode=episode))
 
 
-def _stepping_of(path: Path, episode: EpisodeConfig) -> EpisodeConfig:
+def _on_learned_stepping(path: Path, episode: EpisodeConfig) -> EpisodeConfig:
     """Episode settings with what a First Training learned, and the robot that it learned on."""
     from sarah.runs.run_folder import RunFolder
 
@@ -168,25 +165,25 @@ def _stepping_of(path: Path, episode: EpisodeConfig) -> EpisodeConfig:
         raise ConfigurationError(
             f"{path} learned {learned.task!r}, and --from needs a run that learned {STEPPING.name!r}"
         )
-    stepping = run.parameters()
-    return dataclasses.replace(episode, stepping=stepping, dimensions=learned.episode.dimensions)  # type: ignore[arg-type]
+    return BALANCE.config_of(episode, stepping=run.parameters(), dimensions=learned.episode.dimensions)
 
 
 def _summarise(task: str, learned: Learned, path: Path) -> None:
-    evaluation, without = learned.evaluation, learned.without
+    evaluation, baseline = learned.evaluation, learned.baseline
     named = zip(TASKS[task].parameter_names, learned.parameters, strict=True)
     print("\nlearned     " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
-    print(f"score       {evaluation.score_median:.3f} (median of {evaluation.episodes} unseen seeds; 1 is the ceiling)")
-    print(f"steps       {evaluation.steps_per_second_mean:.2f} per second")
-    print(
-        f"survival    {evaluation.survival_rate:.0%}" + (f", {without.survival_rate:.0%} with V = 0" if without else "")
-    )
-    shares = f"{evaluation.event_driven_shift_mean:.0%} of shifts, {evaluation.event_driven_lift_mean:.0%} of lifts"
-    print(f"by sensors  {shares}; sole clearance {1000 * evaluation.sole_clearance_mean:.0f} mm")
+    score = f"{evaluation.median('score'):.3f}"
+    print(f"score       {score} (median of {evaluation.episodes} unseen seeds; 1 is the ceiling)")
+    print(f"steps       {evaluation.mean('steps_per_second'):.2f} per second")
+    compared = f", {baseline.survival_rate:.0%} with V = 0" if baseline else ""
+    print(f"survival    {evaluation.survival_rate:.0%}{compared}")
+    shifts, lifts = evaluation.mean("shifts_by_sensors"), evaluation.mean("lifts_by_sensors")
+    clearance = 1000 * evaluation.mean("sole_clearance")
+    print(f"by sensors  {shifts:.0%} of shifts, {lifts:.0%} of lifts; sole clearance {clearance:.0f} mm")
     if learned.diverged:
-        print(f"diverged    {learned.diverged} simulations: no number came back")
+        print(f"diverged    {learned.diverged} episodes: no number came back")
     if not evaluation.is_gait:
         print("            not a gait: it steps to a clock, or does not lift its feet")
-    if without is not None and evaluation.chatters(without):
+    if baseline is not None and evaluation.chatters(baseline):
         print("            it chatters: no real robot could do that")
     print(f"run folder  {path}")

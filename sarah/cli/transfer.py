@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.options import parse_options, run_command
-from sarah.episode.tasks import BALANCE
+from sarah.cli.options import parse_options, pushed_by, run_command
+from sarah.episode.tasks import TASKS
 from sarah.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from sarah.reports.transfer import Subject
+    from sarah.reports.transfer import LearnedParameters
     from sarah.runs.run_folder import RunFolder
 
 COMMAND = "sarah-transfer"
@@ -74,10 +74,10 @@ def _transfer(arguments: Sequence[str]) -> None:
     from sarah.runs.run_folder import RunFolder
 
     runs = [RunFolder.open(path) for path in options.runs]
-    subjects = [_subject(run, options.push_newtons) for run in runs]
+    learned = [_learned(run, options.push_newtons) for run in runs]
     seeds = range(options.first_seed, options.first_seed + options.episodes)
     with Workers(options.workers, options.scheduler) as workers:
-        transfers = transfer(subjects, seeds, workers)
+        transfers = transfer(learned, seeds, workers)
     table = as_markdown(transfers)
     print(table)
     out = options.out or runs[0].figures_path
@@ -87,12 +87,11 @@ def _transfer(arguments: Sequence[str]) -> None:
         print(file)
 
 
-def _subject(run: RunFolder, push_newtons: float | None) -> Subject:
-    from sarah.reports.transfer import Subject
+def _learned(run: RunFolder, push_newtons: float | None) -> LearnedParameters:
+    from sarah.reports.transfer import LearnedParameters
 
     training = run.config()
     episode = training.episode
-    if push_newtons is not None and training.task == BALANCE.name:
-        force = (push_newtons, push_newtons)
-        episode = dataclasses.replace(episode, push=dataclasses.replace(episode.push, newtons=force))
-    return Subject(run.path.name, training.task, run.parameters(), episode)
+    if push_newtons is not None and TASKS[training.task].has_push:
+        episode = dataclasses.replace(episode, push=pushed_by(episode, push_newtons))  # type: ignore[call-arg]
+    return LearnedParameters(run.path.name, training.task, run.parameters(), episode)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.options import changed_episodes, episodes_of, parse_options, run_command
-from sarah.episode.tasks import STEPPING, TASKS
+from sarah.episode.tasks import TASKS
 from sarah.errors import ConfigurationError
 
 if TYPE_CHECKING:
@@ -27,9 +27,9 @@ class VideoOptions:
 
     :param subject: folder of a run, or numbers separated by commas: P1 to P5, or V1 to V4, to balance pushes with
     :param out: file to write: MP4, which needs the extra ``video``, or GIF, which is smaller
-    :param episode: of a run: ``learned`` for its learned parameters, ``best``, or the index of a simulation in its
-        episodes.csv; by default what it learned
-    :param seed: of the episode: robot, sensors and push vary with it; by default the simulation's own, or 0
+    :param episode: episode of a run: ``learned`` for its learned parameters, ``best``, or an index in its episodes.csv;
+        by default what it learned
+    :param seed: of the episode: robot, sensors and push vary with it; by default the episode's own, or 0
     :param stepping: P1 to P5 to balance with, separated by commas; by default the run's own, or trained ones
     :param push_newtons: force of the push; by default as in the run, or 0 to 100 N
     :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default the run's own
@@ -99,9 +99,6 @@ def _film(arguments: Sequence[str]) -> None:
 def _spec(options: VideoOptions, subject: str) -> EpisodeSpec:
     """The episode to film."""
     spec = episodes_of(subject, options.episode)[1].spec
-    for name in ("stepping", "push_newtons"):
-        if spec.task == STEPPING.name and getattr(options, name) is not None:
-            raise ConfigurationError(f"--{name.replace('_', '-')} is for V1 to V4")
     config = changed_episodes(
         spec.config, options.stepping, options.push_newtons, options.physics, options.randomisation, options.engine
     )
@@ -110,9 +107,9 @@ def _spec(options: VideoOptions, subject: str) -> EpisodeSpec:
 
 def _caption(spec: EpisodeSpec, result: EpisodeResult) -> str:
     """What is filmed, in one line."""
-    from sarah.episode.ending import ENDINGS
+    from sarah.episode.ending import TERMINATIONS
 
     names = TASKS[spec.task].parameter_names
     learned = ", ".join(f"{name} {value:.2f}" for name, value in zip(names, spec.parameters, strict=True))
-    ending = ENDINGS[result.termination]
+    ending = TERMINATIONS[result.termination]
     return f"{spec.task}: {learned}   ·   seed {spec.seed}   ·   score {result.score:.2f}, {ending}"

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.options import episodes_of, parse_options, run_command, say_engine, with_engine
-from sarah.episode.spec import TRAINED_STEPPING
+from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from sarah.runs.run_episodes import Choice
+    from sarah.runs.run_episodes import RunEpisode
 
 COMMAND = "sarah-view"
 DEFAULT_PORT = 8080
@@ -31,9 +31,9 @@ class ViewOptions:
 
     :param subject: folder of a training, which need not be finished, or numbers separated by commas: P1 to P5, or V1 to
         V4, to balance pushes with; by default what NAF learned once
-    :param episode: of a run: ``learned`` for its learned parameters, ``best``, or the index of a simulation in its
-        episodes.csv; by default what it learned
-    :param seed: of the episode: robot, sensors and push vary with it; by default the simulation's own, or 0
+    :param episode: episode of a run: ``learned`` for its learned parameters, ``best``, or an index in its episodes.csv;
+        by default what it learned
+    :param seed: of the episode: robot, sensors and push vary with it; by default the episode's own, or 0
     :param engine: of the physics, ``pybullet`` or ``mujoco``; by default the run's own
     :param export: write the episode into this one HTML file, which needs no server, and show no page
     :param host: address to serve the page at. Whoever reaches another one than 127.0.0.1 can use the page, as there is
@@ -72,7 +72,6 @@ def _view(arguments: Sequence[str]) -> None:
     from sarah.simulation.engines import check_engine
 
     check_engine(chosen.spec.config.engine)
-    say_engine(chosen.spec.config, options.engine)
     if options.seed is not None:
         spec = dataclasses.replace(chosen.spec, seed=options.seed)
         chosen = dataclasses.replace(chosen, label=f"{chosen.label}, with seed {spec.seed}", spec=spec, score=None)
@@ -83,14 +82,14 @@ def _view(arguments: Sequence[str]) -> None:
         _serve(options, choices, chosen)
 
 
-def _in_engine(choice: Choice, engine: str) -> Choice:
+def _in_engine(choice: RunEpisode, engine: str) -> RunEpisode:
     """The same episode in a physics engine; another one's score is not the run's."""
     config = with_engine(choice.spec.config, engine)
     spec = dataclasses.replace(choice.spec, config=config)
     return dataclasses.replace(choice, spec=spec, score=choice.score if spec == choice.spec else None)
 
 
-def _export(path: Path, chosen: Choice) -> None:
+def _export(path: Path, chosen: RunEpisode) -> None:
     from tqdm import tqdm
 
     from sarah.viewer.recording import record
@@ -105,12 +104,13 @@ def _export(path: Path, chosen: Choice) -> None:
     print(path)
 
 
-def _serve(options: ViewOptions, choices: list[Choice], chosen: Choice) -> None:
+def _serve(options: ViewOptions, choices: list[RunEpisode], chosen: RunEpisode) -> None:
     from sarah.viewer.page import Page
     from sarah.viewer.server import serving
 
     with serving(options.host, options.port) as server:
         page = Page(server, choices, chosen)
+        say_engine(chosen.spec.config, options.engine)
         if not _is_local(options.host):
             print(f"warning: whoever reaches {options.host} can use this page, as there is no password")
         print(f"SARAH is at http://{options.host}:{server.get_port()} (Ctrl-C ends)", flush=True)

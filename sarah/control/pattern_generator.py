@@ -4,16 +4,16 @@ A reconstruction of the paper's Figure 3, which is not public. The robot rocks f
 y axis, and the sensors, not a clock, decide when each phase of a step ends::
 
     STAND   for the first second                                                             -> SHIFT
-    SHIFT   the swing leg pushes the robot over the support leg                              -> LIFT
-            until tilt > P2, rate > 0.2 P3 and the support foot is loaded, or 0.5 (1 + P5) s
+    SHIFT   the swing leg pushes the robot over the stance leg                              -> LIFT
+            until tilt > P2, rate > 0.2 P3 and the stance foot is loaded, or 0.5 (1 + P5) s
     LIFT    the swing leg retracts                                                           -> LAND
             until rate < -P1 (the robot rocks back), or 0.5 (1 + P4) s
     LAND    both legs straight                                                               -> SHIFT, legs swapped
             until the swing foot is loaded, or 0.5 (1 + P5) s
 
 Tilt is the low-passed lateral acceleration and rate the low-passed angular rate about y, both positive towards the
-support leg; the hip law's abduction, which the torso does not feel, is added to both. The time-outs are slow on
-purpose: with faster ones a learner uses them as an open-loop clock and ignores the sensors (benchmarks/clock.py
+stance leg; the hip law's abduction, which the torso does not feel, is added to both. The time-outs are slow on
+purpose: with faster ones a learner uses them as an open-loop clock and ignores the sensors (``make results NAME=clock``
 compares 0.3 s and 0.5 s). Plain floats only: it runs once per control tick, and on a robot.
 """
 
@@ -22,35 +22,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from sarah.control.hip_law import LARGEST_ACCELERATION, HipLaw
-from sarah.robot.filters import LowPass, ramped
+from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
+from sarah.control.hip_law import HipLaw
+from sarah.robot.filters import LowPass, clipped, ramped
 from sarah.robot.reading import SensorReading, Side
 
-PAPER_PARAMETERS = (0.4, 1.3, 0.1, 1.0, 1.0)
-"""Where the paper's P1-P3 settled; its P4 and P5 did not matter and are set to 1 here."""
-
 STAND_SECONDS = 1.0
-"""How long the robot stands before it begins to step, in s; the paper's."""
-MINIMUM_PHASE_SECONDS = 0.04
-TIME_OUT_SECONDS = 0.5
-RATE_SCALE = 0.2
-"""Of P3 in the condition that ends SHIFT."""
-PUSH_LENGTH = 0.008
-"""How far the swing leg extends in SHIFT, in m."""
-LIFT_LENGTH = 0.030
-"""How far the swing leg retracts in LIFT, in m."""
-LEG_SPEED = 1.0
-"""Of the ramp that leg length targets follow, in m/s."""
-TILT_TIME_CONSTANT = 0.10
-RATE_TIME_CONSTANT = 0.01
-ABDUCTION_TILT = 150.0
-"""How much tilt a radian of the hip law's abduction, without its constant, counts for, in m/s^2."""
-ABDUCTION_RATE_SHARE = 0.2
-"""How much of the abduction's own rate counts as rate. Both are measured: benchmarks/stepping_and_hips.py."""
+"""Duration of standing before it begins to step, in s; the paper's."""
 
 
 class Phase(Enum):
-    """Of the state machine."""
+    """Phase of the state machine."""
 
     STAND = "stand"
     SHIFT = "shift"
@@ -63,8 +45,8 @@ class SteppingParameters:
     """The five parameters of the first training, each within 0 and 2.
 
     :param P1: rate of rocking back at which the swing foot is put down, in rad/s
-    :param P2: tilt (lateral acceleration) over the support leg at which the swing foot may leave, in m/s^2
-    :param P3: five times the rate towards the support leg at which it may leave, in rad/s
+    :param P2: tilt (lateral acceleration) over the stance leg at which the swing foot may leave, in m/s^2
+    :param P3: five times the rate towards the stance leg at which it may leave, in rad/s
     :param P4: stretches the time-out of LIFT
     :param P5: stretches the time-outs of SHIFT and LAND
     """
@@ -97,9 +79,10 @@ class PatternGenerator:
     :param pad_threshold: load above which a foot counts as carrying, in N
     :param dt: control period in s
     :param hips: the hip law; without one the hips are locked, as in the first training
+    :param constants: time-outs, lengths, speeds and time constants
     """
 
-    support: Side
+    stance: Side
     """The leg that carries the robot."""
     swing: Side
     """The other one."""
@@ -110,17 +93,19 @@ class PatternGenerator:
         pad_threshold: float = 30.0,
         dt: float = 0.01,
         hips: HipLaw | None = None,
+        constants: ControllerConstants = STANDARD_CONSTANTS,
     ) -> None:
         self.parameters = parameters
+        self.constants = constants
         self.hips = hips
         self.phase = Phase.STAND
-        self.support, self.swing = Side.RIGHT, Side.LEFT
+        self.stance, self.swing = Side.RIGHT, Side.LEFT
         self._pad_threshold = pad_threshold
         self._dt = dt
         self._ticks_in_phase = 0
         self._swing_foot_was_off = False
-        self._stable_x = LowPass(TILT_TIME_CONSTANT, dt)
-        self._rate_y = LowPass(RATE_TIME_CONSTANT, dt)
+        self._stable_x = LowPass(constants.tilt_time_constant, dt)
+        self._rate_y = LowPass(constants.rate_time_constant, dt)
         self._lengths = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
         self._loads = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
 
@@ -131,24 +116,24 @@ class PatternGenerator:
 
     @property
     def tilt(self) -> float:
-        """Lateral acceleration towards the support leg, in m/s^2: leaning over it is positive.
+        """Lateral acceleration towards the stance leg, in m/s^2: leaning over it is positive.
 
         Abduction keeps the torso upright while the legs lean, and counts as tilt too.
         """
         sway = 0.0 if self.hips is None else self.hips.sway
-        return self.support.value * (ABDUCTION_TILT * sway - self._stable_x.value)
+        return self.stance.value * (self.constants.abduction_tilt * sway - self._stable_x.value)
 
     @property
     def rate(self) -> float:
-        """Angular rate about y towards the support leg, in rad/s; the abduction's has a share in it."""
+        """Angular rate about y towards the stance leg, in rad/s; the abduction's has a share in it."""
         abduction_rate = 0.0 if self.hips is None else self.hips.abduction_rate
-        return self.support.value * (self._rate_y.value + ABDUCTION_RATE_SHARE * abduction_rate)
+        return self.stance.value * (self._rate_y.value + self.constants.abduction_rate_share * abduction_rate)
 
     def sense(self, reading: SensorReading) -> None:
         """Filter one reading without acting on it, as while standing. One that is not finite is passed over."""
         if not reading.is_finite:
             return
-        self._stable_x(max(-LARGEST_ACCELERATION, min(LARGEST_ACCELERATION, reading.acceleration[0])))
+        self._stable_x(clipped(reading.acceleration[0], self.constants.largest_acceleration))
         self._rate_y(reading.angular_rate[1])
         left_fore, left_hind, right_fore, right_hind = reading.pressures
         self._loads[Side.LEFT] = left_fore + left_hind
@@ -187,7 +172,7 @@ class PatternGenerator:
         elapsed = self._ticks_in_phase * self._dt
         if self.phase is Phase.STAND:
             return PhaseChange(Phase.STAND, by_sensors=False)
-        if elapsed < MINIMUM_PHASE_SECONDS - self._dt / 2:
+        if elapsed < self.constants.minimum_phase_seconds - self._dt / 2:
             return None
         by_sensors = self._condition_holds()
         if not by_sensors and elapsed < self.time_out(self.phase) - self._dt / 2:
@@ -199,8 +184,8 @@ class PatternGenerator:
         """Whether the sensors end the present phase."""
         parameters = self.parameters
         if self.phase is Phase.SHIFT:
-            is_over_support = self.tilt > parameters.P2 and self.rate > RATE_SCALE * parameters.P3
-            return is_over_support and self._is_loaded(self.support)
+            is_over_stance = self.tilt > parameters.P2 and self.rate > self.constants.rate_scale * parameters.P3
+            return is_over_stance and self._is_loaded(self.stance)
         if self.phase is Phase.LIFT:
             return self.rate < -parameters.P1
         return self._is_loaded(self.swing)
@@ -211,11 +196,11 @@ class PatternGenerator:
         :param phase: SHIFT, LIFT or LAND
         """
         stretch = self.parameters.P4 if phase is Phase.LIFT else self.parameters.P5
-        return TIME_OUT_SECONDS * (1.0 + stretch)
+        return self.constants.time_out_seconds * (1.0 + stretch)
 
     def _enter_next_phase(self) -> None:
         if self.phase is Phase.LAND:
-            self.support, self.swing = self.swing, self.support
+            self.stance, self.swing = self.swing, self.stance
         self.phase = {Phase.SHIFT: Phase.LIFT, Phase.LIFT: Phase.LAND}.get(self.phase, Phase.SHIFT)
         self._ticks_in_phase = 0
         if self.phase is Phase.SHIFT:
@@ -226,8 +211,13 @@ class PatternGenerator:
 
     def _ramp_legs(self) -> None:
         """Move both leg targets towards where the phase wants them; positive lengths retract."""
-        swing_length = -PUSH_LENGTH if self.phase is Phase.SHIFT else LIFT_LENGTH if self.phase is Phase.LIFT else 0.0
-        largest = LEG_SPEED * self._dt
-        lengths, swing, support = self._lengths, self.swing, self.support
+        constants = self.constants
+        swing_length = 0.0
+        if self.phase is Phase.SHIFT:
+            swing_length = -constants.shift_extension
+        elif self.phase is Phase.LIFT:
+            swing_length = constants.lift_retraction
+        largest = constants.leg_speed * self._dt
+        lengths, swing, stance = self._lengths, self.swing, self.stance
         lengths[swing] = ramped(lengths[swing], swing_length, largest)
-        lengths[support] = ramped(lengths[support], 0.0, largest)
+        lengths[stance] = ramped(lengths[stance], 0.0, largest)

@@ -2,8 +2,8 @@
 
 Stepping many environments side by side waits for the slowest of each round, and episodes last from 2 to 30 s. Here a
 fixed number of episodes is in flight instead: a step hands one more in, and waits only for the oldest. What it returns
-is therefore the outcome of an action some steps before, and :class:`LateReplayBuffer` and :class:`LateRankReplayBuffer`
-store it with that action. The order of the outcomes, and so the training, does not depend on who simulates them.
+is therefore the outcome of an action some steps before, and the buffers of :mod:`sarah.training.replay` store it with
+that action. The order of the outcomes, and so the training, does not depend on who simulates them.
 """
 
 from __future__ import annotations
@@ -19,9 +19,10 @@ from stable_baselines3.common.vec_env import VecEnv
 from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices
 
 from sarah.envs.sarah_env import SarahEnv, draw_seed, observation_from, parameters_from
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import TASKS
-from sarah.episode.workers import Executor, Job, run, stand
+from sarah.episode.workers import Executor, Job, begin_episode, finish_episode
 from sarah.robot.reading import SensorReading
 
 
@@ -37,8 +38,8 @@ class EpisodeVecEnv(VecEnv):
     """Episodes of one :class:`~sarah.envs.sarah_env.SarahEnv`, several of them in flight.
 
     Step k hands in the episode of its action and returns the outcome of step ``k - slots + 1``: its return is the
-    reward, and ``info["transition"]`` holds its observation, action and last observation. The first ``slots - 1``
-    steps have no outcome, and an empty ``info``. The last ``slots - 1`` steps hand nothing in.
+    reward, and ``info`` holds its ``spec``, ``result`` and ``transition`` (observation, action, last observation). The
+    first ``slots - 1`` steps have no outcome, and an empty ``info``. The last ``slots - 1`` steps hand nothing in.
 
     :param task: ``"stepping"`` or ``"balance"``
     :param config: settings of the episodes
@@ -56,7 +57,7 @@ class EpisodeVecEnv(VecEnv):
         self._slots = slots
         self._workers = workers
         self._running: deque[_Running] = deque()
-        self._standing: deque[tuple[EpisodeSpec, Callable[[], SensorReading]]] = deque()
+        self._waiting: deque[tuple[EpisodeSpec, Callable[[], SensorReading]]] = deque()
 
     def reset(self) -> np.ndarray:
         """Begin anew, with the episodes that follow from the seed of :meth:`seed`.
@@ -67,11 +68,11 @@ class EpisodeVecEnv(VecEnv):
             self._env.np_random = np.random.default_rng(self._seeds[0])
         self._reset_seeds()
         self._running.clear()
-        self._standing.clear()
+        self._waiting.clear()
         self._steps = self._begun = 0
         for _ in range(min(self._slots, self._episodes)):
             spec = self._next_spec()
-            self._standing.append((spec, self._workers.submit(stand, spec).result))
+            self._waiting.append((spec, self._workers.submit(begin_episode, spec).result))
         self._observe()
         return self._observation[None]
 
@@ -83,11 +84,11 @@ class EpisodeVecEnv(VecEnv):
         self._steps += 1
         if self._steps > self._episodes:
             return
-        spec, _ = self._standing.popleft()
+        spec, _ = self._waiting.popleft()
         spec = replace(spec, parameters=parameters_from(actions[0], TASKS[self._task]))
         # Whoever runs it then lets the episode stand that the agent acts on when this one's outcome is there.
         following = self._next_spec() if self._begun < self._episodes else None
-        job = self._workers.submit(run, spec, following)
+        job = self._workers.submit(finish_episode, spec, following)
         self._running.append(_Running(spec, following, self._observation, actions[0].copy(), job))
 
     def step_wait(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
@@ -101,22 +102,22 @@ class EpisodeVecEnv(VecEnv):
     def _next_spec(self) -> EpisodeSpec:
         """Of the next episode, which stands before its parameters are known: until then any do."""
         self._begun += 1
-        anything = (0.0,) * len(TASKS[self._task].parameter_names)
+        anything = TASKS[self._task].baseline
         return EpisodeSpec(anything, draw_seed(self._env.np_random), self._task, self._config)
 
     def _observe(self) -> None:
         """See how the next episode stands; after the last one the observation stays."""
-        if self._standing:
-            _, reading = self._standing[0]
+        if self._waiting:
+            _, reading = self._waiting[0]
             self._observation = observation_from(reading())
 
     def _oldest_outcome(self) -> tuple[float, dict[str, Any]]:
         spec, following, observation, action, job = self._running.popleft()
         result, reading, following_reading = job.result()
         if following is not None:
-            self._standing.append((following, lambda: following_reading))
+            self._waiting.append((following, lambda: following_reading))
         transition = (observation, action, observation_from(reading))
-        info = {"seed": spec.seed, "parameters": spec.parameters, "transition": transition, **result.fields()}
+        info = {"spec": spec, "result": result, "transition": transition}
         return result.episode_return, info
 
     def close(self) -> None:

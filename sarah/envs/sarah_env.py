@@ -8,9 +8,10 @@ import gymnasium
 import numpy as np
 
 from sarah.episode.episode import Episode
-from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeConfig
-from sarah.episode.tasks import TASKS, Task
-from sarah.errors import ConfigurationError, SimulationError, unknown_name
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import FIRST_TRAINING_SEED
+from sarah.episode.tasks import Task, task_named
+from sarah.errors import ConfigurationError, SimulationError
 from sarah.robot.reading import SensorReading
 from sarah.simulation.simulator import GRAVITY
 
@@ -28,11 +29,11 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
     ``reset`` lets the robot stand for one second, ``step`` runs the pattern generator to the episode's end and
     always terminates. The observation is the 16 sensor signals after standing, each divided by its
     ``OBSERVATION_SCALES`` and clipped; the action is P1 to P5, or V1 to V4, with the box of the parameters scaled to
-    [-1, 1]; the reward is the episode's return. ``info`` holds the episode's seed, and after the step every field of
-    :class:`~sarah.episode.result.EpisodeResult` and the parameters.
+    [-1, 1]; the reward is the episode's return. ``info`` holds the episode's ``seed``, and after the step the
+    ``parameters`` and the ``result``, an :class:`~sarah.episode.result.EpisodeResult`.
 
     :param task: ``"stepping"``: choose P1 to P5; ``"balance"``: choose V1 to V4 and be pushed
-    :param config: settings of the episodes; the defaults if ``None``
+    :param config: settings of the episodes; the task's own if ``None``
     :param render_mode: ``"rgb_array"``, or ``None``
     """
 
@@ -41,12 +42,10 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
     def __init__(
         self, task: str = "stepping", config: EpisodeConfig | None = None, render_mode: str | None = None
     ) -> None:
-        if task not in TASKS:
-            raise ConfigurationError(unknown_name("task", task, TASKS))
-        self.task = TASKS[task]
+        self.task = task_named(task)
         self.observation_space = gymnasium.spaces.Box(-OBSERVATION_BOUND, OBSERVATION_BOUND, (16,), np.float32)
-        self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(self.task.parameter_names),), np.float32)
-        self.config = config or EpisodeConfig()
+        self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(self.task.parameters),), np.float32)
+        self.config = self.task.episode if config is None else self.task.checked_config(config)
         self.render_mode = render_mode
         self._episode: Episode | None = None
         self._renderer: Renderer | None = None
@@ -77,7 +76,7 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
             raise ConfigurationError("the episode is over: call reset before step")
         parameters = parameters_from(action, self.task)
         result = self._episode.run(parameters)
-        info = {"seed": self._seed, "parameters": parameters, **result.fields()}
+        info = {"seed": self._seed, "parameters": parameters, "result": result}
         return observation_from(self._episode.last_reading), result.episode_return, True, False, info
 
     def render(self) -> np.ndarray | None:
@@ -135,7 +134,8 @@ def parameters_from(action: np.ndarray, task: Task) -> tuple[float, ...]:
     :raises ConfigurationError: if the action is not finite or out of its box
     """
     values = np.asarray(action, dtype=float)
-    count = len(task.parameter_names)
+    count = len(task.parameters)
     if values.shape != (count,) or not (np.abs(values) <= 1.0).all():
         raise ConfigurationError(f"an action must be {count} numbers within -1 and 1, not {action!r}")
-    return tuple(float(task.low + task.width * (value + 1.0) / 2.0) for value in values)
+    boxes = zip(task.parameters, values, strict=True)
+    return tuple(float(parameter.low + parameter.width * (value + 1.0) / 2.0) for parameter, value in boxes)

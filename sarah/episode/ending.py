@@ -4,22 +4,49 @@ from __future__ import annotations
 
 import math
 
+from sarah.robot.reading import Vector
+from sarah.simulation.simulator import TorsoState
+
 BOX_HALF_WIDTH = 0.25
 """Displacement of the torso along any axis at which an episode ends, in m; the paper's second criterion."""
 OSCILLATION_SECONDS = 5.0
 """Simulated time by which the robot must oscillate, in s; the paper's third criterion."""
 OSCILLATION_STEPS = 2
-"""Steps that count as an oscillation: one with each leg."""
+"""Number of steps that is an oscillation: one with each leg."""
 LEAST_UPRIGHT = math.cos(math.radians(45.0))
 """Cosine of the torso's tilt beyond which the robot has fallen."""
-TERMINATIONS = ("time_limit", "left_box", "no_oscillation", "fell", "diverged")
-"""How an episode can end: the paper's three criteria, a tilt beyond 45 degrees, and a state or signal that is no
-number or beyond all bounds."""
-ENDINGS = {
+TERMINATIONS = {
     "time_limit": "ran to the end",
     "left_box": "left its place",
     "no_oscillation": "did not step",
     "fell": "fell",
     "diverged": "diverged",
 }
-"""What pages and lists say of each of :data:`TERMINATIONS`."""
+"""How an episode can end, and what pages say of it: the paper's three criteria, a tilt beyond 45 degrees, and a state
+or signal that is no number or beyond all bounds."""
+
+
+def termination(
+    torso: TorsoState, start: Vector, steps: int, time: float, time_limit: float, control_dt: float
+) -> str | None:
+    """Say whether an episode ends, and how.
+
+    :param torso: the torso's state
+    :param start: position of the torso's centre when the episode began, in m
+    :param steps: number of completed steps
+    :param time: simulated time, in s
+    :param time_limit: time limit of the episode, in s
+    :param control_dt: duration of a control tick, in s; half of it is granted to rounding
+    :return: one of :data:`TERMINATIONS`; nothing if the episode goes on
+    """
+    if not torso.is_finite:
+        return "diverged"
+    (x, y, z), (start_x, start_y, start_z) = torso.position, start
+    if max(abs(x - start_x), abs(y - start_y), abs(z - start_z)) > BOX_HALF_WIDTH:
+        return "left_box"
+    if torso.upright < LEAST_UPRIGHT:
+        return "fell"
+    half_tick = control_dt / 2
+    if steps < OSCILLATION_STEPS and time > OSCILLATION_SECONDS - half_tick:
+        return "no_oscillation"
+    return "time_limit" if time > time_limit - half_tick else None

@@ -1,19 +1,19 @@
-"""One simulation: an episode's specification in, its result out, the same bytes every time."""
+"""One episode, tick by tick: a specification in, its result out, the same bytes every time."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from sarah.control.hip_law import BalanceParameters, HipLaw
-from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, Phase, SteppingParameters
-from sarah.episode.ending import BOX_HALF_WIDTH, LEAST_UPRIGHT, OSCILLATION_SECONDS, OSCILLATION_STEPS
+from sarah.control.hip_law import HipLaw
+from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, Phase
+from sarah.episode.ending import termination
 from sarah.episode.gait import GaitRecord
 from sarah.episode.motion import MotionRecord
-from sarah.episode.push import DrawnPush, draw_push
 from sarah.episode.result import EpisodeResult
 from sarah.episode.reward import highest_return, reward_rate
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
-from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import STEPPING, TASKS, Task
 from sarah.episode.trace import Trace
 from sarah.robot.description import ANKLE_JOINTS, describe_robot
 from sarah.robot.reading import SensorReading, Vector
@@ -29,16 +29,17 @@ class Episode:
     Whoever wants to look at the robot in between calls :meth:`start` and then :meth:`tick` until :attr:`termination`
     says how the episode ended.
 
-    :param config: what all episodes of an experiment share
-    :param seed: of this episode
-    :param task: ``STEPPING``, or ``BALANCE``, in which the robot is pushed
+    :param config: settings that all episodes of an experiment share; the task's
+    :param seed: seed of this episode
+    :param task: what is learned in it
     :param record_trace: whether to keep a trace of every control tick
-    :param build: makes the simulator from robot, physics and conditions; by default the configuration's engine
+    :param build: function that makes the simulator from robot, physics and conditions; by default the configuration's
+        engine
     """
 
     generator: PatternGenerator
-    """Of the joint targets, from :meth:`start` on."""
-    standing: list[SensorReading]
+    """Source of the joint targets, from :meth:`start` on."""
+    standing_readings: list[SensorReading]
     """What was sensed during the first second."""
 
     def __init__(
@@ -51,7 +52,7 @@ class Episode:
     ) -> None:
         self.config = config
         self.task = task
-        self.push: DrawnPush | None = draw_push(config.push, seed) if task == BALANCE else None
+        self.push = task.draw_push(task.checked_config(config), seed)
         self.termination: str | None = None
         self.robot = describe_robot(config.dimensions)
         conditions = draw_conditions(config.randomisation, seed)
@@ -68,7 +69,7 @@ class Episode:
             conditions.sensor_seed,
             self._dt,
         )
-        self.standing = []
+        self.standing_readings = []
         self._first = self._last = self.simulation.torso_state()
         self._gait = GaitRecord(config.physics.control_rate)
         self._motion = MotionRecord(config.physics.control_rate)
@@ -83,14 +84,14 @@ class Episode:
         :return: the last reading of that second: the observation that the agent acts on
         """
         for _ in range(round(STAND_SECONDS / self._dt)):
-            self.standing.append(self._sense())
+            self.standing_readings.append(self._sense())
             self.simulation.advance()
         return self.last_reading
 
     def run(self, parameters: tuple[float, ...]) -> EpisodeResult:
         """Let the pattern generator run until the episode ends.
 
-        :param parameters: of the task
+        :param parameters: values of the task's parameters
         :return: the result
         """
         self.start(parameters)
@@ -101,17 +102,13 @@ class Episode:
     def start(self, parameters: tuple[float, ...]) -> None:
         """Make the pattern generator, which knows what was sensed while standing.
 
-        :param parameters: of the task: P1 to P5, or V1 to V4
+        :param parameters: values of the task's parameters
         """
-        learned = self.task.checked(parameters)
-        stepping, balance = (self.config.stepping, learned) if self.task == BALANCE else (learned, None)
-        self.generator = PatternGenerator(
-            SteppingParameters(*stepping),
-            self._pad_threshold,
-            self._dt,
-            HipLaw(BalanceParameters(*balance), self._dt) if balance else None,
-        )
-        for reading in self.standing:
+        constants = self.config.controller
+        stepping, balance = self.task.controller_parameters(self.task.checked(parameters), self.config)
+        hips = None if balance is None else HipLaw(balance, self._dt, constants)
+        self.generator = PatternGenerator(stepping, self._pad_threshold, self._dt, hips, constants)
+        for reading in self.standing_readings:
             self.generator.sense(reading)
 
     def tick(self) -> None:
@@ -122,7 +119,7 @@ class Episode:
             return
         self._motion.tick(self._truth.acceleration, *simulation.actuator_motion())
         if generator.phase in (Phase.LIFT, Phase.LAND):
-            gait.swing(simulation.sole_height(generator.swing.name.lower()))
+            gait.swing(simulation.sole_height(generator.swing))
         change = generator.tick(reading)
         if change is not None:
             gait.phase_change(self._ticks, change)
@@ -143,17 +140,11 @@ class Episode:
             score=self._return / self._highest_return,
             episode_return=self._return,
             steps_per_second=self._gait.steps / elapsed if elapsed else 0.0,
-            steps=self._gait.steps,
             duration=round(STAND_SECONDS + elapsed, 9),
             termination=self.termination or "",
             final_position=self._displacement(self._last),
-            sole_clearance=self._gait.sole_clearance,
-            event_driven_shift=self._gait.event_driven(Phase.SHIFT),
-            event_driven_lift=self._gait.event_driven(Phase.LIFT),
-            vibration=self._motion.vibration,
-            actuator_power=self._motion.actuator_power,
-            peak_hip_rate=self._motion.peak_hip_rate,
-            peak_leg_speed=self._motion.peak_leg_speed,
+            **self._gait.metrics(),
+            **self._motion.metrics(),
             trace=None if self._trace is None else Trace.of(self._trace),
         )
 
@@ -181,7 +172,9 @@ class Episode:
         """Add this tick's reward, and see whether the episode ends."""
         elapsed = self._ticks * self._dt
         torso = self.simulation.torso_state()
-        self.termination = self._termination(torso, self._gait.steps, STAND_SECONDS + elapsed)
+        self.termination = termination(
+            torso, self._first.position, self._gait.steps, STAND_SECONDS + elapsed, self.config.time_limit, self._dt
+        )
         if self.termination == "diverged":  # the result keeps to the last finite state
             return
         self._last = torso
@@ -192,19 +185,6 @@ class Episode:
         """Torso position as equation 2 wants it: x and y from the start, z over the floor."""
         x, y, z = torso.position
         return (x - self._first.position[0], y - self._first.position[1], z)
-
-    def _termination(self, torso: TorsoState, steps: int, time: float) -> str | None:
-        if not torso.is_finite:
-            return "diverged"
-        (x, y, z), (start_x, start_y, start_z) = torso.position, self._first.position
-        if max(abs(x - start_x), abs(y - start_y), abs(z - start_z)) > BOX_HALF_WIDTH:
-            return "left_box"
-        if torso.upright < LEAST_UPRIGHT:
-            return "fell"
-        half_tick = self._dt / 2
-        if steps < OSCILLATION_STEPS and time > OSCILLATION_SECONDS - half_tick:
-            return "no_oscillation"
-        return "time_limit" if time > self.config.time_limit - half_tick else None
 
     def _record(self, reading: SensorReading, push: Vector) -> None:
         assert self._trace is not None
@@ -221,7 +201,7 @@ class Episode:
                 "acceleration": reading.acceleration,
                 "angular_rate": reading.angular_rate,
                 "phase": generator.phase.value,
-                "support": generator.support.value,
+                "stance": generator.stance.value,
                 "stable_x": generator.stable_x,
                 "tilt": generator.tilt,
                 "rate": generator.rate,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from statistics import median
+from typing import Any
 
 from sarah.control.pattern_generator import Phase, PhaseChange
 
@@ -63,7 +64,7 @@ class GaitRecord:
             self._recent.popleft()
         return len(self._recent) * self._control_rate / max(self._shortest_window, min(self._window, ticks))
 
-    def event_driven(self, phase: Phase) -> float:
+    def by_sensors(self, phase: Phase) -> float:
         """Share of a phase's ends that its sensor condition made, and not its time-out; 0 if it never ended.
 
         :param phase: SHIFT, LIFT or LAND
@@ -74,3 +75,12 @@ class GaitRecord:
     def sole_clearance(self) -> float:
         """Median over the steps of the largest height of the swing foot's lowest sole contact, in m."""
         return median(self._clearances) if self._clearances else 0.0
+
+    def metrics(self) -> dict[str, Any]:
+        """The metrics of :class:`~sarah.episode.result.EpisodeResult` that follow from the gait."""
+        return {
+            "steps": self.steps,
+            "shifts_by_sensors": self.by_sensors(Phase.SHIFT),
+            "lifts_by_sensors": self.by_sensors(Phase.LIFT),
+            "sole_clearance": self.sole_clearance,
+        }

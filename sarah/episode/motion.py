@@ -7,6 +7,7 @@ actuator follows. The torso's acceleration above 20 Hz does.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -68,6 +69,15 @@ class MotionRecord:
     def vibration(self) -> float:
         """Mean square of the torso's acceleration above 20 Hz, all axes together, in m^2/s^4; 0 at first."""
         return power_above(np.array(self._accelerations), self._control_rate, CHATTER_HZ)
+
+    def metrics(self) -> dict[str, Any]:
+        """The metrics of :class:`~sarah.episode.result.EpisodeResult` that follow from motion."""
+        return {
+            "vibration": self.vibration,
+            "actuator_power": self.actuator_power,
+            "peak_hip_rate": self.peak_hip_rate,
+            "peak_leg_speed": self.peak_leg_speed,
+        }
 
 
 def power_above(signals: np.ndarray, rate: int, hertz: float) -> float:

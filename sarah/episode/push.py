@@ -7,11 +7,10 @@ import random
 from dataclasses import dataclass
 
 from sarah.control.pattern_generator import STAND_SECONDS
+from sarah.episode.settings import LONGEST_EPISODE
 from sarah.errors import check_fields
 from sarah.robot.reading import Vector
 
-LONGEST_EPISODE = 3600.0
-"""Longest time limit of an episode, in s."""
 PLAUSIBLE = {
     "newtons": (0.0, 10_000.0, "N"),
     "degrees": (0.0, 720.0, "degrees"),
@@ -27,7 +26,7 @@ class Push:
 
     It acts on the torso's centre, horizontally and with constant force.
 
-    :param newtons: uniform range of the force; the paper's is up to 100 N
+    :param newtons: uniform range of the force, in N; the paper's is up to 100 N
     :param degrees: uniform range of the direction: 0 pushes to the robot's right, 90 forward
     :param at_seconds: uniform range of when it begins; the paper's is after the first second
     :param duration: in s

@@ -29,7 +29,7 @@ class Trace:
     :param acceleration: specific force as sensed, in the torso's frame, in m/s^2; shape (ticks, 3)
     :param angular_rate: as sensed, in the torso's frame, in rad/s; shape (ticks, 3)
     :param phase: of the pattern generator: ``"shift"``, ``"lift"`` or ``"land"``
-    :param support: the support leg: +1 right, -1 left
+    :param stance: the stance leg: +1 right, -1 left
     :param stable_x: low-passed lateral acceleration, in m/s^2
     :param tilt: what P2 is compared with (:attr:`~sarah.control.pattern_generator.PatternGenerator.tilt`), in m/s^2
     :param rate: what P1 and P3 are compared with (:attr:`~sarah.control.pattern_generator.PatternGenerator.rate`),
@@ -49,7 +49,7 @@ class Trace:
     acceleration: np.ndarray
     angular_rate: np.ndarray
     phase: np.ndarray
-    support: np.ndarray
+    stance: np.ndarray
     stable_x: np.ndarray
     tilt: np.ndarray
     rate: np.ndarray

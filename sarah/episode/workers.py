@@ -29,7 +29,7 @@ from sarah.versions import SIMULATING, versions
 if TYPE_CHECKING:
     from distributed import Client, LocalCluster
 
-KEPT_STANDING = 8
+MOST_WAITING = 8
 """Episodes that a process keeps standing, waiting for their parameters. Each takes some 15 MB, and one whose parameters
 went to another process waits in vain; whoever does not stand here stands anew, for a thirtieth of an episode."""
 SCHEDULER_SECONDS = 10
@@ -37,7 +37,7 @@ SCHEDULER_SECONDS = 10
 SAFE_PATH = "PYTHONSAFEPATH"
 """Keeps Python from putting the working folder on its search path, from Python 3.11 on."""
 NICENESS = 5
-"""By which worker processes of this machine go behind the one that learns."""
+"""Niceness of local workers, so that the learner gets the processor first."""
 UNWATCHED = {
     "distributed.worker.profile.enabled": False,
     "distributed.admin.tick.interval": "1s",
@@ -50,7 +50,7 @@ MOST_WORKERS = 1000
 ATTEMPTS = 20
 """How often an episode is handed in: a scheduler gives it up after the deaths of a few workers."""
 
-_standing: OrderedDict[tuple[Any, ...], Episode] = OrderedDict()
+_waiting: OrderedDict[tuple[Any, ...], Episode] = OrderedDict()
 
 
 class Outcome(NamedTuple):
@@ -73,37 +73,37 @@ class Job(Protocol):
         """What came of it; waits for it."""
 
 
-def stand(spec: EpisodeSpec) -> SensorReading:
+def begin_episode(spec: EpisodeSpec) -> SensorReading:
     """Let an episode stand for its first second, and keep it until its parameters are known.
 
     :param spec: of the episode; its parameters do not matter
     :return: the sensors' last reading, which the agent acts on
     """
-    episode = _stood(spec)
-    before = _standing.pop(_key(spec), None)
+    episode = _standing(spec)
+    before = _waiting.pop(_key(spec), None)
     if before is not None:  # whoever asked for it never let it run
         before.close()
-    _standing[_key(spec)] = episode
-    if len(_standing) > KEPT_STANDING:
-        _standing.popitem(last=False)[1].close()
+    _waiting[_key(spec)] = episode
+    if len(_waiting) > MOST_WAITING:
+        _waiting.popitem(last=False)[1].close()
     return episode.last_reading
 
 
-def run(spec: EpisodeSpec, following: EpisodeSpec | None = None) -> Outcome:
+def finish_episode(spec: EpisodeSpec, following: EpisodeSpec | None = None) -> Outcome:
     """Run an episode to its end: the one that stands here, or, if none does, one from the beginning.
 
     :param spec: of the episode
     :param following: of another one, to let stand afterwards; a task of its own would cost the scheduler as much
     """
-    episode = _standing.pop(_key(spec), None) or _stood(spec)
+    episode = _waiting.pop(_key(spec), None) or _standing(spec)
     try:
         result = episode.run(spec.parameters)
     finally:
         episode.close()
-    return Outcome(result, episode.last_reading, None if following is None else stand(following))
+    return Outcome(result, episode.last_reading, None if following is None else begin_episode(following))
 
 
-def _stood(spec: EpisodeSpec) -> Episode:
+def _standing(spec: EpisodeSpec) -> Episode:
     episode = Episode(spec.config, spec.seed, TASKS[spec.task])
     try:
         episode.stand()
@@ -113,10 +113,10 @@ def _stood(spec: EpisodeSpec) -> Episode:
     return episode
 
 
-def forget_standing() -> None:
+def close_waiting_episodes() -> None:
     """Close the episodes of this process that stand and wait for parameters."""
-    while _standing:
-        _standing.popitem()[1].close()
+    while _waiting:
+        _waiting.popitem()[1].close()
 
 
 def _key(spec: EpisodeSpec) -> tuple[Any, ...]:
@@ -130,7 +130,7 @@ class Executor(ABC):
     def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
         """Have something done.
 
-        :param function: :func:`stand`, :func:`run`, :func:`sarah.simulate`, or another one of a module
+        :param function: :func:`begin_episode`, :func:`finish_episode`, :func:`sarah.simulate`, or another module's
         :param subjects: of the function: specifications of episodes, or what else it takes
         """
 
@@ -181,7 +181,7 @@ class Workers(Executor):
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         """Stop what was started; a cluster goes on without this client."""
-        forget_standing()
+        close_waiting_episodes()
         if self._client is not None:
             self._client.close()
         if self._cluster is not None:
@@ -191,7 +191,7 @@ class Workers(Executor):
     def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
         """Have something done: simulated, or trained.
 
-        :param function: :func:`stand`, :func:`run`, :func:`sarah.simulate`, or another one of a module
+        :param function: :func:`begin_episode`, :func:`finish_episode`, :func:`sarah.simulate`, or another module's
         :param subjects: of the function: specifications of episodes, or what else it takes
         """
         if self._client is None:

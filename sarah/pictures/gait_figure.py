@@ -10,7 +10,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
-from sarah.control.pattern_generator import RATE_SCALE, Phase, SteppingParameters
+from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
+from sarah.control.pattern_generator import Phase, SteppingParameters
 from sarah.episode.trace import Trace
 from sarah.errors import ConfigurationError
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, RIGHT
@@ -27,10 +28,10 @@ def gait_cycle(trace: Trace) -> slice:
     """Find one cycle, a step with each leg, once the gait has settled; in a short episode, the last one that there is.
 
     :param trace: of an episode
-    :return: rows of the trace, from the begin of a SHIFT with the right leg as support leg to the next such
+    :return: rows of the trace, from the begin of a SHIFT with the right leg as stance leg to the next such
     :raises ConfigurationError: if the robot made no whole cycle
     """
-    begins = (trace.phase == Phase.SHIFT.value) & (trace.support == 1)
+    begins = (trace.phase == Phase.SHIFT.value) & (trace.stance == 1)
     begins[1:] &= ~begins[:-1]
     cycles = list(itertools.pairwise(np.flatnonzero(begins)))[1:]  # the first one begins the gait
     if not cycles:
@@ -39,17 +40,20 @@ def gait_cycle(trace: Trace) -> slice:
     return slice(int(begin), int(end) + 1)
 
 
-def draw_gait_cycle(trace: Trace, parameters: SteppingParameters, path: Path) -> list[Path]:
+def draw_gait_cycle(
+    trace: Trace, parameters: SteppingParameters, path: Path, constants: ControllerConstants = STANDARD_CONSTANTS
+) -> list[Path]:
     """Draw one gait cycle, with the parameters that end its phases.
 
     :param trace: of an episode
     :param parameters: P1 to P5 of that episode
-    :param path: of the picture, without suffix
+    :param path: path of the picture, without suffix
+    :param constants: the controller's constants in that episode
     :return: the files, PNG and PDF
     :raises ConfigurationError: if the robot made no whole cycle; nothing is drawn then
     """
     rows = gait_cycle(trace)
-    time, support = trace.time[rows], trace.support[rows]
+    time, stance = trace.time[rows], trace.stance[rows]
     has_hips = bool(np.any(trace.targets[:, :4]))
     with plt.rc_context({**STYLE, "axes.grid": False, "legend.fontsize": 6.5}):
         count = 5 if has_hips else 4
@@ -62,7 +66,8 @@ def draw_gait_cycle(trace: Trace, parameters: SteppingParameters, path: Path) ->
         tilt.set_ylabel("tilt\n(m/s²)")
         rate.plot(time, trace.rate[rows], color="black", linewidth=1.2)
         _threshold(rate, time, trace.phase[rows] == "lift", -parameters.P1, "\N{MINUS SIGN}P1", "top")
-        _threshold(rate, time, trace.phase[rows] == "shift", RATE_SCALE * parameters.P3, f"{RATE_SCALE:g} P3", "bottom")
+        scale = constants.rate_scale
+        _threshold(rate, time, trace.phase[rows] == "shift", scale * parameters.P3, f"{scale:g} P3", "bottom")
         rate.set_ylabel("rate\n(rad/s)")
         pads = trace.pressures[rows]
         _both(load, time, pads[:, :2].sum(axis=1), pads[:, 2:].sum(axis=1))
@@ -82,7 +87,7 @@ def draw_gait_cycle(trace: Trace, parameters: SteppingParameters, path: Path) ->
         axes[-1].set_xlim(time[0], time[-1])
         for axis in axes:
             _shade(axis, time, trace.phase[rows])
-        change = time[np.flatnonzero(np.diff(support))[0] + 1]
+        change = time[np.flatnonzero(np.diff(stance))[0] + 1]
         for begin, end, leg in ((time[0], change, "left"), (change, time[-1], "right")):
             tilt.text((begin + end) / 2, 1.02, f"{leg} leg swings", ha="center", transform=tilt.get_xaxis_transform())
         patches = [Patch(color=colour, label=name.upper()) for name, colour in PHASE_COLOURS.items()]

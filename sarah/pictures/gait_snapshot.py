@@ -9,10 +9,10 @@ from pathlib import Path
 
 from PIL import Image
 
-from sarah.control.pattern_generator import SteppingParameters
 from sarah.episode.episode import simulate
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
-from sarah.episode.tasks import STEPPING
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import TASKS
 from sarah.errors import ConfigurationError, SimulationError
 from sarah.pictures.gait_figure import draw_gait_cycle
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
@@ -54,7 +54,7 @@ def draw_gait(parameters: tuple[float, ...], task: str, config: EpisodeConfig) -
     except SimulationError:  # it diverges: the curves show that
         return []
     assert trace is not None
-    stepping = parameters if task == STEPPING.name else config.stepping
+    stepping, _ = TASKS[task].controller_parameters(parameters, config)
     end = trace.time[-1]
     times = frame_times(max(trace.time[0], end - VIDEO_SECONDS), end, FRAMES_PER_SECOND[".gif"])
     with tempfile.TemporaryDirectory() as name:
@@ -62,7 +62,7 @@ def draw_gait(parameters: tuple[float, ...], task: str, config: EpisodeConfig) -
         write_video(frames(trace, describe_robot(config.dimensions), times), folder / "video.gif")
         pictures = [_picture("gait/video", folder / "video.gif")]
         try:
-            draw_gait_cycle(trace, SteppingParameters(*stepping), folder / "cycle")
+            draw_gait_cycle(trace, stepping, folder / "cycle", config.controller)
         except ConfigurationError:  # it makes no step
             return pictures
         return [*pictures, _picture("gait/cycle", folder / "cycle.png")]

@@ -60,11 +60,11 @@ class Overlay:
 
     def _write(self, pen: ImageDraw.ImageDraw, tick: int) -> None:
         trace, unit = self._trace, self._unit
-        phase, support = str(trace.phase[tick]), Side(int(trace.support[tick]))
+        phase, stance = str(trace.phase[tick]), Side(int(trace.stance[tick]))
         rows = [
             ("time", f"{trace.time[tick]:.2f} s", INK),
             ("phase", phase.upper(), INK),
-            ("support", f"{support.name.lower()} leg", LEFT if support is Side.LEFT else RIGHT),
+            ("stance", f"{stance.name.lower()} leg", LEFT if stance is Side.LEFT else RIGHT),
             ("steps per second", f"{trace.steps_per_second[tick]:.1f}", INK),
             ("score so far", f"{trace.score[tick]:.2f}", INK),
         ]
@@ -102,11 +102,11 @@ class Overlay:
         trace = self._trace
         now = trace.time[tick]
         rows = slice(trace.tick_at(now - STRIP_SECONDS), tick + 1)
-        ages, phase, support = now - trace.time[rows], trace.phase[rows], trace.support[rows]
-        changes = np.flatnonzero((phase[1:] != phase[:-1]) | (support[1:] != support[:-1])) + 1
+        ages, phase, stance = now - trace.time[rows], trace.phase[rows], trace.stance[rows]
+        changes = np.flatnonzero((phase[1:] != phase[:-1]) | (stance[1:] != stance[:-1])) + 1
         for begin, end in itertools.pairwise([0, *changes, len(ages) - 1]):
             began = min(STRIP_SECONDS, ages[begin])
-            yield (began, ages[end]), str(phase[begin]), Side(int(support[begin])).other
+            yield (began, ages[end]), str(phase[begin]), Side(int(stance[begin])).other
 
     def _draw_push(self, pen: ImageDraw.ImageDraw, tick: int, force: np.ndarray) -> None:
         """An arrow that ends at the torso's centre, with the force in newtons."""

@@ -14,11 +14,9 @@ from typing import Any
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 
-from sarah.control.hip_law import HIP_SPEED, LARGEST_ANGLE, BalanceParameters, HipLaw
+from sarah.control.constants import STANDARD_CONSTANTS as CONSTANTS
+from sarah.control.hip_law import BalanceParameters, HipLaw
 from sarah.control.pattern_generator import (
-    ABDUCTION_RATE_SHARE,
-    ABDUCTION_TILT,
-    MINIMUM_PHASE_SECONDS,
     STAND_SECONDS,
     PatternGenerator,
     Phase,
@@ -29,11 +27,12 @@ from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
 from sarah.robot.reading import SensorReading, Side
 
 SILENCE = SensorReading((0.0, 0.0, 9.81), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), (0.0,) * 6)
-"""In which no sensor ends a phase."""
+"""Reading with which no sensor ends a phase."""
 DT = 0.001
 MINUS = "\u2212"
+TILT, RATE = CONSTANTS.abduction_tilt, CONSTANTS.abduction_rate_share
 NOTE = f"""tilt (m/s²), rate (rad/s): low-passed lateral acceleration and angular rate
-about y, towards the support leg, plus {ABDUCTION_TILT:g} and {ABDUCTION_RATE_SHARE:g} times the abduction
+about y, towards the stance leg, plus {TILT:g} and {RATE:g} times the abduction
 (without V2) and its rate. stable_x (m/s²): slower low-pass of the lateral
 acceleration. pitch (rad): leaky integral of the angular rate about x.
 """
@@ -93,7 +92,7 @@ class PhaseFacts:
     :param conditions: which together end it; they depend on sensors
     :param time_out: formula in s that ends it if they do not
     :param swing_length: target of the swing leg in m, positive when retracted
-    :param support_length: target of the support leg
+    :param stance_length: target of the stance leg
     """
 
     phase: Phase
@@ -102,7 +101,7 @@ class PhaseFacts:
     conditions: tuple[str, ...]
     time_out: str
     swing_length: float
-    support_length: float
+    stance_length: float
 
 
 def read_state_machine() -> list[PhaseFacts]:
@@ -164,7 +163,7 @@ def _conditions(phase: Phase) -> tuple[str, ...]:
         parameters=parameters,
         tilt=Name("tilt", noted),
         rate=Name("rate", noted),
-        support="support",
+        stance="stance",
         swing="swing",
         _is_loaded=is_loaded,
     )
@@ -191,7 +190,7 @@ def read_hip_law() -> dict[str, str]:
     return {
         "abduction of both hips": stand_in.abduction.text,
         "flexion of the swing leg": stand_in.flexion[Side.LEFT].text,
-        "flexion of the support leg": stand_in.flexion[Side.RIGHT].text,
+        "flexion of the stance leg": stand_in.flexion[Side.RIGHT].text,
     }
 
 
@@ -212,7 +211,7 @@ def draw_state_machine(path: Path) -> list[Path]:
         for facts in machine:
             _arrow(axis, y, y - 0.5)
             top = top or y - 0.5
-            action = f"{facts.phase.name}\n{_leg('swing', facts.swing_length)}, {_leg('support', facts.support_length)}"
+            action = f"{facts.phase.name}\n{_leg('swing', facts.swing_length)}, {_leg('stance', facts.stance_length)}"
             y = _box(axis, y - 0.5, action, "white")
             _arrow(axis, y, y - 0.5)
             condition = f"{' and '.join(facts.conditions)}\nor after {facts.time_out} s"
@@ -226,9 +225,9 @@ def draw_state_machine(path: Path) -> list[Path]:
         if machine[-1].swaps_legs:
             axis.text(9.4, (middle + top) / 2, "legs swap", rotation=90, va="center", fontsize=7)
         laws = [f"{name}: {formula}" for name, formula in read_hip_law().items()]
-        limits = f"within ±{LARGEST_ANGLE:g} rad, at {HIP_SPEED:g} rad/s"
+        limits = f"within ±{CONSTANTS.largest_hip_angle:g} rad, at {CONSTANTS.hip_speed:g} rad/s"
         _box(axis, y - 0.5, "\n".join(["Second Training, at every tick", *laws, limits]), "white", height=2.5)
-        note = NOTE + f"Every phase lasts at least {MINIMUM_PHASE_SECONDS:g} s."
+        note = NOTE + f"Every phase lasts at least {CONSTANTS.minimum_phase_seconds:g} s."
         axis.text(0.2, y - 3.2, note, va="top", fontsize=6)
         return save(figure, path)
 

@@ -6,10 +6,9 @@ import logging
 from collections.abc import Sequence
 from pathlib import Path
 
-from sarah.control.pattern_generator import SteppingParameters
 from sarah.episode.episode import simulate
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import STEPPING
+from sarah.episode.tasks import TASKS
 from sarah.errors import ConfigurationError
 from sarah.pictures.gait_figure import draw_gait_cycle
 from sarah.pictures.robot_figure import draw_robot
@@ -27,7 +26,7 @@ def draw_all_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
     :param runs: finished trainings
     :param folder: where to; made if it is not there
     :return: the files, PNG and PDF
-    :raises RunFolderError: if a run has no simulations, or damaged ones; nothing is drawn then
+    :raises RunFolderError: if a run has no episodes, or damaged ones; nothing is drawn then
     """
     files = draw_figures(runs, folder)
     files += _draw_robot(runs[0], folder / "figure_2_robot")
@@ -52,9 +51,9 @@ def _draw_cycle(run: RunFolder, path: Path) -> list[Path]:
     config, learned = run.config(), run.parameters()
     trace = simulate(EpisodeSpec(learned, 0, config.task, config.episode), record_trace=True).trace
     assert trace is not None
-    stepping = learned if config.task == STEPPING.name else config.episode.stepping
+    stepping, _ = TASKS[config.task].controller_parameters(learned, config.episode)
     try:
-        return draw_gait_cycle(trace, SteppingParameters(*stepping), path)
+        return draw_gait_cycle(trace, stepping, path, config.episode.controller)
     except ConfigurationError as error:
         _log.warning("no gait cycle of %s: %s", run.path, error)
         return []

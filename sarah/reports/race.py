@@ -1,6 +1,6 @@
 """A race: several algorithms, several seeds each, judged by what each would recommend along the way.
 
-Each training is a run folder. What it would have recommended after every five simulations is evaluated on seeds that no
+Each training is a run folder. What it would have recommended after every five episodes is evaluated on seeds that no
 training sees, and written beside it in ``race.csv``; a training whose ``race.csv`` is there is not run again, only
 evaluated again if the number of unseen seeds has changed.
 """
@@ -17,12 +17,11 @@ from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from statistics import mean, median
+from statistics import median
 
 import numpy as np
 
-from sarah.episode.episode import simulate
-from sarah.episode.spec import EpisodeSpec
+from sarah.episode.evaluation import evaluate
 from sarah.episode.tasks import TASKS
 from sarah.episode.workers import Workers
 from sarah.errors import RunFolderError
@@ -33,11 +32,11 @@ from sarah.runs.run_folder import RunFolder
 from sarah.training.train import train
 
 RACE_FILE = "race.csv"
-"""In every run folder of a race: the score of what was recommended, along the way and in the end."""
+"""Name of the file in every run folder of a race: scores of what was recommended, along the way and in the end."""
 HELD = 3
-"""Evaluations in a row that must reach a share of the best known score."""
+"""Number of evaluations in a row that must reach a share of the best known score."""
 SHARES = (0.9, 0.95)
-"""Of the best known score, whose simulations are counted."""
+"""Shares of the best known score; episodes until then are counted."""
 CONFIDENCE = 0.95
 BOOTSTRAP_DRAWS = 2000
 
@@ -46,40 +45,40 @@ BOOTSTRAP_DRAWS = 2000
 class Entry:
     """One training of the race.
 
-    :param config: of the training
+    :param config: settings of the training
     :param folder: its run folder
-    :param episodes: unseen seeds that every choice is evaluated on
+    :param evaluations: number of unseen seeds that every recommendation is evaluated on
     """
 
     config: TrainingConfig
     folder: Path
-    episodes: int
+    evaluations: int
 
 
 @dataclass(frozen=True)
-class Curve:
+class RaceCurve:
     """What became of one training.
 
     :param algo: the algorithm
-    :param simulations: after which something was evaluated, rising; the last is what was recommended in the end
+    :param episodes: numbers of episodes after which something was evaluated, rising; the last is the end
     :param scores: mean over the unseen seeds, of the same length
-    :param seconds: that the training took, without the evaluations
+    :param seconds: wall time of the training, without the evaluations, in s
     """
 
     algo: str
-    simulations: tuple[int, ...]
+    episodes: tuple[int, ...]
     scores: tuple[float, ...]
     seconds: float
 
 
 @dataclass(frozen=True)
-class Standing:
+class Ranking:
     """How one algorithm did.
 
     :param algo: its name
     :param runs: how many seeds
     :param reached: by share of the best known score: how many of the runs reached it
-    :param simulations: by share: the median number of simulations until then, infinite for runs that did not
+    :param episodes: by share: the median number of episodes until then, infinite for runs that did not
     :param final: interquartile mean of the final scores, and the ends of its 95 % bootstrap interval
     :param seconds: median wall time of a training
     """
@@ -87,12 +86,12 @@ class Standing:
     algo: str
     runs: int
     reached: dict[float, int]
-    simulations: dict[float, float]
+    episodes: dict[float, float]
     final: tuple[float, float, float]
     seconds: float
 
 
-def race(entries: Sequence[Entry], workers: Workers) -> list[Curve]:
+def race(entries: Sequence[Entry], workers: Workers) -> list[RaceCurve]:
     """Run the trainings that are not there yet, each in one process, and read them all.
 
     :param entries: the trainings; on a cluster their folders must be on a file system that all workers share
@@ -117,11 +116,11 @@ def is_run(entry: Entry) -> bool:
 
 def is_evaluated(entry: Entry) -> bool:
     """Whether the evaluation is complete too on as many unseen seeds as the race asks for."""
-    return is_run(entry) and _rows(entry.folder)[0].get("episodes") == str(entry.episodes)
+    return is_run(entry) and _rows(entry.folder)[0].get("evaluations") == str(entry.evaluations)
 
 
 def run_entry(entry: Entry) -> None:
-    """Train, and evaluate every choice, in a folder that gets its name when it is complete.
+    """Train, and evaluate every recommendation, in a folder that gets its name when it is complete.
 
     A training that is complete is only evaluated.
 
@@ -129,7 +128,7 @@ def run_entry(entry: Entry) -> None:
     :raises RunFolderError: if another race is training it
     """
     if is_run(entry):
-        _evaluate_choices(entry, entry.folder, read_curve(entry).seconds)
+        _evaluate_recommendations(entry, entry.folder, read_curve(entry).seconds)
         return
     unfinished = entry.folder.with_name(f"{entry.folder.name}.unfinished")
     if unfinished.exists():  # an interrupted race left it, or another one is at it
@@ -139,38 +138,37 @@ def run_entry(entry: Entry) -> None:
     start = time.perf_counter()
     run = RunFolder.create(unfinished, entry.config)
     train(entry.config, run)
-    _evaluate_choices(entry, unfinished, time.perf_counter() - start)
+    _evaluate_recommendations(entry, unfinished, time.perf_counter() - start)
     os.replace(unfinished, entry.folder)
 
 
-def _evaluate_choices(entry: Entry, folder: Path, seconds: float) -> None:
+def _evaluate_recommendations(entry: Entry, folder: Path, seconds: float) -> None:
     """Write what everything that was recommended along the way, and in the end, scores."""
     run = RunFolder(folder)
     names = TASKS[entry.config.task].parameter_names
-    choices = [(int(row["simulations"]), tuple(float(row[name]) for name in names)) for row in run.choices()]
+    along = [(int(row["episodes"]), tuple(float(row[name]) for name in names)) for row in run.recommendations()]
     known: dict[tuple[float, ...], float] = {}
+    config = entry.config
     text = io.StringIO(newline="")
     writer = csv.writer(text)
-    writer.writerow(("simulations", "score", "seconds", "episodes"))
-    for simulations, parameters in [*choices, (entry.config.simulations, run.parameters())]:
+    writer.writerow(("episodes", "score", "seconds", "evaluations"))
+    for episodes, parameters in [*along, (config.episodes, run.parameters())]:
         if parameters not in known:
-            specs = (
-                EpisodeSpec(parameters, seed, entry.config.task, entry.config.episode) for seed in range(entry.episodes)
-            )
-            known[parameters] = mean(simulate(spec).score for spec in specs)
-        writer.writerow((simulations, known[parameters], seconds, entry.episodes))
+            evaluation = evaluate(config.task, parameters, config.episode, range(entry.evaluations))
+            known[parameters] = evaluation.mean("score")
+        writer.writerow((episodes, known[parameters], seconds, entry.evaluations))
     replace_text(folder / RACE_FILE, text.getvalue())
 
 
-def read_curve(entry: Entry) -> Curve:
+def read_curve(entry: Entry) -> RaceCurve:
     """Read what :func:`run_entry` wrote.
 
     :param entry: a training that is complete
     """
     rows = _rows(entry.folder)
-    return Curve(
+    return RaceCurve(
         entry.config.algo,
-        tuple(int(row["simulations"]) for row in rows),
+        tuple(int(row["episodes"]) for row in rows),
         tuple(float(row["score"]) for row in rows),
         float(rows[0]["seconds"]),
     )
@@ -181,8 +179,8 @@ def _rows(folder: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def simulations_until(curve: Curve, score: float) -> float:
-    """Simulations after which a score is reached and held over :data:`HELD` evaluations; infinite if it never is.
+def episodes_until(curve: RaceCurve, score: float) -> float:
+    """Number of episodes after which a score is reached and held over :data:`HELD` evaluations; infinite if never.
 
     :param curve: of a training
     :param score: to reach
@@ -190,11 +188,11 @@ def simulations_until(curve: Curve, score: float) -> float:
     reached = [value >= score for value in curve.scores]
     for index in range(len(reached) - HELD + 1):
         if all(reached[index : index + HELD]):
-            return float(curve.simulations[index])
+            return float(curve.episodes[index])
     return float("inf")
 
 
-def standings(curves: Sequence[Curve], best_known: float | None = None) -> list[Standing]:
+def rankings(curves: Sequence[RaceCurve], best_known: float | None = None) -> list[Ranking]:
     """Sum up the race.
 
     :param curves: of all trainings
@@ -205,9 +203,9 @@ def standings(curves: Sequence[Curve], best_known: float | None = None) -> list[
     table = []
     for algo in dict.fromkeys(curve.algo for curve in curves):
         runs = [curve for curve in curves if curve.algo == algo]
-        until = {share: [simulations_until(curve, share * best) for curve in runs] for share in SHARES}
+        until = {share: [episodes_until(curve, share * best) for curve in runs] for share in SHARES}
         table.append(
-            Standing(
+            Ranking(
                 algo,
                 len(runs),
                 {share: sum(np.isfinite(counts).tolist()) for share, counts in until.items()},
@@ -216,7 +214,7 @@ def standings(curves: Sequence[Curve], best_known: float | None = None) -> list[
                 median(curve.seconds for curve in runs),
             )
         )
-    return sorted(table, key=lambda row: (row.simulations[SHARES[-1]], -row.final[0]))
+    return sorted(table, key=lambda row: (row.episodes[SHARES[-1]], -row.final[0]))
 
 
 def interquartile_mean(values: Sequence[float]) -> tuple[float, float, float]:
@@ -233,15 +231,15 @@ def interquartile_mean(values: Sequence[float]) -> tuple[float, float, float]:
     return (float(found), float(low), float(high))
 
 
-def as_markdown(table: Sequence[Standing]) -> str:
-    """The standings as a Markdown table.
+def as_markdown(table: Sequence[Ranking]) -> str:
+    """The rankings as a Markdown table.
 
-    :param table: from :func:`standings`
+    :param table: from :func:`rankings`
     """
     shares = "".join(f" {share:.0%} of the best after | reached by |" for share in SHARES)
     lines = [f"| algorithm | runs |{shares} final score | wall time |", "|---" * (4 + 2 * len(SHARES)) + "|"]
     for row in table:
-        cells = "".join(f" {row.simulations[share]:.0f} | {row.reached[share]} |" for share in SHARES)
+        cells = "".join(f" {row.episodes[share]:.0f} | {row.reached[share]} |" for share in SHARES)
         score, low, high = row.final
         lines.append(
             f"| {row.algo} | {row.runs} |{cells} {score:.3f} ({low:.3f} to {high:.3f}) | {row.seconds:.0f} s |"
@@ -249,34 +247,34 @@ def as_markdown(table: Sequence[Standing]) -> str:
     return "\n".join(lines)
 
 
-def write_csv(table: Sequence[Standing], path: Path) -> None:
-    """Write the standings as CSV.
+def write_csv(table: Sequence[Ranking], path: Path) -> None:
+    """Write the rankings as CSV.
 
-    :param table: from :func:`standings`
+    :param table: from :func:`rankings`
     :param path: of the file
     """
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        counted = [f"{name}_{share:.0%}" for share in SHARES for name in ("simulations", "reached")]
+        counted = [f"{name}_{share:.0%}" for share in SHARES for name in ("episodes", "reached")]
         writer.writerow(("algorithm", "runs", *counted, "final_score", "final_low", "final_high", "seconds"))
         for row in table:
-            counts = [value for share in SHARES for value in (row.simulations[share], row.reached[share])]
+            counts = [value for share in SHARES for value in (row.episodes[share], row.reached[share])]
             writer.writerow((row.algo, row.runs, *counts, *row.final, row.seconds))
 
 
 def entries_of(
-    algorithms: Sequence[str], seeds: Sequence[int], base: TrainingConfig, episodes: int, folder: Path
+    algorithms: Sequence[str], seeds: Sequence[int], base: TrainingConfig, evaluations: int, folder: Path
 ) -> list[Entry]:
     """Every algorithm with every seed.
 
     :param algorithms: their names
     :param seeds: of the trainings
     :param base: settings that they share
-    :param episodes: unseen seeds that every choice is evaluated on
+    :param evaluations: number of unseen seeds that every recommendation is evaluated on
     :param folder: that holds the run folders
     """
     return [
-        Entry(dataclasses.replace(base, algo=algo, seed=seed), folder / f"{algo}-s{seed}", episodes)
+        Entry(dataclasses.replace(base, algo=algo, seed=seed), folder / f"{algo}-s{seed}", evaluations)
         for seed in seeds
         for algo in algorithms
     ]

@@ -14,11 +14,10 @@ from pathlib import Path
 from jinja2 import Environment, StrictUndefined
 from tqdm import tqdm
 
-from sarah.control.pattern_generator import PAPER_PARAMETERS
 from sarah.episode.episode import simulate
-from sarah.episode.evaluation import Evaluation
+from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, STEPPING, TASKS
+from sarah.episode.tasks import TASKS, Task
 from sarah.episode.workers import Executor
 from sarah.errors import ConfigurationError
 from sarah.files import replace_text
@@ -30,27 +29,12 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.renderer import check_renderer
 from sarah.training.recommendation import Parameters
-from sarah.training.train import evaluate
 
-TITLES = {STEPPING.name: "The First Training: stepping in place", BALANCE.name: "The Second Training: after a push"}
-PAPER_SAYS = {
-    "P1": "about 0.4",
-    "P2": "1.3",
-    "P3": "about 0.1",
-    "P4": "hardly matters",
-    "P5": "hardly matters",
-    "V1": "matters more than V2 and V4",
-    "V2": "a constant that may be needed",
-    "V3": "matters more than V2 and V4",
-    "V4": "a constant that may be needed",
-}
-"""Of the parameters. The paper gives V1 to V4 in no numbers."""
-UNITS = {"P1": "rad/s", "P2": "m/s²", "P3": "rad/s", "V2": "m/s²"}
 CAPTIONS = {
-    "figure_4_reward_and_frequency": "Return and step frequency of every simulation (the paper's Figure 4)",
-    "figure_5_parameters": "Parameters of every simulation (the paper's Figure 5); dotted: where the paper's settled",
-    "figure_6_reward_and_position": "Return and final position of every simulation (the paper's Figure 6)",
-    "figure_7_parameters": "Parameters of every simulation (the paper's Figure 7)",
+    "figure_4_reward_and_frequency": "Return and step frequency of every episode (the paper's Figure 4)",
+    "figure_5_parameters": "Parameters of every episode (the paper's Figure 5); dotted: where the paper's settled",
+    "figure_6_reward_and_position": "Return and final position of every episode (the paper's Figure 6)",
+    "figure_7_parameters": "Parameters of every episode (the paper's Figure 7)",
     "gait_cycle_stepping": "One step with each leg, with the learned parameters",
     "gait_cycle_balance": "One step with each leg, with the learned parameters",
     "figure_3_pattern_generator": "The pattern generator (the paper's Figure 3), drawn from the code",
@@ -65,13 +49,13 @@ class Row:
 
     :param name: what is compared, with its unit
     :param learned: of the run
-    :param rival: of what it is compared with
+    :param baseline: text for what it is compared with
     :param paper: what the paper says of it
     """
 
     name: str
     learned: str
-    rival: str
+    baseline: str
     paper: str = ""
 
 
@@ -89,8 +73,10 @@ def write_report(
     """
     config, learned = run.config(), run.parameters()
     task = TASKS[config.task]
-    rival = PAPER_PARAMETERS if task.neutral is None else task.neutral
-    ours, theirs = (evaluate(parameters, config, range(episodes), executor) for parameters in (learned, rival))
+    ours, theirs = (
+        evaluate(config.task, parameters, config.episode, range(episodes), executor)
+        for parameters in (learned, task.baseline)
+    )
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         drawn = {file.stem: file for file in draw_all_figures([run], folder) if file.suffix == ".png"}
@@ -102,13 +88,13 @@ def write_report(
         (files("sarah.reports") / "report.html").read_text(encoding="utf-8")
     )
     text = page.render(
-        title=TITLES[config.task],
+        title=task.title,
         run=str(run.path),
         config=config,
         algorithm=ALGORITHM_LABELS[config.algo],
         episodes=episodes,
-        rows=_parameter_rows(config, learned, rival) + _result_rows(config, ours, theirs),
-        rival="the paper's parameters, simulated here" if task.neutral is None else "without the hip law (V = 0)",
+        rows=_parameter_rows(task, learned) + _result_rows(config, ours, theirs),
+        baseline=task.baseline_label,
         warnings=_warnings(ours, None if task.neutral is None else theirs),
         figures=figures,
         film=film,
@@ -121,48 +107,47 @@ def write_report(
     replace_text(path, text)
 
 
-def _parameter_rows(config: TrainingConfig, learned: Parameters, rival: Parameters) -> list[Row]:
-    names = TASKS[config.task].parameter_names
+def _parameter_rows(task: Task, learned: Parameters) -> list[Row]:
     return [
-        Row(f"{name} ({UNITS[name]})" if name in UNITS else name, f"{ours:.2f}", f"{theirs:.2f}", PAPER_SAYS[name])
-        for name, ours, theirs in zip(names, learned, rival, strict=True)
+        Row(parameter.label, f"{ours:.2f}", f"{theirs:.2f}", parameter.paper)
+        for parameter, ours, theirs in zip(task.parameters, learned, task.baseline, strict=True)
     ]
 
 
-def _result_rows(config: TrainingConfig, learned: Evaluation, rival: Evaluation) -> list[Row]:
-    is_pushed = config.task == BALANCE.name
+def _result_rows(config: TrainingConfig, learned: Evaluation, baseline: Evaluation) -> list[Row]:
+    is_pushed = TASKS[config.task].has_push
 
     def row(name: str, text: Callable[[Evaluation], str], paper: str = "") -> Row:
-        return Row(name, text(learned), text(rival), paper)
+        return Row(name, text(learned), text(baseline), paper)
 
     return [
-        row("score, median (1 is the ceiling)", lambda e: f"{e.score_median:.3f}", "reported as reward, no scale"),
-        row("steps per second, median", lambda e: f"{e.steps_per_second_median:.2f}", "3 to 5, a human's"),
+        row("score, median (1 is the ceiling)", lambda e: f"{e.median('score'):.3f}", "reported as reward, no scale"),
+        row("steps per second, median", lambda e: f"{e.median('steps_per_second'):.2f}", "3 to 5, a human's"),
         row(
             f"episodes that lasted {config.episode.time_limit:g} s",
-            lambda e: f"{round(e.survival_rate * e.episodes)} of {e.episodes}",
+            lambda e: f"{e.survivors} of {e.episodes}",
             "no share given" if is_pushed else "30 s ends a simulation that does well",
         ),
         row(
             "distance from the start at the end, median (cm)",
-            lambda e: f"{100 * e.drift_median:.1f}",
+            lambda e: f"{100 * e.median('drift'):.1f}",
             "returns to its initial position" if is_pushed else "below 25, or the simulation ends",
         ),
         row(
             "SHIFT, LIFT phases that sensors ended (%)",
-            lambda e: f"{100 * e.event_driven_shift_mean:.0f}, {100 * e.event_driven_lift_mean:.0f}",
+            lambda e: f"{100 * e.mean('shifts_by_sensors'):.0f}, {100 * e.mean('lifts_by_sensors'):.0f}",
         ),
-        row("clearance of the soles, mean (mm)", lambda e: f"{1000 * e.sole_clearance_mean:.0f}"),
-        row("vibration above 20 Hz, median (m²/s⁴)", lambda e: f"{e.vibration_median:.1f}"),
-        row("power of the actuators, mean (W)", lambda e: f"{e.actuator_power_mean:.0f}"),
+        row("clearance of the soles, mean (mm)", lambda e: f"{1000 * e.mean('sole_clearance'):.0f}"),
+        row("vibration above 20 Hz, median (m²/s⁴)", lambda e: f"{e.median('vibration'):.1f}"),
+        row("power of the actuators, mean (W)", lambda e: f"{e.mean('actuator_power'):.0f}"),
     ]
 
 
-def _warnings(learned: Evaluation, without: Evaluation | None) -> list[str]:
+def _warnings(learned: Evaluation, baseline: Evaluation | None) -> list[str]:
     found = []
     if not learned.is_gait:
         found.append("This is not a gait: it steps to a clock, or does not lift its feet.")
-    if without is not None and learned.chatters(without):
+    if baseline is not None and learned.chatters(baseline):
         found.append("The hips chatter: no real robot could do that.")
     return found
 
@@ -189,7 +174,7 @@ def _film(spec: EpisodeSpec, folder: Path, seconds: tuple[float, float]) -> tupl
 
 def _commands(run: RunFolder, config: TrainingConfig) -> list[str]:
     again = f"{config.algo}-s{config.seed}-again"
-    extra = ["sarah-video RUN out.mp4"] if config.task == STEPPING.name else ["sarah-eval RUN --robustness tables"]
+    extra = ["sarah-eval RUN --robustness tables"] if TASKS[config.task].has_push else ["sarah-video RUN out.mp4"]
     commands = [f"sarah-train --config config.yaml --run-dir {again}", "sarah-eval RUN", "sarah-figures RUN", *extra]
     return [command.replace("RUN", shlex.quote(again)) for command in [*commands, "sarah-report RUN"]]
 

@@ -14,8 +14,8 @@ from statistics import median
 
 from sarah.episode.push import draw_push
 from sarah.episode.result import EpisodeResult
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
-from sarah.episode.tasks import BALANCE
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.workers import Workers
 
 FORCES = (25.0, 50.0, 75.0, 100.0, 125.0, 150.0)
@@ -76,7 +76,7 @@ class Robustness:
 
 def push_many(
     controllers: Sequence[tuple[float, ...]],
-    config: EpisodeConfig,
+    config: BalanceConfig,
     workers: Workers,
     forces: Sequence[float] = FORCES,
     episodes: int = 100,
@@ -92,7 +92,7 @@ def push_many(
     :param first_seed: of the episodes; each force meets the same seeds, and so the same directions and times
     :return: the episodes of each controller
     """
-    settings: dict[float, EpisodeConfig] = {}
+    settings: dict[float, BalanceConfig] = {}
     for newtons in forces:
         push = dataclasses.replace(config.push, newtons=(newtons, newtons), at_seconds=PUSHED_BETWEEN)
         limit = PUSHED_BETWEEN[1] + push.duration + SECONDS_AFTER

@@ -1,8 +1,8 @@
 """The paper's Figures 4 to 7 from run folders, and survival against direction and force of a push.
 
-Figures 4 to 7 show what was tried, and what came of it, against training steps. A training step is one simulation. One
-run shows its simulations as dots and their running median as a line; several runs of an algorithm show the median over
-the runs of that line, and the band between their quartiles. The simulations that compare the best candidates at the end
+Figures 4 to 7 show what was tried, and what came of it, against training steps. A training step is one episode. One
+run shows its episodes as dots and their running median as a line; several runs of an algorithm show the median over
+the runs of that line, and the band between their quartiles. The episodes that compare the best candidates at the end
 are no steps of learning: a single run shows them as hollow dots, and no line goes through them.
 """
 
@@ -21,7 +21,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.patheffects import withStroke
 
-from sarah.control.pattern_generator import PAPER_PARAMETERS
+from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.tasks import BALANCE, STEPPING, Task
 from sarah.errors import RunFolderError
 from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
@@ -29,12 +29,12 @@ from sarah.reports.robustness import PushedEpisode, finest_sectors, survival_by_
 from sarah.runs.run_folder import RunFolder
 
 if TYPE_CHECKING:  # it brings the trainings with it
-    from sarah.reports.race import Curve
+    from sarah.reports.race import RaceCurve
 
 WINDOW = 15
-"""Simulations that the running median is over."""
+"""Number of episodes that the running median is over."""
 CHORDS = 8
-"""That the arc of a sector is drawn with."""
+"""Number of straight lines that the arc of a sector is drawn with."""
 COLOURS = {
     "naf": "#0072B2",
     "td3": "#D55E00",
@@ -45,7 +45,7 @@ COLOURS = {
     "tpe": "#F0E442",
     "random": "#000000",
 }
-"""Of each algorithm; told apart by the colour-blind (Okabe and Ito)."""
+"""Colour of each algorithm; told apart by the colour-blind (Okabe and Ito)."""
 ALGORITHM_LABELS = {algo: algo.upper() for algo in COLOURS} | {"random": "random search"}
 """What pictures and pages call each algorithm."""
 
@@ -55,31 +55,25 @@ RETURN = ("return", "return (m³ s)")
 FIGURES: dict[Task, dict[str, Panels]] = {
     STEPPING: {
         "figure_4_reward_and_frequency": [RETURN, ("steps_per_second", "steps per second")],
-        "figure_5_parameters": [
-            ("P1", "P1 (rad/s)"),
-            ("P2", "P2 (m/s²)"),
-            ("P3", "P3 (rad/s)"),
-            ("P4", "P4"),
-            ("P5", "P5"),
-        ],
+        "figure_5_parameters": [(parameter.name, parameter.label) for parameter in STEPPING.parameters],
     },
     BALANCE: {
         "figure_6_reward_and_position": [RETURN, ("x", "final x (m)"), ("y", "final y (m)")],
-        "figure_7_parameters": [("V1", "V1"), ("V2", "V2 (m/s²)"), ("V3", "V3"), ("V4", "V4")],
+        "figure_7_parameters": [(parameter.name, parameter.label) for parameter in BALANCE.parameters],
     },
 }
 """The paper's figures of each training."""
-PAPER = dict(zip(STEPPING.parameter_names[:3], PAPER_PARAMETERS[:3], strict=True))
+PAPER = dict(zip(STEPPING.parameter_names[:3], PAPER_STEPPING[:3], strict=True))
 """Where the paper's parameters settled, of those that matter."""
 
 
 @dataclass(frozen=True)
-class Curves:
+class RunCurves:
     """What the runs of one algorithm went through.
 
     :param algorithm: its name
-    :param columns: of ``episodes.csv`` as numbers, each of shape (runs, simulations)
-    :param learning: how many of the simulations come before the comparison of candidates
+    :param columns: of ``episodes.csv`` as numbers, each of shape (runs, episodes)
+    :param learning: number of episodes that come before the comparison of candidates
     """
 
     algorithm: str
@@ -90,10 +84,10 @@ class Curves:
 def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
     """Draw Figures 4 and 5 of First Trainings, and 6 and 7 of Second Trainings, as PNG and PDF.
 
-    :param runs: whose simulations to draw
+    :param runs: whose episodes to draw
     :param folder: where to; made if it is not there
     :return: the files
-    :raises RunFolderError: if a run has no simulations, or damaged ones; nothing is drawn then
+    :raises RunFolderError: if a run has no episodes, or damaged ones; nothing is drawn then
     """
     curves = {task: _curves([run for run in runs if run.config().task == task.name], task) for task in FIGURES}
     folder.mkdir(parents=True, exist_ok=True)
@@ -105,27 +99,27 @@ def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
     return files
 
 
-def _curves(runs: Sequence[RunFolder], task: Task) -> list[Curves]:
+def _curves(runs: Sequence[RunFolder], task: Task) -> list[RunCurves]:
     by_algorithm: dict[str, list[dict[str, list[float]]]] = {}
     learning: dict[str, int] = {}
     names = ("return", "steps_per_second", "x", "y", *task.parameter_names)
     for run in runs:
         rows = list(run.episodes())
         if not rows:
-            raise RunFolderError(f"{run.path} has no simulations to draw")
+            raise RunFolderError(f"{run.path} has no episodes to draw")
         try:
             columns = {name: [_number(row[name]) for row in rows] for name in names}
         except (KeyError, TypeError, ValueError) as error:
-            raise RunFolderError(f"the simulations of {run.path} cannot be read: {error!r}") from error
+            raise RunFolderError(f"the episodes of {run.path} cannot be read: {error!r}") from error
         config = run.config()
         by_algorithm.setdefault(config.algo, []).append(columns)
-        before_comparison = min(len(rows), config.simulations - config.compared_simulations)
+        before_comparison = min(len(rows), config.episodes - config.compared_episodes)
         learning[config.algo] = min(learning.get(config.algo, before_comparison), before_comparison)
     curves = []
     for algorithm, tables in by_algorithm.items():
         shortest = min(len(table["return"]) for table in tables)
         stacked = {name: np.array([table[name][:shortest] for table in tables]) for name in names}
-        curves.append(Curves(algorithm, stacked, learning[algorithm]))
+        curves.append(RunCurves(algorithm, stacked, learning[algorithm]))
     return curves
 
 
@@ -136,7 +130,7 @@ def _number(text: str) -> float:
     return number
 
 
-def _draw(curves: Sequence[Curves], panels: Panels, path: Path) -> list[Path]:
+def _draw(curves: Sequence[RunCurves], panels: Panels, path: Path) -> list[Path]:
     figure, axes = plt.subplots(
         len(panels),
         1,
@@ -151,13 +145,13 @@ def _draw(curves: Sequence[Curves], panels: Panels, path: Path) -> list[Path]:
         if column in PAPER:
             axis.axhline(PAPER[column], color="black", linewidth=0.8, linestyle=":", label="paper")
         axis.set_ylabel(label)
-    axes[-1, 0].set_xlabel("training steps (simulations)")
+    axes[-1, 0].set_xlabel("training steps (episodes)")
     figure.align_ylabels()
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper right", ncols=len(curves) + 1)
     return save(figure, path)
 
 
-def _draw_panel(axis: Axes, curves: Curves, column: str) -> None:
+def _draw_panel(axis: Axes, curves: RunCurves, column: str) -> None:
     values, learning, colour = curves.columns[column], curves.learning, COLOURS[curves.algorithm]
     steps = np.arange(1, values.shape[1] + 1)
     smooth = np.array([running_median(run) for run in values[:, :learning]])
@@ -183,8 +177,8 @@ def running_median(values: np.ndarray) -> np.ndarray:
     return np.array([np.median(values[max(0, i - half) : i + half + 1]) for i in range(len(values))])
 
 
-def draw_race(curves: Sequence[Curve], path: Path) -> list[Path]:
-    """Draw the score of what each algorithm would choose against simulations: median and quartiles over its runs.
+def draw_race(curves: Sequence[RaceCurve], path: Path) -> list[Path]:
+    """Draw the score of what each algorithm would choose against episodes: median and quartiles over its runs.
 
     :param curves: of all trainings
     :param path: of the picture, without suffix
@@ -194,12 +188,12 @@ def draw_race(curves: Sequence[Curve], path: Path) -> list[Path]:
         figure, axis = plt.subplots(figsize=(COLUMN_WIDTH, 0.9 * COLUMN_WIDTH), layout="constrained")
         for algo in dict.fromkeys(curve.algo for curve in curves):
             runs = [curve for curve in curves if curve.algo == algo]
-            simulations = runs[0].simulations
+            episodes = runs[0].episodes
             low, middle, high = np.quantile([run.scores for run in runs], (0.25, 0.5, 0.75), axis=0)
-            axis.fill_between(simulations, low, high, color=COLOURS[algo], alpha=0.15, linewidth=0)
+            axis.fill_between(episodes, low, high, color=COLOURS[algo], alpha=0.15, linewidth=0)
             label = f"{ALGORITHM_LABELS[algo]} ({len(runs)})"
-            axis.plot(simulations, middle, color=COLOURS[algo], linewidth=1.2, label=label)
-        axis.set_xlabel("simulations")
+            axis.plot(episodes, middle, color=COLOURS[algo], linewidth=1.2, label=label)
+        axis.set_xlabel("episodes")
         axis.set_ylabel("score on unseen seeds")
         figure.legend(loc="outside upper center", ncols=2)  # three columns of all eight do not fit
         return save(figure, path)

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from itertools import islice, product
 from typing import get_args
 
-from sarah.episode.evaluation import Evaluation, summarise
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.evaluation import Evaluation
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Workers
 from sarah.simulation.engines import Engine
 
@@ -17,7 +18,7 @@ ENGINES: tuple[Engine, ...] = get_args(Engine)
 
 
 @dataclass(frozen=True)
-class Subject:
+class LearnedParameters:
     """Learned parameters.
 
     :param name: of the run
@@ -36,36 +37,36 @@ class Subject:
 class Transfer:
     """Learned parameters in every engine.
 
-    :param subject: what was evaluated
+    :param learned: what was evaluated
     :param evaluations: by engine
     """
 
-    subject: Subject
+    learned: LearnedParameters
     evaluations: dict[Engine, Evaluation]
 
     @property
     def kept(self) -> float:
         """Score in the other engine over that in the one they were learned in; 0 if they score nothing there."""
-        at_home = self.evaluations[self.subject.config.engine].score_mean
-        (abroad,) = (e.score_mean for engine, e in self.evaluations.items() if engine != self.subject.config.engine)
+        at_home = self.evaluations[self.learned.config.engine].mean("score")
+        (abroad,) = (e.mean("score") for engine, e in self.evaluations.items() if engine != self.learned.config.engine)
         return abroad / at_home if at_home else 0.0
 
 
-def transfer(subjects: Sequence[Subject], seeds: Sequence[int], workers: Workers) -> list[Transfer]:
+def transfer(many: Sequence[LearnedParameters], seeds: Sequence[int], workers: Workers) -> list[Transfer]:
     """Evaluate parameters in every engine.
 
-    :param subjects: what was learned
+    :param many: what was learned
     :param seeds: of the episodes, the same for all
     :param workers: that simulate them
     """
     specs = [
-        EpisodeSpec(subject.parameters, seed, subject.task, dataclasses.replace(subject.config, engine=engine))
-        for subject, engine, seed in product(subjects, ENGINES, seeds)
+        EpisodeSpec(learned.parameters, seed, learned.task, dataclasses.replace(learned.config, engine=engine))
+        for learned, engine, seed in product(many, ENGINES, seeds)
     ]
     results = iter(list(workers.simulate_all(specs)))
     return [
-        Transfer(subject, {engine: summarise(islice(results, len(seeds))) for engine in ENGINES})
-        for subject in subjects
+        Transfer(learned, {engine: Evaluation(tuple(islice(results, len(seeds)))) for engine in ENGINES})
+        for learned in many
     ]
 
 
@@ -78,11 +79,12 @@ def as_markdown(transfers: Sequence[Transfer]) -> str:
     lines = [f"| run | task | learned in | {head} | kept |", "|---" * (4 + 4 * len(ENGINES)) + "|"]
     for one in transfers:
         cells = [
-            f"{e.score_mean:.3f} | {e.survival_rate:.2f} | {e.steps_per_second_mean:.2f} | {e.vibration_median:.1f}"
+            f"{e.mean('score'):.3f} | {e.survival_rate:.2f} | {e.mean('steps_per_second'):.2f} | "
+            f"{e.median('vibration'):.1f}"
             for e in one.evaluations.values()
         ]
-        subject = one.subject
+        learned = one.learned
         lines.append(
-            f"| {subject.name} | {subject.task} | {subject.config.engine} | {' | '.join(cells)} | {one.kept:.0%} |"
+            f"| {learned.name} | {learned.task} | {learned.config.engine} | {' | '.join(cells)} | {one.kept:.0%} |"
         )
     return "\n".join(lines)

@@ -33,15 +33,15 @@ def draw_transfer(transfers: Sequence[Transfer], path: Path) -> list[Path]:
             axis.axline((0.0, 0.0), slope=slope, color="grey", linewidth=0.8, linestyle=":", label=label)
         for (engine, colour), (task, marker) in itertools.product(ENGINE_COLOURS.items(), TASK_MARKERS.items()):
             runs = [
-                [one.evaluations[name].score_mean for name in (across, up)]  # type: ignore[index]
+                [one.evaluations[name].mean("score") for name in (across, up)]  # type: ignore[index]
                 for one in transfers
-                if (one.subject.config.engine, one.subject.task) == (engine, task)
+                if (one.learned.config.engine, one.learned.task) == (engine, task)
             ]
             if runs:
                 label = f"{task}, learned in {engine} ({len(runs)})"
                 axis.plot(*zip(*runs, strict=True), marker, color=colour, markersize=4, alpha=0.8, label=label)
-        lowest = min(min(e.score_mean for e in one.evaluations.values()) for one in transfers)
-        highest = max(max(e.score_mean for e in one.evaluations.values()) for one in transfers)
+        lowest = min(min(e.mean("score") for e in one.evaluations.values()) for one in transfers)
+        highest = max(max(e.mean("score") for e in one.evaluations.values()) for one in transfers)
         axis.set(xlim=(lowest - 0.05, highest + 0.05), ylim=(lowest - 0.05, highest + 0.05), aspect="equal")
         axis.set_xlabel(f"score in {across}")
         axis.set_ylabel(f"score in {up}")

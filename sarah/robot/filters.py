@@ -8,8 +8,8 @@ import math
 class LowPass:
     """First-order low-pass filter, starting at zero.
 
-    :param time_constant: in s
-    :param dt: control period in s
+    :param time_constant: time constant, in s
+    :param dt: control period, in s
     """
 
     def __init__(self, time_constant: float, dt: float) -> None:
@@ -25,10 +25,19 @@ class LowPass:
 def low_pass_gain(time_constant: float, dt: float) -> float:
     """Share of the way to a constant signal that a first-order low-pass goes in one tick.
 
-    :param time_constant: in s
-    :param dt: control period in s
+    :param time_constant: time constant, in s
+    :param dt: control period, in s
     """
     return 1.0 - math.exp(-dt / time_constant)
+
+
+def clipped(value: float, limit: float) -> float:
+    """Clip a value to [-limit, limit].
+
+    :param value: the value
+    :param limit: largest magnitude, not negative
+    """
+    return max(-limit, min(limit, value))
 
 
 def ramped(now: float, goal: float, largest_change: float) -> float:

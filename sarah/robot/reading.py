@@ -19,6 +19,10 @@ class Side(Enum):
 
     __hash__ = object.__hash__  # Enum's own is slow, and every tick looks legs up
 
+    def __str__(self) -> str:
+        """Name that links and joints of this side begin with."""
+        return self.name.lower()
+
     @property
     def other(self) -> Side:
         """The opposite leg."""

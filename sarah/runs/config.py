@@ -1,80 +1,84 @@
-"""What an experiment's settings are: plain dataclasses.
+"""What a training's settings are, as a plain dataclass.
 
 Light on purpose: commands import it before anything slow.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
-from sarah.episode.push import Push
-from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeConfig
-from sarah.episode.tasks import BALANCE, TASKS
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import FIRST_TRAINING_SEED
+from sarah.episode.tasks import task_named
 from sarah.errors import ConfigurationError, check_range, shortened, unknown_name
 
-MOST_SIMULATIONS = 1_000_000
+MOST_EPISODES = 1_000_000
 MOST_SLOTS = 10_000
 
-SIMULATIONS_PER_CANDIDATE = 5
-"""In the comparison that ends a training."""
+EPISODES_PER_CANDIDATE = 5
+"""Episodes of each candidate in the comparison that ends a training."""
 BUDGET_PER_CANDIDATE = 50
-"""Simulations of the whole training for each candidate: a tenth of them goes into the comparison."""
+"""Episodes of the whole training for each candidate: a tenth of them goes into the comparison."""
 
 AGENTS = ("naf", "td3", "sac", "ddpg")
-"""Learn by reinforcement, with networks."""
-SEARCHERS = ("cma-es", "gp", "tpe", "random")
+"""Algorithms that learn by reinforcement, with networks."""
+OPTIMISERS = ("cma-es", "gp", "tpe", "random")
 """Black-box optimisers."""
-ALGORITHMS = AGENTS + SEARCHERS
+ALGORITHMS = AGENTS + OPTIMISERS
 
 
 @dataclass(frozen=True)
 class TrainingConfig:
     """A training: what ``sarah-train`` does.
 
-    :param task: what to learn: ``stepping`` is the paper's first training, P1 to P5, and ``balance`` its
+    :param task: name of what to learn: ``stepping`` is the paper's first training, P1 to P5, and ``balance`` its
         second, V1 to V4
     :param algo: what learns: ``naf``, stable-baselines3's ``td3``, ``sac`` or ``ddpg``, or an optimiser that only sees
         returns: ``cma-es``, ``gp`` (Gaussian process), ``tpe`` or ``random``
-    :param simulations: budget; every simulation is one action of the agent and up to 30 s of the robot
-    :param seed: of the training and of all its episodes
+    :param episodes: budget; every episode is one action of the agent and up to 30 s of the robot
+    :param seed: seed of the training and of all its episodes
     :param slots: episodes in flight: each action is chosen knowing all outcomes but those of the slots - 1 before
         it. Another number is another training; the number of workers is not
-    :param episode: settings of the episodes
+    :param episode: settings of the episodes; by default the task's own
     """
 
     task: str = "stepping"
     algo: str = "naf"
-    simulations: int = 100
+    episodes: int = 100
     seed: int = 0
     slots: int = 4
-    episode: EpisodeConfig = EpisodeConfig()
+    episode: EpisodeConfig = None  # type: ignore[assignment]  # the task's own
 
     def __post_init__(self) -> None:
         """Refuse unknown names and impossible budgets."""
-        if self.task not in TASKS:
-            raise ConfigurationError(unknown_name("task", self.task, TASKS))
+        task = task_named(self.task)
+        object.__setattr__(self, "episode", task.episode if self.episode is None else task.checked_config(self.episode))
         if self.algo not in ALGORITHMS:
             raise ConfigurationError(unknown_name("algo", self.algo, ALGORITHMS))
-        check_range("simulations", self.simulations, 1, MOST_SIMULATIONS)
+        check_range("episodes", self.episodes, 1, MOST_EPISODES)
         check_range("slots", self.slots, 1, MOST_SLOTS)
         if not 0 <= self.seed < FIRST_TRAINING_SEED:
-            raise ConfigurationError(
-                f"seed must be between 0 and {FIRST_TRAINING_SEED - 1}, not {shortened(self.seed)}"
-            )
-        push, limit = self.episode.push, self.episode.time_limit
-        if self.task != BALANCE.name and push != Push():
-            raise ConfigurationError(f"episode.push is for task {BALANCE.name!r}: {self.task!r} has no push")
-        if self.task == BALANCE.name and push.at_seconds[0] >= limit:
-            raise ConfigurationError(
-                f"episode.push.at_seconds must begin before the time_limit of {limit:g} s, not {push.at_seconds!r}"
-            )
+            last = FIRST_TRAINING_SEED - 1
+            raise ConfigurationError(f"seed must be between 0 and {last}, not {shortened(self.seed)}")
+        self.episode.check_for_training()
+
+    @classmethod
+    def field_types(cls, content: Mapping[str, Any]) -> dict[str, type]:
+        """Types of fields that depend on other fields.
+
+        :param content: values of some fields, as a file gives them
+        :raises ConfigurationError: if they name no task
+        """
+        return {"episode": type(task_named(str(content.get("task", cls.task))).episode)}
 
     @property
     def candidate_count(self) -> int:
-        """How many candidates the budget affords to compare at the end; with one, there is nothing to compare."""
-        return max(1, self.simulations // BUDGET_PER_CANDIDATE)
+        """Number of candidates that the budget affords to compare at the end; with one, there is nothing to compare."""
+        return max(1, self.episodes // BUDGET_PER_CANDIDATE)
 
     @property
-    def compared_simulations(self) -> int:
-        """How many simulations the comparison of candidates takes, at the end of the budget."""
-        return self.candidate_count * SIMULATIONS_PER_CANDIDATE if self.candidate_count > 1 else 0
+    def compared_episodes(self) -> int:
+        """Number of episodes that the comparison of candidates takes, at the end of the budget."""
+        return self.candidate_count * EPISODES_PER_CANDIDATE if self.candidate_count > 1 else 0

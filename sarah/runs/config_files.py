@@ -27,7 +27,7 @@ def first_difference(config: Any, other: Any, key: str = "") -> tuple[str, Any, 
         value, there = getattr(config, item.name), getattr(other, item.name)
         if value == there:
             continue
-        if dataclasses.is_dataclass(value):
+        if dataclasses.is_dataclass(value) and type(value) is type(there):
             return first_difference(value, there, f"{key}{item.name}.")
         return key + item.name, value, there
     return None
@@ -95,6 +95,7 @@ def _from_mapping(config_type: type[ConfigType], content: Any, key: str) -> Conf
     if not isinstance(content, Mapping):
         raise ConfigurationError(f"{key or 'the file'} must hold keys and values, not {shortened(content)}")
     types = get_type_hints(config_type)
+    types |= getattr(config_type, "field_types", lambda _: {})(content)
     values = {}
     for name, value in content.items():
         if name not in types:

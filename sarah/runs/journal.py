@@ -25,7 +25,7 @@ from typing import Any, BinaryIO
 from sarah.episode.episode import simulate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.workers import Executor, Job, Outcome, run, stand
+from sarah.episode.workers import Executor, Job, Outcome, begin_episode, finish_episode
 from sarah.errors import RunFolderError, SarahError, TrainingInterruptedError
 from sarah.robot.reading import SensorReading
 
@@ -53,14 +53,18 @@ def _result(plain: Any) -> EpisodeResult:
 
 
 _KINDS = {
-    "stand": _Kind(lambda reading: reading, _reading),
-    "run": _Kind(
+    "begin": _Kind(lambda reading: reading, _reading),
+    "finish": _Kind(
         lambda outcome: [outcome.result.fields(), *outcome[1:]],
         lambda p: Outcome(_result(p[0]), _reading(p[1]), p[2] and _reading(p[2])),
     ),
     "simulate": _Kind(lambda result: result.fields(), _result),
 }
-_NAMES: dict[Callable[..., Any], str] = {stand: "stand", run: "run", simulate: "simulate"}
+_NAMES: dict[Callable[..., Any], str] = {
+    begin_episode: "begin",
+    finish_episode: "finish",
+    simulate: "simulate",
+}
 
 
 @dataclass(frozen=True)
@@ -139,8 +143,8 @@ class Journal(Executor):
     def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
         """Have an episode simulated, unless it is known what comes of it.
 
-        :param function: :func:`~sarah.episode.workers.stand`, :func:`~sarah.episode.workers.run` or
-            :func:`sarah.simulate`
+        :param function: :func:`~sarah.episode.workers.begin_episode`,
+            :func:`~sarah.episode.workers.finish_episode` or :func:`sarah.simulate`
         :param subjects: the episode's specification, and what else the function takes
         :raises RunFolderError: if the training asks for something else than it did when the journal was written
         """
@@ -167,7 +171,7 @@ class Journal(Executor):
         left = memoryview(b"%08x %s\n" % (zlib.crc32(text), text))
         while left:  # a disk that is nearly full takes a part
             left = left[self._file.write(left) :]
-        if request["kind"] != "stand":  # that is cheap to do again
+        if request["kind"] != "begin":  # that is cheap to do again
             os.fsync(self._file.fileno())
 
     def stop_if_interrupted(self) -> None:

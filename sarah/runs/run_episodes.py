@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from sarah.episode.ending import ENDINGS
+from sarah.episode.ending import TERMINATIONS
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import TASKS
 from sarah.errors import ConfigurationError, RunFolderError
@@ -13,7 +13,7 @@ from sarah.runs.run_folder import RunFolder
 
 
 @dataclass(frozen=True)
-class Choice:
+class RunEpisode:
     """An episode to choose.
 
     :param name: what ``--episode`` calls it
@@ -28,7 +28,7 @@ class Choice:
     score: float | None = None
 
 
-def choices_of_run(run: RunFolder) -> list[Choice]:
+def episodes_of_run(run: RunFolder) -> list[RunEpisode]:
     """A run's learned parameters, its best simulation, and then all of them.
 
     :param run: of a training, which need not be finished
@@ -41,24 +41,24 @@ def choices_of_run(run: RunFolder) -> list[Choice]:
         try:
             parameters = tuple(float(row[name]) for name in task.parameter_names)
             spec = EpisodeSpec(parameters, int(row["seed"]), task.name, training.episode)
-            score, ending = float(row["score"]), ENDINGS[row["termination"]]
+            score, ending = float(row["score"]), TERMINATIONS[row["termination"]]
             label = f"simulation {row['index']} · score {score:.2f} · {ending}"
-            simulated.append(Choice(row["index"], label, spec, score))
+            simulated.append(RunEpisode(row["index"], label, spec, score))
         except (KeyError, TypeError, ValueError) as error:
             raise RunFolderError(f"the simulations of {run.path} cannot be read: {error!r}") from error
     choices = []
     if run.is_finished:
         spec = EpisodeSpec(run.parameters(), 0, task.name, training.episode)
-        choices.append(Choice("learned", "learned parameters · seed 0", spec))
+        choices.append(RunEpisode("learned", "learned parameters · seed 0", spec))
     if simulated:
         best = max(simulated, key=lambda choice: choice.score or 0.0)
-        choices.append(Choice("best", f"best: {best.label}", best.spec, best.score))
+        choices.append(RunEpisode("best", f"best: {best.label}", best.spec, best.score))
     if not choices:
         raise RunFolderError(f"{run.path} has no simulations to show yet")
     return choices + simulated
 
 
-def choice_of_parameters(parameters: Sequence[float]) -> Choice:
+def episode_of_parameters(parameters: Sequence[float]) -> RunEpisode:
     """The episode of given parameters with seed 0.
 
     :param parameters: P1 to P5, or V1 to V4 of the balance task
@@ -67,7 +67,7 @@ def choice_of_parameters(parameters: Sequence[float]) -> Choice:
     for task in TASKS.values():
         if len(parameters) == len(task.parameter_names):
             label = f"{task.parameter_names[0][0]} = {', '.join(f'{value:g}' for value in parameters)} · seed 0"
-            return Choice("given", label, EpisodeSpec(tuple(parameters), 0, task.name))
+            return RunEpisode("given", label, EpisodeSpec(tuple(parameters), 0, task.name))
     counts = " or ".join(
         f"{len(task.parameter_names)} numbers ({task.parameter_names[0]} to {task.parameter_names[-1]})"
         for task in TASKS.values()
@@ -75,7 +75,7 @@ def choice_of_parameters(parameters: Sequence[float]) -> Choice:
     raise ConfigurationError(f"parameters must be {counts}, not {len(parameters)}")
 
 
-def choose(choices: list[Choice], name: str | None) -> Choice:
+def choose(choices: list[RunEpisode], name: str | None) -> RunEpisode:
     """Find an episode by its name.
 
     :param choices: to choose from

@@ -1,9 +1,9 @@
 """The run folder: the only file that knows its layout.
 
     config.yaml  command.txt  versions.txt     what was run, how, and with which versions
-    journal.jsonl                              what came of every simulation, in full: what a training is resumed from
-    episodes.csv                               one row per simulation; any row can be simulated again
-    choices.csv                                what would have been chosen, every five simulations
+    journal.jsonl                              what came of every episode, in full: what a training is resumed from
+    episodes.csv                               one row per episode; any row can be simulated again
+    recommendations.csv                        what would have been recommended, every five episodes
     progress.csv  events.out.tfevents.*        the learning curves, for tables and for TensorBoard
     model.zip                                  the agent, in stable-baselines3's format; optimisers have none
     parameters.json                            the learned parameters: what a robot would be sent
@@ -24,6 +24,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from sarah.episode.result import EpisodeResult
+from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import TASKS
 from sarah.errors import RunFolderError
 from sarah.files import replace_text
@@ -32,23 +34,7 @@ from sarah.runs.config_files import read_config, write_config
 from sarah.versions import versions
 
 EVENTS = "events.out.tfevents."
-"""What the names of TensorBoard's files begin with."""
-EPISODE_FIELDS = (
-    "return",
-    "score",
-    "steps_per_second",
-    "x",
-    "y",
-    "duration",
-    "termination",
-    "event_driven_shift",
-    "event_driven_lift",
-    "sole_clearance",
-    "vibration",
-    "actuator_power",
-    "peak_hip_rate",
-    "peak_leg_speed",
-)
+"""Beginning of the names of TensorBoard's files."""
 
 
 def new_run_path(task: str, algo: str, seed: int) -> Path:
@@ -81,7 +67,7 @@ class RunFolder:
         self._progress_path = path / "progress.csv"
         self._config_path = path / "config.yaml"
         self._episodes_path = path / "episodes.csv"
-        self._choices_path = path / "choices.csv"
+        self._recommendations_path = path / "recommendations.csv"
         self._parameters_path = path / "parameters.json"
 
     @classmethod
@@ -168,43 +154,33 @@ class RunFolder:
         """Read ``config.yaml`` as it stands."""
         return self._config_path.read_text(encoding="utf-8")
 
-    def append_episode(self, index: int, parameter_names: Sequence[str], info: Mapping[str, Any]) -> None:
-        """Add one simulation to ``episodes.csv``.
+    def append_episode(self, index: int, spec: EpisodeSpec, result: EpisodeResult) -> None:
+        """Add one episode to ``episodes.csv``.
 
-        :param index: of the simulation, from 0
-        :param parameter_names: column names of the parameters
-        :param info: what the environment's step returned
+        :param index: number of the episode, from 0
+        :param spec: what was simulated
+        :param result: what came of it
         """
-        fields = ("index", "seed", *parameter_names, *EPISODE_FIELDS)
-        x, y, _ = info["final_position"]
-        row = {
-            **{name: info[name] for name in EPISODE_FIELDS if name in info},
-            "index": index,
-            "seed": info["seed"],
-            "return": info["episode_return"],
-            "x": x,
-            "y": y,
-            **dict(zip(parameter_names, info["parameters"], strict=True)),
-        }
-        _append_row(self._episodes_path, fields, row)
+        parameters = dict(zip(TASKS[spec.task].parameter_names, spec.parameters, strict=True))
+        row = {"index": index, "seed": spec.seed, **parameters, **result.columns()}
+        _append_row(self._episodes_path, tuple(row), row)
 
     def episodes(self) -> Iterator[dict[str, str]]:
         """Read ``episodes.csv``, row by row, as text; nothing if nothing has been simulated yet."""
         return _rows(self._episodes_path)
 
-    def append_choice(self, simulations: int, parameter_names: Sequence[str], parameters: Sequence[float]) -> None:
-        """Add a row to ``choices.csv``.
+    def append_recommendation(self, episodes: int, parameters: Mapping[str, float]) -> None:
+        """Add a row to ``recommendations.csv``.
 
-        :param simulations: that the choice knows of
-        :param parameter_names: column names of the parameters
-        :param parameters: that would be chosen
+        :param episodes: number of episodes that the recommendation knows of
+        :param parameters: what would be recommended, by name
         """
-        row = {"simulations": simulations, **dict(zip(parameter_names, parameters, strict=True))}
-        _append_row(self._choices_path, ("simulations", *parameter_names), row)
+        row = {"episodes": episodes, **parameters}
+        _append_row(self._recommendations_path, tuple(row), row)
 
-    def choices(self) -> Iterator[dict[str, str]]:
-        """Read ``choices.csv``, row by row, as text."""
-        return _rows(self._choices_path)
+    def recommendations(self) -> Iterator[dict[str, str]]:
+        """Read ``recommendations.csv``, row by row, as text."""
+        return _rows(self._recommendations_path)
 
     def append_progress(self, columns: Sequence[str], values: Mapping[str, Any]) -> None:
         """Add a row to ``progress.csv``.
@@ -226,8 +202,9 @@ class RunFolder:
         replace_text(self._progress_path, text.getvalue())
 
     def remove_records(self) -> None:
-        """Remove what is written along with the simulations: a resumed training writes all of it anew."""
-        for path in (self._episodes_path, self._choices_path, self._progress_path, *self.path.glob(f"{EVENTS}*")):
+        """Remove what is written along with the episodes: a resumed training writes all of it anew."""
+        tables = (self._episodes_path, self._recommendations_path, self._progress_path)
+        for path in (*tables, *self.path.glob(f"{EVENTS}*")):
             path.unlink(missing_ok=True)
 
     def write_parameters(self, content: Mapping[str, Any]) -> None:

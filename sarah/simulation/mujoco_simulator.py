@@ -12,8 +12,8 @@ from functools import lru_cache
 import mujoco
 import numpy as np
 
-from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, PLATES, SIDES, RobotDescription
-from sarah.robot.reading import SensorReading, Vector
+from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, PLATES, RobotDescription
+from sarah.robot.reading import SensorReading, Side, Vector
 from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.randomisation import NOMINAL, Conditions
 from sarah.simulation.simulator import GRAVITY, TorsoState, rotate_to_body, specific_force
@@ -73,7 +73,7 @@ class MujocoSimulator:
                 for plate in PLATES
                 for index in range(len(robot.soles[f"{side}_{plate}"]))
             ]
-            for side in SIDES
+            for side in Side
         }
         self._before = np.empty(mujoco.mj_stateSize(self._model, STATE))
         self._data.qpos[2] = robot.standing_height
@@ -213,10 +213,10 @@ class MujocoSimulator:
         efforts = [share * limit for share, limit in zip(self._shares, self._limits, strict=True)]
         return tuple([speeds[index] for index in self._speeds]), tuple(efforts)
 
-    def sole_height(self, side: str) -> float:
+    def sole_height(self, side: Side) -> float:
         """Height of a foot's lowest sole contact over the floor, in m.
 
-        :param side: ``"left"`` or ``"right"``
+        :param side: foot's side
         """
         mujoco.mj_kinematics(self._model, self._data)  # a step leaves the positions of its beginning
         heights = self._data.geom_xpos[:, 2].tolist()
@@ -226,7 +226,7 @@ class MujocoSimulator:
         """Nothing is left open: MuJoCo's memory goes with the object."""
 
 
-def _sole(side: str, plate: str, index: int) -> str:
+def _sole(side: Side, plate: str, index: int) -> str:
     return f"{side}_{plate}_sole_{index}"
 
 
@@ -250,7 +250,7 @@ def _compiled(urdf: str, rate: int, solver_iterations: int) -> mujoco.MjModel:
     for geom in spec.geoms:
         geom.contype = geom.conaffinity = 0
     spec.worldbody.add_geom(name="floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0, 0, 1), contype=0, conaffinity=0)
-    for side in SIDES:
+    for side in Side:
         # In the order of the URDF: the forefoot's first.
         for plate, pad in zip(PLATES, spec.body(f"{side}_shank").geoms, strict=True):
             pad.name = f"{side}_{plate}_pad"

@@ -17,16 +17,13 @@ class Physics:
     """How finely time is divided.
 
     :param rate: physics steps per second, a multiple of the control rate; MuJoCo takes at least 300
-    :param solver_iterations: of the physics engine's constraint solver, per physics step
+    :param solver_iterations: iterations of the physics engine's constraint solver, per physics step
     :param control_rate: control ticks per second; the paper's pattern generator ran at 100
-    :param added_plate_inertia: which PyBullet gives each foot plate about its hinge while its leg is not retracted, in
-        kg m^2. It makes few solver iterations enough; 0 is the robot as it is
     """
 
     rate: int = 200
     solver_iterations: int = 32
     control_rate: int = 100
-    added_plate_inertia: float = 0.008
 
     def __post_init__(self) -> None:
         """Refuse rates that do not divide into each other."""
@@ -37,7 +34,6 @@ class Physics:
                 f"physics.rate must be a multiple of the control rate, {self.control_rate} Hz, not {self.rate!r}"
             )
         check_range("physics.solver_iterations", self.solver_iterations, 1, MOST_SOLVER_ITERATIONS)
-        check_range("physics.added_plate_inertia", self.added_plate_inertia, 0.0, LARGEST_ADDED_INERTIA, "kg m^2")
 
     def at_control_rate(self, control_rate: int) -> Physics:
         """The same physics for another control rate; its own rate is raised to the next multiple of that.
@@ -53,5 +49,45 @@ class Physics:
         return 1.0 / self.control_rate
 
 
-PHYSICS = {"standard": Physics(), "reference": Physics(1000, 100, added_plate_inertia=0.0)}
-"""Named settings: what training uses, and the finer one that published results are checked with."""
+@dataclass(frozen=True)
+class PyBulletPhysics(Physics):
+    """How finely PyBullet divides time, and what makes few solver iterations enough there.
+
+    :param added_plate_inertia: inertia that each foot plate gets about its hinge while its leg is not retracted, in
+        kg m^2; 0 is the robot as it is
+    """
+
+    added_plate_inertia: float = 0.008
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be simulated."""
+        super().__post_init__()
+        check_range("physics.added_plate_inertia", self.added_plate_inertia, 0.0, LARGEST_ADDED_INERTIA, "kg m^2")
+
+
+PHYSICS = {"standard": PyBulletPhysics(), "reference": PyBulletPhysics(1000, 100, added_plate_inertia=0.0)}
+"""Named settings: what training uses, and the finer one that published results are checked with. Another engine than
+PyBullet takes of them what it has."""
+
+
+def physics_type(engine: str) -> type[Physics]:
+    """The kind of settings that an engine takes.
+
+    :param engine: ``"pybullet"`` or ``"mujoco"``
+    """
+    return PyBulletPhysics if engine == "pybullet" else Physics
+
+
+def physics_for(engine: str, physics: Physics) -> Physics:
+    """Settings as an engine takes them: those that only another engine knows are left out, or get their named values.
+
+    :param engine: ``"pybullet"`` or ``"mujoco"``
+    :param physics: settings of any engine
+    """
+    if type(physics) is physics_type(engine):
+        return physics
+    shared = Physics(physics.rate, physics.solver_iterations, physics.control_rate)
+    if engine != "pybullet":
+        return shared
+    named = (setting for setting in PHYSICS.values() if physics_for("mujoco", setting) == shared)
+    return next(named, PyBulletPhysics(shared.rate, shared.solver_iterations, shared.control_rate))

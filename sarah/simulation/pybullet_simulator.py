@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from itertools import product
 
-from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, PLATES, SIDES, RobotDescription
-from sarah.robot.reading import SensorReading, Vector
-from sarah.simulation.physics import PHYSICS, Physics
+from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, PLATES, RobotDescription
+from sarah.robot.reading import SensorReading, Side, Vector
+from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
 from sarah.simulation.pybullet_client import give_back_client, load_robot, pybullet, take_client
 from sarah.simulation.randomisation import NOMINAL, Conditions
 from sarah.simulation.simulator import GRAVITY, TorsoState, rotate_to_body, specific_force
@@ -76,11 +76,11 @@ class PyBulletSimulator:
         )
         self._joints = [self._links[name] for name in ACTUATED_JOINTS]
         self._pads: dict[tuple[int, int], int] = {}
-        for index, (side, plate) in enumerate(product(SIDES, PLATES)):
+        for index, (side, plate) in enumerate(product(Side, PLATES)):
             shank, foot = self._links[f"{side}_shank"], self._links[f"{side}_{plate}"]
             self._pads[shank, foot] = self._pads[foot, shank] = index
         self._feet = {}
-        for side in SIDES:
+        for side in Side:
             plates = [f"{side}_{plate}" for plate in PLATES]
             self._feet[side] = ([self._links[name] for name in plates], [self.robot.soles[name] for name in plates])
         self._keep_only_pad_contacts()
@@ -88,13 +88,13 @@ class PyBulletSimulator:
         # A servo's share of the way in one physics step, so that it is the same first-order lag at every rate.
         gain = 1.0 - math.exp(-conditions.actuator_bandwidth / physics.rate)
         self._gains = [gain] * len(self._joints)
-        self._added_plate_inertia = physics.added_plate_inertia
+        self._added_plate_inertia = physics.added_plate_inertia if isinstance(physics, PyBulletPhysics) else 0.0
         self._plate_inertias = {
             link: pybullet.getDynamicsInfo(self._body, link, physicsClientId=self._client)[2]
             for links, _ in self._feet.values()
             for link in links
         }
-        self._retracted = dict.fromkeys(SIDES, True)
+        self._retracted = dict.fromkeys(Side, True)
         # PyBullet takes them as impulses over the whole tick, and lets every substep spend all of it.
         self._efforts = [self.robot.efforts[name] / self._substeps for name in ACTUATED_JOINTS]
         self._look()
@@ -157,11 +157,11 @@ class PyBulletSimulator:
             positionGains=self._gains,
             physicsClientId=self._client,
         )
-        for side, length in zip(SIDES, targets[-len(SIDES) :], strict=True):  # the legs' lengths come last
+        for side, length in zip(Side, targets[-len(Side) :], strict=True):  # the legs' lengths come last
             if (length > 0.0) != self._retracted[side]:
                 self._retract(side, length > 0.0)
 
-    def _retract(self, side: str, retracted: bool) -> None:
+    def _retract(self, side: Side, retracted: bool) -> None:
         """Leave the plates of a leg that is retracted their own inertia, and give those of another leg the added one.
 
         Light plates between the floor and pads that carry a whole robot make the solver converge slowly. While they
@@ -236,10 +236,10 @@ class PyBulletSimulator:
             loads[self._pads[contact[3], contact[4]]] += contact[9] * self._substeps
         return (loads[0], loads[1], loads[2], loads[3])
 
-    def sole_height(self, side: str) -> float:
+    def sole_height(self, side: Side) -> float:
         """Height of a foot's lowest sole contact over the floor, in m.
 
-        :param side: ``"left"`` or ``"right"``
+        :param side: foot's side
         """
         lowest = math.inf
         links, soles = self._feet[side]

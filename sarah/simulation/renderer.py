@@ -9,8 +9,8 @@ import numpy as np
 from PIL import Image
 
 from sarah.errors import ConfigurationError
-from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, PLATES, SIDES, RobotDescription
-from sarah.robot.reading import Vector
+from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, PLATES, RobotDescription
+from sarah.robot.reading import Side, Vector
 from sarah.simulation.engines import INSTALLATION, is_installed
 from sarah.simulation.pybullet_client import give_back_client, load_robot, pybullet, take_client
 from sarah.simulation.scenery import STANDARD_CAMERA, Camera, View, floor, shaded
@@ -79,7 +79,7 @@ class Renderer:
         for name, value in joints.items():
             pybullet.resetJointState(self._body, self._indices[name], value, physicsClientId=client)
         view = View(width, height, camera)
-        soles = [self._soles(side) for side in SIDES]
+        soles = [self._soles(side) for side in Side]
         torso = [pybullet.multiplyTransforms(position, orientation, corner, (0, 0, 0, 1))[0] for corner in self._torso]
         left, top, right, bottom = rectangle = view.rectangle(np.concatenate((torso, *soles)), MARGIN)
         picture = floor(width, height, camera).copy()
@@ -96,7 +96,7 @@ class Renderer:
         reach = np.max([np.abs(box[5]) + np.array(box[3]) / 2 for box in boxes], axis=0)
         return np.array(list(product((-1, 1), repeat=3))) * reach
 
-    def _soles(self, side: str) -> np.ndarray:
+    def _soles(self, side: Side) -> np.ndarray:
         """Corners of a foot's sole in the world, in order around it."""
         corners = []
         for plate, order in zip(PLATES, (1, -1), strict=True):

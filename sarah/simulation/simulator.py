@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple, Protocol
 
-from sarah.robot.reading import SensorReading, Vector
+from sarah.robot.reading import SensorReading, Side, Vector
 
 GRAVITY = 9.81
 """In m/s^2."""
@@ -82,10 +82,10 @@ class Simulator(Protocol):
     def actuator_motion(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Speeds (rad/s, m/s) and efforts (Nm, N) of the actuators, in the order of ``ACTUATED_JOINTS``."""
 
-    def sole_height(self, side: str) -> float:
+    def sole_height(self, side: Side) -> float:
         """Height of a foot's lowest sole contact over the floor, in m.
 
-        :param side: ``"left"`` or ``"right"``
+        :param side: foot's side
         """
 
     def close(self) -> None:

@@ -20,7 +20,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import TASKS, Task
 from sarah.episode.workers import Executor, Job
 from sarah.files import replacing
-from sarah.runs.config import SEARCHERS, TrainingConfig
+from sarah.runs.config import OPTIMISERS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.randomisation import Randomisation
 from sarah.training.optimisers import Searcher, make_searcher
@@ -48,7 +48,7 @@ def learn(
     :param workers: that simulate
     :return: what the algorithm itself would choose in the end
     """
-    if config.algo in SEARCHERS:
+    if config.algo in OPTIMISERS:
         return _search(config, simulations, recorder, workers)
     env = EpisodeVecEnv(config.task, config.episode, simulations, config.slots, workers)
     model = make_agent(config, env)
@@ -148,4 +148,4 @@ def _tell_oldest(
     action, spec, job = running.popleft()
     result = job.result()
     searcher.tell(action, result.episode_return)
-    recorder.record({**result.fields(), "seed": spec.seed, "parameters": spec.parameters})
+    recorder.record(spec, result)

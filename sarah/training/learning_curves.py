@@ -17,7 +17,7 @@ from tensorboard.compat.proto.summary_pb2 import Summary
 from tensorboard.plugins.hparams import summary_v2 as hparams
 from tensorboard.summary.writer.record_writer import RecordWriter
 
-from sarah.episode.tasks import BALANCE
+from sarah.episode.tasks import BalanceConfig
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import EVENTS, RunFolder
 
@@ -30,7 +30,7 @@ LEARNED = ("learned/score", "learned/steps_per_second", "learned/survival_rate",
 """What a training ends with, beside its hyper-parameters."""
 
 
-class LearningCurves:
+class CurveWriter:
     """``progress.csv`` and TensorBoard's event file of a run.
 
     :param run: the run folder
@@ -54,7 +54,7 @@ class LearningCurves:
 
         :param values: by name of the curve
         :param excluded: by name: where a value is not wanted, ``"csv"`` or ``"tensorboard"``
-        :param step: simulations so far
+        :param step: number of episodes so far
         """
         row = filter_excluded_keys(values, excluded, "csv")
         new = sorted(row.keys() - set(self._columns))
@@ -72,7 +72,7 @@ class LearningCurves:
         """Add pictures, which only TensorBoard shows.
 
         :param pictures: to add
-        :param step: simulations so far
+        :param step: number of episodes so far
         """
         values = [
             Summary.Value(
@@ -104,10 +104,10 @@ def hyper_parameters(config: TrainingConfig) -> dict[str, str | int | float]:
     return {
         "task": config.task,
         "algorithm": config.algo,
-        "simulations": config.simulations,
+        "episodes": config.episodes,
         "seed": config.seed,
         "slots": config.slots,
         "engine": episode.engine,
         "time_limit": episode.time_limit,
-        "push_newtons": "{:g} to {:g}".format(*episode.push.newtons) if config.task == BALANCE.name else "none",
+        "push_newtons": "{:g} to {:g}".format(*episode.push.newtons) if isinstance(episode, BalanceConfig) else "none",
     }

@@ -13,30 +13,21 @@ from stable_baselines3.common.logger import KVWriter, Logger
 from tqdm import tqdm
 
 from sarah.episode.evaluation import Evaluation
+from sarah.episode.result import METRICS, EpisodeResult
+from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
 from sarah.errors import LearningError
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
-from sarah.training.learning_curves import LEARNED, LearningCurves
+from sarah.training.learning_curves import LEARNED, CurveWriter
 from sarah.training.recommendation import Parameters, candidates, merit
 
-LOGGED_FIELDS = {
-    "score": "episode",
-    "steps_per_second": "episode",
-    "duration": "episode",
-    "event_driven_shift": "gait",
-    "event_driven_lift": "gait",
-    "sole_clearance": "gait",
-    "vibration": "actuators",
-    "actuator_power": "actuators",
-}
-"""Fields of a result that are logged under their own names, and in which group."""
-SIMULATIONS_PER_CHOICE = 5
-"""How often it is noted what would be recommended."""
+EPISODES_PER_RECOMMENDATION = 5
+"""Number of episodes after which it is noted what would be recommended."""
 
 
 class EpisodeRecorder(BaseCallback):
-    """Writes every simulation to ``episodes.csv`` and to the learning curves.
+    """Writes every episode to ``episodes.csv`` and to the learning curves.
 
     While a resumed training replays what it knows, nothing is written; once it goes on, all files are written anew, so
     that they hold what they would without the interruption.
@@ -44,25 +35,26 @@ class EpisodeRecorder(BaseCallback):
     :param run: where to
     :param task: whose parameters they are
     :param journal: of the training
-    :param progress: bar that every simulation moves
-    :param picture_interval: simulations between pictures, for TensorBoard, of what would be chosen; 0 for none
+    :param progress: bar that every episode moves
+    :param picture_interval: number of episodes between pictures, for TensorBoard, of what would be recommended; 0 for
+        none
     """
 
     log: Logger
     """Of the learning curves, which the agent writes to as well."""
     tried: list[tuple[Parameters, float]]
-    """Parameters and merit of every simulation so far."""
+    """Parameters and merit of every episode so far."""
     diverged: int
-    """Simulations so far that ended because no number came back."""
+    """Number of episodes so far that ended because no number came back."""
     choose: Callable[[], Parameters] | None
     """Tells what the algorithm would choose now; while there is such a thing, what a training would recommend is noted
-    in ``choices.csv``."""
+    in ``recommendations.csv``."""
 
     def __init__(
         self, run: RunFolder, task: Task, journal: Journal, progress: tqdm[NoReturn], picture_interval: int = 0
     ) -> None:
         super().__init__()
-        self.log = Logger(folder=None, output_formats=[_CurveWriter(self)])
+        self.log = Logger(folder=None, output_formats=[_LoggerOutput(self)])
         self.tried = []
         self.diverged = 0
         self.choose = None
@@ -71,7 +63,7 @@ class EpisodeRecorder(BaseCallback):
         self._journal = journal
         self._progress = progress
         self._picture_interval = picture_interval
-        self._curves: LearningCurves | None = None
+        self._curves: CurveWriter | None = None
         self._held: list[Callable[[], None]] = []
 
     def _on_rollout_start(self) -> None:
@@ -80,57 +72,59 @@ class EpisodeRecorder(BaseCallback):
     def _on_step(self) -> bool:
         for info in self.locals["infos"]:
             if info:  # the first steps only fill the slots
-                self.record(info)
+                self.record(info["spec"], info["result"])
         return True
 
-    def record(self, info: dict[str, Any]) -> None:
-        """Write one simulation.
+    def record(self, spec: EpisodeSpec, result: EpisodeResult) -> None:
+        """Write one episode.
 
-        :param info: what the environment's step returned
+        :param spec: what was simulated
+        :param result: what came of it
         """
-        self._write(partial(self._run.append_episode, len(self.tried), self._task.parameter_names, info))
-        self.tried.append((info["parameters"], merit(info)))
-        self.diverged += info["termination"] == "diverged"
-        x, y, _ = info["final_position"]
-        for name, value in {"return": info["episode_return"], "x": x, "y": y}.items():
+        self._write(partial(self._run.append_episode, len(self.tried), spec, result))
+        self.tried.append((spec.parameters, merit(result)))
+        self.diverged += result.termination == "diverged"
+        x, y, _ = result.final_position
+        for name, value in {"return": result.episode_return, "x": x, "y": y}.items():
             self.log.record(f"episode/{name}", value)
-        for name, group in LOGGED_FIELDS.items():
-            self.log.record(f"{group}/{name}", info[name])
-        for name, value in zip(self._task.parameter_names, info["parameters"], strict=True):
+        for metric in METRICS.values():
+            if metric.group:
+                self.log.record(f"{metric.group}/{metric.name}", getattr(result, metric.name))
+        for name, value in zip(self._task.parameter_names, spec.parameters, strict=True):
             self.log.record(f"parameters/{name}", value)
         if self.choose is not None:
-            self._record_choice(self.choose, len(self.tried))
+            self._record_recommendation(self.choose, len(self.tried))
         self.log.dump(len(self.tried))
-        self._progress.set_postfix(score=f"{info['score']:.2f}", refresh=False)
+        self._progress.set_postfix(score=f"{result.score:.2f}", refresh=False)
         self._progress.update()
 
-    def _record_choice(self, choose: Callable[[], Parameters], simulations: int) -> None:
+    def _record_recommendation(self, choose: Callable[[], Parameters], episodes: int) -> None:
         """Note what would be recommended, and show it, whenever it is time."""
-        names = self._task.parameter_names
-        noted = simulations % SIMULATIONS_PER_CHOICE == 0
-        drawn = self._picture_interval and simulations % self._picture_interval == 0
+        noted = episodes % EPISODES_PER_RECOMMENDATION == 0
+        drawn = self._picture_interval and episodes % self._picture_interval == 0
         if not noted and not drawn:
             return
-        (choice,) = candidates(choose(), self.tried, 1, self._task.width)
+        (recommended,) = candidates(self._task, choose(), self.tried, 1)
         if noted:
-            self._write(partial(self._run.append_choice, simulations, names, choice))
-            for name, value in zip(names, choice, strict=True):
-                self.log.record(f"choice/{name}", value, exclude="csv")  # it has choices.csv
+            named = dict(zip(self._task.parameter_names, recommended, strict=True))
+            self._write(partial(self._run.append_recommendation, episodes, named))
+            for name, value in named.items():
+                self.log.record(f"recommendation/{name}", value, exclude="csv")  # it has recommendations.csv
         if drawn:
-            self._write(partial(self._draw, choice, simulations))
+            self._write(partial(self._draw, recommended, episodes))
 
-    def _draw(self, choice: Parameters, simulations: int) -> None:
+    def _draw(self, recommended: Parameters, episodes: int) -> None:
         from sarah.pictures.gait_snapshot import draw_gait  # matplotlib, for those who want pictures
 
         config = self._run.config()
-        self._open_curves().show(draw_gait(choice, config.task, config.episode), simulations)
+        self._open_curves().show(draw_gait(recommended, config.task, config.episode), episodes)
 
     def write_curves(self, values: dict[str, Any], excluded: dict[str, tuple[str, ...]], step: int) -> None:
         """Write a point of each learning curve.
 
         :param values: by name
         :param excluded: by name: where a value is not wanted
-        :param step: simulations so far
+        :param step: number of episodes so far
         """
         self._write(lambda: self._open_curves().write(values, excluded, step))
 
@@ -140,10 +134,10 @@ class EpisodeRecorder(BaseCallback):
         :param learned: how the learned parameters do on unseen seeds
         """
         values = (
-            learned.score_median,
-            learned.steps_per_second_median,
+            learned.median("score"),
+            learned.median("steps_per_second"),
             learned.survival_rate,
-            learned.sole_clearance_mean,
+            learned.mean("sole_clearance"),
         )
         self.write_curves(dict(zip(LEARNED, values, strict=True)), dict.fromkeys(LEARNED, ("csv",)), len(self.tried))
         self._write_held()
@@ -160,14 +154,14 @@ class EpisodeRecorder(BaseCallback):
         for action in held:
             action()
 
-    def _open_curves(self) -> LearningCurves:
+    def _open_curves(self) -> CurveWriter:
         if self._curves is None:
             self._run.remove_records()
-            self._curves = LearningCurves(self._run)
+            self._curves = CurveWriter(self._run)
         return self._curves
 
 
-class _CurveWriter(KVWriter):
+class _LoggerOutput(KVWriter):
     """What a logger of stable-baselines3 writes to."""
 
     def __init__(self, recorder: EpisodeRecorder) -> None:
@@ -187,5 +181,5 @@ def check_weights(model: BaseAlgorithm) -> None:
     norms = torch._foreach_norm(list(model.policy.parameters()))
     if not torch.isfinite(torch.stack(norms)).all():
         raise LearningError(
-            f"the agent's weights are no longer finite after {model.num_timesteps} simulations: it learns nothing more"
+            f"the agent's weights are no longer finite after {model.num_timesteps} episodes: it learns nothing more"
         )

@@ -1,8 +1,7 @@
-"""Training: an algorithm by name, one simulation after another, everything of it in a run folder."""
+"""Training: an algorithm by name, one episode after another, everything of it in a run folder."""
 
 from __future__ import annotations
 
-import dataclasses
 import random
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,10 +10,10 @@ from statistics import mean
 import torch
 from tqdm import tqdm
 
-from sarah.episode.evaluation import Evaluation, summarise
+from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
-from sarah.episode.tasks import BALANCE, TASKS
+from sarah.episode.tasks import TASKS
 from sarah.episode.workers import Executor, Workers
 from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
@@ -24,7 +23,7 @@ from sarah.training.recommendation import Parameters, candidates, merit
 from sarah.training.recorder import EpisodeRecorder
 
 SUMMARY_EPISODES = 10
-"""Episodes on unseen seeds that the closing summary's score is the median of."""
+"""Number of episodes on unseen seeds that the closing summary is of."""
 
 
 @dataclass(frozen=True)
@@ -33,13 +32,13 @@ class Learned:
 
     :param parameters: the learned ones
     :param evaluation: how they do on unseen seeds
-    :param without: how the task's neutral parameters do on the same seeds, if it has some
-    :param diverged: how many of the training's simulations no longer returned numbers
+    :param baseline: how the task's neutral parameters do on the same seeds, if it has some
+    :param diverged: number of the training's episodes that no longer returned numbers
     """
 
     parameters: Parameters
     evaluation: Evaluation
-    without: Evaluation | None
+    baseline: Evaluation | None
     diverged: int
 
 
@@ -53,12 +52,12 @@ def train(
 ) -> Learned:
     """Train, and write the run folder. What the run folder's journal knows already is not simulated again.
 
-    :param config: of the training
+    :param config: settings of the training
     :param run: a new run folder, or that of the same training, which was interrupted and goes on
-    :param workers: that simulate; by default this process does. What is learned does not depend on them
+    :param workers: who simulates; by default this process does. What is learned does not depend on it
     :param progress_bar: whether to show one
-    :param interrupted: asked after every simulation whether to stop
-    :param picture_interval: simulations between pictures for TensorBoard; 0 for none. They change no result
+    :param interrupted: function that says after every episode whether to stop
+    :param picture_interval: number of episodes between pictures for TensorBoard; 0 for none. They change no result
     :return: what was learned
     :raises RunFolderError: if another training uses the run folder, or it cannot be resumed here
     :raises LearningError: if what learns no longer returns numbers
@@ -73,75 +72,61 @@ def _train(
 ) -> Learned:
     # The networks are small: more threads only wait for each other.
     torch.set_num_threads(1)
-    compared = config.compared_simulations
     task = TASKS[config.task]
     seeds = range(SUMMARY_EPISODES)
-    with tqdm(total=config.simulations, unit=" simulations", disable=not progress_bar) as progress:
+    with tqdm(total=config.episodes, unit=" episodes", disable=not progress_bar) as progress:
         recorder = EpisodeRecorder(run, task, journal, progress, picture_interval)
-        choice = learn(config, config.simulations - compared, run, recorder, journal)
+        choice = learn(config, config.episodes - config.compared_episodes, run, recorder, journal)
         recorder.choose = None
-        rivals = candidates(choice, recorder.tried, config.candidate_count, task.width)
-        without = None if task.neutral is None else evaluate(task.neutral, config, seeds, journal)
-        parameters = _compare(rivals, compared, config, recorder, journal, without)
-    evaluation = evaluate(parameters, config, seeds, journal)
+        best = candidates(task, choice, recorder.tried, config.candidate_count)
+        baseline = None
+        if task.neutral is not None:
+            baseline = evaluate(config.task, task.neutral, config.episode, seeds, journal)
+        parameters = _compare(best, config, recorder, journal, baseline)
+    evaluation = evaluate(config.task, parameters, config.episode, seeds, journal)
     recorder.close(evaluation)
     run.write_parameters(
         {
             "task": config.task,
             "algorithm": config.algo,
             "seed": config.seed,
-            "simulations": config.simulations,
+            "episodes": config.episodes,
             "diverged": recorder.diverged,
             "parameters": dict(zip(task.parameter_names, parameters, strict=True)),
-            "stepping": config.episode.stepping if task == BALANCE else None,
-            "evaluation": dataclasses.asdict(evaluation),
-            "without": without and dataclasses.asdict(without),
-            "chatters": without and evaluation.chatters(without),
+            "stepping": getattr(config.episode, "stepping", None),
+            "evaluation": evaluation.summary(),
+            "baseline": baseline and baseline.summary(),
+            "chatters": baseline and evaluation.chatters(baseline),
         }
     )
-    return Learned(parameters, evaluation, without, recorder.diverged)
+    return Learned(parameters, evaluation, baseline, recorder.diverged)
 
 
 def _compare(
-    rivals: list[Parameters],
-    simulations: int,
+    best: list[Parameters],
     config: TrainingConfig,
     recorder: EpisodeRecorder,
     workers: Executor,
-    without: Evaluation | None,
+    baseline: Evaluation | None,
 ) -> Parameters:
     """Simulate the candidates in turn, each round on one seed for all, and return the best."""
     generator = random.Random(config.seed)
     specs: list[EpisodeSpec] = []
-    while len(specs) < simulations:
+    while len(specs) < config.compared_episodes:
         seed = generator.randrange(FIRST_TRAINING_SEED, 2**32)
-        specs += [EpisodeSpec(rival, seed, config.task, config.episode) for rival in rivals]
-    results: dict[Parameters, list[EpisodeResult]] = {rival: [] for rival in rivals}
-    specs = specs[:simulations]
+        specs += [EpisodeSpec(candidate, seed, config.task, config.episode) for candidate in best]
+    results: dict[Parameters, list[EpisodeResult]] = {candidate: [] for candidate in best}
+    specs = specs[: config.compared_episodes]
     for spec, result in zip(specs, workers.simulate_all(specs), strict=True):
-        recorder.record({**result.fields(), "seed": spec.seed, "parameters": spec.parameters})
+        recorder.record(spec, result)
         results[spec.parameters].append(result)
-    return max(rivals, key=lambda rival: _rank(results[rival], without))
+    return max(best, key=lambda candidate: _rank(results[candidate], baseline))
 
 
-def _rank(results: list[EpisodeResult], without: Evaluation | None) -> tuple[bool, float]:
-    """What is a gait and does not chatter comes first, and among equals the best mean merit."""
+def _rank(results: list[EpisodeResult], baseline: Evaluation | None) -> tuple[bool, float]:
+    """Valid gaits that do not chatter rank first, and among equals the best mean merit."""
     if not results:
         return (False, 0.0)
-    evaluation = summarise(results)
-    chatters = without is not None and evaluation.chatters(without)
-    return (evaluation.is_gait and not chatters, mean(merit(result.fields()) for result in results))
-
-
-def evaluate(
-    parameters: Parameters, config: TrainingConfig, seeds: range, workers: Executor | None = None
-) -> Evaluation:
-    """Simulate parameters on some seeds.
-
-    :param parameters: of the pattern generator
-    :param config: of the training they come from
-    :param seeds: of the episodes; those below 2^31 are in no training
-    :param workers: that simulate; by default this process does
-    """
-    specs = [EpisodeSpec(parameters, seed, config.task, config.episode) for seed in seeds]
-    return summarise((workers or Workers()).simulate_all(specs))
+    evaluation = Evaluation(tuple(results))
+    chatters = baseline is not None and evaluation.chatters(baseline)
+    return (evaluation.is_gait and not chatters, mean(merit(result) for result in results))

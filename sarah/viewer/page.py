@@ -11,13 +11,13 @@ from typing import Any, NamedTuple
 
 import viser
 
-from sarah.episode.ending import ENDINGS
+from sarah.episode.ending import TERMINATIONS
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, Task
 from sarah.episode.trace import Trace
 from sarah.robot.description import describe_robot
-from sarah.runs.run_episodes import Choice
+from sarah.runs.run_episodes import RunEpisode
 from sarah.viewer.background import BackgroundSimulation, Wish
 from sarah.viewer.playback import Playback
 from sarah.viewer.plots import Plots
@@ -29,17 +29,6 @@ SECONDS_BEFORE_PUSH = 0.5
 """From where an episode is played on when a push is added to it."""
 LARGEST_PUSH = 200.0
 """Of the slider, in N."""
-HINTS = {
-    "P1": "rate of rocking back at which the swing foot is put down, in rad/s",
-    "P2": "tilt over the support leg at which the swing foot may leave, in m/s²",
-    "P3": "five times the rate towards the support leg at which it may leave, in rad/s",
-    "P4": "stretches the time-out of LIFT",
-    "P5": "stretches the time-outs of SHIFT and LAND",
-    "V1": "how much the lateral acceleration abducts both hips",
-    "V2": "constant added to that acceleration, in m/s²",
-    "V3": "how much the torso's pitch flexes the swing leg",
-    "V4": "constant flexion of both legs, in units of 0.02 rad",
-}
 
 
 class Shown(NamedTuple):
@@ -65,7 +54,7 @@ class Page:
     :param chosen: what is shown first
     """
 
-    def __init__(self, server: viser.ViserServer, choices: Sequence[Choice], chosen: Choice) -> None:
+    def __init__(self, server: viser.ViserServer, choices: Sequence[RunEpisode], chosen: RunEpisode) -> None:
         self._choices = {choice.label: choice for choice in choices}
         self._chosen = chosen
         self._wanted = Scenario.of(chosen.spec)
@@ -118,8 +107,10 @@ class Page:
 
     def _add_sliders(self, task: Task) -> list[viser.GuiSliderHandle[float]]:
         return [
-            self._gui.add_slider(name, min=task.low, max=task.high, step=0.01, initial_value=0.0, hint=HINTS[name])
-            for name in task.parameter_names
+            self._gui.add_slider(
+                one.name, min=one.low, max=one.high, step=0.01, initial_value=0.0, hint=one.description
+            )
+            for one in task.parameters
         ]
 
     def _connect(self) -> None:
@@ -147,7 +138,7 @@ class Page:
         else:
             self._playback.play()
 
-    def _play_choice(self, choice: Choice) -> None:
+    def _play_choice(self, choice: RunEpisode) -> None:
         with self._lock:
             self._chosen, self._wanted = choice, Scenario.of(choice.spec)
             self._set_sliders(self._wanted)
@@ -252,11 +243,11 @@ def _on_user(handle: Any, do: Callable[[Any], None]) -> None:
 
 ROWS: tuple[tuple[str, Callable[[EpisodeResult], str]], ...] = (
     ("score", lambda result: f"{result.score:.3f}"),
-    ("", lambda result: ENDINGS[result.termination] + ("" if result.survived else f" at {result.duration:.1f} s")),
+    ("", lambda result: TERMINATIONS[result.termination] + ("" if result.survived else f" at {result.duration:.1f} s")),
     ("steps/s", lambda result: f"{result.steps_per_second:.2f}"),
     ("drift", lambda result: f"{100 * result.drift:.1f} cm"),
     ("clearance", lambda result: f"{1000 * result.sole_clearance:.0f} mm"),
-    ("by sensors", lambda result: f"{result.event_driven_shift:.0%}, {result.event_driven_lift:.0%}"),
+    ("by sensors", lambda result: f"{result.shifts_by_sensors:.0%}, {result.lifts_by_sensors:.0%}"),
 )
 
 

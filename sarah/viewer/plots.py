@@ -9,7 +9,6 @@ import numpy as np
 import viser
 from viser import uplot
 
-from sarah.control.pattern_generator import RATE_SCALE
 from sarah.episode.trace import Trace
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.viewer.scenario import Scenario
@@ -57,6 +56,10 @@ class Chart:
     smallest_span: float = 0.0
 
 
+def _least_rate(_: Trace, scenario: Scenario) -> float:
+    return scenario.config.controller.rate_scale * scenario.stepping[2]
+
+
 def _pads() -> tuple[Line, ...]:
     names = ("left fore", "left hind", "right fore", "right hind")
     return tuple(
@@ -78,7 +81,7 @@ CHARTS = (
         "rate (rad/s)",
         (
             Line("rate", DARK, lambda trace, _: trace.rate),
-            Line("0.2 P3: may lift above", UPPER, lambda _, scenario: RATE_SCALE * scenario.stepping[2], dashed=True),
+            Line("0.2 P3: may lift above", UPPER, _least_rate, dashed=True),
             Line("-P1: lands below", LOWER, lambda _, scenario: -scenario.stepping[0], dashed=True),
         ),
     ),

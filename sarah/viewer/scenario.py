@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass
 
-from sarah.episode.push import Push, draw_push
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
-from sarah.episode.tasks import BALANCE
+from sarah.episode.push import Push
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BALANCE, TASKS, BalanceConfig
 
 
 @dataclass(frozen=True)
@@ -42,29 +42,30 @@ class Scenario:
     balance: tuple[float, ...]
     push: KnownPush
     seed: int
-    config: EpisodeConfig
+    config: BalanceConfig
 
     @classmethod
     def of(cls, spec: EpisodeSpec) -> Scenario:
         """Read what an episode's specification amounts to.
 
-        :param spec: of either task; a push that it draws from its seed becomes a given one
+        :param spec: specification of any task's; a push that it draws from its seed becomes a given one
         """
-        if spec.task != BALANCE.name:
-            assert BALANCE.neutral is not None
-            return cls(spec.parameters, BALANCE.neutral, NO_PUSH, spec.seed, spec.config)
-        drawn = draw_push(spec.config.push, spec.seed)
-        x, y, _ = drawn.force
-        push = KnownPush(math.hypot(x, y), math.degrees(math.atan2(y, x)) % 360.0, drawn.begin)
-        return cls(spec.config.stepping, spec.parameters, push, spec.seed, spec.config)
+        task = TASKS[spec.task]
+        stepping, balance = task.controller_parameters(spec.parameters, spec.config)
+        drawn, push = task.draw_push(spec.config, spec.seed), NO_PUSH
+        if drawn is not None:
+            x, y, _ = drawn.force
+            push = KnownPush(math.hypot(x, y), math.degrees(math.atan2(y, x)) % 360.0, drawn.begin)
+        hips = BALANCE.baseline if balance is None else astuple(balance)
+        return cls(astuple(stepping), hips, push, spec.seed, BALANCE.config_of(spec.config))
 
     def spec(self) -> EpisodeSpec:
         """The episode, as one of the balance task, which has all that the sliders can set."""
-        push = Push(
+        given = Push(
             newtons=(self.push.newtons, self.push.newtons),
             degrees=(self.push.degrees, self.push.degrees),
             at_seconds=(self.push.begin, self.push.begin),
             duration=self.config.push.duration,
         )
-        config = replace(self.config, stepping=self.stepping, push=push)  # type: ignore[arg-type]  # five of them
+        config = BALANCE.config_of(self.config, stepping=self.stepping, push=given)
         return EpisodeSpec(self.balance, self.seed, BALANCE.name, config)

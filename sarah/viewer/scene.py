@@ -1,4 +1,4 @@
-"""The robot in the page's scene, with the load of its pads, its support leg and the push."""
+"""The robot in the page's scene, with the load of its pads, its stance leg and the push."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class RobotScene:
         self._robot = ViserUrdf(server, self._model, root_node_name="/robot")
         self._loads = [self._add_load(robot, *pad) for pad in zip(ANKLE_JOINTS, PAD_COLOURS, strict=True)]
         self._support = self._scene.add_cylinder(
-            "/support", radius=0.17, height=0.004, color=channels(PHASE_COLOURS["shift"]), opacity=0.7, visible=False
+            "/stance", radius=0.17, height=0.004, color=channels(PHASE_COLOURS["shift"]), opacity=0.7, visible=False
         )
         self._status = self._scene.add_label(
             "/status", "", position=(0.0, 0.0, robot.standing_height + 0.3), anchor="bottom-center"
@@ -96,7 +96,7 @@ class RobotScene:
             self._status.text = " · ".join(describe_tick(trace, tick))
 
     def _show_support(self, trace: Trace, tick: int) -> None:
-        side = "right" if trace.support[tick] > 0 else "left"
+        side = "right" if trace.stance[tick] > 0 else "left"
         hinge = self._model.get_transform(f"{side}_forefoot", "torso")[:3, 3]
         rotation = viser.transforms.SO3(self._torso.wxyz).as_matrix()
         x, y, _ = self._torso.position + rotation @ hinge
@@ -149,7 +149,7 @@ def describe_tick(trace: Trace, tick: int) -> tuple[str, str]:
     :param trace: of the episode
     :param tick: of the trace
     """
-    side = "right" if trace.support[tick] > 0 else "left"
+    side = "right" if trace.stance[tick] > 0 else "left"
     return (
         f"{trace.time[tick]:.1f} s · {trace.phase[tick].upper()}, {side} leg supports",
         f"{trace.steps_per_second[tick]:.1f} steps/s · score so far {trace.score[tick]:.2f}",

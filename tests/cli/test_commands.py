@@ -7,10 +7,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from laboratory import need
+from laboratory import NEEDS_PYBULLET, need
 
 from sarah.cli.eval import EvalOptions, _changed
-from sarah.episode.spec import EpisodeConfig
+from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import STEPPING
 from sarah.simulation.physics import Physics
 
@@ -25,7 +25,7 @@ def run(command: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess
 @pytest.fixture(scope="module")
 def trained(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, subprocess.CompletedProcess[str]]:
     folder = tmp_path_factory.mktemp("work")
-    arguments = ("--task", "stepping", "--algo", "naf", "--simulations", "4", "--seed", "1", "--run-dir", "mine")
+    arguments = ("--task", "stepping", "--algo", "naf", "--episodes", "4", "--seed", "1", "--run-dir", "mine")
     return folder / "mine", run("sarah-train", *arguments, *SHORT, cwd=folder)
 
 
@@ -48,7 +48,7 @@ def test_workers_train_and_evaluate_the_same(
     trained: tuple[Path, subprocess.CompletedProcess[str]], tmp_path: Path
 ) -> None:
     alone, _ = trained
-    arguments = ("--simulations", "4", "--seed", "1", "--workers", "2", "--run-dir", "mine")
+    arguments = ("--episodes", "4", "--seed", "1", "--workers", "2", "--run-dir", "mine")
     process = run("sarah-train", *arguments, *SHORT, cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     assert "Warning" not in process.stderr
@@ -61,7 +61,7 @@ def test_workers_train_and_evaluate_the_same(
 
 
 def test_compare_ends_with_table_and_plot(tmp_path: Path) -> None:
-    arguments = ("--algorithms", "naf", "random", "--seeds", "1", "--simulations", "6", "--episodes", "1")
+    arguments = ("--algorithms", "naf", "random", "--seeds", "1", "--episodes", "6", "--episodes", "1")
     process = run("sarah-compare", "race", *arguments, *SHORT, "--workers", "2", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     assert "| naf | 1 |" in process.stdout and "| random | 1 |" in process.stdout
@@ -77,6 +77,7 @@ def test_eval_summarises_a_run(trained: tuple[Path, subprocess.CompletedProcess[
         assert text in process.stdout
 
 
+@NEEDS_PYBULLET
 def test_transfer_compares_the_engines_on_the_same_seeds(
     trained: tuple[Path, subprocess.CompletedProcess[str]], tmp_path: Path
 ) -> None:
@@ -98,7 +99,7 @@ def test_transfer_compares_the_engines_on_the_same_seeds(
 
 def test_mujoco_trains_and_its_run_is_evaluated_in_it(tmp_path: Path) -> None:
     need("mujoco")
-    arguments = ("--algo", "random", "--simulations", "2", "--engine", "mujoco", "--run-dir", "mine")
+    arguments = ("--algo", "random", "--episodes", "2", "--engine", "mujoco", "--run-dir", "mine")
     process = run("sarah-train", *arguments, *SHORT, "--workers", "2", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     assert "engine: mujoco" in (tmp_path / "mine" / "config.yaml").read_text()
@@ -115,7 +116,7 @@ def test_eval_prints_one_json_object(trained: tuple[Path, subprocess.CompletedPr
     process = run("sarah-eval", str(folder), "--episodes", "2", "--first-seed", "5", "--json", cwd=folder)
     content = json.loads(process.stdout)
     expected = {"task", "algorithm", "episodes", "score_mean", "score_median", "steps_per_second_mean", "drift_mean"}
-    expected |= {"survival_rate", "event_driven_shift_mean", "event_driven_lift_mean", "sole_clearance_mean"}
+    expected |= {"survival_rate", "shifts_by_sensors_mean", "lifts_by_sensors_mean", "sole_clearance_mean"}
     assert expected | {"parameters"} <= set(content)
     assert content["task"] == "stepping" and content["algorithm"] == "naf" and content["episodes"] == 2
     learned = json.loads((folder / "parameters.json").read_text())["parameters"]
@@ -126,7 +127,7 @@ def test_eval_prints_one_json_object(trained: tuple[Path, subprocess.CompletedPr
 def balanced(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> Path:
     """A second training on what the first one learned."""
     first, _ = trained
-    arguments = ("--task", "balance", "--from", "mine", "--simulations", "4", "--run-dir", "second", *SHORT)
+    arguments = ("--task", "balance", "--from", "mine", "--episodes", "4", "--run-dir", "second", *SHORT)
     process = run("sarah-train", *arguments, cwd=first.parent)
     assert process.returncode == 0, process.stderr
     assert "V4 = " in process.stdout and "with V = 0" in process.stdout
@@ -193,7 +194,7 @@ def test_eval_takes_parameters_without_a_run(tmp_path: Path) -> None:
 
 def test_training_is_configured_by_a_file_and_overridden_by_options(tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text("algo: td3\nsimulations: 2\nslots: 1\nepisode: {time_limit: 1.5}\n")
-    process = run("sarah-train", "--config", "mine.yaml", "--simulations", "3", "--run-dir", "out", cwd=tmp_path)
+    process = run("sarah-train", "--config", "mine.yaml", "--episodes", "3", "--run-dir", "out", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     config = (tmp_path / "out" / "config.yaml").read_text()
     assert "algo: td3" in config and "simulations: 3" in config and "time_limit: 1.5" in config
@@ -204,12 +205,12 @@ def test_training_is_configured_by_a_file_and_overridden_by_options(tmp_path: Pa
     [
         (
             "sarah-train",
-            ("--task", "--algo", "--simulations", "--seed", "--run-dir", "--config", "--workers", "--scheduler"),
+            ("--task", "--algo", "--episodes", "--seed", "--run-dir", "--config", "--workers", "--scheduler"),
         ),
         ("sarah-figures", ("RUN", "--out")),
         ("sarah-view", ("RUN|NUMBERS", "--episode", "--seed", "--export", "--host", "--port", "no password")),
         ("sarah-video", ("RUN|NUMBERS", "OUT", "--episode", "--seed", "--push-newtons", "--seconds", "--speed")),
-        ("sarah-compare", ("DIR", "--algorithms", "--seeds", "--simulations", "--best-known", "--workers")),
+        ("sarah-compare", ("DIR", "--algorithms", "--seeds", "--episodes", "--best-known", "--workers")),
         ("sarah-eval", ("RUN", "--episodes", "--first-seed", "--json", "--parameters", "--task")),
     ],
 )
@@ -255,8 +256,8 @@ def test_help_loads_nothing_slow(command: str) -> None:
         ("sarah-train --task steping", "unknown task 'steping', did you mean 'stepping'?"),
         ("sarah-train --algo naff", "unknown algo 'naff', did you mean 'naf'?"),
         ("sarah-train --simulatons 5", "did you mean --simulations?"),
-        ("sarah-train --simulations -5", "simulations must be between 1 and 1e+06, not -5"),
-        ("sarah-train --simulations many", "--simulations must be a whole number, not 'many'"),
+        ("sarah-train --episodes -5", "simulations must be between 1 and 1e+06, not -5"),
+        ("sarah-train --episodes many", "--episodes must be a whole number, not 'many'"),
         ("sarah-train --seed -1", "seed must be between 0"),
         ("sarah-train --workers -1", "workers must be between 0 and 1000, not -1"),
         ("sarah-train --workers 1 --scheduler tcp://127.0.0.1:9", "give one of the two"),

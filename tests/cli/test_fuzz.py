@@ -11,11 +11,11 @@ from sarah.control.pattern_generator import LEG_SPEED, STAND_SECONDS, PatternGen
 from sarah.envs.sarah_env import observation_from
 from sarah.episode.ending import TERMINATIONS
 from sarah.episode.episode import Episode, simulate
-from sarah.episode.evaluation import summarise
 from sarah.episode.push import PLAUSIBLE as PLAUSIBLE_PUSH
 from sarah.episode.push import Push
 from sarah.episode.result import EpisodeResult
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING
 from sarah.episode.workers import stand
 from sarah.errors import ConfigurationError, SimulationError
@@ -157,7 +157,9 @@ def test_a_diverging_simulation_ends_as_diverged_with_a_finite_reward(
     assert result.termination == "diverged" and 0.0 <= result.episode_return < 1.0
     assert result.duration <= max(seconds, 1.0) + 0.05
     assert all(map(math.isfinite, (*observation, *observation_from(episode.last_reading), *result.final_position)))
-    assert summarise([result, simulate(EpisodeSpec((1.0,) * 5, 0, config=EpisodeConfig(time_limit=1.1)))]).diverged == 1
+    assert (
+        Evaluation([result, simulate(EpisodeSpec((1.0,) * 5, 0, config=EpisodeConfig(time_limit=1.1)))]).diverged == 1
+    )
 
 
 def test_who_diverges_while_standing_leaves_nothing_to_show(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,8 +15,8 @@ import pytest
 BIN = Path(sys.executable).parent
 COARSE = ("--episode.time-limit", "2", "--episode.physics.rate", "100", "--episode.physics.solver-iterations", "5")
 # Long enough to be interrupted three times also where the test itself has to wait for the processor.
-TRAINING = ("--simulations", "60", "--slots", "2", "--run-dir", "run", *COARSE)
-RECORDS = ("episodes.csv", "choices.csv", "progress.csv", "parameters.json")
+TRAINING = ("--episodes", "60", "--slots", "2", "--run-dir", "run", *COARSE)
+RECORDS = ("episodes.csv", "recommendations.csv", "progress.csv", "parameters.json")
 
 
 def begin(folder: Path, *arguments: str) -> subprocess.Popen[str]:

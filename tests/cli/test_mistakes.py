@@ -10,7 +10,7 @@ import pytest
 import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from laboratory import need
+from laboratory import NEEDS_PYBULLET, need
 
 from sarah.errors import ConfigurationError
 from sarah.runs.config import TrainingConfig
@@ -66,8 +66,8 @@ BALANCE_EVAL = "sarah-eval --task balance --parameters 1,0,1,0"
         (f"{COMPARE} --task step", "unknown task 'step', did you mean 'stepping'?"),
         ("sarah-figures --ot x", "Unrecognized options: --ot"),
         # Wrong types
-        (f"{TRAIN} --simulations 1e3", "--simulations must be a whole number, not '1e3'"),
-        (f"{TRAIN} --simulations 10.5", "--simulations must be a whole number, not '10.5'"),
+        (f"{TRAIN} --episodes 1e3", "--episodes must be a whole number, not '1e3'"),
+        (f"{TRAIN} --episodes 10.5", "--episodes must be a whole number, not '10.5'"),
         (f"{TRAIN} --seed x", "--seed must be a whole number, not 'x'"),
         (f"{TRAIN} --slots", "--slots"),
         (f"{TRAIN} --episode.time-limit 30s", "--episode.time-limit must be a number, not '30s'"),
@@ -79,7 +79,7 @@ BALANCE_EVAL = "sarah-eval --task balance --parameters 1,0,1,0"
         ("sarah-eval --parameters 1,1,1,1,one", "parameters must be numbers separated by commas"),
         (f"{COMPARE} --best-known high", "--best-known"),
         # Out of any plausible range
-        (f"{TRAIN} --simulations 100000000", "simulations must be between 1 and 1e+06, not 100000000"),
+        (f"{TRAIN} --episodes 100000000", "simulations must be between 1 and 1e+06, not 100000000"),
         (f"{TRAIN} --slots 100000", "slots must be between 1 and 10000, not 100000"),
         (f"{TRAIN} --seed 2147483648", "seed must be between 0 and 2147483647, not 2147483648"),
         (f"{TRAIN} --workers 100000", "workers must be between 0 and 1000, not 100000"),
@@ -126,7 +126,7 @@ BALANCE_EVAL = "sarah-eval --task balance --parameters 1,0,1,0"
         (f"{COMPARE} --first-seed -1", "seed must be between 0 and 2147483647, not -1"),
         (f"{COMPARE} --episodes 0", "episodes must be between 1 and 1000, not 0"),
         (f"{COMPARE} --best-known nan", "best-known must be between 0.01 and 2, not nan"),
-        (f"{COMPARE} --simulations 0", "simulations must be between 1 and 1e+06, not 0"),
+        (f"{COMPARE} --episodes 0", "simulations must be between 1 and 1e+06, not 0"),
         (f"{COMPARE} --episode.dimensions thigh_length 33", "must be a number between 0.033 and 3.3, not 33.0"),
         # Contradictions
         (f"{TRAIN} --episode.push.degrees 0 90", "episode.push is for task 'balance'"),
@@ -170,6 +170,7 @@ def test_command_lines(line: str, message: str, answer: Callable[[str], str], tm
     assert message in answer(line)
 
 
+@NEEDS_PYBULLET
 def test_transfer_of_no_training(answer: Callable[[str], str], tmp_path: Path) -> None:
     need("mujoco")
     (tmp_path / "full").mkdir()

@@ -7,10 +7,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sarah.control.hip_law import HIP_SPEED, LARGEST_ANGLE, PITCH_TIME_CONSTANT, BalanceParameters, HipLaw
-from sarah.control.pattern_generator import PAPER_PARAMETERS, PatternGenerator, SteppingParameters
+from sarah.control.parameters import PAPER_STEPPING
+from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
 from sarah.episode.episode import simulate
 from sarah.episode.push import Push
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BalanceConfig
 from sarah.robot.reading import SensorReading, Side
 
 DT = 0.01
@@ -65,7 +67,7 @@ def test_zeros_leave_the_hips_locked() -> None:
 
 
 def test_pattern_generator_sends_the_hips_targets() -> None:
-    generator = PatternGenerator(SteppingParameters(*PAPER_PARAMETERS), dt=DT, hips=law(1.0, 0.0, 1.0, 0.5))
+    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT, hips=law(1.0, 0.0, 1.0, 0.5))
     for _ in range(5):
         generator.tick(reading(lateral=-3.0, rate_x=-0.4))
     left_abduction, right_abduction, left_flexion, right_flexion, *_ = generator.targets
@@ -92,7 +94,7 @@ def test_any_readings_keep_hips_bounded_and_slow(
 def test_papers_p1_to_p5_go_on_stepping_with_the_hip_law() -> None:
     """Pushed to the right, so hard that a few of eight fall."""
     push = Push(newtons=(100.0, 100.0), degrees=(0.0, 0.0))
-    episode = EpisodeConfig(time_limit=8.0, stepping=PAPER_PARAMETERS, push=push)
+    episode = BalanceConfig(time_limit=8.0, stepping=PAPER_STEPPING, push=push)
     results = [simulate(EpisodeSpec((0.8, 0.0, 0.0, 0.0), seed, "balance", episode)) for seed in range(8)]
     assert sum(result.survived for result in results) >= 5
-    assert all(result.event_driven_shift > 0.9 and result.steps_per_second > 2.0 for result in results)
+    assert all(result.shifts_by_sensors > 0.9 and result.steps_per_second > 2.0 for result in results)

@@ -13,7 +13,7 @@ from sarah.control.pattern_generator import (
     LEG_SPEED,
     LIFT_LENGTH,
     MINIMUM_PHASE_SECONDS,
-    PAPER_PARAMETERS,
+    PAPER_STEPPING,
     PUSH_LENGTH,
     TILT_TIME_CONSTANT,
     PatternGenerator,
@@ -36,7 +36,7 @@ def reading(lateral: float = 0.0, rate: float = 0.0, left: float = LOADED, right
     return SensorReading((lateral, 0.0, 9.81), (0.0, rate, 0.0), pads, (0.0,) * 6)
 
 
-def started(parameters: tuple[float, ...] = PAPER_PARAMETERS) -> PatternGenerator:
+def started(parameters: tuple[float, ...] = PAPER_STEPPING) -> PatternGenerator:
     """A pattern generator that has just entered its first SHIFT."""
     generator = PatternGenerator(SteppingParameters(*parameters), dt=DT)
     generator.tick(reading())
@@ -59,7 +59,7 @@ ROCKING_BACK = reading(rate=-0.6, left=UNLOADED, right=2 * LOADED)
 
 def test_right_leg_supports_first() -> None:
     generator = started()
-    assert generator.support is Side.RIGHT and generator.swing is Side.LEFT
+    assert generator.stance is Side.RIGHT and generator.swing is Side.LEFT
 
 
 def test_low_pass_follows_a_step_with_its_time_constant() -> None:
@@ -73,7 +73,7 @@ def test_tilt_and_rate_are_positive_towards_the_support_leg() -> None:
     generator = started()
     generator.sense(OVER_RIGHT)
     assert generator.tilt > 0 and generator.rate > 0
-    generator.support = Side.LEFT
+    generator.stance = Side.LEFT
     assert generator.tilt < 0 and generator.rate < 0
 
 
@@ -90,7 +90,7 @@ def test_shift_ends_when_the_robot_leans_over_the_support_leg() -> None:
         reading(lateral=-1.2, rate=0.3, right=2 * LOADED),  # tilt below P2 = 1.3
         reading(lateral=3.0, rate=0.3, right=2 * LOADED),  # leaning the other way
         reading(lateral=-3.0, rate=0.019, right=2 * LOADED),  # rate below 0.2 P3 = 0.02
-        reading(lateral=-3.0, rate=0.3, right=29.0),  # support foot not loaded
+        reading(lateral=-3.0, rate=0.3, right=29.0),  # stance foot not loaded
     ],
 )
 def test_shift_waits_for_tilt_rate_and_load(steady: SensorReading) -> None:
@@ -100,7 +100,7 @@ def test_shift_waits_for_tilt_rate_and_load(steady: SensorReading) -> None:
     assert ticks == 100
 
 
-def lifted(parameters: tuple[float, ...] = PAPER_PARAMETERS) -> PatternGenerator:
+def lifted(parameters: tuple[float, ...] = PAPER_STEPPING) -> PatternGenerator:
     generator = started(parameters)
     tick_until_change(generator, OVER_RIGHT)
     assert generator.phase is Phase.LIFT
@@ -122,7 +122,7 @@ def test_lift_times_out_after_p4() -> None:
     assert ticks == 75  # 0.5 (1 + 0.5) s
 
 
-def landing(parameters: tuple[float, ...] = PAPER_PARAMETERS) -> PatternGenerator:
+def landing(parameters: tuple[float, ...] = PAPER_STEPPING) -> PatternGenerator:
     generator = lifted(parameters)
     tick_until_change(generator, ROCKING_BACK)
     assert generator.phase is Phase.LAND
@@ -135,7 +135,7 @@ def test_landing_is_a_step_and_swaps_the_legs() -> None:
         assert generator.tick(reading(left=29.0)) is None
     change, _ = tick_until_change(generator, reading())
     assert change == PhaseChange(Phase.LAND, by_sensors=True, is_step=True)
-    assert generator.phase is Phase.SHIFT and generator.support is Side.LEFT
+    assert generator.phase is Phase.SHIFT and generator.stance is Side.LEFT
 
 
 def test_land_times_out_after_p5_without_a_step() -> None:
@@ -220,20 +220,20 @@ def test_no_phase_outlasts_its_time_out(parameters: tuple[float, ...], steady: t
 
 def test_abduction_by_the_hip_law_counts_as_tilt_and_rate_to_its_side() -> None:
     hips = HipLaw(BalanceParameters(1.0, 0.0, 0.0, 0.0), DT)
-    generator = PatternGenerator(SteppingParameters(*PAPER_PARAMETERS), dt=DT, hips=hips)
+    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT, hips=hips)
     for _ in range(10):
         generator.tick(reading(lateral=-3.0))
     # Both feet to the left: the legs lean over the right one more than the torso does.
-    assert hips.abduction > 0.0 and hips.abduction_rate > 0.0 and generator.support is Side.RIGHT
+    assert hips.abduction > 0.0 and hips.abduction_rate > 0.0 and generator.stance is Side.RIGHT
     tilt, rate = ABDUCTION_TILT * hips.abduction - generator.stable_x, ABDUCTION_RATE_SHARE * hips.abduction_rate
     assert generator.tilt == pytest.approx(tilt) and generator.rate == pytest.approx(rate)
-    generator.support = Side.LEFT
+    generator.stance = Side.LEFT
     assert generator.tilt == pytest.approx(-tilt) and generator.rate == pytest.approx(-rate)
 
 
 def test_constant_abduction_is_no_tilt() -> None:
     hips = HipLaw(BalanceParameters(0.0, -2.0, 0.0, 0.0), DT)
-    generator = PatternGenerator(SteppingParameters(*PAPER_PARAMETERS), dt=DT, hips=hips)
+    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT, hips=hips)
     for _ in range(20):
         generator.tick(reading())
     assert hips.abduction == pytest.approx(0.1) and generator.tilt == pytest.approx(0.0)

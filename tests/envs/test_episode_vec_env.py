@@ -9,7 +9,8 @@ import pytest
 from sarah.envs.episode_vec_env import EpisodeVecEnv
 from sarah.envs.sarah_env import parameters_from
 from sarah.episode.episode import simulate
-from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeConfig, EpisodeSpec
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
 from sarah.episode.tasks import STEPPING
 from sarah.episode.workers import Job, Workers
 from sarah.training.replay import LateRankReplayBuffer, LateReplayBuffer
@@ -43,7 +44,7 @@ def test_outcomes_come_in_order_after_the_slots_are_full(slots: int) -> None:
         assert info["parameters"] == parameters_from(ACTIONS[index], STEPPING)
         assert info["seed"] >= FIRST_TRAINING_SEED
         result = simulate(EpisodeSpec(info["parameters"], info["seed"], config=SHORT))
-        assert info["score"] == result.score
+        assert info["result"].score == result.score
         assert reward == pytest.approx(result.episode_return)
 
 

@@ -12,16 +12,17 @@ from gymnasium.utils.env_checker import check_env
 from stable_baselines3.common.env_checker import check_env as sb3_check_env
 
 import sarah
-from sarah.control.pattern_generator import PAPER_PARAMETERS
+from sarah.control.parameters import PAPER_STEPPING
 from sarah.envs.registration import ENVIRONMENTS
 from sarah.envs.sarah_env import SarahEnv, parameters_from
 from sarah.episode.result import EpisodeResult
-from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeConfig
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import FIRST_TRAINING_SEED
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS
 from sarah.errors import ConfigurationError
 
 SHORT = EpisodeConfig(time_limit=4.0)
-PAPER_ACTION = np.array(PAPER_PARAMETERS, dtype=np.float32) - 1.0
+PAPER_ACTION = np.array(PAPER_STEPPING, dtype=np.float32) - 1.0
 
 
 @pytest.mark.parametrize("imports", ["import gymnasium, sarah", "import sarah, gymnasium"])

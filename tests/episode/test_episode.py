@@ -9,15 +9,17 @@ import numpy as np
 import pytest
 
 import sarah
-from sarah.control.pattern_generator import PAPER_PARAMETERS, STAND_SECONDS
+from sarah.control.parameters import PAPER_STEPPING
+from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.ending import TERMINATIONS
 from sarah.episode.episode import Episode, simulate
-from sarah.episode.evaluation import Evaluation, summarise
+from sarah.episode.evaluation import Evaluation
 from sarah.episode.push import Push, draw_push
 from sarah.episode.result import EpisodeResult
 from sarah.episode.reward import highest_return, reward_rate
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
-from sarah.episode.tasks import BALANCE
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.errors import ConfigurationError
 from sarah.robot.description import describe_robot
 from sarah.robot.reading import SensorReading
@@ -31,7 +33,7 @@ SHORT = EpisodeConfig(time_limit=6.0)
 
 @pytest.fixture(scope="module")
 def paper_episode() -> EpisodeResult:
-    return simulate(EpisodeSpec(PAPER_PARAMETERS, seed=0), record_trace=True)
+    return simulate(EpisodeSpec(PAPER_STEPPING, seed=0), record_trace=True)
 
 
 def test_papers_parameters_step_in_place_for_30_seconds(paper_episode: EpisodeResult) -> None:
@@ -42,7 +44,7 @@ def test_papers_parameters_step_in_place_for_30_seconds(paper_episode: EpisodeRe
     assert 2.3 < result.steps_per_second < 3.5
     assert result.drift < 0.06
     assert result.sole_clearance > 0.010
-    assert result.event_driven_shift > 0.9 and result.event_driven_lift > 0.9
+    assert result.shifts_by_sensors > 0.9 and result.lifts_by_sensors > 0.9
 
 
 def test_return_is_equation_2_integrated_over_the_trace(paper_episode: EpisodeResult) -> None:
@@ -91,19 +93,19 @@ def test_trace_shows_the_push() -> None:
 
 
 def test_trace_does_not_change_the_result(paper_episode: EpisodeResult) -> None:
-    assert simulate(EpisodeSpec(PAPER_PARAMETERS, seed=0)) == paper_episode
+    assert simulate(EpisodeSpec(PAPER_STEPPING, seed=0)) == paper_episode
 
 
 def test_steps_of_the_trace_alternate_between_the_feet(paper_episode: EpisodeResult) -> None:
     trace = paper_episode.trace
     assert trace is not None
-    swaps = np.flatnonzero(np.diff(trace.support))
+    swaps = np.flatnonzero(np.diff(trace.stance))
     assert len(swaps) >= paper_episode.steps
     assert np.median(np.diff(swaps)) * CONTROL_DT == pytest.approx(1 / paper_episode.steps_per_second, rel=0.1)
 
 
 def test_what_a_process_simulated_before_or_meanwhile_changes_nothing() -> None:
-    spec = EpisodeSpec(PAPER_PARAMETERS, seed=4, config=SHORT)
+    spec = EpisodeSpec(PAPER_STEPPING, seed=4, config=SHORT)
     expected = simulate(spec)
     longer = dataclasses.replace(SHORT, physics=Physics(1000, 10), dimensions={"thigh_length": 0.4})
     simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.0), seed=5, task="balance", config=longer))
@@ -111,7 +113,7 @@ def test_what_a_process_simulated_before_or_meanwhile_changes_nothing() -> None:
     try:
         episode.stand()
         assert simulate(spec) == expected
-        assert episode.run(PAPER_PARAMETERS) == expected
+        assert episode.run(PAPER_STEPPING) == expected
     finally:
         episode.close()
 
@@ -132,7 +134,7 @@ def test_same_spec_gives_identical_results_in_two_fresh_processes(task: str, par
 
 
 def test_seeds_differ_and_the_order_of_episodes_does_not_matter() -> None:
-    specs = [EpisodeSpec(PAPER_PARAMETERS, seed, config=SHORT) for seed in (3, 4)]
+    specs = [EpisodeSpec(PAPER_STEPPING, seed, config=SHORT) for seed in (3, 4)]
     forward = [simulate(spec) for spec in specs]
     backward = [simulate(spec) for spec in reversed(specs)]
     assert forward == backward[::-1]
@@ -183,7 +185,7 @@ def test_robot_that_does_not_step_is_stopped_after_5_seconds() -> None:
 def test_stepping_by_the_fastest_time_outs_is_told_apart_and_does_not_pay(parameters: tuple[float, ...]) -> None:
     result = simulate(EpisodeSpec(parameters, seed=0))
     assert result.steps > 0
-    assert min(result.event_driven_shift, result.event_driven_lift) < 0.5
+    assert min(result.shifts_by_sensors, result.lifts_by_sensors) < 0.5
     assert result.score < 0.2
 
 
@@ -223,7 +225,7 @@ def test_diverging_physics_ends_with_a_finite_return(monkeypatch: pytest.MonkeyP
         return state._replace(position=(float("nan"),) * 3) if calls > 100 else state
 
     monkeypatch.setattr(episode.simulation, "torso_state", diverging)
-    result = episode.run(PAPER_PARAMETERS)
+    result = episode.run(PAPER_STEPPING)
     episode.close()
     assert result.termination == "diverged" and not result.survived
     assert np.isfinite([result.score, result.episode_return, *result.final_position]).all()
@@ -231,20 +233,20 @@ def test_diverging_physics_ends_with_a_finite_return(monkeypatch: pytest.MonkeyP
 
 def test_printed_reward_form_changes_the_return() -> None:
     printed = dataclasses.replace(SHORT, reward_form="printed")
-    returns = [simulate(EpisodeSpec(PAPER_PARAMETERS, 0, config=config)).episode_return for config in (SHORT, printed)]
+    returns = [simulate(EpisodeSpec(PAPER_STEPPING, 0, config=config)).episode_return for config in (SHORT, printed)]
     assert returns[0] != returns[1]
 
 
 def test_longer_feet_are_another_robot() -> None:
     longer = dataclasses.replace(SHORT, dimensions={"forefoot_contact": 0.15, "hindfoot_contact": 0.15})
-    assert simulate(EpisodeSpec(PAPER_PARAMETERS, 0, config=SHORT)) != simulate(
-        EpisodeSpec(PAPER_PARAMETERS, 0, config=longer)
+    assert simulate(EpisodeSpec(PAPER_STEPPING, 0, config=SHORT)) != simulate(
+        EpisodeSpec(PAPER_STEPPING, 0, config=longer)
     )
 
 
 def test_spec_refuses_unknown_tasks_and_bad_parameters() -> None:
     with pytest.raises(ConfigurationError, match="unknown task 'steping', did you mean 'stepping'"):
-        EpisodeSpec(PAPER_PARAMETERS, 0, task="steping")
+        EpisodeSpec(PAPER_STEPPING, 0, task="steping")
     with pytest.raises(ConfigurationError, match="P1 must be between"):
         EpisodeSpec((3.0, 1.3, 0.1, 1.0, 1.0), 0)
 
@@ -252,7 +254,7 @@ def test_spec_refuses_unknown_tasks_and_bad_parameters() -> None:
 @pytest.mark.parametrize("seed", [None, -1, 1.5, True])
 def test_spec_refuses_seeds_that_would_not_repeat(seed: object) -> None:
     with pytest.raises(ConfigurationError, match="seed must be a whole number from 0"):
-        EpisodeSpec(PAPER_PARAMETERS, seed)  # type: ignore[arg-type]
+        EpisodeSpec(PAPER_STEPPING, seed)  # type: ignore[arg-type]
 
 
 class NoPhysics:
@@ -297,9 +299,9 @@ def test_episode_runs_on_any_simulator() -> None:
     episode = Episode(perfect, seed=0, build=NoPhysics)
     reading = episode.stand()
     assert episode.simulation.time == pytest.approx(1.0) and reading.pressures == (75.0,) * 4
-    result = episode.run(PAPER_PARAMETERS)
+    result = episode.run(PAPER_STEPPING)
     assert result.termination == "no_oscillation" and result.duration == 5.0
-    assert result.steps == 0 and result.event_driven_shift == 0.0
+    assert result.steps == 0 and result.shifts_by_sensors == 0.0
     assert result.final_position == (0.0, 0.0, 0.84)
 
 
@@ -320,7 +322,7 @@ def test_standing_lasts_one_second() -> None:
 def test_hard_push_throws_the_robot_over_and_a_soft_one_does_not() -> None:
     def pushed(newtons: float) -> EpisodeResult:
         push = Push(newtons=(newtons, newtons), degrees=(90.0, 90.0), at_seconds=(2.0, 2.0))
-        config = EpisodeConfig(push=push, time_limit=5.0, randomisation=Randomisation(enabled=False))
+        config = BalanceConfig(push=push, time_limit=5.0, randomisation=Randomisation(enabled=False))
         return simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.0), 0, "balance", config))
 
     assert pushed(40.0).survived
@@ -355,21 +357,21 @@ def test_push_lasts_as_long_as_it_says() -> None:
 
     Pushed.forces = []
     push = Push(newtons=(80.0, 80.0), degrees=(0.0, 0.0), at_seconds=(2.0, 2.0), duration=0.15)
-    episode = Episode(EpisodeConfig(push=push), 0, BALANCE, build=Pushed)
+    episode = Episode(BalanceConfig(push=push), 0, BALANCE, build=Pushed)
     episode.stand()
     episode.run((1.0, 0.0, 1.0, 0.0))
     assert Pushed.forces == [(80.0, 0.0, 0.0)] * 15
 
 
 def test_balance_without_v_and_without_a_push_steps_as_in_the_first_training() -> None:
-    config = EpisodeConfig(push=Push(newtons=(0.0, 0.0)), time_limit=4.0, stepping=PAPER_PARAMETERS)
+    config = BalanceConfig(push=Push(newtons=(0.0, 0.0)), time_limit=4.0, stepping=PAPER_STEPPING)
     balance = simulate(EpisodeSpec((0.0,) * 4, 1, "balance", config))
-    assert balance == simulate(EpisodeSpec(PAPER_PARAMETERS, 1, "stepping", config))
+    assert balance == simulate(EpisodeSpec(PAPER_STEPPING, 1, "stepping", config))
 
 
 def test_episode_runs_at_another_control_rate() -> None:
     config = EpisodeConfig(physics=Physics(rate=400, control_rate=200), time_limit=6.0)
-    result = simulate(EpisodeSpec(PAPER_PARAMETERS, 0, config=config), record_trace=True)
+    result = simulate(EpisodeSpec(PAPER_STEPPING, 0, config=config), record_trace=True)
     assert result.survived and result.steps > 5 and result.trace is not None
     assert np.allclose(np.diff(result.trace.time), 0.005)
 
@@ -378,7 +380,7 @@ def shaken_by(amplitude: float) -> Evaluation:
     """The same episode, with flexions that a controller shakes at half the control rate."""
     episode = Episode(SHORT, 0)
     episode.stand()
-    episode.start(PAPER_PARAMETERS)
+    episode.start(PAPER_STEPPING)
     send = episode.simulation.set_targets
 
     def shaken(targets: tuple[float, ...]) -> None:
@@ -389,11 +391,11 @@ def shaken_by(amplitude: float) -> Evaluation:
     while episode.termination is None:
         episode.tick()
     episode.close()
-    return summarise([episode.result()])
+    return Evaluation([episode.result()])
 
 
 def test_chattering_hips_show_as_vibration() -> None:
     calm, chattering = shaken_by(0.0), shaken_by(0.02)
     assert chattering.chatters(without=calm) and not calm.chatters(without=calm)
-    assert chattering.actuator_power_mean > calm.actuator_power_mean
+    assert chattering.mean("actuator_power") > calm.mean("actuator_power")
     assert chattering.peak_hip_rate_max > 10 * calm.peak_hip_rate_max

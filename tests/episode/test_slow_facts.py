@@ -7,10 +7,12 @@ from collections.abc import Iterator
 
 import pytest
 
-from sarah.control.pattern_generator import PAPER_PARAMETERS
-from sarah.episode.evaluation import SMALLEST_EVENT_SHARE, summarise
+from sarah.control.parameters import PAPER_STEPPING
+from sarah.episode.evaluation import SMALLEST_SENSOR_SHARE
 from sarah.episode.push import Push
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BalanceConfig
 from sarah.episode.workers import Workers
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import Randomisation
@@ -28,24 +30,24 @@ def workers() -> Iterator[Workers]:
 def test_papers_parameters_step_on_20_seeds(workers: Workers, randomised: bool, survivors: int) -> None:
     """Without randomisation one of them drifts by 6.9 cm, at the standard and at the reference physics."""
     config = EpisodeConfig(randomisation=Randomisation(enabled=randomised))
-    results = list(workers.simulate_all([EpisodeSpec(PAPER_PARAMETERS, seed, config=config) for seed in range(20)]))
-    evaluation = summarise(results)
+    results = list(workers.simulate_all([EpisodeSpec(PAPER_STEPPING, seed, config=config) for seed in range(20)]))
+    evaluation = Evaluation(results)
     assert sum(result.survived for result in results) >= survivors
     assert all(2.3 <= result.steps_per_second <= 3.5 for result in results if result.survived)
     assert evaluation.drift_max < 0.08
-    assert evaluation.score_median >= 0.78
+    assert evaluation.median("score") >= 0.78
 
 
 def test_papers_parameters_keep_their_score_at_the_reference_physics(workers: Workers) -> None:
     standard, reference = (
-        summarise(
+        Evaluation(
             workers.simulate_all(
-                [EpisodeSpec(PAPER_PARAMETERS, seed, config=EpisodeConfig(physics=physics)) for seed in range(5)]
+                [EpisodeSpec(PAPER_STEPPING, seed, config=EpisodeConfig(physics=physics)) for seed in range(5)]
             )
         )
         for physics in PHYSICS.values()
     )
-    assert reference.score_median >= 0.95 * standard.score_median
+    assert reference.median("score") >= 0.95 * standard.median("score")
 
 
 @pytest.mark.parametrize("v1", [0.0, 1.1])
@@ -54,19 +56,19 @@ def test_inertia_added_to_standing_plates_keeps_good_scores_and_clearance_at_the
 ) -> None:
     """With V1 the soles rise least, and would least of all if swinging plates had it."""
     added, reference = (
-        summarise(
+        Evaluation(
             workers.simulate_all([EpisodeSpec((v1, 0.0, 0.0, 0.0), seed, "balance", config) for seed in range(8)])
         )
         for config in (
-            EpisodeConfig(physics=physics, push=Push(newtons=(0.0, 0.0)), time_limit=12.0)
+            BalanceConfig(physics=physics, push=Push(newtons=(0.0, 0.0)), time_limit=12.0)
             for physics in (
                 dataclasses.replace(PHYSICS["reference"], added_plate_inertia=PHYSICS["standard"].added_plate_inertia),
                 PHYSICS["reference"],
             )
         )
     )
-    assert added.score_mean == pytest.approx(reference.score_mean, rel=0.02)
-    assert added.sole_clearance_mean == pytest.approx(reference.sole_clearance_mean, abs=0.001)
+    assert added.mean("score") == pytest.approx(reference.mean("score"), rel=0.02)
+    assert added.mean("sole_clearance") == pytest.approx(reference.mean("sole_clearance"), abs=0.001)
 
 
 def test_no_clock_among_random_parameters_pays(workers: Workers) -> None:
@@ -76,7 +78,7 @@ def test_no_clock_among_random_parameters_pays(workers: Workers) -> None:
     clocks = [
         result.score
         for result in results
-        if min(result.event_driven_shift, result.event_driven_lift) < SMALLEST_EVENT_SHARE
+        if min(result.shifts_by_sensors, result.lifts_by_sensors) < SMALLEST_SENSOR_SHARE
     ]
     assert len(clocks) > 10
     assert max(clocks) < 0.6
@@ -94,7 +96,7 @@ def test_v1_saves_the_robot_from_pushes_to_the_side(workers: Workers) -> None:
         for seed in range(40):
             side = (0.0, 0.0) if seed % 2 else (180.0, 180.0)
             pushed = dataclasses.replace(push, degrees=side)
-            config = EpisodeConfig(physics=PHYSICS["reference"], push=pushed, time_limit=8.0)
+            config = BalanceConfig(physics=PHYSICS["reference"], push=pushed, time_limit=8.0)
             specs.append(EpisodeSpec((v1, 0.0, 0.0, 0.0), seed, "balance", config))
         survived[v1] = sum(result.survived for result in workers.simulate_all(specs))
     assert survived[1.0] >= 38 and survived[1.0] >= survived[0.0] + 8

@@ -19,7 +19,8 @@ import pytest
 
 from sarah.episode import workers as workers_module
 from sarah.episode.episode import simulate
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Workers, run, stand
 from sarah.errors import ConfigurationError, DescriptionError, WorkersError
 from sarah.runs.config import TrainingConfig
@@ -28,7 +29,7 @@ from sarah.simulation import pybullet_client as bullet
 from sarah.training.train import train
 
 # Longer than the 8 simulations of warm-up; some episodes fall, most last a second of stepping.
-TRAINING = TrainingConfig(simulations=20, slots=4, seed=5, episode=EpisodeConfig(time_limit=2.0))
+TRAINING = TrainingConfig(episodes=20, slots=4, seed=5, episode=EpisodeConfig(time_limit=2.0))
 SPEC = EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), seed=1, config=EpisodeConfig(time_limit=2.0))
 
 
@@ -48,7 +49,7 @@ def learned_bytes(run_folder: RunFolder) -> dict[str, bytes]:
 @pytest.fixture(autouse=True)
 def _nobody_stands() -> None:
     """Whatever other tests have left standing in this process."""
-    workers_module.forget_standing()
+    workers_module.close_waiting_episodes()
 
 
 @pytest.fixture(scope="module")
@@ -181,7 +182,7 @@ def test_workers_are_left_alone_by_an_interrupt() -> None:
 
 
 def test_standing_episodes_are_bounded_and_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(workers_module, "KEPT_STANDING", 2)
+    monkeypatch.setattr(workers_module, "MOST_WAITING", 2)
     with Workers():
         for seed in range(4):
             stand(EpisodeSpec(SPEC.parameters, seed, config=SPEC.config))

@@ -11,14 +11,15 @@ from PIL import Image
 
 from sarah.episode.episode import simulate
 from sarah.episode.push import Push
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BalanceConfig
 from sarah.episode.trace import Trace
 from sarah.errors import ConfigurationError
 from sarah.pictures.video import GIF_SIZE, HEIGHT, WIDTH, check_path, frame_times, frames
 from sarah.robot.description import describe_robot
 
 BIN = Path(sys.executable).parent
-PUSHED = EpisodeConfig(time_limit=2.5, push=Push((100.0, 100.0), (180.0, 180.0), (1.5, 1.5)))
+PUSHED = BalanceConfig(time_limit=2.5, push=Push((100.0, 100.0), (180.0, 180.0), (1.5, 1.5)))
 
 
 @pytest.fixture(scope="module")
@@ -92,7 +93,7 @@ def test_command_films_given_parameters(tmp_path: Path) -> None:
 @pytest.fixture(scope="module")
 def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("work") / "mine"
-    arguments = ("--simulations", "4", "--slots", "1", "--episode.time-limit", "1.5", "--run-dir", str(folder))
+    arguments = ("--episodes", "4", "--slots", "1", "--episode.time-limit", "1.5", "--run-dir", str(folder))
     subprocess.run([BIN / "sarah-train", "--algo", "random", *arguments], check=True, capture_output=True)
     return folder
 

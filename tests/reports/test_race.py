@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from sarah.episode.episode import simulate
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Workers
 from sarah.errors import RunFolderError
 from sarah.reports import race as comparison
@@ -18,15 +19,15 @@ from sarah.reports.race import (
     interquartile_mean,
     is_run,
     race,
+    rankings,
     run_entry,
     simulations_until,
-    standings,
 )
 from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 
-TINY = TrainingConfig(simulations=10, slots=1, episode=EpisodeConfig(time_limit=1.5))
+TINY = TrainingConfig(episodes=10, slots=1, episode=EpisodeConfig(time_limit=1.5))
 
 
 def curve(algo: str, *scores: float) -> Curve:
@@ -49,19 +50,19 @@ def test_standings_are_shares_of_the_best_final_score() -> None:
     good = curve("naf", 0.1, 0.78, 0.78, 0.8)
     slow = curve("td3", 0.1, 0.1, 0.74, 0.74, 0.74)
     never = curve("td3", 0.1, 0.1, 0.1, 0.1, 0.1)
-    first, second = standings([slow, good, never])
+    first, second = rankings([slow, good, never])
     assert (first.algo, second.algo) == ("naf", "td3")
     assert first.simulations == {0.9: 10.0, 0.95: 10.0} and first.reached == {0.9: 1, 0.95: 1}
     assert second.runs == 2 and second.reached == {0.9: 1, 0.95: 0}
     assert math.isinf(second.simulations[0.95])
     assert "| naf | 1 | 10 | 1 | 10 | 1 | 0.800 (0.800 to 0.800) | 1 s |" in as_markdown([first, second])
-    assert standings([good], best_known=2.0)[0].reached == {0.9: 0, 0.95: 0}
+    assert rankings([good], best_known=2.0)[0].reached == {0.9: 0, 0.95: 0}
 
 
 def test_a_race_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     entries = entries_of(("naf", "random"), range(1), TINY, 2, tmp_path)
     begun = RunFolder.create(tmp_path / "random-s0.unfinished", entries[1].config)  # and killed
-    begun.append_choice(5, ("P1", "P2", "P3", "P4", "P5"), (9.0,) * 5)
+    begun.append_recommendation(5, ("P1", "P2", "P3", "P4", "P5"), (9.0,) * 5)
     curves = race(entries, Workers())
     assert not begun.path.exists()
     assert [one.algo for one in curves] == ["naf", "random"] and all(map(is_run, entries))
@@ -79,7 +80,7 @@ def test_a_race_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert more.seconds == curves[0].seconds and more.simulations == (5, 10, 10)
     assert 3 * more.scores[-1] == pytest.approx(2 * curves[0].scores[-1] + simulate(third).score)
 
-    other = [dataclasses.replace(entries[0], config=dataclasses.replace(TINY, simulations=11))]
+    other = [dataclasses.replace(entries[0], config=dataclasses.replace(TINY, episodes=11))]
     with pytest.raises(RunFolderError, match="other settings"):
         race(other, Workers())
 

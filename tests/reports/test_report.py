@@ -11,7 +11,7 @@ import pytest
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 from tensorboard.plugins.hparams.plugin_data_pb2 import HParamsPluginData
 
-from sarah.episode.spec import EpisodeConfig
+from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
@@ -31,7 +31,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, RunFolder]:
     with pytest.MonkeyPatch.context() as monkeypatch:
         monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
         for task in TASKS:
-            config = TrainingConfig(task, simulations=10, seed=3, slots=1, episode=EPISODE)
+            config = TrainingConfig(task, episodes=10, seed=3, slots=1, episode=EPISODE)
             made[task] = RunFolder.create(folder / task, config)
             train(config, made[task], picture_interval=5 if task == "stepping" else 0)
     return made
@@ -82,7 +82,7 @@ def test_tensorboard_shows_curves_in_groups_and_pictures_at_intervals(runs: dict
     shown = events(runs["stepping"])
     groups = {tag.split("/")[0] for tag in shown.Tags()["scalars"]}
     assert {"episode", "gait", "actuators", "parameters", "choice", "learned"} <= groups
-    choices = [(int(row["simulations"]), float(row["P1"])) for row in runs["stepping"].choices()]
+    choices = [(int(row["simulations"]), float(row["P1"])) for row in runs["stepping"].recommendations()]
     assert [(event.step, pytest.approx(event.value)) for event in shown.Scalars("choice/P1")] == choices
     films = shown.Images("gait/video")
     assert [film.step for film in films] == [simulations for simulations, _ in choices]
@@ -103,6 +103,6 @@ def test_pictures_change_nothing_of_a_training(
     run = runs["stepping"]
     without = RunFolder.create(tmp_path / "without", run.config())
     train(run.config(), without)
-    for name in ("episodes.csv", "choices.csv", "progress.csv", "parameters.json"):
+    for name in ("episodes.csv", "recommendations.csv", "progress.csv", "parameters.json"):
         assert (without.path / name).read_bytes() == (run.path / name).read_bytes()
     assert not events(without).Tags()["images"]

@@ -11,7 +11,9 @@ from hypothesis import strategies as st
 from sarah.cli import eval as eval_command
 from sarah.episode.episode import simulate
 from sarah.episode.result import EpisodeResult
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BalanceConfig
 from sarah.episode.workers import Workers
 from sarah.reports import robustness
 from sarah.reports.robustness import (
@@ -42,7 +44,7 @@ def test_controllers_meet_the_same_pushes_and_can_be_repeated(monkeypatch: pytes
     assert [e.result for e in still] != [e.result for e in moving]
     assert {e.result.duration for e in still} == {4.25}
     push = dataclasses.replace(EpisodeConfig().push, newtons=(80.0, 80.0), at_seconds=robustness.PUSHED_BETWEEN)
-    config = EpisodeConfig(push=push, time_limit=4.25)
+    config = BalanceConfig(push=push, time_limit=4.25)
     assert simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.0), 1, "balance", config)) == moving[3].result
 
 
@@ -62,7 +64,7 @@ def test_table_counts_by_direction() -> None:
         (100.0, "sagittal"): (2, 1.0),
     }
     everything = rows[2]
-    assert everything.score_median == 0.8 and everything.drift_median == pytest.approx(0.05)
+    assert everything.median("score") == 0.8 and everything.median("drift") == pytest.approx(0.05)
 
 
 def test_wilsons_interval_is_the_published_one() -> None:

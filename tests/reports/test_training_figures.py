@@ -10,8 +10,10 @@ from sarah.control import hip_law as hips
 from sarah.control import pattern_generator
 from sarah.control.pattern_generator import Phase, SteppingParameters
 from sarah.episode.episode import simulate
-from sarah.episode.spec import TRAINED_STEPPING, EpisodeConfig, EpisodeSpec
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import TASKS
+from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.errors import ConfigurationError, RunFolderError
 from sarah.pictures.gait_figure import draw_gait_cycle, gait_cycle
 from sarah.pictures.robot_figure import draw_robot, labels_of
@@ -121,7 +123,7 @@ def test_gait_cycle_is_one_step_with_each_leg(tmp_path: Path) -> None:
     assert trace is not None
     rows = gait_cycle(trace)
     assert 0.3 < trace.time[rows][-1] - trace.time[rows][0] < 1.2
-    support = trace.support[rows]
+    support = trace.stance[rows]
     assert (np.diff(support) != 0).sum() == 2 and support[0] == support[-1] == 1
     files = draw_gait_cycle(trace, SteppingParameters(*TRAINED_STEPPING), tmp_path / "cycle")
     assert [file.name for file in files] == ["cycle.png", "cycle.pdf"]

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from sarah.episode.spec import EpisodeConfig
+from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import read_config, write_config
@@ -16,7 +16,7 @@ from sarah.simulation.randomisation import Randomisation
 def test_a_written_configuration_reads_back(tmp_path: Path) -> None:
     config = TrainingConfig(
         algo="td3",
-        simulations=7,
+        episodes=7,
         episode=EpisodeConfig(
             physics=Physics(rate=200, solver_iterations=10),
             randomisation=Randomisation(friction=(0.5, 0.6), enabled=False),

@@ -19,7 +19,7 @@ import torch
 
 from sarah.agents.naf import NAF
 from sarah.episode.push import Push
-from sarah.episode.spec import EpisodeConfig
+from sarah.episode.settings import EpisodeConfig
 from sarah.errors import DescriptionError
 from sarah.robot.description import describe_robot
 from sarah.runs.config import TrainingConfig
@@ -30,7 +30,7 @@ from sarah.training import train as training
 from sarah.training.train import train
 
 CONFIG = TrainingConfig(
-    simulations=3, slots=1, episode=EpisodeConfig(time_limit=1.1, physics=Physics(50, 5, control_rate=50))
+    episodes=3, slots=1, episode=EpisodeConfig(time_limit=1.1, physics=Physics(50, 5, control_rate=50))
 )
 COARSE = "--episode.time-limit 1.2 --episode.push.at-seconds 1 1 --episode.physics.solver-iterations 5"
 COMMANDS = (
@@ -41,8 +41,8 @@ COMMANDS = (
     "sarah-report {run} --episodes 1 --out report.html",
     "sarah-transfer {run} --episodes 1 --out transfer",
     "sarah-train --resume {run}",
-    f"sarah-train --task balance --simulations 1 --slots 1 --run-dir {{run}}-mine --from {{run}} {COARSE}",
-    "sarah-compare {run}-race --algorithms random --seeds 1 --simulations 1 --episodes 1",
+    f"sarah-train --task balance --episodes 1 --slots 1 --run-dir {{run}}-mine --from {{run}} {COARSE}",
+    "sarah-compare {run}-race --algorithms random --seeds 1 --episodes 1 --episodes 1",
 )
 """Of the last, the run is a part of the race that is complete."""
 

@@ -11,12 +11,13 @@ from pathlib import Path
 import pytest
 from laboratory import need
 
-from sarah.control.pattern_generator import PAPER_PARAMETERS
+from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import Episode, simulate
-from sarah.episode.evaluation import summarise
-from sarah.episode.spec import TRAINED_STEPPING, EpisodeConfig, EpisodeSpec
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.errors import ConfigurationError
-from sarah.reports.transfer import Subject, Transfer
+from sarah.reports.transfer import LearnedParameters, Transfer
 from sarah.simulation import engines
 from sarah.simulation.engines import simulator_of
 from sarah.simulation.physics import Physics
@@ -31,18 +32,18 @@ def mujoco_engine() -> None:
     need("mujoco")
 
 
-@pytest.mark.parametrize("parameters", [PAPER_PARAMETERS, TRAINED_STEPPING])
+@pytest.mark.parametrize("parameters", [PAPER_STEPPING, TRAINED_STEPPING])
 def test_robot_steps_as_well_in_mujoco_as_in_pybullet(mujoco_engine: None, parameters: tuple[float, ...]) -> None:
     """Measured over 20 seeds: mean scores within 2 % of each other, and all survive."""
     pybullet, mujoco = (
-        summarise(simulate(EpisodeSpec(parameters, seed, config=EpisodeConfig(engine=engine))) for seed in range(2))
+        Evaluation(simulate(EpisodeSpec(parameters, seed, config=EpisodeConfig(engine=engine))) for seed in range(2))
         for engine in ("pybullet", "mujoco")
     )
     for evaluation in (pybullet, mujoco):
         assert evaluation.survival_rate == 1.0 and evaluation.is_gait
-        assert 2.8 < evaluation.steps_per_second_mean < 3.4
-    assert mujoco.score_mean != pybullet.score_mean
-    assert mujoco.score_mean == pytest.approx(pybullet.score_mean, rel=0.03)
+        assert 2.8 < evaluation.mean("steps_per_second") < 3.4
+    assert mujoco.mean("score") != pybullet.mean("score")
+    assert mujoco.mean("score") == pytest.approx(pybullet.mean("score"), rel=0.03)
 
 
 def test_same_spec_gives_identical_results_in_fresh_processes_whatever_they_simulated_before(
@@ -68,19 +69,19 @@ def test_same_spec_gives_identical_results_in_fresh_processes_whatever_they_simu
 )
 def test_mujoco_takes_at_least_300_steps_a_second(mujoco_engine: None, asked: Physics, taken: Physics) -> None:
     results = [
-        simulate(EpisodeSpec(PAPER_PARAMETERS, 1, config=dataclasses.replace(SHORT, time_limit=2.0, physics=physics)))
+        simulate(EpisodeSpec(PAPER_STEPPING, 1, config=dataclasses.replace(SHORT, time_limit=2.0, physics=physics)))
         for physics in (asked, taken, Physics(500))
     ]
     assert results[0] == results[1] != results[2]
 
 
 def test_episodes_that_stand_side_by_side_do_not_touch_each_other(mujoco_engine: None) -> None:
-    expected = [simulate(EpisodeSpec(PAPER_PARAMETERS, seed, config=SHORT)) for seed in (1, 2)]
+    expected = [simulate(EpisodeSpec(PAPER_STEPPING, seed, config=SHORT)) for seed in (1, 2)]
     assert expected[0] != expected[1]
     episodes = [Episode(SHORT, seed) for seed in (1, 2)]
     for episode in episodes:
         episode.stand()
-    assert [episode.run(PAPER_PARAMETERS) for episode in reversed(episodes)] == expected[::-1]
+    assert [episode.run(PAPER_STEPPING) for episode in reversed(episodes)] == expected[::-1]
 
 
 def test_physics_that_diverges_ends_the_episode_and_writes_no_file(
@@ -89,7 +90,7 @@ def test_physics_that_diverges_ends_the_episode_and_writes_no_file(
     monkeypatch.chdir(tmp_path)
     episode = Episode(SHORT, seed=0)
     episode.stand()
-    episode.start(PAPER_PARAMETERS)
+    episode.start(PAPER_STEPPING)
     while episode.termination is None:
         episode.simulation.push((1e300, 0.0, 0.0))
         episode.tick()
@@ -135,9 +136,9 @@ def test_without_the_extra_pybullet_works() -> None:
 
 
 def test_kept_is_the_share_of_the_score_that_the_other_engine_gives() -> None:
-    at_home = summarise([simulate(EpisodeSpec(PAPER_PARAMETERS, 0, config=EpisodeConfig(time_limit=1.5)))])
-    worse = dataclasses.replace(at_home, score_mean=0.5 * at_home.score_mean)
+    at_home = Evaluation([simulate(EpisodeSpec(PAPER_STEPPING, 0, config=EpisodeConfig(time_limit=1.5)))])
+    worse = dataclasses.replace(at_home, score_mean=0.5 * at_home.mean("score"))
     evaluations = {"pybullet": at_home, "mujoco": worse}
     for engine, kept in (("pybullet", 0.5), ("mujoco", 2.0)):
-        subject = Subject("run", "stepping", PAPER_PARAMETERS, EpisodeConfig(engine=engine))
+        subject = LearnedParameters("run", "stepping", PAPER_STEPPING, EpisodeConfig(engine=engine))
         assert Transfer(subject, evaluations).kept == pytest.approx(kept)

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from laboratory import NEEDS_PYBULLET, BulletLaboratory, MujocoLaboratory, laboratory
 
-from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, GROUPS, PLATES, SIDES, describe_robot
+from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, GROUPS, PLATES, describe_robot
+from sarah.robot.reading import Side
 from sarah.simulation.engines import simulator_of
-from sarah.simulation.physics import PHYSICS, Physics
+from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
 from sarah.simulation.pybullet_client import pybullet
 from sarah.simulation.pybullet_simulator import PyBulletSimulator
 from sarah.simulation.randomisation import LINKS, NOMINAL, Conditions
@@ -115,7 +116,7 @@ def test_ankles_are_free(lab: Laboratory, build: BuildSimulation) -> None:
 
 def test_ankles_are_damped_alike(lab: Laboratory, build: BuildSimulation) -> None:
     """In the air a plate that turns at 1 rad/s comes to rest within 5.0 (PyBullet) or 5.1 mrad (MuJoCo)."""
-    simulation = build(physics=Physics(rate=2000, added_plate_inertia=0.0))
+    simulation = build(physics=PyBulletPhysics(rate=2000, added_plate_inertia=0.0))
     lab.place(simulation)
     lab.move_joint(simulation, "left_hindfoot", -0.09, 1.0)
     for _ in range(10):
@@ -247,12 +248,12 @@ def test_servos_follow_their_targets_at_their_bandwidth(lab: Laboratory, build: 
 
 def test_retracting_a_leg_lifts_its_sole(lab: Laboratory, build: BuildSimulation) -> None:
     simulation = build()
-    assert [simulation.sole_height(side) for side in SIDES] == pytest.approx([0.0, 0.0], abs=1e-9)
+    assert [simulation.sole_height(side) for side in Side] == pytest.approx([0.0, 0.0], abs=1e-9)
     lab.place(simulation, height=simulation.robot.standing_height + 1.0)
     simulation.set_targets((0.0, 0.0, 0.0, 0.0, 0.05, 0.0))
     for _ in range(20):
         simulation.advance()
-    assert simulation.sole_height("left") - simulation.sole_height("right") == pytest.approx(0.05, abs=0.005)
+    assert simulation.sole_height(Side.LEFT) - simulation.sole_height(Side.RIGHT) == pytest.approx(0.05, abs=0.005)
 
 
 @NEEDS_PYBULLET
@@ -260,7 +261,8 @@ def test_plates_have_the_added_inertia_unless_their_leg_is_retracted() -> None:
     """About the hinge only, and on the masses of this episode."""
     conditions = Conditions(mass_factors=dict.fromkeys(LINKS, 1.05))
     plain, simulation = (
-        PyBulletSimulator(describe_robot(), Physics(added_plate_inertia=added), conditions) for added in (0.0, 0.005)
+        PyBulletSimulator(describe_robot(), PyBulletPhysics(added_plate_inertia=added), conditions)
+        for added in (0.0, 0.005)
     )
 
     def inertias(simulation: PyBulletSimulator, side: str) -> np.ndarray:
@@ -270,8 +272,8 @@ def test_plates_have_the_added_inertia_unless_their_leg_is_retracted() -> None:
     added = np.array((0.005, 0.0, 0.0))
     for left_length, left_added in ((0.0, added), (0.001, 0.0 * added), (-0.008, added)):
         simulation.set_targets((0.0, 0.0, 0.0, 0.0, left_length, 0.0))
-        assert inertias(simulation, "left") == pytest.approx(inertias(plain, "left") + left_added)
-        assert inertias(simulation, "right") == pytest.approx(inertias(plain, "right") + added)
+        assert inertias(simulation, Side.LEFT) == pytest.approx(inertias(plain, Side.LEFT) + left_added)
+        assert inertias(simulation, Side.RIGHT) == pytest.approx(inertias(plain, Side.RIGHT) + added)
     plain.close()
     simulation.close()
 

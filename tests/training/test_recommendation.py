@@ -58,14 +58,14 @@ def test_there_are_never_more_than_asked_for(tried: list[tuple[tuple[float, ...]
 
 
 def test_what_is_no_gait_has_less_merit() -> None:
-    stepping = {"score": 0.9, "event_driven_shift": 1.0, "event_driven_lift": 0.95, "sole_clearance": 0.02}
+    stepping = {"score": 0.9, "shifts_by_sensors": 1.0, "lifts_by_sensors": 0.95, "sole_clearance": 0.02}
     assert merit(stepping) == 0.9
-    assert merit(stepping | {"event_driven_lift": 0.45}) == pytest.approx(0.45)
+    assert merit(stepping | {"lifts_by_sensors": 0.45}) == pytest.approx(0.45)
     assert merit(stepping | {"sole_clearance": 0.007}) == pytest.approx(0.63)
-    assert merit(stepping | {"event_driven_shift": 0.0}) == 0.0
+    assert merit(stepping | {"shifts_by_sensors": 0.0}) == 0.0
 
 
 def test_a_small_budget_affords_no_comparison() -> None:
-    budgets = {count: TrainingConfig(simulations=count) for count in (1, 99, 160)}
+    budgets = {count: TrainingConfig(episodes=count) for count in (1, 99, 160)}
     assert {count: budget.candidate_count for count, budget in budgets.items()} == {1: 1, 99: 1, 160: 3}
-    assert {count: budget.compared_simulations for count, budget in budgets.items()} == {1: 0, 99: 0, 160: 15}
+    assert {count: budget.compared_episodes for count, budget in budgets.items()} == {1: 0, 99: 0, 160: 15}

@@ -15,7 +15,8 @@ from tensorboard.backend.event_processing.event_accumulator import EventAccumula
 import sarah.runs.config
 from sarah.agents import PRESETS
 from sarah.episode.episode import simulate
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Executor, Job, Workers, run, stand
 from sarah.errors import LearningError, RunFolderError, TrainingInterruptedError
 from sarah.runs.config import AGENTS, ALGORITHMS, TrainingConfig
@@ -60,7 +61,7 @@ class Counting(Executor):
 
 def everything(folder: RunFolder) -> dict[str, Any]:
     """All that a training leaves behind, but for the time of day."""
-    names = ("episodes.csv", "choices.csv", "progress.csv", "parameters.json")
+    names = ("episodes.csv", "recommendations.csv", "progress.csv", "parameters.json")
     found: dict[str, Any] = {name: (folder.path / name).read_bytes() for name in names}
     if folder.model_path.exists():
         archive = zipfile.ZipFile(folder.model_path)
@@ -76,7 +77,7 @@ def everything(folder: RunFolder) -> dict[str, Any]:
     ("algo", "task"), [*((algo, "stepping") for algo in ALGORITHMS), ("naf", "balance"), ("cma-es", "balance")]
 )
 def test_a_training_interrupted_twice_ends_as_without(algo: str, task: str, tmp_path: Path) -> None:
-    config = TrainingConfig(task, algo, simulations=16, seed=7, slots=2, episode=EPISODE)
+    config = TrainingConfig(task, algo, episodes=16, seed=7, slots=2, episode=EPISODE)
     whole = RunFolder.create(tmp_path / "whole", config)
     learned = train(config, whole)
     expected = everything(whole)
@@ -92,7 +93,7 @@ def test_a_training_interrupted_twice_ends_as_without(algo: str, task: str, tmp_
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
-    config = TrainingConfig(simulations=16, seed=2, slots=3, episode=EPISODE)
+    config = TrainingConfig(episodes=16, seed=2, slots=3, episode=EPISODE)
     with pytest.MonkeyPatch.context() as monkeypatch:
         short.__wrapped__(monkeypatch)  # type: ignore[attr-defined]
         folder = RunFolder.create(tmp_path_factory.mktemp("runs") / "whole", config)
@@ -195,7 +196,7 @@ def test_the_journal_gives_back_every_bit(function: Callable[..., Any], seeds: l
 
 
 def test_weights_that_are_not_finite_stop_the_training(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    config = TrainingConfig(simulations=16, slots=1, episode=EPISODE)
+    config = TrainingConfig(episodes=16, slots=1, episode=EPISODE)
     begun = RunFolder.create(tmp_path / "run", config)
     original = learning.make_agent
 

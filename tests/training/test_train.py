@@ -13,11 +13,11 @@ from stable_baselines3.common.base_class import BaseAlgorithm
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 from sarah.agents.naf import NAF
-from sarah.control.pattern_generator import PAPER_PARAMETERS
+from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import simulate
-from sarah.episode.evaluation import summarise
-from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeConfig, EpisodeSpec
-from sarah.episode.tasks import BALANCE, STEPPING
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
+from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
 from sarah.errors import RunFolderError
 from sarah.runs.config import SEARCHERS, TrainingConfig
 from sarah.runs.run_folder import RunFolder, new_run_path
@@ -26,9 +26,9 @@ from sarah.training import train as training
 from sarah.training.recommendation import candidates, merit
 from sarah.training.train import SUMMARY_EPISODES, evaluate, train
 
-SHARES = ("event_driven_shift", "event_driven_lift")
+SHARES = ("shifts_by_sensors", "lifts_by_sensors")
 # Longer than the warm-up, on episodes of one second of stepping.
-SHORT = TrainingConfig(simulations=16, slots=1, seed=3, episode=EpisodeConfig(time_limit=2.0))
+SHORT = TrainingConfig(episodes=16, slots=1, seed=3, episode=EpisodeConfig(time_limit=2.0))
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +45,7 @@ def test_run_folder_holds_what_it_should(run: RunFolder) -> None:
         "command.txt",
         "versions.txt",
         "episodes.csv",
-        "choices.csv",
+        "recommendations.csv",
         "progress.csv",
         "model.zip",
     }
@@ -67,7 +67,7 @@ def test_every_simulation_has_its_row_and_can_be_repeated(run: RunFolder) -> Non
 
 
 def test_what_would_be_recommended_is_noted_every_five_simulations(run: RunFolder) -> None:
-    choices = list(run.choices())
+    choices = list(run.recommendations())
     assert [int(row["simulations"]) for row in choices] == list(range(5, 16, 5))
     tried = []
     for row in run.episodes():
@@ -83,7 +83,7 @@ def test_tensorboard_shows_the_episodes_the_parameters_and_the_learning(run: Run
     events = EventAccumulator(str(run.path))
     events.Reload()
     expected = {f"episode/{name}" for name in ("return", "score", "steps_per_second", "x", "y", "duration")}
-    expected |= {f"gait/{name}" for name in ("event_driven_shift", "event_driven_lift", "sole_clearance")}
+    expected |= {f"gait/{name}" for name in ("shifts_by_sensors", "lifts_by_sensors", "sole_clearance")}
     expected |= {f"{group}/{name}" for group in ("parameters", "choice") for name in STEPPING.parameter_names}
     assert expected | {"train/loss", "train/q", "train/exploration_std"} <= set(events.Tags()["scalars"])
     assert [event.step for event in events.Scalars("episode/score")] == list(range(1, 17))
@@ -119,8 +119,8 @@ def test_training_repeats_from_its_seed(run: RunFolder, tmp_path: Path) -> None:
 
 def test_second_training_learns_v_with_the_legs_of_the_first(tmp_path: Path) -> None:
     stepping = (0.35, 0.6, 0.2, 1.0, 1.0)
-    episode = EpisodeConfig(time_limit=2.0, stepping=stepping)
-    config = TrainingConfig(task="balance", simulations=16, slots=1, episode=episode)
+    episode = BalanceConfig(time_limit=2.0, stepping=stepping)
+    config = TrainingConfig(task="balance", episodes=16, slots=1, episode=episode)
     run = RunFolder.create(tmp_path / "run", config)
     learned = train(config, run)
     first, *_, row = run.episodes()
@@ -141,17 +141,17 @@ def test_other_algorithms_run_the_same_path(
     algo: str, algorithm: type[BaseAlgorithm], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(learning, "WARM_UP", 6)
-    config = TrainingConfig(algo=algo, simulations=12, slots=1, episode=EpisodeConfig(time_limit=1.5))
+    config = TrainingConfig(algo=algo, episodes=12, slots=1, episode=EpisodeConfig(time_limit=1.5))
     run = RunFolder.create(tmp_path / algo, config)
     learned = train(config, run)
     assert isinstance(algorithm.load(run.model_path), algorithm)
     assert len(list(run.episodes())) == 12 and len(learned.parameters) == 5
-    assert math.isfinite(learned.evaluation.score_mean)
+    assert math.isfinite(learned.evaluation.mean("score"))
 
 
 @pytest.mark.parametrize("algo", SEARCHERS)
 def test_optimisers_write_the_same_run_folder(algo: str, tmp_path: Path) -> None:
-    config = TrainingConfig(algo=algo, simulations=20, slots=3, episode=EpisodeConfig(time_limit=1.2))
+    config = TrainingConfig(algo=algo, episodes=20, slots=3, episode=EpisodeConfig(time_limit=1.2))
     run = RunFolder.create(tmp_path / algo, config)
     learned = train(config, run)
     assert len(list(run.episodes())) == 20 and len({row["seed"] for row in run.episodes()}) == 20
@@ -160,7 +160,7 @@ def test_optimisers_write_the_same_run_folder(algo: str, tmp_path: Path) -> None
 
 
 def test_budget_is_kept_with_episodes_in_flight(tmp_path: Path) -> None:
-    config = TrainingConfig(simulations=5, slots=2, episode=EpisodeConfig(time_limit=1.5))
+    config = TrainingConfig(episodes=5, slots=2, episode=EpisodeConfig(time_limit=1.5))
     run = RunFolder.create(tmp_path / "run", config)
     train(config, run)
     rows = list(run.episodes())
@@ -170,7 +170,7 @@ def test_budget_is_kept_with_episodes_in_flight(tmp_path: Path) -> None:
 def test_trainings_of_neighbouring_seeds_share_no_episode(tmp_path: Path) -> None:
     seeds = []
     for seed in (0, 1):
-        config = TrainingConfig(simulations=6, slots=2, seed=seed, episode=EpisodeConfig(time_limit=1.2))
+        config = TrainingConfig(episodes=6, slots=2, seed=seed, episode=EpisodeConfig(time_limit=1.2))
         run = RunFolder.create(tmp_path / str(seed), config)
         train(config, run)
         seeds += [row["seed"] for row in run.episodes()]
@@ -181,7 +181,7 @@ def test_candidates_are_compared_on_the_same_seeds_within_the_budget(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(TrainingConfig, "candidate_count", 2)
-    config = TrainingConfig(simulations=16, slots=1, episode=EpisodeConfig(time_limit=2.0))
+    config = TrainingConfig(episodes=16, slots=1, episode=EpisodeConfig(time_limit=2.0))
     run = RunFolder.create(tmp_path / "run", config)
     parameters = train(config, run).parameters
     rows = list(run.episodes())
@@ -233,8 +233,8 @@ def test_parameters_are_read_by_name_whatever_their_order(tmp_path: Path) -> Non
 
 
 def test_what_chatters_or_is_no_gait_comes_last() -> None:
-    walking = simulate(EpisodeSpec(PAPER_PARAMETERS, 0, config=EpisodeConfig(time_limit=4.0)))
-    without = summarise([walking])
+    walking = simulate(EpisodeSpec(PAPER_STEPPING, 0, config=EpisodeConfig(time_limit=4.0)))
+    without = Evaluation([walking])
     dragging = dataclasses.replace(walking, score=0.95, sole_clearance=0.0099)
     chattering = dataclasses.replace(walking, score=0.95, vibration=2.5 * walking.vibration)
     ranks = [training._rank([result], without) for result in (walking, dragging, chattering)]

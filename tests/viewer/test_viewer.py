@@ -18,17 +18,18 @@ import psutil
 import pytest
 
 from sarah.cli import view
-from sarah.control.pattern_generator import PAPER_PARAMETERS
-from sarah.episode.ending import ENDINGS, TERMINATIONS
+from sarah.control.parameters import PAPER_STEPPING
+from sarah.episode.ending import TERMINATIONS
 from sarah.episode.episode import simulate
 from sarah.episode.push import Push
 from sarah.episode.result import EpisodeResult
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
-from sarah.episode.tasks import BALANCE
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.errors import ConfigurationError, RunFolderError
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.runs.config import TrainingConfig
-from sarah.runs.run_episodes import choices_of_run, choose
+from sarah.runs.run_episodes import choose, episodes_of_run
 from sarah.runs.run_folder import RunFolder
 from sarah.viewer.background import BackgroundSimulation, Wish
 from sarah.viewer.playback import Playback
@@ -37,7 +38,7 @@ from sarah.viewer.scene import channels, describe_tick
 from sarah.viewer.server import serving
 
 BIN = Path(sys.executable).parent
-CONFIG = EpisodeConfig(time_limit=6.0, push=Push(newtons=(40.0, 60.0), at_seconds=(2.0, 3.0)))
+CONFIG = BalanceConfig(time_limit=6.0, push=Push(newtons=(40.0, 60.0), at_seconds=(2.0, 3.0)))
 TRIED = ((0.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.5, 0.0), (-2.0, 1.0, 0.0, 2.0))
 LEARNED = (0.8, 0.1, 0.3, -0.1)
 CHROMIUM = shutil.which("chromium")
@@ -50,7 +51,7 @@ PATIENCE = 120_000
 def run(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
     """A Second Training of three simulations."""
     path = tmp_path_factory.mktemp("runs") / "balance"
-    run = RunFolder.create(path, TrainingConfig(task="balance", simulations=3, episode=CONFIG))
+    run = RunFolder.create(path, TrainingConfig(task="balance", episodes=3, episode=CONFIG))
     for index, parameters in enumerate(TRIED):
         result = simulate(EpisodeSpec(parameters, 2**31 + index, "balance", CONFIG))
         run.append_episode(
@@ -64,7 +65,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
 
 
 def test_every_simulation_of_a_run_is_played_exactly(run: RunFolder) -> None:
-    choices = choices_of_run(run)
+    choices = episodes_of_run(run)
     assert [choice.name for choice in choices] == ["learned", "best", "0", "1", "2"]
     for choice in choices[2:]:
         assert simulate(choice.spec).score == choice.score
@@ -78,14 +79,14 @@ def test_every_way_to_end_has_words() -> None:
 
 
 def test_an_unknown_episode_is_told_which_there_are(run: RunFolder) -> None:
-    choices = choices_of_run(run)
+    choices = episodes_of_run(run)
     assert choose(choices, "2").spec.parameters == TRIED[2]
     with pytest.raises(ConfigurationError, match=r"unknown episode '7' \(allowed: learned, best, 0 to 2\)"):
         choose(choices, "7")
 
 
 def test_an_episode_in_the_other_engine_has_no_noted_score(run: RunFolder) -> None:
-    choice = choices_of_run(run)[2]
+    choice = episodes_of_run(run)[2]
     other = view._in_engine(choice, "mujoco")
     assert other.spec.config.engine == "mujoco" and other.spec.seed == choice.spec.seed and other.score is None
     assert view._in_engine(choice, "pybullet") == choice
@@ -96,18 +97,18 @@ def test_an_unfinished_run_can_be_played_and_a_damaged_one_is_named(run: RunFold
     shutil.copytree(run.path, copy)
     (copy / "parameters.json").unlink()
     unfinished = RunFolder.open(copy, unfinished=True)
-    assert [choice.name for choice in choices_of_run(unfinished)] == ["best", "0", "1", "2"]
+    assert [choice.name for choice in episodes_of_run(unfinished)] == ["best", "0", "1", "2"]
     with (copy / "episodes.csv").open("a") as file:
         file.write("3,torn")
     with pytest.raises(RunFolderError, match="copy cannot be read"):
-        choices_of_run(unfinished)
+        episodes_of_run(unfinished)
     (copy / "episodes.csv").unlink()
     with pytest.raises(RunFolderError, match="has no simulations to show yet"):
-        choices_of_run(unfinished)
+        episodes_of_run(unfinished)
 
 
 def test_sliders_that_stand_still_change_nothing() -> None:
-    stepping = EpisodeSpec(PAPER_PARAMETERS, 3, config=EpisodeConfig(time_limit=6.0))
+    stepping = EpisodeSpec(PAPER_STEPPING, 3, config=EpisodeConfig(time_limit=6.0))
     assert simulate(Scenario.of(stepping).spec()) == simulate(stepping)
     pushed = EpisodeSpec(LEARNED, 3, "balance", CONFIG)
     again = simulate(Scenario.of(pushed).spec())
@@ -116,7 +117,7 @@ def test_sliders_that_stand_still_change_nothing() -> None:
 
 
 def test_a_given_push_is_the_push_that_is_simulated() -> None:
-    scenario = Scenario(PAPER_PARAMETERS, LEARNED, KnownPush(50.0, 90.0, 2.5), 1, EpisodeConfig(time_limit=4.0))
+    scenario = Scenario(PAPER_STEPPING, LEARNED, KnownPush(50.0, 90.0, 2.5), 1, EpisodeConfig(time_limit=4.0))
     trace = simulate(scenario.spec(), record_trace=True).trace
     assert trace is not None
     assert trace.push[trace.tick_at(2.55)] == pytest.approx([0.0, 50.0, 0.0])
@@ -152,7 +153,7 @@ def test_the_newest_wish_is_simulated_and_the_one_before_it_given_up() -> None:
     finished = threading.Event()
     shares: list[float] = []
     simulation = BackgroundSimulation(shares.append, pytest.fail)
-    old, new = (EpisodeSpec(PAPER_PARAMETERS, seed) for seed in (0, 1))
+    old, new = (EpisodeSpec(PAPER_STEPPING, seed) for seed in (0, 1))
     simulation.request(Wish(old, done.append))
     while not shares:
         time.sleep(0.01)
@@ -329,9 +330,9 @@ def test_an_episode_plays(page: Any) -> None:
 
 def test_scrubbing_shows_that_moment_in_scene_and_plots(page: Any, run: RunFolder) -> None:
     choose_on_page(page, "learned")
-    trace = simulate(choices_of_run(run)[0].spec, record_trace=True).trace
+    trace = simulate(episodes_of_run(run)[0].spec, record_trace=True).trace
     assert trace is not None
-    eventually(lambda: scores(page)[0] == f"{simulate(choices_of_run(run)[0].spec).score:.3f}")
+    eventually(lambda: scores(page)[0] == f"{simulate(episodes_of_run(run)[0].spec).score:.3f}")
     pause(page)
     for phase in ("lift", "land"):
         tick = next(tick for tick in range(300, len(trace)) if set(trace.phase[tick - 1 : tick + 2]) == {phase})
@@ -345,7 +346,7 @@ def test_scrubbing_shows_that_moment_in_scene_and_plots(page: Any, run: RunFolde
 
 def test_a_slider_changes_the_episode_and_the_old_score_stands_beside_the_new(page: Any, run: RunFolder) -> None:
     choose_on_page(page, "simulation 1")
-    spec = choices_of_run(run)[3].spec
+    spec = episodes_of_run(run)[3].spec
     old = f"{simulate(spec).score:.3f}"
     eventually(lambda: scores(page)[0] == old)
     slider(page, "P1").press("End")
@@ -360,7 +361,7 @@ def test_a_slider_changes_the_episode_and_the_old_score_stands_beside_the_new(pa
 
 def test_a_push_is_simulated_and_drawn_as_an_arrow(page: Any, run: RunFolder) -> None:
     choose_on_page(page, "simulation 0")
-    spec = choices_of_run(run)[2].spec
+    spec = episodes_of_run(run)[2].spec
     old = f"{simulate(spec).score:.3f}"
     eventually(lambda: scores(page)[0] == old)
     page.get_by_role("button", name="No push").click()

@@ -1,0 +1,85 @@
+"""The controller's own constants: what it does not learn, and no randomisation varies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sarah.errors import check_fields
+
+PLAUSIBLE = {
+    "minimum_phase_seconds": (0.0, 1.0, "s"),
+    "time_out_seconds": (0.01, 100.0, "s"),
+    "rate_scale": (0.0, 10.0, ""),
+    "shift_extension": (0.0, 0.1, "m"),
+    "lift_retraction": (0.0, 0.2, "m"),
+    "leg_speed": (0.01, 100.0, "m/s"),
+    "tilt_time_constant": (1e-4, 100.0, "s"),
+    "rate_time_constant": (1e-4, 100.0, "s"),
+    "abduction_tilt": (0.0, 10_000.0, "m/s^2 per rad"),
+    "abduction_rate_share": (0.0, 10.0, ""),
+    "largest_acceleration": (0.1, 1000.0, "m/s^2"),
+    "abduction_scale": (0.0, 10.0, "rad per m/s^2"),
+    "pitch_scale": (0.0, 100.0, ""),
+    "flexion_scale": (0.0, 1.0, "rad"),
+    "largest_hip_angle": (0.0, 1.5, "rad"),
+    "hip_speed": (0.01, 100.0, "rad/s"),
+    "stable_time_constant": (1e-4, 100.0, "s"),
+    "pitch_time_constant": (1e-4, 100.0, "s"),
+    "largest_rate": (0.1, 1000.0, "rad/s"),
+}
+"""Lowest and highest value that a controller can have, and its unit. Beyond, somebody has mistaken the unit."""
+
+
+@dataclass(frozen=True)
+class ControllerConstants:
+    """Time-outs, gains, time constants and lengths of pattern generator and hip law. All are reconstructed.
+
+    :param minimum_phase_seconds: shortest duration of a phase, in s
+    :param time_out_seconds: duration that P4 and P5 stretch to a phase's time-out, in s
+    :param rate_scale: factor on P3 in the condition that ends SHIFT
+    :param shift_extension: length by which the swing leg extends in SHIFT, in m
+    :param lift_retraction: length by which the swing leg retracts in LIFT, in m
+    :param leg_speed: speed of the ramp that leg length targets follow, in m/s
+    :param tilt_time_constant: time constant of the tilt's low-pass, in s
+    :param rate_time_constant: time constant of the rate's low-pass, in s
+    :param abduction_tilt: tilt that a radian of the hip law's abduction, without its constant, counts for, in m/s^2
+    :param abduction_rate_share: share of the abduction's own rate that counts as rate
+    :param largest_acceleration: acceleration to which readings are clipped before the low-passes, in m/s^2
+    :param abduction_scale: abduction per lateral acceleration at V1 = 1, in rad per m/s^2
+    :param pitch_scale: swing leg flexion per pitch at V3 = 1
+    :param flexion_scale: constant flexion at V4 = 1, in rad; 0.1 rad would lean the robot over its toes
+    :param largest_hip_angle: limit of either hip target, in rad
+    :param hip_speed: speed of the ramp that hip targets follow, in rad/s
+    :param stable_time_constant: time constant of the hips' own low-pass of the lateral acceleration, in s
+    :param pitch_time_constant: time over which the integral of the rate about x forgets, in s: longer than a fall, and
+        it forgets a gyroscope's bias
+    :param largest_rate: rate about x to which readings are clipped before they are integrated, in rad/s
+    """
+
+    minimum_phase_seconds: float = 0.04
+    time_out_seconds: float = 0.5
+    rate_scale: float = 0.2
+    shift_extension: float = 0.008
+    lift_retraction: float = 0.030
+    leg_speed: float = 1.0
+    tilt_time_constant: float = 0.10
+    rate_time_constant: float = 0.01
+    abduction_tilt: float = 150.0
+    abduction_rate_share: float = 0.2
+    largest_acceleration: float = 20.0
+    abduction_scale: float = 0.05
+    pitch_scale: float = 2.5
+    flexion_scale: float = 0.02
+    largest_hip_angle: float = 0.3
+    hip_speed: float = 6.0
+    stable_time_constant: float = 0.30
+    pitch_time_constant: float = 1.0
+    largest_rate: float = 10.0
+
+    def __post_init__(self) -> None:
+        """Refuse what no controller can have."""
+        check_fields("controller", self, PLAUSIBLE)
+
+
+STANDARD_CONSTANTS = ControllerConstants()
+"""The constants that trainings use."""

@@ -1,0 +1,67 @@
+"""The settings that episodes of all tasks have."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, get_args
+
+from sarah.control.constants import ControllerConstants
+from sarah.control.pattern_generator import STAND_SECONDS
+from sarah.episode.reward import RewardForm
+from sarah.errors import ConfigurationError, check_range, unknown_name
+from sarah.simulation.engines import Engine, default_engine
+from sarah.simulation.physics import PHYSICS, Physics, physics_for, physics_type
+from sarah.simulation.randomisation import Randomisation
+
+LONGEST_EPISODE = 3600.0
+"""Longest time limit of an episode, in s."""
+
+
+@dataclass(frozen=True)
+class EpisodeConfig:
+    """What all episodes of an experiment share, whatever the task.
+
+    :param physics: fineness of the integration; what another engine knows is taken as this one can
+    :param engine: physics engine: ``"pybullet"``, the reference, or ``"mujoco"``, the default where PyBullet is missing
+    :param randomisation: ranges that each episode's seed draws from
+    :param controller: constants of pattern generator and hip law
+    :param dimensions: dimensions of the robot, names and values where they differ from the xacro's; by default none do
+    :param time_limit: time limit of an episode, in s; the paper's first criterion
+    :param reward_form: form of equation 2: ``"symmetric"``, or ``"printed"`` for the equation to the letter
+    """
+
+    physics: Physics = PHYSICS["standard"]
+    engine: Engine = default_engine()
+    randomisation: Randomisation = Randomisation()
+    controller: ControllerConstants = ControllerConstants()
+    dimensions: Mapping[str, float] = field(default_factory=dict)
+    time_limit: float = 30.0
+    reward_form: RewardForm = "symmetric"
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be simulated."""
+        if self.engine not in get_args(Engine):
+            raise ConfigurationError(unknown_name("engine", self.engine, get_args(Engine)))
+        object.__setattr__(self, "physics", physics_for(self.engine, self.physics))
+        check_range("time_limit", self.time_limit, STAND_SECONDS, LONGEST_EPISODE, "s")
+        if self.time_limit < STAND_SECONDS + self.physics.control_dt:
+            raise ConfigurationError(
+                f"time_limit must be above the {STAND_SECONDS:g} s of standing, not {self.time_limit!r}"
+            )
+        if self.reward_form not in get_args(RewardForm):
+            raise ConfigurationError(unknown_name("reward_form", self.reward_form, get_args(RewardForm)))
+
+    def check_for_training(self) -> None:
+        """Refuse settings with which there is nothing to learn.
+
+        :raises ConfigurationError: naming the setting
+        """
+
+    @classmethod
+    def field_types(cls, content: Mapping[str, Any]) -> dict[str, type]:
+        """Types of fields that depend on other fields.
+
+        :param content: values of some fields, as a file gives them
+        """
+        return {"physics": physics_type(content.get("engine", cls.engine))}
