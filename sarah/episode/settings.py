@@ -23,7 +23,7 @@ class EpisodeConfig:
     """What all episodes of an experiment share, whatever the task.
 
     :param physics: fineness of the integration; what another engine knows is taken as this one can
-    :param engine: physics engine: ``"pybullet"``, the reference, or ``"mujoco"``, the default where PyBullet is missing
+    :param engine: physics engine: ``"pybullet"``, the reference, or ``"mujoco"``, the default without PyBullet
     :param randomisation: ranges that each episode's seed draws from
     :param controller: constants of pattern generator and hip law
     :param dimensions: dimensions of the robot, names and values where they differ from the xacro's; by default none do
@@ -32,7 +32,7 @@ class EpisodeConfig:
     """
 
     physics: Physics = PHYSICS["standard"]
-    engine: Engine = default_engine()
+    engine: Engine = field(default_factory=default_engine)
     randomisation: Randomisation = Randomisation()
     controller: ControllerConstants = ControllerConstants()
     dimensions: Mapping[str, float] = field(default_factory=dict)
@@ -64,4 +64,4 @@ class EpisodeConfig:
 
         :param content: values of some fields, as a file gives them
         """
-        return {"physics": physics_type(content.get("engine", cls.engine))}
+        return {"physics": physics_type(content.get("engine", default_engine()))}
