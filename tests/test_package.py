@@ -39,6 +39,9 @@ def test_wheel_holds_the_robot_and_the_agent_and_claims_one_name(built: tuple[Pa
     names = zipfile.ZipFile(built[1]).namelist()
     for name in ("urdf/sarah.urdf.xacro", "urdf/__init__.py", "agents/naf.py", "cli/train.py", "py.typed"):
         assert f"sarah/{name}" in names
+    assert sorted(names) == sorted(set(names))
+    modules = {str(path.relative_to(ROOT)) for path in (ROOT / "sarah").rglob("*.py")}
+    assert modules <= set(names), "setup.cfg lists every package"
     tops = {name.split("/")[0] for name in names}
     assert {top for top in tops if not top.endswith(".dist-info")} == {"sarah"}
 
