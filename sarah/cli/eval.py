@@ -140,28 +140,21 @@ def _changed(config: EpisodeConfig, options: EvalOptions, task: str) -> EpisodeC
 
 
 def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[str, str]]:
-    e = evaluation
-    hips, legs = e.statistic("peak_hip_rate", "max"), e.statistic("peak_leg_speed", "max")
+    from sarah.episode.result import METRICS
+
+    diverged = f"; {evaluation.diverged} diverged: no number came back" if evaluation.diverged else ""
     return [
         ("parameters", ", ".join(f"{name} = {value:.3f}" for name, value in parameters.items())),
-        ("score", _statistics(e, "score", "{:.3f}", "median", "mean", "std", "min")),
-        ("steps per second", _statistics(e, "steps_per_second", "{:.2f}", "median", "mean", "std")),
-        ("drift", _statistics(e, "drift", "{:.1f} cm", "median", "mean", "std", "max", scale=100.0)),
-        (
-            "survival",
-            f"{e.survivors} of {e.episodes} episodes"
-            + (f"; {e.diverged} diverged: no number came back" if e.diverged else ""),
+        ("survival", f"{evaluation.survivors} of {evaluation.episodes} episodes{diverged}"),
+        *(
+            (
+                metric.label,
+                ", ".join(f"{metric.text(evaluation.statistic(name, how))} {how}" for how in metric.statistics),
+            )
+            for name, metric in METRICS.items()
+            if metric.statistics
         ),
-        ("by sensors", f"{e.mean('shifts_by_sensors'):.1%} of shifts, {e.mean('lifts_by_sensors'):.1%} of lifts"),
-        ("sole clearance", f"{1000 * e.mean('sole_clearance'):.1f} mm"),
-        ("vibration", f"{e.median('vibration'):.1f} m²/s⁴ above 20 Hz"),
-        ("actuators", f"{e.mean('actuator_power'):.0f} W; peaks {hips:.1f} rad/s and {legs:.2f} m/s"),
     ]
-
-
-def _statistics(evaluation: Evaluation, metric: str, form: str, *names: str, scale: float = 1.0) -> str:
-    """Some statistics of a metric, in one line."""
-    return ", ".join(f"{form.format(scale * evaluation.statistic(metric, name))} {name}" for name in names)
 
 
 def _comparison(evaluation: Evaluation, baseline: Evaluation) -> list[tuple[str, str]]:

@@ -142,19 +142,19 @@ def episodes_of(subject: str, episode: str | None) -> tuple[list[RunEpisode], Ru
         named
     :raises ConfigurationError: if there is no such thing
     """
-    from sarah.runs.run_episodes import choose, episode_of_parameters, episodes_of_run
+    from sarah.runs.run_episodes import choose_episode, episode_of_parameters, episodes_of_run
 
     if Path(subject).is_dir():
         from sarah.runs.run_folder import RunFolder
 
-        choices = episodes_of_run(RunFolder.open(Path(subject), unfinished=True))
-        return choices, choose(choices, episode)
+        episodes = episodes_of_run(RunFolder.open(Path(subject), unfinished=True))
+        return episodes, choose_episode(episodes, episode)
     if not subject.strip("+-.")[:1].isdigit():
         raise ConfigurationError(f"{subject} is neither a run folder nor numbers separated by commas")
     if episode is not None:
         raise ConfigurationError("--episode is for a run folder")
-    choice = episode_of_parameters(numbers("parameters", subject))
-    return [choice], choice
+    given = episode_of_parameters(numbers("parameters", subject))
+    return [given], given
 
 
 def changed_episodes(

@@ -100,9 +100,9 @@ class Evaluation:
     def summary(self) -> dict[str, Any]:
         """Every statistic of every metric, as files and ``--json`` have them."""
         statistics = {
-            f"{metric.name}_{name}": self.statistic(metric.name, name)
-            for metric in METRICS.values()
-            for name in metric.statistics
+            f"{metric}_{name}": self.statistic(metric, name)
+            for metric in METRICS
+            for name in METRICS[metric].statistics
         }
         return {
             "episodes": self.episodes,

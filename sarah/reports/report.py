@@ -5,7 +5,6 @@ from __future__ import annotations
 import shlex
 import tempfile
 from base64 import b64encode
-from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.resources import files
 from importlib.util import find_spec
@@ -16,6 +15,7 @@ from tqdm import tqdm
 
 from sarah.episode.episode import simulate
 from sarah.episode.evaluation import Evaluation, evaluate
+from sarah.episode.result import METRICS
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import TASKS, Task
 from sarah.episode.workers import Executor
@@ -115,32 +115,13 @@ def _parameter_rows(task: Task, learned: Parameters) -> list[Row]:
 
 
 def _result_rows(config: TrainingConfig, learned: Evaluation, baseline: Evaluation) -> list[Row]:
-    is_pushed = TASKS[config.task].has_push
-
-    def row(name: str, text: Callable[[Evaluation], str], paper: str = "") -> Row:
-        return Row(name, text(learned), text(baseline), paper)
-
-    return [
-        row("score, median (1 is the ceiling)", lambda e: f"{e.median('score'):.3f}", "reported as reward, no scale"),
-        row("steps per second, median", lambda e: f"{e.median('steps_per_second'):.2f}", "3 to 5, a human's"),
-        row(
-            f"episodes that lasted {config.episode.time_limit:g} s",
-            lambda e: f"{e.survivors} of {e.episodes}",
-            "no share given" if is_pushed else "30 s ends a simulation that does well",
-        ),
-        row(
-            "distance from the start at the end, median (cm)",
-            lambda e: f"{100 * e.median('drift'):.1f}",
-            "returns to its initial position" if is_pushed else "below 25, or the simulation ends",
-        ),
-        row(
-            "SHIFT, LIFT phases that sensors ended (%)",
-            lambda e: f"{100 * e.mean('shifts_by_sensors'):.0f}, {100 * e.mean('lifts_by_sensors'):.0f}",
-        ),
-        row("clearance of the soles, mean (mm)", lambda e: f"{1000 * e.mean('sole_clearance'):.0f}"),
-        row("vibration above 20 Hz, median (m²/s⁴)", lambda e: f"{e.median('vibration'):.1f}"),
-        row("power of the actuators, mean (W)", lambda e: f"{e.mean('actuator_power'):.0f}"),
-    ]
+    ours, theirs = (f"{evaluation.survivors} of {evaluation.episodes}" for evaluation in (learned, baseline))
+    rows = [Row(f"episodes that lasted {config.episode.time_limit:g} s", ours, theirs, "30 s ends one that does well")]
+    for name, metric in METRICS.items():
+        for how in metric.statistics[:1]:
+            ours, theirs = (metric.text(evaluation.statistic(name, how)) for evaluation in (learned, baseline))
+            rows.append(Row(f"{metric.label}, {how}", ours, theirs, metric.paper))
+    return rows
 
 
 def _warnings(learned: Evaluation, baseline: Evaluation | None) -> list[str]:

@@ -87,9 +87,9 @@ class EpisodeRecorder(BaseCallback):
         x, y, _ = result.final_position
         for name, value in {"return": result.episode_return, "x": x, "y": y}.items():
             self.log.record(f"episode/{name}", value)
-        for metric in METRICS.values():
+        for name, metric in METRICS.items():
             if metric.group:
-                self.log.record(f"{metric.group}/{metric.name}", getattr(result, metric.name))
+                self.log.record(f"{metric.group}/{name}", getattr(result, name))
         for name, value in zip(self._task.parameter_names, spec.parameters, strict=True):
             self.log.record(f"parameters/{name}", value)
         if self.choose is not None:

@@ -74,7 +74,7 @@ def test_eval_summarises_a_run(trained: tuple[Path, subprocess.CompletedProcess[
     folder, _ = trained
     process = run("sarah-eval", str(folder), "--episodes", "2", cwd=folder)
     assert process.returncode == 0, process.stderr
-    for text in ("parameters", "score", "steps per second", "drift", "survival", "by sensors", "sole clearance"):
+    for text in ("parameters", "score", "steps per second", "drift", "survival", "SHIFT by sensors", "sole clearance"):
         assert text in process.stdout
 
 

@@ -19,7 +19,7 @@ from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.errors import ConfigurationError
 from sarah.reports.transfer import LearnedParameters, Transfer
 from sarah.simulation import engines
-from sarah.simulation.engines import simulator_of
+from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import Physics
 
 SHORT = EpisodeConfig(engine="mujoco", time_limit=6.0)
