@@ -11,10 +11,13 @@ from pathlib import Path
 
 from sphinx.application import Sphinx
 
+HERE = Path(__file__).parent
+sys.path[:0] = [str(HERE / "_extensions"), str(HERE.parent)]  # what renders results, and what reads them
+
 project = "sarah"
 author = "the sarah contributors"
 release = metadata.version("sarah")
-extensions = ["myst_parser", "sphinx.ext.autodoc"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "results"]
 html_theme = "furo"
 html_static_path = ["_static"]
 html_css_files = ["tables.css"]
@@ -25,7 +28,6 @@ html_show_copyright = False
 myst_heading_anchors = 3
 suppress_warnings = ["toc.duplicate_entry"]
 
-HERE = Path(__file__).parent
 WIDTH = 86
 """Of a command's help, in characters: as wide as the page."""
 GENERATED = HERE / "reference" / "generated"
