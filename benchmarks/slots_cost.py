@@ -10,7 +10,7 @@ from typing import get_args
 
 from trainings import learned
 
-from sarah.agents.naf import PRESETS
+from sarah.agents import PRESETS
 from sarah.episode.spec import EpisodeConfig
 from sarah.episode.workers import Workers
 from sarah.runs.config import TrainingConfig

@@ -12,7 +12,7 @@ from stable_baselines3.common.noise import NormalActionNoise
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from stable_baselines3.common.vec_env import VecEnv
 
-from sarah.agents.naf import NAF, PRESETS
+from sarah.agents import PRESETS, LocalNAF
 from sarah.envs.episode_vec_env import EpisodeVecEnv
 from sarah.envs.sarah_env import draw_seed, observation_from, parameters_from
 from sarah.episode.episode import Episode, simulate
@@ -83,7 +83,8 @@ def make_agent(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
     common: dict[str, Any] = dict(seed=spread_seed(config), learning_starts=max(warm_up, 2 * config.slots))
     if config.algo == "naf":
         common["first_action_centre"] = TASKS[config.task].neutral is not None  # few uniform draws come near V = 0
-        return NAF("MlpPolicy", env, **{**PRESETS["one-step"], "replay_buffer_class": LateRankReplayBuffer, **common})
+        one_step = {**PRESETS["one-step"], **common}
+        return LocalNAF("MlpPolicy", env, replay_buffer_class=LateRankReplayBuffer, **one_step)
     # Their defaults are for long episodes of small rewards; here the reward is the return.
     settings = dict(
         batch_size=64,

@@ -17,7 +17,7 @@ from typing import get_args, get_type_hints
 import pytest
 import torch
 
-from sarah.agents.naf import NAF
+from sarah.agents import LocalNAF
 from sarah.episode.push import Push
 from sarah.episode.spec import EpisodeConfig
 from sarah.errors import DescriptionError
@@ -139,7 +139,7 @@ def test_the_model_is_left_alone_by_commands_and_would_go_off(
     assert not sprung.exists()
     shutil.copy(tmp_path / "run-True" / "model.zip", tmp_path / "loaded.zip")
     with pytest.raises(Exception):  # noqa: B017  # whatever stable-baselines3 makes of it afterwards
-        NAF.load(tmp_path / "loaded.zip")
+        LocalNAF.load(tmp_path / "loaded.zip")
     assert sprung.exists()
 
 

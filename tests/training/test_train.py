@@ -12,7 +12,7 @@ from stable_baselines3 import DDPG, SAC, TD3
 from stable_baselines3.common.base_class import BaseAlgorithm
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
-from sarah.agents.naf import NAF
+from sarah.agents import LocalNAF
 from sarah.control.pattern_generator import PAPER_PARAMETERS
 from sarah.episode.episode import simulate
 from sarah.episode.evaluation import summarise
@@ -106,7 +106,7 @@ def test_parameters_are_read_without_the_agent(run: RunFolder) -> None:
 
 
 def test_model_loads_and_predicts(run: RunFolder) -> None:
-    action, _ = NAF.load(run.model_path).predict(np.zeros(16, dtype=np.float32), deterministic=True)
+    action, _ = LocalNAF.load(run.model_path).predict(np.zeros(16, dtype=np.float32), deterministic=True)
     assert action.shape == (5,)
 
 
@@ -133,7 +133,7 @@ def test_second_training_learns_v_with_the_legs_of_the_first(tmp_path: Path) -> 
     content = json.loads((run.path / "parameters.json").read_text())
     assert content["stepping"] == list(stepping) and content["without"]["survival_rate"] == 1.0
     assert content["without"] == dataclasses.asdict(evaluate(BALANCE.neutral, config, range(SUMMARY_EPISODES)))
-    assert NAF.load(run.model_path).action_space.shape == (4,)
+    assert LocalNAF.load(run.model_path).action_space.shape == (4,)
 
 
 @pytest.mark.parametrize(("algo", "algorithm"), [("td3", TD3), ("sac", SAC), ("ddpg", DDPG)])
