@@ -81,12 +81,9 @@ def _compare(arguments: Sequence[str]) -> None:
     base = TrainingConfig(task=options.task, simulations=options.simulations, slots=options.slots, episode=episode)
     from sarah.robot.description import describe_robot
     from sarah.simulation.engines import check_engine
-    from sarah.training.optimisers import check_installed
 
     describe_robot(options.episode.dimensions)
     check_engine(episode.engine)
-    for algo in options.algorithms:
-        check_installed(algo)
     from sarah.episode.workers import Workers
     from sarah.reports.race import as_markdown, entries_of, race, standings, write_csv
     from sarah.reports.training_figures import draw_race

@@ -19,6 +19,7 @@ from sarah.cli.options import parse_options, run_command, with_engine
 from sarah.episode.spec import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS
 from sarah.errors import ConfigurationError, RunFolderError, SarahError, TrainingInterruptedError
+from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import first_difference, read_config
 
@@ -35,8 +36,8 @@ class TrainOptions:
     """Learn the pattern generator's parameters, one simulation per action of the agent.
 
     Settings come from the defaults below, then from the file of --config, then from the run of --from, then from the
-    command line. The run folder holds the learned parameters (parameters.json), every simulation (episodes.csv), the
-    agent (model.zip) and what TensorBoard shows.
+    command line. Those of the agent are of the algorithm that --algo names. The run folder holds the learned parameters
+    (parameters.json), every simulation (episodes.csv), the agent (model.zip) and what TensorBoard shows.
 
     :param training: what to train
     :param engine: of the physics, ``pybullet`` or ``mujoco``: short for --episode.engine
@@ -79,9 +80,9 @@ def _train(arguments: Sequence[str]) -> None:
     from sarah.episode.workers import Workers
     from sarah.runs.run_folder import RunFolder, new_run_path
     from sarah.simulation.engines import check_engine
-    from sarah.training.optimisers import check_installed
+    from sarah.training.learners import check_device
 
-    check_installed(config.algo)
+    check_device(config.agent)
     check_engine(config.episode.engine)
     if options.resume is not None and _resumed(options.resume, options).is_finished:
         print(f"{options.resume} is finished: there is nothing to resume")
@@ -136,23 +137,38 @@ def _learned(config: TrainingConfig, run: RunFolder, workers: Workers, picture_i
 
 
 def _defaults(arguments: Sequence[str]) -> TrainOptions:
-    """The defaults, as --config and --from change them."""
+    """The defaults, as --config, --from, --algo and --agent.preset change them.
+
+    The parser of the command line knows the agent's settings by their default.
+    """
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
     parser.add_argument("--config", type=Path)
     parser.add_argument("--resume", type=Path)
     parser.add_argument("--from", type=Path, dest="from_run")
+    parser.add_argument("--algo")
+    parser.add_argument("--agent.preset", dest="preset")
     try:
-        files = parser.parse_known_args(arguments)[0]
-    except argparse.ArgumentError:  # an option without its file, which the real parser reports
+        given = parser.parse_known_args(arguments)[0]
+    except argparse.ArgumentError:  # an option without its value, which the real parser reports
         return TrainOptions()
-    if files.resume is not None:
+    if given.resume is not None:
         from sarah.runs.run_folder import RunFolder
 
-        return TrainOptions(RunFolder.resumable(files.resume).config())
-    training = TrainingConfig() if files.config is None else read_config(TrainingConfig, files.config)
-    if files.from_run is not None:
-        training = dataclasses.replace(training, episode=_stepping_of(files.from_run, training.episode))
-    return TrainOptions(training)
+        training = RunFolder.resumable(given.resume).config()
+    else:
+        training = TrainingConfig() if given.config is None else read_config(TrainingConfig, given.config)
+        if given.from_run is not None:
+            training = dataclasses.replace(training, episode=_stepping_of(given.from_run, training.episode))
+    return TrainOptions(_with_agent(training, given.algo, given.preset))
+
+
+def _with_agent(training: TrainingConfig, algo: str | None, preset: str | None) -> TrainingConfig:
+    """A training by another algorithm, with its default settings, or with what another preset of NAF decides."""
+    if algo is not None and algo != training.algo:
+        training = dataclasses.replace(training, algo=algo, agent=settings_of(algo)())
+    if preset is not None and isinstance(training.agent, NAFSettings) and preset != training.agent.preset:
+        training = dataclasses.replace(training, agent=training.agent.with_preset(preset))
+    return training
 
 
 def _stepping_of(path: Path, episode: EpisodeConfig) -> EpisodeConfig:

@@ -22,6 +22,7 @@ from sarah.episode.push import Push
 from sarah.episode.spec import EpisodeConfig
 from sarah.errors import DescriptionError
 from sarah.robot.description import describe_robot
+from sarah.runs.agent_settings import AGENT_SETTINGS
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
@@ -189,11 +190,11 @@ def test_dimensions_are_numbers_and_nothing_else(
 
 
 def test_no_setting_is_a_path() -> None:
-    """So none leads out of the run folder."""
+    """So none leads out of the run folder. A device is one of a few names."""
     texts = set()
-    for config_type in (TrainingConfig, EpisodeConfig, Physics, Randomisation, Push):
+    for config_type in (TrainingConfig, EpisodeConfig, Physics, Randomisation, Push, *AGENT_SETTINGS.values()):
         for name, kind in get_type_hints(config_type).items():
             assert kind is not Path
             if kind is str or (str in get_args(kind)[:1] and not hasattr(kind, "__origin__")):
                 texts.add(name)
-    assert texts == {"task", "algo"}
+    assert texts == {"task", "algo", "device"}

@@ -19,9 +19,9 @@ from sarah.episode.evaluation import summarise
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeConfig, EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING
 from sarah.errors import RunFolderError
+from sarah.runs.agent_settings import settings_of
 from sarah.runs.config import SEARCHERS, TrainingConfig
 from sarah.runs.run_folder import RunFolder, new_run_path
-from sarah.training import learners as learning
 from sarah.training import train as training
 from sarah.training.recommendation import candidates, merit
 from sarah.training.train import SUMMARY_EPISODES, evaluate, train
@@ -137,11 +137,9 @@ def test_second_training_learns_v_with_the_legs_of_the_first(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(("algo", "algorithm"), [("td3", TD3), ("sac", SAC), ("ddpg", DDPG)])
-def test_other_algorithms_run_the_same_path(
-    algo: str, algorithm: type[BaseAlgorithm], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(learning, "WARM_UP", 6)
-    config = TrainingConfig(algo=algo, simulations=12, slots=1, episode=EpisodeConfig(time_limit=1.5))
+def test_other_algorithms_run_the_same_path(algo: str, algorithm: type[BaseAlgorithm], tmp_path: Path) -> None:
+    agent = settings_of(algo)(learning_starts=6)  # type: ignore[call-arg]  # of a learner
+    config = TrainingConfig(algo=algo, simulations=12, slots=1, agent=agent, episode=EpisodeConfig(time_limit=1.5))
     run = RunFolder.create(tmp_path / algo, config)
     learned = train(config, run)
     assert isinstance(algorithm.load(run.model_path), algorithm)
