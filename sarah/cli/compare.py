@@ -9,7 +9,15 @@ from typing import Annotated
 
 import tyro
 
-from sarah.cli.options import episode_of, given_options, parse_options, run_command, say_engine, with_engine
+from sarah.cli.options import (
+    check_episode_options,
+    episode_of,
+    given_options,
+    parse_options,
+    run_command,
+    say_engine,
+    with_engine,
+)
 from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError, check_range
 from sarah.runs.config import ALGORITHMS, TrainingConfig
@@ -71,7 +79,9 @@ def _defaults(arguments: Sequence[str]) -> CompareOptions:
     """The defaults, of the kind that task and engine take."""
     given = given_options(arguments, "task", "engine", "episode.engine")
     task = given.get("task", CompareOptions.task)
-    return CompareOptions(task=task, episode=episode_of(task, EpisodeConfig(), given))
+    episode = episode_of(task, EpisodeConfig(), given)
+    check_episode_options(arguments, episode)
+    return CompareOptions(task=task, episode=episode)
 
 
 def _compare(arguments: Sequence[str]) -> None:

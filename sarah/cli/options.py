@@ -220,6 +220,18 @@ def check_has(config: EpisodeConfig, name: str, option: str) -> None:
         raise ConfigurationError(f"--{option} is for --task {tasks}")
 
 
+def check_episode_options(arguments: Sequence[str], config: EpisodeConfig) -> None:
+    """Refuse ``--episode.…`` options of settings that only another task has.
+
+    :param arguments: all arguments of a command
+    :param config: settings of the task's episodes
+    """
+    for argument in arguments:
+        name = argument.removeprefix("--episode.").split(".")[0].replace("-", "_")
+        if argument.startswith("--episode.") and any(hasattr(task.episode, name) for task in TASKS.values()):
+            check_has(config, name, argument.removeprefix("--").split("=")[0])
+
+
 def given_options(arguments: Sequence[str], *names: str) -> dict[str, str]:
     """Values of some options, which decide what further options there are.
 

@@ -14,7 +14,15 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.interruption import Interruption
-from sarah.cli.options import episode_of, given_options, parse_options, run_command, say_engine, with_engine
+from sarah.cli.options import (
+    check_episode_options,
+    episode_of,
+    given_options,
+    parse_options,
+    run_command,
+    say_engine,
+    with_engine,
+)
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS
 from sarah.errors import ConfigurationError, RunFolderError, SarahError, TrainingInterruptedError
@@ -159,6 +167,7 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
     if task not in TASKS:  # the real parser's options report it
         return TrainOptions(training)
     episode = episode_of(task, training.episode, given)
+    check_episode_options(arguments, episode)
     if "from" in given and task == BALANCE.name:
         episode = _on_learned_stepping(Path(given["from"]), episode)
     return TrainOptions(dataclasses.replace(training, task=task, episode=episode))

@@ -89,14 +89,14 @@ class AgentSettings:
 class LearnerSettings(AgentSettings):
     """Settings that all reinforcement learners share. Actions are scaled to [-1, 1].
 
-    :param learning_rate: Step size of the optimiser Adam, above 0
-    :param buffer_size: Number of episodes, from 1, that the replay buffer holds
-    :param learning_starts: Number of episodes before the networks learn; twice the slots, if that is more
-    :param batch_size: Number of episodes, from 1, in the minibatch of an update
-    :param tau: Share of their weights, 0 to 1, that the target networks take over from the others at an update
-    :param gamma: Discount factor, 0 to 1, of what follows an action; nothing does, as an episode is one action
-    :param gradient_steps: Number of updates, from 1, after each episode
-    :param device: Device of the networks: cpu, cuda, cuda:1 and so on, or auto, which takes CUDA where there is some
+    :param learning_rate: step size of the optimiser Adam, above 0
+    :param buffer_size: number of episodes, from 1, that the replay buffer holds
+    :param learning_starts: number of episodes before the networks learn; twice the slots, if that is more
+    :param batch_size: number of episodes, from 1, in the minibatch of an update
+    :param tau: share of their weights, 0 to 1, that the target networks take over from the others at an update
+    :param gamma: discount factor, 0 to 1, of what follows an action; nothing does, as an episode is one action
+    :param gradient_steps: number of updates, from 1, after each episode
+    :param device: device of the networks: cpu, cuda, cuda:1 and so on, or auto, which takes CUDA where there is some
     """
 
     learning_rate: float = 1e-3
@@ -126,20 +126,20 @@ def _by_preset() -> Any:
 class NAFSettings(LearnerSettings):
     """Settings of NAF. Standard deviations are of actions scaled to [-1, 1].
 
-    :param preset: Source of defaults: one-step for local NAF, paper for the paper's networks and plain NAF
-    :param max_grad_norm: Largest norm of an update's gradient, above 0
-    :param exploration_std: Standard deviation, 0 to 2, of the noise around mu: at first, and after 80 % of the training
-    :param temperature: Logarithm, from 0, of how much more often the best episode is replayed than the worst
-    :param elite_share: Share of the actions, 0 to 1, that are drawn around the best one so far instead of around mu
-    :param elite_std: Standard deviation, 0 to 2, of these draws: at first, and after 80 % of the training
-    :param elite_draws: Number of draws, from 1, of which the most promising is tried
-    :param v_layers: Widths of the hidden layers of V
-    :param mu_layers: Widths of the hidden layers of mu
-    :param l_layers: Widths of the hidden layers of L
-    :param shared_layers: Widths of hidden layers that mu and L have in common, before their own
-    :param activation: Activation function of the hidden layers: tanh, relu or sigmoid
-    :param squash_mu: Tanh at the end of mu; if there is none, mu is linear and clipped
-    :param min_curvature: Curvature, from 0, that is added to L L^T, so that Q is flat nowhere
+    :param preset: source of defaults: one-step for local NAF, paper for the paper's networks and plain NAF
+    :param max_grad_norm: largest norm of an update's gradient, above 0
+    :param exploration_std: standard deviation, 0 to 2, of the noise around mu: at first, and after 80 % of the training
+    :param temperature: logarithm, from 0, of how much more often the best episode is replayed than the worst
+    :param elite_share: share of the actions, 0 to 1, that are drawn around the best one so far instead of around mu
+    :param elite_std: standard deviation, 0 to 2, of these draws: at first, and after 80 % of the training
+    :param elite_draws: number of draws, from 1, of which the most promising is tried
+    :param v_layers: widths of the hidden layers of V
+    :param mu_layers: widths of the hidden layers of mu
+    :param l_layers: widths of the hidden layers of L
+    :param shared_layers: widths of hidden layers that mu and L have in common, before their own
+    :param activation: activation function of the hidden layers: tanh, relu or sigmoid
+    :param squash_mu: tanh at the end of mu; if there is none, mu is linear and clipped
+    :param min_curvature: curvature, from 0, that is added to L L^T, so that Q is flat nowhere
     """
 
     buffer_size: int = 10_000
@@ -174,7 +174,7 @@ class NAFSettings(LearnerSettings):
     def with_preset(self, preset: str) -> NAFSettings:
         """Settings with everything that a preset decides; the others stay.
 
-        :param preset: Name of the preset
+        :param preset: name of the preset
         """
         undecided: dict[str, Any] = dict.fromkeys(PRESETS["one-step"])
         return replace(self, preset=preset, **undecided)  # type: ignore[arg-type]  # the name is checked
@@ -184,8 +184,8 @@ class NAFSettings(LearnerSettings):
 class DDPGSettings(LearnerSettings):
     """Settings of stable-baselines3's DDPG. Standard deviations are of actions scaled to [-1, 1].
 
-    :param layers: Widths of the hidden layers of actor and critic
-    :param action_noise_std: Standard deviation, 0 to 2, of the exploration noise
+    :param layers: widths of the hidden layers of actor and critic
+    :param action_noise_std: standard deviation, 0 to 2, of the exploration noise
     """
 
     layers: tuple[int, ...] = (64, 64)
@@ -196,9 +196,9 @@ class DDPGSettings(LearnerSettings):
 class TD3Settings(DDPGSettings):
     """Settings of stable-baselines3's TD3. Standard deviations are of actions scaled to [-1, 1].
 
-    :param policy_delay: Number of updates of the critics, from 1, to one of the actor
-    :param target_policy_noise: Standard deviation, 0 to 2, of the noise on actions that targets are computed with
-    :param target_noise_clip: Largest absolute value, 0 to 2, of that noise
+    :param policy_delay: number of updates of the critics, from 1, to one of the actor
+    :param target_policy_noise: standard deviation, 0 to 2, of the noise on actions that targets are computed with
+    :param target_noise_clip: largest absolute value, 0 to 2, of that noise
     """
 
     policy_delay: int = 2
@@ -210,8 +210,8 @@ class TD3Settings(DDPGSettings):
 class SACSettings(LearnerSettings):
     """Settings of stable-baselines3's SAC.
 
-    :param layers: Widths of the hidden layers of actor and critics
-    :param ent_coef: Coefficient of the entropy, from 0, or auto, which learns it
+    :param layers: widths of the hidden layers of actor and critics
+    :param ent_coef: coefficient of the entropy, from 0, or auto, which learns it
     """
 
     learning_rate: float = 3e-4
@@ -223,8 +223,8 @@ class SACSettings(LearnerSettings):
 class EvolutionSettings(AgentSettings):
     """Settings of CMA-ES.
 
-    :param deviation: Standard deviation, 0.01 to 2, of the first generation, in actions scaled to [-1, 1]
-    :param population: Number of episodes, from 2, in a generation
+    :param deviation: standard deviation, 0.01 to 2, of the first generation, in actions scaled to [-1, 1]
+    :param population: number of episodes, from 2, in a generation
     """
 
     deviation: float = 0.6
@@ -247,7 +247,7 @@ AGENT_SETTINGS: dict[str, type[AgentSettings]] = {
 def settings_of(algo: str) -> type[AgentSettings]:
     """Class of an algorithm's settings.
 
-    :param algo: Name of the algorithm
+    :param algo: name of the algorithm
     :raises ConfigurationError: for an unknown one
     """
     if algo not in AGENT_SETTINGS:
