@@ -1,6 +1,6 @@
-"""What a training's settings are, as a plain dataclass.
+"""The settings of a training, as a plain dataclass.
 
-Light on purpose: commands import it before anything slow.
+The module imports nothing slow, because every command imports it first.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ MOST_EPISODES = 1_000_000
 MOST_SLOTS = 10_000
 
 EPISODES_PER_CANDIDATE = 5
-"""Episodes of each candidate in the comparison that ends a training."""
+"""Number of episodes per candidate in the comparison at the end of a training."""
 BUDGET_PER_CANDIDATE = 50
-"""Episodes of the whole training for each candidate: a tenth of them goes into the comparison."""
+"""Number of episodes of a training for each candidate: a tenth of them goes into the comparison."""
 
 ALGORITHMS = tuple(AGENT_SETTINGS)
 AGENTS = tuple(algo for algo, settings in AGENT_SETTINGS.items() if issubclass(settings, LearnerSettings))
@@ -32,16 +32,16 @@ OPTIMISERS = tuple(algo for algo in ALGORITHMS if algo not in AGENTS)
 
 @dataclass(frozen=True)
 class TrainingConfig:
-    """A training: what ``sarah-train`` does.
+    """The settings of a training.
 
-    :param task: name of what to learn: ``stepping`` is the paper's first training, P1 to P5, and ``balance`` its
-        second, V1 to V4
-    :param algo: what learns: ``naf``, stable-baselines3's ``td3``, ``sac`` or ``ddpg``, or an optimiser that only sees
-        returns: ``cma-es``, ``gp`` (Gaussian process), ``tpe`` or ``random``
-    :param episodes: budget; every episode is one action of the agent and up to 30 s of the robot
+    :param task: task to learn: ``stepping`` is the paper's First Training, of P1 to P5; ``balance`` is its Second
+        Training, of V1 to V4
+    :param algo: algorithm: ``naf``, stable-baselines3's ``td3``, ``sac`` or ``ddpg``, or an optimiser that sees returns
+        only: ``cma-es``, ``gp`` (Gaussian process), ``tpe`` or ``random``
+    :param episodes: budget of the training; an episode is one action of the agent, and up to 30 s of the robot
     :param seed: seed of the training and of all its episodes
-    :param slots: episodes in flight: each action is chosen knowing all outcomes but those of the slots - 1 before
-        it. Another number is another training; the number of workers is not
+    :param slots: number of episodes in flight: an action is chosen without the outcomes of the slots - 1 episodes
+        before it. It changes the result of a training; the number of workers does not
     :param agent: settings of the algorithm; by default its own
     :param episode: settings of the episodes; by default the task's own
     """
@@ -82,10 +82,10 @@ class TrainingConfig:
 
     @property
     def candidate_count(self) -> int:
-        """Number of candidates that the budget affords to compare at the end; with one, there is nothing to compare."""
+        """Number of candidates that the budget allows to compare at the end; with one there is no comparison."""
         return max(1, self.episodes // BUDGET_PER_CANDIDATE)
 
     @property
     def compared_episodes(self) -> int:
-        """Number of episodes that the comparison of candidates takes, at the end of the budget."""
+        """Number of episodes in the comparison of candidates, which are the last of the budget."""
         return self.candidate_count * EPISODES_PER_CANDIDATE if self.candidate_count > 1 else 0

@@ -1,4 +1,4 @@
-"""Settings as YAML files: read with every mistake named, written so that they are read back."""
+"""Settings as YAML files: reading names every mistake, and writing makes files that can be read back."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ EXPONENT = re.compile(r"[-+]?\d+[eE][-+]?\d+")
 
 
 def first_difference(config: Any, other: Any, key: str = "") -> tuple[str, Any, Any] | None:
-    """Where two configurations of a kind differ.
+    """Find the first difference between two configurations of the same type.
 
-    :param config: a dataclass of :mod:`sarah.runs.config`
-    :param other: another one
-    :param key: what the names begin with
-    :return: the key and both values; nothing if they are equal
+    :param config: configuration, a dataclass
+    :param other: configuration to compare with
+    :param key: prefix of the fields' names
+    :return: the key and both values; ``None`` if the configurations are equal
     """
     for item in dataclasses.fields(config):
         value, there = getattr(config, item.name), getattr(other, item.name)
@@ -37,11 +37,11 @@ def first_difference(config: Any, other: Any, key: str = "") -> tuple[str, Any, 
 
 
 def read_config(config_type: type[ConfigType], path: Path) -> ConfigType:
-    """Read a configuration from a YAML file. What the file does not name keeps its default.
+    """Read a configuration from a YAML file. Fields that the file does not name keep their defaults.
 
-    :param config_type: the dataclass to make
-    :param path: of the file
-    :raises ConfigurationError: naming file, key and value, if something in it is not allowed
+    :param config_type: dataclass of the configuration
+    :param path: path of the file
+    :raises ConfigurationError: naming file, key and value, if a value is not allowed
     """
     import yaml
 
@@ -54,7 +54,7 @@ def read_config(config_type: type[ConfigType], path: Path) -> ConfigType:
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise ConfigurationError(f"{path} is not YAML: {' '.join(str(error).split())}") from error
     if repeated is not None:
-        raise ConfigurationError(f"{path}: key {shortened(repeated)} stands there twice")
+        raise ConfigurationError(f"{path}: key {shortened(repeated)} is given twice")
     try:
         config = _from_mapping(config_type, {} if content is None else content, "")
         if isinstance(config, TrainingConfig):
@@ -65,7 +65,7 @@ def read_config(config_type: type[ConfigType], path: Path) -> ConfigType:
 
 
 def _repeated_key(node: Any) -> str | None:
-    """A key that a mapping has more than once, of which YAML would keep the last; only mappings in mappings count."""
+    """Find a key that a mapping gives more than once; YAML itself would silently keep the last one."""
     seen = set()
     for key, value in node.value if node is not None and node.id == "mapping" else ():
         if key.value in seen:
@@ -77,10 +77,10 @@ def _repeated_key(node: Any) -> str | None:
 
 
 def write_config(config: Any, path: Path) -> None:
-    """Write a configuration as YAML, every value spelled out, so that :func:`read_config` gives it back.
+    """Write a configuration as YAML with all its values, so that :func:`read_config` returns it.
 
-    :param config: a dataclass of :mod:`sarah.runs.config`
-    :param path: of the file
+    :param config: configuration, a dataclass
+    :param path: path of the file
     """
     import yaml
 
@@ -88,7 +88,7 @@ def write_config(config: Any, path: Path) -> None:
 
 
 def _to_plain(value: Any) -> Any:
-    """YAML's own types only: safe loaders refuse tuples."""
+    """Convert tuples to lists, because safe YAML loaders refuse tuples."""
     if isinstance(value, Mapping):
         return {key: _to_plain(item) for key, item in value.items()}
     return [_to_plain(item) for item in value] if isinstance(value, tuple) else value
@@ -108,7 +108,7 @@ def _from_mapping(config_type: type[ConfigType], content: Any, key: str) -> Conf
 
 
 def _converted(expected: Any, value: Any, key: str) -> Any:
-    """A value of the expected type, or an error that names the key."""
+    """Convert a value to the expected type, or raise an error that names the key."""
     if dataclasses.is_dataclass(expected):
         return _from_mapping(expected, value, f"{key}.")  # type: ignore[arg-type]
     if get_origin(expected) is tuple:

@@ -67,7 +67,7 @@ def test_runs_of_different_length_and_algorithm_share_a_figure(tmp_path: Path) -
 
 def test_run_without_simulations_is_named(tmp_path: Path) -> None:
     run = run_with_episodes(tmp_path / "run", "stepping", 0)
-    with pytest.raises(RunFolderError, match="has no simulations"):
+    with pytest.raises(RunFolderError, match="has no episodes"):
         draw_figures([run], tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
@@ -135,7 +135,7 @@ def test_robot_that_makes_no_cycle_has_none_to_draw() -> None:
     spec = EpisodeSpec(TRAINED_STEPPING, 0, config=EpisodeConfig(time_limit=1.3))
     trace = simulate(spec, record_trace=True).trace
     assert trace is not None
-    with pytest.raises(ConfigurationError, match="no whole one"):
+    with pytest.raises(ConfigurationError, match="completes no cycle"):
         gait_cycle(trace)
 
 

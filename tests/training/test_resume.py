@@ -143,7 +143,7 @@ def test_a_damaged_row_costs_its_simulation_only(
     counting = Counting()
     begun = begun_with(tmp_path / "damaged", whole, b"".join(lines))
     train(whole.config(), begun, counting)
-    assert counting.run == 1 and "damaged rows: 1; what they held is simulated again" in caplog.text
+    assert counting.run == 1 and "damaged rows: 1; their episodes are simulated again" in caplog.text
     assert everything(begun) == everything(whole)
 
 
@@ -212,7 +212,7 @@ def test_weights_that_are_not_finite_stop_the_training(tmp_path: Path, monkeypat
         return model
 
     monkeypatch.setattr(learning, "make_agent", poisoned)
-    with pytest.raises(LearningError, match=r"weights are no longer finite after 9 simulations"):
+    with pytest.raises(LearningError, match=r"weights are no longer finite after 9 episodes"):
         train(config, begun)
     assert len(list(begun.episodes())) == 9 and not begun.is_finished and not begun.model_path.exists()
     monkeypatch.setattr(learning, "make_agent", original)

@@ -106,7 +106,7 @@ def test_an_unfinished_run_can_be_played_and_a_damaged_one_is_named(run: RunFold
     with pytest.raises(RunFolderError, match="copy cannot be read"):
         episodes_of_run(unfinished)
     (copy / "episodes.csv").unlink()
-    with pytest.raises(RunFolderError, match="has no simulations to show yet"):
+    with pytest.raises(RunFolderError, match="has no episodes to show yet"):
         episodes_of_run(unfinished)
 
 
@@ -348,7 +348,7 @@ def test_scrubbing_shows_that_moment_in_scene_and_plots(page: Any, run: RunFolde
 
 
 def test_a_slider_changes_the_episode_and_the_old_score_stands_beside_the_new(page: Any, run: RunFolder) -> None:
-    choose_on_page(page, "simulation 1")
+    choose_on_page(page, "episode 1")
     spec = episodes_of_run(run)[3].spec
     old = f"{simulate(spec).score:.3f}"
     eventually(lambda: scores(page)[0] == old)
@@ -363,7 +363,7 @@ def test_a_slider_changes_the_episode_and_the_old_score_stands_beside_the_new(pa
 
 
 def test_a_push_is_simulated_and_drawn_as_an_arrow(page: Any, run: RunFolder) -> None:
-    choose_on_page(page, "simulation 0")
+    choose_on_page(page, "episode 0")
     spec = episodes_of_run(run)[2].spec
     old = f"{simulate(spec).score:.3f}"
     eventually(lambda: scores(page)[0] == old)
