@@ -91,4 +91,4 @@ def unknown_name(kind: str, name: str, allowed: Iterable[str]) -> str:
     names = sorted(allowed)
     nearest = get_close_matches(name, names, n=1, cutoff=0.5) if len(name) < LONGEST_NAME else []
     guess = f", did you mean {nearest[0]!r}?" if nearest else ""
-    return f"unknown {kind} {shortened(name)}{guess} (allowed: {', '.join(names)})"
+    return f"unknown {kind} {shortened(name)}{guess} (allowed: {', '.join(names) or 'none'})"

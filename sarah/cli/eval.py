@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.options import changed_episodes, check_has, numbers, parse_options, run_command
+from sarah.cli.options import changed_episodes, check_has, numbers, parse_options, run_command, say_engine
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, BalanceConfig
 from sarah.errors import ConfigurationError, check_range, unknown_name
@@ -91,6 +91,7 @@ def _evaluate(arguments: Sequence[str]) -> None:
         if options.robustness is not None:
             _show_robustness(parameters, config, options, workers)
             return
+        say_engine(config, options.engine)
         evaluation = _evaluation(task, parameters, config, options, workers)
         neutral = TASKS[task].neutral
         baseline = None if neutral is None else _evaluation(task, neutral, config, options, workers)
@@ -186,6 +187,7 @@ def _show_robustness(
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise ConfigurationError(f"cannot write folder {folder}: {error.strerror}") from error
+    say_engine(config, options.engine)
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
     forces = FORCES if options.push_newtons is None else (options.push_newtons,)
     pushed = push_many((neutral, parameters), config, workers, forces, options.episodes, options.first_seed)

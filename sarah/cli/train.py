@@ -14,10 +14,19 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.interruption import Interruption
-from sarah.cli.options import episode_of, given_options, parse_options, run_command, say_engine, with_engine
+from sarah.cli.options import (
+    check_episode_options,
+    episode_of,
+    given_options,
+    parse_options,
+    run_command,
+    say_engine,
+    with_engine,
+)
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS
 from sarah.errors import ConfigurationError, RunFolderError, SarahError, TrainingInterruptedError
+from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import first_difference, read_config
 
@@ -34,8 +43,9 @@ class TrainOptions:
     """Learn the parameters of the pattern generator or of the hip law, with one action of the agent per episode.
 
     Settings come from four places, of which a later one wins: the defaults below, the file of --config, the run folder
-    of --from, and the command line. The training writes a run folder with the learned parameters (parameters.json),
-    all episodes (episodes.csv), the agent (model.zip) and the curves that TensorBoard shows.
+    of --from, and the command line. --algo decides which settings the agent has, and --task those of the episodes:
+    give both before --help. The training writes a run folder with the learned parameters (parameters.json), all
+    episodes (episodes.csv), the agent (model.zip) and the curves that TensorBoard shows.
 
     :param training: settings of the training
     :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
@@ -79,7 +89,9 @@ def _train(arguments: Sequence[str]) -> None:
     from sarah.episode.workers import Workers
     from sarah.runs.run_folder import RunFolder, new_run_path
     from sarah.simulation.engines import check_engine
+    from sarah.training.learners import check_device
 
+    check_device(config.agent)
     check_engine(config.episode.engine)
     if options.pictures:
         from sarah.simulation.renderer import check_renderer
@@ -89,12 +101,12 @@ def _train(arguments: Sequence[str]) -> None:
         print(f"{options.resume} is finished: there is nothing to resume")
         return
 
-    say_engine(config.episode, options.engine)
     with Workers(options.workers, options.scheduler) as workers:
         if options.resume is not None:
             run = RunFolder.resumable(options.resume)
         else:
             run = RunFolder.create(options.run_dir or new_run_path(config.task, config.algo, config.seed), config)
+        say_engine(config.episode, options.engine)
         print(f"training {config.algo} on {config.task}: {config.episodes} episodes into {run.path}", flush=True)
         learned = _learned(config, run, workers, options.pictures)
     _summarise(config.task, learned, run.path)
@@ -139,20 +151,35 @@ def _learned(config: TrainingConfig, run: RunFolder, workers: Workers, picture_i
 
 
 def _defaults(arguments: Sequence[str]) -> TrainOptions:
-    """Default options with the changes of --config and --from, of the type that task and engine take."""
-    given = given_options(arguments, "config", "resume", "from", "task", "engine", "episode.engine")
+    """Default options with the changes of --config, --from and --agent.preset, for the task, algorithm and engine.
+
+    The parser takes the names of further options from these defaults.
+    """
+    names = ("config", "resume", "from", "task", "algo", "agent.preset", "engine", "episode.engine")
+    given = given_options(arguments, *names)
     if "resume" in given:
         from sarah.runs.run_folder import RunFolder
 
         return TrainOptions(RunFolder.resumable(Path(given["resume"])).config())
     training = read_config(TrainingConfig, Path(given["config"])) if "config" in given else TrainingConfig()
+    training = _with_agent(training, given.get("algo"), given.get("agent.preset"))
     task = given.get("task", training.task)
     if task not in TASKS:  # the real parser reports it
         return TrainOptions(training)
     episode = episode_of(task, training.episode, given)
+    check_episode_options(arguments, episode)
     if "from" in given and task == BALANCE.name:
         episode = _on_learned_stepping(Path(given["from"]), episode)
     return TrainOptions(dataclasses.replace(training, task=task, episode=episode))
+
+
+def _with_agent(training: TrainingConfig, algo: str | None, preset: str | None) -> TrainingConfig:
+    """Training with another algorithm and its default settings, or with the settings of another preset of NAF."""
+    if algo is not None and algo != training.algo:
+        training = dataclasses.replace(training, algo=algo, agent=settings_of(algo)())
+    if preset is not None and isinstance(training.agent, NAFSettings) and preset != training.agent.preset:
+        training = dataclasses.replace(training, agent=training.agent.with_preset(preset))
+    return training
 
 
 def _on_learned_stepping(path: Path, episode: EpisodeConfig) -> EpisodeConfig:

@@ -72,7 +72,6 @@ def _view(arguments: Sequence[str]) -> None:
     from sarah.simulation.engines import check_engine
 
     check_engine(chosen.spec.config.engine)
-    say_engine(chosen.spec.config, options.engine)
     if options.seed is not None:
         spec = dataclasses.replace(chosen.spec, seed=options.seed)
         chosen = dataclasses.replace(chosen, label=f"{chosen.label}, with seed {spec.seed}", spec=spec, score=None)
@@ -111,6 +110,7 @@ def _serve(options: ViewOptions, choices: list[RunEpisode], chosen: RunEpisode) 
 
     with serving(options.host, options.port) as server:
         page = Page(server, choices, chosen)
+        say_engine(chosen.spec.config, options.engine)
         if not _is_local(options.host):
             print(f"warning: everyone who can reach {options.host} can use this page, as there is no password")
         print(f"SARAH is at http://{options.host}:{server.get_port()} (Ctrl-C ends)", flush=True)

@@ -17,7 +17,7 @@ from sarah.episode.tasks import STEPPING, TASKS, Task
 from sarah.episode.trace import Trace
 from sarah.robot.description import ANKLE_JOINTS, describe_robot
 from sarah.robot.reading import SensorReading, Vector
-from sarah.simulation.engines import BuildSimulator, simulator_of
+from sarah.simulation.build import BuildSimulator, simulator_of
 from sarah.simulation.randomisation import draw_conditions
 from sarah.simulation.sensors import ImperfectSensors
 from sarah.simulation.simulator import TorsoState

@@ -161,6 +161,7 @@ def _conditions(phase: Phase) -> tuple[str, ...]:
     stand_in: Any = SimpleNamespace(
         phase=phase,
         parameters=parameters,
+        constants=CONSTANTS,
         tilt=Name("tilt", noted),
         rate=Name("rate", noted),
         stance="stance",
@@ -180,6 +181,7 @@ def read_hip_law() -> dict[str, str]:
     parameters = BalanceParameters(*(Name(name, noted) for name in BalanceParameters.__dataclass_fields__))  # type: ignore[arg-type]
     stand_in: Any = SimpleNamespace(
         _parameters=parameters,
+        _constants=CONSTANTS,
         stable_x=Name("stable_x", noted),
         pitch=Name("pitch", noted),
         abduction=0.0,

@@ -26,6 +26,7 @@ from sarah.episode.tasks import TASKS
 from sarah.episode.workers import Workers
 from sarah.errors import RunFolderError
 from sarah.files import replace_text
+from sarah.runs.agent_settings import settings_of
 from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
@@ -281,7 +282,11 @@ def entries_of(
     :param folder: folder for the run folders
     """
     return [
-        Entry(dataclasses.replace(base, algo=algo, seed=seed), folder / f"{algo}-s{seed}", evaluations)
+        Entry(
+            dataclasses.replace(base, algo=algo, agent=settings_of(algo)(), seed=seed),
+            folder / f"{algo}-s{seed}",
+            evaluations,
+        )
         for seed in seeds
         for algo in algorithms
     ]

@@ -12,7 +12,8 @@ from typing import Any
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED
 from sarah.episode.tasks import task_named
-from sarah.errors import ConfigurationError, check_range, shortened, unknown_name
+from sarah.errors import ConfigurationError, check_range, shortened
+from sarah.runs.agent_settings import AGENT_SETTINGS, AgentSettings, LearnerSettings, settings_of
 
 MOST_EPISODES = 1_000_000
 MOST_SLOTS = 10_000
@@ -22,11 +23,11 @@ EPISODES_PER_CANDIDATE = 5
 BUDGET_PER_CANDIDATE = 50
 """Number of episodes of a training for each candidate: a tenth of them goes into the comparison."""
 
-AGENTS = ("naf", "td3", "sac", "ddpg")
+ALGORITHMS = tuple(AGENT_SETTINGS)
+AGENTS = tuple(algo for algo, settings in AGENT_SETTINGS.items() if issubclass(settings, LearnerSettings))
 """Algorithms of reinforcement learning, with networks."""
-OPTIMISERS = ("cma-es", "gp", "tpe", "random")
+OPTIMISERS = tuple(algo for algo in ALGORITHMS if algo not in AGENTS)
 """Black-box optimisers, which see returns only."""
-ALGORITHMS = AGENTS + OPTIMISERS
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,7 @@ class TrainingConfig:
     :param seed: seed of the training and of all its episodes
     :param slots: number of episodes that are simulated at the same time: an action is chosen without the outcomes of
         the slots - 1 episodes before it. It changes the result of a training; the number of workers does not
+    :param agent: settings of the algorithm; by default the algorithm's own
     :param episode: settings of the episodes; by default the task's own
     """
 
@@ -49,14 +51,18 @@ class TrainingConfig:
     episodes: int = 100
     seed: int = 0
     slots: int = 4
+    agent: AgentSettings = None  # type: ignore[assignment]  # the algorithm's own
     episode: EpisodeConfig = None  # type: ignore[assignment]  # the task's own
 
     def __post_init__(self) -> None:
         """Refuse unknown names and impossible budgets."""
-        task = task_named(self.task)
+        task, settings = task_named(self.task), settings_of(self.algo)
         object.__setattr__(self, "episode", task.episode if self.episode is None else task.checked_config(self.episode))
-        if self.algo not in ALGORITHMS:
-            raise ConfigurationError(unknown_name("algo", self.algo, ALGORITHMS))
+        object.__setattr__(self, "agent", settings() if self.agent is None else self.agent)
+        if type(self.agent) is not settings:
+            raise ConfigurationError(
+                f"agent must be the {settings.__name__} of algo {self.algo!r}, not {type(self.agent).__name__}"
+            )
         check_range("episodes", self.episodes, 1, MOST_EPISODES)
         check_range("slots", self.slots, 1, MOST_SLOTS)
         if not 0 <= self.seed < FIRST_TRAINING_SEED:
@@ -69,9 +75,10 @@ class TrainingConfig:
         """Types of fields that depend on other fields.
 
         :param content: values of some fields, as a file gives them
-        :raises ConfigurationError: if the named task does not exist
+        :raises ConfigurationError: if they name no task or no algorithm
         """
-        return {"episode": type(task_named(str(content.get("task", cls.task))).episode)}
+        task, algo = content.get("task", cls.task), content.get("algo", cls.algo)
+        return {"agent": settings_of(str(algo)), "episode": type(task_named(str(task)).episode)}
 
     @property
     def candidate_count(self) -> int:

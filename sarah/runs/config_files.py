@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from sarah.errors import ConfigurationError, SarahError, shortened, unknown_name
 from sarah.files import replace_text
@@ -13,6 +14,8 @@ from sarah.robot.description import check_dimensions
 from sarah.runs.config import TrainingConfig
 
 ConfigType = TypeVar("ConfigType")
+EXPONENT = re.compile(r"[-+]?\d+[eE][-+]?\d+")
+"""Numbers such as 3e-4, which YAML 1.1 takes for texts as they have no decimal point."""
 
 
 def first_difference(config: Any, other: Any, key: str = "") -> tuple[str, Any, Any] | None:
@@ -109,14 +112,16 @@ def _converted(expected: Any, value: Any, key: str) -> Any:
     if dataclasses.is_dataclass(expected):
         return _from_mapping(expected, value, f"{key}.")  # type: ignore[arg-type]
     if get_origin(expected) is tuple:
-        parts = get_args(expected)
-        if not isinstance(value, (list, tuple)) or len(value) != len(parts):
-            raise ConfigurationError(f"{key} must be a list of {len(parts)} values, not {shortened(value)}")
-        return tuple(_converted(part, item, key) for part, item in zip(parts, value, strict=True))
+        return _converted_tuple(get_args(expected), value, key)
+    if get_origin(expected) is Union:
+        number, names = get_args(expected)
+        return _converted(names if isinstance(value, str) else number, value, key)
     if get_origin(expected) is Mapping:
         if not isinstance(value, Mapping):
             raise ConfigurationError(f"{key} must hold names and values, not {shortened(value)}")
         return {name: _converted(get_args(expected)[1], item, f"{key}.{name}") for name, item in value.items()}
+    if expected is float and isinstance(value, str) and EXPONENT.fullmatch(value):
+        value = float(value)
     allowed = {float: (float, int), int: (int,), bool: (bool,)}.get(expected, (str,))
     if not isinstance(value, allowed) or (isinstance(value, bool) and expected is not bool):
         kind = {float: "a number", int: "a whole number", bool: "true or false"}.get(expected, "a text")
@@ -127,3 +132,14 @@ def _converted(expected: Any, value: Any, key: str) -> Any:
         return float(value) if expected is float else value
     except OverflowError:
         raise ConfigurationError(f"{key} must be a number that a float can hold, not {shortened(value)}") from None
+
+
+def _converted_tuple(parts: tuple[Any, ...], value: Any, key: str) -> tuple[Any, ...]:
+    """A tuple of the expected parts, of which an ellipsis stands for as many as there are of the one before it."""
+    is_list = isinstance(value, (list, tuple))
+    if Ellipsis in parts:
+        parts = (parts[0],) * len(value) if is_list else ()
+    if not is_list or len(value) != len(parts):
+        values = f"a list of {len(parts)} values" if parts else "a list"
+        raise ConfigurationError(f"{key} must be {values}, not {shortened(value)}")
+    return tuple(_converted(part, item, key) for part, item in zip(parts, value, strict=True))

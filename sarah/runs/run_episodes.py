@@ -14,7 +14,7 @@ from sarah.runs.run_folder import RunFolder
 
 @dataclass(frozen=True)
 class RunEpisode:
-    """An episode to choose.
+    """An episode to look at.
 
     :param name: name on the command line, for ``--episode``
     :param label: name in the page's list
@@ -46,16 +46,16 @@ def episodes_of_run(run: RunFolder) -> list[RunEpisode]:
             simulated.append(RunEpisode(row["index"], label, spec, score))
         except (KeyError, TypeError, ValueError) as error:
             raise RunFolderError(f"the episodes of {run.path} cannot be read: {error!r}") from error
-    choices = []
+    shown = []
     if run.is_finished:
         spec = EpisodeSpec(run.parameters(), 0, task.name, training.episode)
-        choices.append(RunEpisode("learned", "learned parameters · seed 0", spec))
+        shown.append(RunEpisode("learned", "learned parameters · seed 0", spec))
     if simulated:
-        best = max(simulated, key=lambda choice: choice.score or 0.0)
-        choices.append(RunEpisode("best", f"best: {best.label}", best.spec, best.score))
-    if not choices:
+        best = max(simulated, key=lambda episode: episode.score or 0.0)
+        shown.append(RunEpisode("best", f"best: {best.label}", best.spec, best.score))
+    if not shown:
         raise RunFolderError(f"{run.path} has no episodes to show yet")
-    return choices + simulated
+    return shown + simulated
 
 
 def episode_of_parameters(parameters: Sequence[float]) -> RunEpisode:
@@ -75,19 +75,19 @@ def episode_of_parameters(parameters: Sequence[float]) -> RunEpisode:
     raise ConfigurationError(f"parameters must be {counts}, not {len(parameters)}")
 
 
-def choose(choices: list[RunEpisode], name: str | None) -> RunEpisode:
+def choose_episode(episodes: list[RunEpisode], name: str | None) -> RunEpisode:
     """Find an episode by its name.
 
-    :param choices: episodes to choose from
-    :param name: ``learned``, ``best`` or the index of an episode; the first of the choices if ``None``
+    :param episodes: episodes to choose from
+    :param name: ``learned``, ``best`` or the index of an episode; the first one if ``None``
     :raises ConfigurationError: if there is no such episode
     """
     if name is None:
-        return choices[0]
-    for choice in choices:
-        if choice.name == name:
-            return choice
-    words = [choice.name for choice in choices if not choice.name.isdigit()]
-    simulated = [choice.name for choice in choices if choice.name.isdigit()]
+        return episodes[0]
+    for episode in episodes:
+        if episode.name == name:
+            return episode
+    words = [episode.name for episode in episodes if not episode.name.isdigit()]
+    simulated = [episode.name for episode in episodes if episode.name.isdigit()]
     numbers = [f"{simulated[0]} to {simulated[-1]}"] if simulated else []
     raise ConfigurationError(f"unknown episode {name!r} (allowed: {', '.join(words + numbers)})")

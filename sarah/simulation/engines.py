@@ -1,40 +1,18 @@
-"""The physics engines by name. An engine is imported only when an episode needs it."""
+"""The physics engines by name, and which of them are installed. None is imported here."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from importlib.util import find_spec
 from typing import Literal
 
 from sarah.errors import ConfigurationError
-from sarah.robot.description import RobotDescription
-from sarah.simulation.physics import Physics
-from sarah.simulation.randomisation import Conditions
-from sarah.simulation.simulator import Simulator
 
 Engine = Literal["pybullet", "mujoco"]
 INSTALLATION = {
     "pybullet": "pip install pybullet (from Python 3.12 on it is compiled, which takes some minutes)",
     "mujoco": "pip install 'sarah[mujoco]'",
 }
-"""Instruction to install each engine."""
-BuildSimulator = Callable[[RobotDescription, Physics, Conditions], Simulator]
-
-
-def simulator_of(engine: str) -> BuildSimulator:
-    """Class that builds an engine's simulator.
-
-    :param engine: name of the engine, ``"pybullet"`` or ``"mujoco"``
-    :raises ConfigurationError: if the engine is not installed
-    """
-    check_engine(engine)
-    if engine == "mujoco":
-        from sarah.simulation.mujoco_simulator import MujocoSimulator
-
-        return MujocoSimulator
-    from sarah.simulation.pybullet_simulator import PyBulletSimulator
-
-    return PyBulletSimulator
+"""Command that installs each engine."""
 
 
 def default_engine() -> Engine:

@@ -10,7 +10,7 @@ import pytest
 import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from laboratory import need
+from laboratory import NEEDS_PYBULLET, need
 
 from sarah.errors import ConfigurationError
 from sarah.runs.config import TrainingConfig
@@ -170,6 +170,7 @@ def test_command_lines(line: str, message: str, answer: Callable[[str], str], tm
     assert message in answer(line)
 
 
+@NEEDS_PYBULLET
 def test_transfer_of_no_training(answer: Callable[[str], str], tmp_path: Path) -> None:
     need("mujoco")
     (tmp_path / "full").mkdir()

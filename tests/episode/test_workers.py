@@ -16,6 +16,7 @@ import dask
 import distributed  # noqa: F401  # its settings are there before a test changes one, and stay when that ends
 import psutil
 import pytest
+from laboratory import NEEDS_PYBULLET
 
 from sarah.episode import workers as workers_module
 from sarah.episode.episode import simulate
@@ -139,6 +140,7 @@ def test_who_ran_an_episode_lets_the_following_one_stand() -> None:
     assert outcome.following == stand(following)
 
 
+@NEEDS_PYBULLET
 def test_whoever_stands_twice_keeps_one_world() -> None:
     def worlds() -> int:
         return sum(bullet.pybullet.isConnected(client) for client in range(200))

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from laboratory import NEEDS_PYBULLET
 from matplotlib.image import imread
 
 from sarah.control import hip_law as hips
@@ -97,6 +98,7 @@ def test_hip_law_is_read_from_the_code_that_runs(monkeypatch: pytest.MonkeyPatch
     assert read_hip_law()["flexion of the swing leg"] == f"9.5 V3 pitch + {hips.FLEXION_SCALE:g} V4"
 
 
+@NEEDS_PYBULLET
 def test_robot_and_state_machine_are_drawn(tmp_path: Path) -> None:
     files = draw_robot(describe_robot(), tmp_path / "robot") + draw_state_machine(tmp_path / "machine")
     assert {file.name for file in files} == {"robot.png", "robot.pdf", "machine.png", "machine.pdf"}

@@ -9,7 +9,7 @@ from laboratory import NEEDS_PYBULLET, BulletLaboratory, MujocoLaboratory, labor
 
 from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, GROUPS, PLATES, describe_robot
 from sarah.robot.reading import Side
-from sarah.simulation.engines import simulator_of
+from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
 from sarah.simulation.pybullet_client import pybullet
 from sarah.simulation.pybullet_simulator import PyBulletSimulator
