@@ -158,25 +158,28 @@ class Workers(Executor):
     :raises WorkersError: on entering, if no scheduler answers
     """
 
+    client: Client | None
+    """Client of Dask's scheduler, in the context; nothing if this process simulates."""
+
     def __init__(self, count: int = 0, scheduler: str | None = None) -> None:
         check_range("workers", count, 0, MOST_WORKERS)
         if count and scheduler is not None:
             raise ConfigurationError("workers start on this machine, but a scheduler has its own: give one of the two")
         self._count = count
         self._scheduler = scheduler
-        self._client: Client | None = None
+        self.client = None
         self._cluster: LocalCluster | None = None
         self._safe_path = ""
 
     def __enter__(self) -> Workers:
         """Start the workers, or connect to the scheduler."""
         if self._scheduler is not None:
-            self._client = _connect(self._scheduler)
+            self.client = _connect(self._scheduler)
         elif self._count:
             # Otherwise a worker imports modules from the working folder, such as a pickle.py in somebody's run folder.
             self._safe_path = os.environ.get(SAFE_PATH, "")
             os.environ[SAFE_PATH] = "1"
-            self._cluster, self._client = _start(self._count)
+            self._cluster, self.client = _start(self._count)
         return self
 
     def __exit__(
@@ -184,8 +187,8 @@ class Workers(Executor):
     ) -> None:
         """Stop the workers that were started; the workers of a scheduler go on without this client."""
         close_waiting_episodes()
-        if self._client is not None:
-            self._client.close()
+        if self.client is not None:
+            self.client.close()
         if self._cluster is not None:
             self._cluster.close()
             os.environ[SAFE_PATH] = self._safe_path  # Python takes an empty value as unset
@@ -197,9 +200,9 @@ class Workers(Executor):
             one of another module
         :param subjects: arguments of the function, such as specifications of episodes
         """
-        if self._client is None:
+        if self.client is None:
             return _LocalJob(function, *subjects)
-        return _RemoteJob(functools.partial(self._client.submit, function, *subjects, pure=False))
+        return _RemoteJob(functools.partial(self.client.submit, function, *subjects, pure=False))
 
 
 class _LocalJob:

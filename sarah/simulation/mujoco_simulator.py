@@ -46,6 +46,11 @@ class MujocoSimulator:
     :param conditions: friction, masses, servo bandwidth and start velocity of this episode
     """
 
+    model: mujoco.MjModel
+    """MuJoCo's model of this robot, for any of MuJoCo's own functions."""
+    data: mujoco.MjData
+    """MuJoCo's state of it."""
+
     def __init__(
         self,
         robot: RobotDescription,
@@ -57,43 +62,43 @@ class MujocoSimulator:
         self._dt = physics.control_dt
         self._substeps = math.ceil(max(physics.rate, LOWEST_RATE) / physics.control_rate)
         rate = self._substeps * physics.control_rate
-        self._model = copy.copy(_compiled(robot.urdf, rate, physics.solver_iterations))
-        self._data = mujoco.MjData(self._model)
+        self.model = copy.copy(_compiled(robot.urdf, rate, physics.solver_iterations))
+        self.data = mujoco.MjData(self.model)
         self._apply_conditions(rate, conditions)
-        self._addresses = {name: int(self._model.joint(name).qposadr[0]) for name in (*ACTUATED_JOINTS, *ANKLE_JOINTS)}
+        self._addresses = {name: int(self.model.joint(name).qposadr[0]) for name in (*ACTUATED_JOINTS, *ANKLE_JOINTS)}
         self._positions = [self._addresses[name] for name in ACTUATED_JOINTS]
-        self._speeds = [int(self._model.joint(name).dofadr[0]) for name in ACTUATED_JOINTS]
+        self._speeds = [int(self.model.joint(name).dofadr[0]) for name in ACTUATED_JOINTS]
         self._limits = [robot.efforts[name] for name in ACTUATED_JOINTS]
         shares = [damping / limit for damping, limit in zip(self._damping, self._limits, strict=True)]
         self._servos = list(zip(shares, self._positions, self._speeds, strict=True))
         self._feet = {
             side: [
-                self._model.geom(_sole(side, plate, index)).id
+                self.model.geom(_sole(side, plate, index)).id
                 for plate in PLATES
                 for index in range(len(robot.soles[f"{side}_{plate}"]))
             ]
             for side in Side
         }
-        self._before = np.empty(mujoco.mj_stateSize(self._model, STATE))
-        self._data.qpos[2] = robot.standing_height
-        self._data.qvel[:2] = conditions.start_velocity
+        self._before = np.empty(mujoco.mj_stateSize(self.model, STATE))
+        self.data.qpos[2] = robot.standing_height
+        self.data.qvel[:2] = conditions.start_velocity
         # These are views of MuJoCo's memory.
-        self._qpos, self._qvel, self._pads = self._data.qpos, self._data.qvel, self._data.sensordata
-        self._pushed = self._data.xfrc_applied[self._model.body("torso").id, :3]
+        self._qpos, self._qvel, self._pads = self.data.qpos, self.data.qvel, self.data.sensordata
+        self._pushed = self.data.xfrc_applied[self.model.body("torso").id, :3]
         self._is_pushed = False
         self._targets: tuple[float, ...] = (0.0,) * len(ACTUATED_JOINTS)
         self._shares = list(self._targets)
-        self._torso = self._torso_state()
+        self.look()
         self._velocity_before = self._torso.velocity
 
     def _apply_conditions(self, rate: int, conditions: Conditions) -> None:
-        model = self._model
+        model = self.model
         for link, factor in conditions.mass_factors.items():
             index = model.body(link).id
             model.body_mass[index] *= factor
             model.body_inertia[index] *= factor
-        mujoco.mj_setConst(model, self._data)  # updates what MuJoCo derives from the masses
-        mujoco.mj_resetData(model, self._data)
+        mujoco.mj_setConst(model, self.data)  # updates what MuJoCo derives from the masses
+        mujoco.mj_resetData(model, self.data)
         model.pair_friction[:, :2] = conditions.friction
         # MuJoCo takes the position at a step's end. With this rate a servo is the same first-order lag at every rate.
         self._rate = (math.exp(conditions.actuator_bandwidth / rate) - 1.0) * rate
@@ -104,13 +109,13 @@ class MujocoSimulator:
     def _let_follow(self, actuator: int) -> None:
         """Let a servo follow its target."""
         damping = self._damping[actuator]
-        self._model.actuator_gainprm[actuator, 0] = damping * self._rate
-        self._model.actuator_biasprm[actuator, :3] = (0.0, -damping * self._rate, -damping)
+        self.model.actuator_gainprm[actuator, 0] = damping * self._rate
+        self.model.actuator_biasprm[actuator, :3] = (0.0, -damping * self._rate, -damping)
 
     def _let_give(self, actuator: int, effort: float) -> None:
         """Let a servo apply an effort, in Nm or N, whatever its target."""
-        self._model.actuator_gainprm[actuator, 0] = 0.0
-        self._model.actuator_biasprm[actuator, :3] = (effort, 0.0, 0.0)
+        self.model.actuator_gainprm[actuator, 0] = 0.0
+        self.model.actuator_biasprm[actuator, :3] = (effort, 0.0, 0.0)
 
     def set_targets(self, targets: tuple[float, ...]) -> None:
         """Set where the servos move the joints from now on.
@@ -119,7 +124,7 @@ class MujocoSimulator:
         """
         if targets != self._targets:  # the servos keep their targets
             self._targets = targets
-            self._data.ctrl[:] = targets
+            self.data.ctrl[:] = targets
 
     def push(self, force: Vector) -> None:
         """Push the torso at its centre during the next control tick.
@@ -131,7 +136,7 @@ class MujocoSimulator:
 
     def advance(self) -> None:
         """Simulate one control tick."""
-        model, data, before = self._model, self._data, self._before
+        model, data, before = self.model, self.data, self._before
         self._velocity_before = self._torso.velocity
         for _ in range(self._substeps):
             mujoco.mj_getState(model, data, before, STATE)
@@ -144,7 +149,7 @@ class MujocoSimulator:
             self._pushed[:] = 0.0
             self._is_pushed = False
         self.time += self._dt
-        self._torso = self._torso_state()
+        self.look()
 
     def _step_again(self, shares: list[float]) -> list[float]:
         """Repeat a physics step, in which servos that exceeded their limits apply their largest effort.
@@ -158,8 +163,8 @@ class MujocoSimulator:
                 if abs(share) > 1.0:
                     limited[actuator] = math.copysign(1.0, share)
                     self._let_give(actuator, limited[actuator] * self._limits[actuator])
-            mujoco.mj_setState(self._model, self._data, self._before, STATE)
-            mujoco.mj_step(self._model, self._data)
+            mujoco.mj_setState(self.model, self.data, self._before, STATE)
+            mujoco.mj_step(self.model, self.data)
             shares = self._effort_shares()
             for actuator, share in limited.items():
                 shares[actuator] = share
@@ -179,14 +184,15 @@ class MujocoSimulator:
         """True state of the torso, which no sensor of the robot measures."""
         return self._torso
 
-    def _torso_state(self) -> TorsoState:
+    def look(self) -> None:
+        """Take where the torso is, and how it moves, from MuJoCo; needed when others have moved it."""
         x, y, z, orientation_w, orientation_x, orientation_y, orientation_z = self._qpos[:7].tolist()
         orientation = (orientation_x, orientation_y, orientation_z, orientation_w)
         velocity_x, velocity_y, velocity_z, *rate = self._qvel[:6].tolist()
         self._angular_rate: Vector = tuple(rate)  # MuJoCo gives it in the torso's frame
         to_world = (-orientation_x, -orientation_y, -orientation_z, orientation_w)
         angular_velocity = rotate_to_body(to_world, self._angular_rate)
-        return TorsoState((x, y, z), orientation, (velocity_x, velocity_y, velocity_z), angular_velocity)
+        self._torso = TorsoState((x, y, z), orientation, (velocity_x, velocity_y, velocity_z), angular_velocity)
 
     def read(self) -> SensorReading:
         """True sensor signals of the last control tick, without noise or delay."""
@@ -217,8 +223,8 @@ class MujocoSimulator:
 
         :param side: side of the foot
         """
-        mujoco.mj_kinematics(self._model, self._data)  # a step leaves the link positions of its beginning
-        heights = self._data.geom_xpos[:, 2].tolist()
+        mujoco.mj_kinematics(self.model, self.data)  # a step leaves the link positions of its beginning
+        heights = self.data.geom_xpos[:, 2].tolist()
         return min([heights[sole] for sole in self._feet[side]]) - self.robot.contact_radius
 
     def close(self) -> None:

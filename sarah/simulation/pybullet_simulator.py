@@ -32,6 +32,13 @@ class PyBulletSimulator:
     :param conditions: friction, masses, servo bandwidth and start velocity of this episode
     """
 
+    client: int
+    """Number of PyBullet's client, for any of PyBullet's own functions."""
+    body: int
+    """Number of the robot's body."""
+    links: dict[str, int]
+    """Index of each link, by its name and by that of the joint which carries it."""
+
     def __init__(
         self,
         robot: RobotDescription,
@@ -42,7 +49,7 @@ class PyBulletSimulator:
         self.time = 0.0
         self._dt = physics.control_dt
         self._substeps = physics.rate // physics.control_rate
-        self._client = take_client()
+        self.client = take_client()
         try:
             self._build(physics, conditions)
         except BaseException:
@@ -60,12 +67,12 @@ class PyBulletSimulator:
             numNonContactInnerIterations=2,  # motors settle before contacts do; otherwise standing soles creep
             enableConeFriction=0,  # as good as friction cones here, and cheaper
             enableFileCaching=0,
-            physicsClientId=self._client,
+            physicsClientId=self.client,
         )
-        pybullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self._client)
+        pybullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self.client)
         self._build_floor()
-        self._body, self._links = load_robot(
-            self._client,
+        self.body, self.links = load_robot(
+            self.client,
             self.robot.urdf,
             self.robot.standing_height,
             flags=pybullet.URDF_USE_INERTIA_FROM_FILE
@@ -74,15 +81,15 @@ class PyBulletSimulator:
             | pybullet.URDF_USE_SELF_COLLISION
             | pybullet.URDF_USE_SELF_COLLISION_INCLUDE_PARENT,
         )
-        self._joints = [self._links[name] for name in ACTUATED_JOINTS]
+        self._joints = [self.links[name] for name in ACTUATED_JOINTS]
         self._pads: dict[tuple[int, int], int] = {}
         for index, (side, plate) in enumerate(product(Side, PLATES)):
-            shank, foot = self._links[f"{side}_shank"], self._links[f"{side}_{plate}"]
+            shank, foot = self.links[f"{side}_shank"], self.links[f"{side}_{plate}"]
             self._pads[shank, foot] = self._pads[foot, shank] = index
         self._feet = {}
         for side in Side:
             plates = [f"{side}_{plate}" for plate in PLATES]
-            self._feet[side] = ([self._links[name] for name in plates], [self.robot.soles[name] for name in plates])
+            self._feet[side] = ([self.links[name] for name in plates], [self.robot.soles[name] for name in plates])
         self._keep_only_pad_contacts()
         self._apply_conditions(conditions)
         # A servo's share of the way in one physics step, which makes it the same first-order lag at every rate.
@@ -90,37 +97,37 @@ class PyBulletSimulator:
         self._gains = [gain] * len(self._joints)
         self._added_plate_inertia = physics.added_plate_inertia if isinstance(physics, PyBulletPhysics) else 0.0
         self._plate_inertias = {
-            link: pybullet.getDynamicsInfo(self._body, link, physicsClientId=self._client)[2]
+            link: pybullet.getDynamicsInfo(self.body, link, physicsClientId=self.client)[2]
             for links, _ in self._feet.values()
             for link in links
         }
         self._retracted = dict.fromkeys(Side, True)
         # PyBullet takes efforts as impulses over the whole tick, and lets every substep spend all of it.
         self._efforts = [self.robot.efforts[name] / self._substeps for name in ACTUATED_JOINTS]
-        self._look()
+        self.look()
         self._velocity_before = self._torso.velocity
         self._targets: tuple[float, ...] = ()
         self.set_targets((0.0,) * len(self._joints))
 
     def _build_floor(self) -> None:
-        shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self._client)
-        floor = pybullet.createMultiBody(0.0, shape, physicsClientId=self._client)
-        pybullet.changeDynamics(floor, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=self._client)
+        shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self.client)
+        floor = pybullet.createMultiBody(0.0, shape, physicsClientId=self.client)
+        pybullet.changeDynamics(floor, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=self.client)
 
     def _keep_only_pad_contacts(self) -> None:
-        links = sorted(set(self._links.values()))
+        links = sorted(set(self.links.values()))
         for first in links:
             for second in links:
                 if first < second and (first, second) not in self._pads:
-                    pybullet.setCollisionFilterPair(self._body, self._body, first, second, 0, self._client)
+                    pybullet.setCollisionFilterPair(self.body, self.body, first, second, 0, self.client)
 
     def _apply_conditions(self, conditions: Conditions) -> None:
-        client = self._client
+        client = self.client
         for link, factor in conditions.mass_factors.items():  # contains every link
-            index = self._links[link]
-            dynamics = pybullet.getDynamicsInfo(self._body, index, physicsClientId=client)
+            index = self.links[link]
+            dynamics = pybullet.getDynamicsInfo(self.body, index, physicsClientId=client)
             pybullet.changeDynamics(
-                self._body,
+                self.body,
                 index,
                 mass=dynamics[0] * factor,
                 localInertiaDiagonal=[inertia * factor for inertia in dynamics[2]],
@@ -132,13 +139,13 @@ class PyBulletSimulator:
             )
         # This is a call of its own: PyBullet would apply the other settings to the base instead of the link.
         pybullet.changeDynamics(
-            self._body, -1, activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING, physicsClientId=client
+            self.body, -1, activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING, physicsClientId=client
         )
         for name in ANKLE_JOINTS:  # otherwise PyBullet's default motor holds them
             pybullet.setJointMotorControl2(
-                self._body, self._links[name], pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client
+                self.body, self.links[name], pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client
             )
-        pybullet.resetBaseVelocity(self._body, (*conditions.start_velocity, 0.0), physicsClientId=client)
+        pybullet.resetBaseVelocity(self.body, (*conditions.start_velocity, 0.0), physicsClientId=client)
 
     def set_targets(self, targets: tuple[float, ...]) -> None:
         """Set where the servos move the joints from now on.
@@ -149,13 +156,13 @@ class PyBulletSimulator:
             return
         self._targets = targets
         pybullet.setJointMotorControlArray(
-            self._body,
+            self.body,
             self._joints,
             pybullet.POSITION_CONTROL,
             targetPositions=targets,
             forces=self._efforts,
             positionGains=self._gains,
-            physicsClientId=self._client,
+            physicsClientId=self.client,
         )
         for side, length in zip(Side, targets[-len(Side) :], strict=True):  # the leg lengths come last
             if (length > 0.0) != self._retracted[side]:
@@ -172,7 +179,7 @@ class PyBulletSimulator:
         for link in self._feet[side][0]:
             about_hinge, *others = self._plate_inertias[link]
             inertia = (about_hinge + added, *others)
-            pybullet.changeDynamics(self._body, link, localInertiaDiagonal=inertia, physicsClientId=self._client)
+            pybullet.changeDynamics(self.body, link, localInertiaDiagonal=inertia, physicsClientId=self.client)
 
     def push(self, force: Vector) -> None:
         """Push the torso at its centre during the next control tick.
@@ -180,23 +187,19 @@ class PyBulletSimulator:
         :param force: force in the world's frame, in N
         """
         pybullet.applyExternalForce(
-            self._body, -1, force, self._torso.position, pybullet.WORLD_FRAME, physicsClientId=self._client
+            self.body, -1, force, self._torso.position, pybullet.WORLD_FRAME, physicsClientId=self.client
         )
 
     def advance(self) -> None:
         """Simulate one control tick."""
         self._velocity_before = self._torso.velocity
-        pybullet.stepSimulation(physicsClientId=self._client)
+        pybullet.stepSimulation(physicsClientId=self.client)
         self.time += self._dt
-        self._look()
+        self.look()
 
     def torso_state(self) -> TorsoState:
         """True state of the torso, which no sensor of the robot measures."""
         return self._torso
-
-    def _torso_state(self) -> TorsoState:
-        position, orientation = pybullet.getBasePositionAndOrientation(self._body, physicsClientId=self._client)
-        return TorsoState(position, orientation, *pybullet.getBaseVelocity(self._body, physicsClientId=self._client))
 
     def read(self) -> SensorReading:
         """True sensor signals of the last control tick, without noise or delay."""
@@ -214,8 +217,8 @@ class PyBulletSimulator:
         :param names: names of the joints
         :return: positions in the same order
         """
-        indices = [self._links[name] for name in names]
-        return tuple(state[0] for state in pybullet.getJointStates(self._body, indices, self._client))
+        indices = [self.links[name] for name in names]
+        return tuple(state[0] for state in pybullet.getJointStates(self.body, indices, self.client))
 
     def actuator_motion(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Speeds (rad/s, m/s) and efforts (Nm, N) of the actuators, in the order of ``ACTUATED_JOINTS``."""
@@ -226,12 +229,12 @@ class PyBulletSimulator:
         """Query the motion of the torso and of the actuators from PyBullet."""
         self._torso = self._torso_state()
         self._positions, self._speeds, _, self._joint_efforts = zip(
-            *pybullet.getJointStates(self._body, self._joints, self._client), strict=True
+            *pybullet.getJointStates(self.body, self._joints, self.client), strict=True
         )
 
     def _pressures(self) -> tuple[float, float, float, float]:
         loads = [0.0, 0.0, 0.0, 0.0]
-        for contact in pybullet.getContactPoints(self._body, self._body, physicsClientId=self._client):
+        for contact in pybullet.getContactPoints(self.body, self.body, physicsClientId=self.client):
             # PyBullet divides the impulse of the last substep by the whole tick.
             loads[self._pads[contact[3], contact[4]]] += contact[9] * self._substeps
         return (loads[0], loads[1], loads[2], loads[3])
@@ -243,7 +246,7 @@ class PyBulletSimulator:
         """
         lowest = math.inf
         links, soles = self._feet[side]
-        states = pybullet.getLinkStates(self._body, links, computeForwardKinematics=1, physicsClientId=self._client)
+        states = pybullet.getLinkStates(self.body, links, computeForwardKinematics=1, physicsClientId=self.client)
         for state, contacts in zip(states, soles, strict=True):
             frame_height, (x, y, z, w) = state[4][2], state[5]
             up_x, up_y, up_z = 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
@@ -255,6 +258,6 @@ class PyBulletSimulator:
 
     def close(self) -> None:
         """Give PyBullet's client back; the simulator cannot be used after that."""
-        if self._client >= 0:
-            give_back_client(self._client)
-            self._client = -1
+        if self.client >= 0:
+            give_back_client(self.client)
+            self.client = -1

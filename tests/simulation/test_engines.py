@@ -13,6 +13,7 @@ from laboratory import NEEDS_PYBULLET, need
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import Episode, simulate
+from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks.balance import TRAINED_STEPPING
@@ -38,8 +39,7 @@ def mujoco_engine() -> None:
 def test_robot_steps_as_well_in_mujoco_as_in_pybullet(mujoco_engine: None, parameters: tuple[float, ...]) -> None:
     """Measured over 20 seeds: mean scores within 2 % of each other, and all survive."""
     pybullet, mujoco = (
-        Evaluation(simulate(EpisodeSpec(parameters, seed, config=EpisodeConfig(engine=engine))) for seed in range(2))
-        for engine in ("pybullet", "mujoco")
+        evaluate("stepping", parameters, EpisodeConfig(engine=engine), range(2)) for engine in ("pybullet", "mujoco")
     )
     for evaluation in (pybullet, mujoco):
         assert evaluation.survival_rate == 1.0 and evaluation.is_gait
@@ -53,7 +53,7 @@ def test_same_spec_gives_identical_results_in_fresh_processes_whatever_they_simu
 ) -> None:
     program = (
         "import dataclasses, json, sarah\n"
-        "config = sarah.EpisodeConfig(engine='mujoco', time_limit=5.0)\n"
+        "config = sarah.BalanceConfig(engine='mujoco', time_limit=5.0)\n"
         "for seed in {seeds}:\n"
         "    result = sarah.simulate(sarah.EpisodeSpec((1.0, 0.1, 0.5, -0.2), seed, 'balance', config))\n"
         "print(json.dumps(dataclasses.asdict(result)))"
@@ -174,9 +174,9 @@ def test_without_pybullet_what_needs_it_is_one_line_that_says_how_to_get_it(
 
 
 def test_kept_is_the_share_of_the_score_that_the_other_engine_gives() -> None:
-    at_home = Evaluation([simulate(EpisodeSpec(PAPER_STEPPING, 0, config=EpisodeConfig(time_limit=1.5)))])
-    worse = dataclasses.replace(at_home, score_mean=0.5 * at_home.mean("score"))
+    result = simulate(EpisodeSpec(PAPER_STEPPING, 0, config=EpisodeConfig(time_limit=1.5)))
+    at_home, worse = Evaluation((result,)), Evaluation((dataclasses.replace(result, score=0.5 * result.score),))
     evaluations = {"pybullet": at_home, "mujoco": worse}
     for engine, kept in (("pybullet", 0.5), ("mujoco", 2.0)):
-        subject = LearnedParameters("run", "stepping", PAPER_STEPPING, EpisodeConfig(engine=engine))
-        assert Transfer(subject, evaluations).kept == pytest.approx(kept)
+        learned = LearnedParameters("run", "stepping", PAPER_STEPPING, EpisodeConfig(engine=engine))
+        assert Transfer(learned, evaluations).kept == pytest.approx(kept)
