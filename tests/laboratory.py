@@ -1,5 +1,6 @@
 """What tests do to a simulated robot that no episode does, in each physics engine: place it, turn it, weigh it."""
 
+import math
 from collections.abc import Sequence
 from itertools import product
 from typing import Any
@@ -25,7 +26,7 @@ class BulletLaboratory:
 
     def place(self, simulation: Any, height: float = 30.0, roll: float = 0.0, pitch: float = 0.0) -> None:
         """Put the robot in the air, turned by ``roll`` about y or ``pitch`` about x."""
-        orientation = pybullet.getQuaternionFromEuler((pitch, roll, 0.0))
+        orientation = turned(roll, pitch)
         client = simulation.client
         pybullet.resetBasePositionAndOrientation(simulation.body, (0, 0, height), orientation, physicsClientId=client)
         simulation.look()
@@ -91,7 +92,7 @@ class MujocoLaboratory:
 
     def place(self, simulation: Any, height: float = 30.0, roll: float = 0.0, pitch: float = 0.0) -> None:
         """Put the robot in the air, turned by ``roll`` about y or ``pitch`` about x."""
-        x, y, z, w = pybullet.getQuaternionFromEuler((pitch, roll, 0.0))
+        x, y, z, w = turned(roll, pitch)
         simulation.data.qpos[:7] = (0.0, 0.0, height, w, x, y, z)
         simulation.look()
 
@@ -144,6 +145,13 @@ class MujocoLaboratory:
             model, data, mujoco.mjtObj.mjOBJ_BODY, model.body(link).id, velocity, 0
         )  # angular, then linear
         return velocity[3:]
+
+
+def turned(roll: float, pitch: float) -> tuple[float, float, float, float]:
+    """Unit quaternion (x, y, z, w) of a turn by ``pitch`` about x, and then by ``roll`` about y."""
+    x, y = math.sin(pitch / 2), math.sin(roll / 2)
+    w_x, w_y = math.cos(pitch / 2), math.cos(roll / 2)
+    return w_y * x, y * w_x, -y * x, w_y * w_x
 
 
 def laboratory(engine: str) -> BulletLaboratory | MujocoLaboratory:

@@ -245,5 +245,5 @@ def test_a_port_that_says_nothing_is_reported(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(workers_module, "SCHEDULER_SECONDS", 1)
     with socket.create_server(("127.0.0.1", 0)) as server:
         address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
-        with pytest.raises(WorkersError, match=f"{address}': whoever listens there says nothing"):
+        with pytest.raises(WorkersError, match=f"{address}': the port is open, but silent"):
             Workers(scheduler=address).__enter__()
