@@ -5,12 +5,9 @@ import dataclasses
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from laboratory import RESULT
 
-from sarah.control.parameters import PAPER_STEPPING
-from sarah.episode.episode import simulate
 from sarah.episode.evaluation import Evaluation
-from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING
 from sarah.runs.config import TrainingConfig
 from sarah.training.recommendation import DISTINCT, candidates, merit, rank
@@ -68,8 +65,7 @@ def test_there_are_never_more_than_asked_for(tried: list[tuple[tuple[float, ...]
 
 
 def test_what_is_no_gait_has_less_merit() -> None:
-    done = simulate(EpisodeSpec(PAPER_STEPPING, 0, config=EpisodeConfig(time_limit=1.1)))
-    good = dataclasses.replace(done, score=0.9, shifts_by_sensors=1.0, lifts_by_sensors=0.95, sole_clearance=0.02)
+    good = dataclasses.replace(RESULT, score=0.9, lifts_by_sensors=0.95)
     assert merit(good) == 0.9
     assert merit(dataclasses.replace(good, lifts_by_sensors=0.45)) == pytest.approx(0.45)
     assert merit(dataclasses.replace(good, sole_clearance=0.007)) == pytest.approx(0.63)
@@ -83,11 +79,10 @@ def test_a_small_budget_affords_no_comparison() -> None:
 
 
 def test_what_chatters_or_is_no_gait_comes_last() -> None:
-    walking = simulate(EpisodeSpec(PAPER_STEPPING, 0, config=EpisodeConfig(time_limit=4.0)))
-    baseline = Evaluation((walking,))
-    dragging = dataclasses.replace(walking, score=0.95, sole_clearance=0.0099)
-    chattering = dataclasses.replace(walking, score=0.95, vibration=2.5 * walking.vibration)
-    ranks = [rank([result], baseline) for result in (walking, dragging, chattering)]
+    baseline = Evaluation((RESULT,))
+    dragging = dataclasses.replace(RESULT, score=0.95, sole_clearance=0.0099)
+    chattering = dataclasses.replace(RESULT, score=0.95, vibration=2.5 * RESULT.vibration)
+    ranks = [rank([result], baseline) for result in (RESULT, dragging, chattering)]
     assert max(ranks) == ranks[0]
     assert rank([chattering], None) > ranks[0]  # where there is nothing to chatter against
     assert rank([], baseline) < ranks[1]
