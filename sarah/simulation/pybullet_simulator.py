@@ -226,7 +226,7 @@ class PyBulletSimulator:
         return self._speeds, tuple([effort * self._substeps for effort in self._joint_efforts])
 
     def look(self) -> None:
-        """Take the state of torso and actuators from PyBullet; needed when others have moved them."""
+        """Query the motion of the torso and of the actuators from PyBullet, after whatever changed it."""
         position, orientation = pybullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client)
         velocities = pybullet.getBaseVelocity(self.body, physicsClientId=self.client)
         self._torso = TorsoState(position, orientation, *velocities)
