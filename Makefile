@@ -1,6 +1,6 @@
 # `make train` and `make test` work as the first command in a fresh clone.
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
-VENV ?= .venv
+VENV ?= $(if $(filter file,$(origin PYTHON)),.venv,.venv-$(notdir $(PYTHON)))
 BIN := $(VENV)/bin
 SIMULATIONS ?= 100
 BALANCE_SIMULATIONS ?= 300
@@ -16,10 +16,10 @@ RUN ?= runs/$(shell date +%Y%m%d-%H%M%S)
 help:  ## show what can be made
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
 
-install: $(VENV)/installed  ## create the environment in .venv, with the tested versions
+install: $(VENV)/installed  ## create the environment in .venv, with the tested versions; with PYTHON=python3.13, in .venv-python3.13
 
 $(VENV)/installed: setup.cfg pyproject.toml constraints.txt
-	@$(PYTHON) -c 'import sys; sys.version_info[:2] == (3, 11) or sys.exit("the tested versions are for Python 3.11: make PYTHON=...")'
+	@$(PYTHON) -c 'import sys; (3, 10) <= sys.version_info[:2] <= (3, 13) or sys.exit("sarah is tested with Python 3.10 to 3.13: make PYTHON=python3.11")'
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/pip install --quiet --upgrade pip -c constraints.txt
 	$(BIN)/pip install --quiet -c constraints.txt --editable '.[dev]'
@@ -43,10 +43,11 @@ test: install  ## the tests
 test-slow: install  ## the slow tests: minutes of simulation
 	$(BIN)/python -m pytest -m slow
 
-lint: install  ## style and types
+lint: install  ## style, types and which package imports which
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy -p sarah
+	$(BIN)/lint-imports --no-logo
 
 format: install  ## put the style right
 	$(BIN)/ruff check --fix .
@@ -75,4 +76,4 @@ tables: install  ## the tables of the README and docs: hours of simulation
 	$(BIN)/python benchmarks/second_training.py --algo naf
 
 clean:  ## remove what was built, but no runs
-	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

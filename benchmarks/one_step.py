@@ -19,7 +19,7 @@ import torch
 from gymnasium import spaces
 from stable_baselines3.common.callbacks import BaseCallback
 
-from sarah.agents import NAF, PRESETS, RankReplayBuffer
+from sarah.agents import NAF, PRESETS, LocalNAF, RankReplayBuffer
 
 NOISE = 0.03
 """Standard deviation of the reward; the top of the hill is 1."""
@@ -106,7 +106,8 @@ def learned(name: str, seed: int, episodes: int) -> tuple[list[float], float]:
     env = Hills(seed)
     settings = {**ONE_STEP, **VARIANTS[name]} if name in VARIANTS else {"gamma": 0.0, **UPDATES, **PLAIN[name]}
     watch = Watch(env)
-    model = NAF("MlpPolicy", env, seed=seed, **settings).learn(episodes, callback=watch)
+    algorithm = LocalNAF if "elite_share" in settings else NAF
+    model = algorithm("MlpPolicy", env, seed=seed, **settings).learn(episodes, callback=watch)
     if not isinstance(model.replay_buffer, RankReplayBuffer):
         return watch.scores, float("nan")
     return watch.scores, env.score(model.replay_buffer.best_action().astype(float))

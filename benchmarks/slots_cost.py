@@ -10,15 +10,15 @@ from typing import get_args
 
 from trainings import learned
 
-from sarah.agents.naf import PRESETS
 from sarah.episode.spec import EpisodeConfig
 from sarah.episode.workers import Workers
+from sarah.runs.agent_settings import NAFSettings
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import Engine
 from sarah.training.train import evaluate
 
-WARM_UP = PRESETS["one-step"]["learning_starts"]
+WARM_UP = NAFSettings().learning_starts
 
 
 def main() -> None:

@@ -11,34 +11,27 @@ from pathlib import Path
 
 from sphinx.application import Sphinx
 
+HERE = Path(__file__).parent
+sys.path[:0] = [str(HERE / "_extensions"), str(HERE.parent)]  # what renders results, and what reads them
+
 project = "sarah"
 author = "the sarah contributors"
 release = metadata.version("sarah")
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.apidoc"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "reference", "results"]
 html_theme = "furo"
 html_static_path = ["_static"]
 html_css_files = ["tables.css"]
 html_title = f"sarah {release}"
-# reference/commands.md includes the one, reference/api.md leads past the other.
-exclude_patterns = ["reference/generated/commands.md", "reference/generated/modules.rst"]
+# Pages of reference/ include the former, reference/api.md leads past the last.
+INCLUDED = ("commands", "parameters", "settings")
+exclude_patterns = [*(f"reference/generated/{name}.md" for name in INCLUDED), "reference/generated/modules.rst"]
 html_show_copyright = False
 myst_heading_anchors = 3
 suppress_warnings = ["toc.duplicate_entry"]
 
-HERE = Path(__file__).parent
 WIDTH = 86
 """Of a command's help, in characters: as wide as the page."""
 GENERATED = HERE / "reference" / "generated"
-apidoc_modules = [
-    {
-        "path": str(HERE.parent / "sarah"),
-        "destination": str(GENERATED.relative_to(HERE)),
-        "follow_links": True,
-        "separate_modules": True,
-        "module_first": True,
-        "automodule_options": {"members", "show-inheritance"},
-    }
-]
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_typehints_format = "short"
@@ -63,6 +56,15 @@ def write_commands(app: Sphinx) -> None:
     (GENERATED / "commands.md").write_text("\n".join(sections), encoding="utf-8")
 
 
+def write_api(app: Sphinx) -> None:
+    """Write a page for every module; by the command, as the extension needs Python 3.11."""
+    command = [Path(sys.executable).with_name("sphinx-apidoc"), "-q", "--force", "--separate", "--module-first"]
+    environment = {**os.environ, "SPHINX_APIDOC_OPTIONS": "members,show-inheritance,ignore-module-all"}
+    arguments = ["--follow-links", "--output-dir", str(GENERATED), str(HERE.parent / "sarah")]
+    subprocess.run([*command, *arguments], env=environment, check=True)
+
+
 def setup(app: Sphinx) -> None:
-    """Have the command reference written before the pages are read."""
+    """Have the references of commands and modules written before the pages are read."""
+    app.connect("builder-inited", write_api)
     app.connect("builder-inited", write_commands)

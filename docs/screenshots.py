@@ -1,4 +1,4 @@
-"""Draws the pictures of docs/monitoring.md: ``python docs/screenshots.py RUNS``, with Chromium and playwright.
+"""Draws the pictures of docs/how_to/watch.md: ``python docs/screenshots.py RUNS``, with Chromium and playwright.
 
 RUNS is a folder of trainings that ended, made with ``sarah-train --pictures 20``.
 """

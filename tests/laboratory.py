@@ -1,17 +1,19 @@
 """What tests do to a simulated robot that no episode does, in each physics engine: place it, turn it, weigh it."""
 
+import math
 from collections.abc import Sequence
 from itertools import product
 from typing import Any
 
 import numpy as np
-import pybullet
 import pytest
 
-from sarah.errors import ConfigurationError
 from sarah.robot.description import PLATES
 from sarah.robot.reading import Side
-from sarah.simulation.engines import check_engine
+from sarah.simulation.engines import is_installed
+from sarah.simulation.pybullet_client import pybullet
+
+NEEDS_PYBULLET = pytest.mark.skipif(not is_installed("pybullet"), reason="needs pybullet")
 
 
 class BulletLaboratory:
@@ -21,7 +23,7 @@ class BulletLaboratory:
 
     def place(self, simulation: Any, height: float = 30.0, roll: float = 0.0, pitch: float = 0.0) -> None:
         """Put the robot in the air, turned by ``roll`` about y or ``pitch`` about x."""
-        orientation = pybullet.getQuaternionFromEuler((pitch, roll, 0.0))
+        orientation = turned(roll, pitch)
         client = simulation._client
         pybullet.resetBasePositionAndOrientation(simulation._body, (0, 0, height), orientation, physicsClientId=client)
         simulation._torso = simulation._torso_state()
@@ -85,7 +87,7 @@ class MujocoLaboratory:
 
     def place(self, simulation: Any, height: float = 30.0, roll: float = 0.0, pitch: float = 0.0) -> None:
         """Put the robot in the air, turned by ``roll`` about y or ``pitch`` about x."""
-        x, y, z, w = pybullet.getQuaternionFromEuler((pitch, roll, 0.0))
+        x, y, z, w = turned(roll, pitch)
         simulation._data.qpos[:7] = (0.0, 0.0, height, w, x, y, z)
         simulation._torso = simulation._torso_state()
 
@@ -140,17 +142,20 @@ class MujocoLaboratory:
         return velocity[3:]
 
 
+def turned(roll: float, pitch: float) -> tuple[float, float, float, float]:
+    """Unit quaternion (x, y, z, w) of a turn by ``pitch`` about x, and then by ``roll`` about y."""
+    x, y = math.sin(pitch / 2), math.sin(roll / 2)
+    w_x, w_y = math.cos(pitch / 2), math.cos(roll / 2)
+    return w_y * x, y * w_x, -y * x, w_y * w_x
+
+
 def laboratory(engine: str) -> BulletLaboratory | MujocoLaboratory:
     """An engine's laboratory; a test of an engine that is not installed is skipped."""
-    if engine == "pybullet":
-        return BulletLaboratory()
-    need_mujoco()
-    return MujocoLaboratory()
+    need(engine)
+    return BulletLaboratory() if engine == "pybullet" else MujocoLaboratory()
 
 
-def need_mujoco() -> None:
-    """Skip the test that calls it if MuJoCo is not installed."""
-    try:
-        check_engine("mujoco")
-    except ConfigurationError as missing:
-        pytest.skip(str(missing))
+def need(engine: str) -> None:
+    """Skip the test that calls it if an engine is not installed."""
+    if not is_installed(engine):
+        pytest.skip(f"needs {engine}")

@@ -16,7 +16,14 @@ def test_links_lead_to_files(page: str) -> None:
     assert not missing
 
 
-def test_readme_names_every_command() -> None:
+def test_tutorials_and_guides_show_every_command() -> None:
     commands = re.findall(r"^    (sarah-\w+) =", (ROOT / "setup.cfg").read_text(), re.MULTILINE)
-    readme = (ROOT / "README.md").read_text()
-    assert commands and [command for command in commands if f"    {command} " not in readme] == []
+    pages = [*ROOT.glob("docs/tutorials/*.md"), *ROOT.glob("docs/how_to/*.md")]
+    shown = "\n".join(page.read_text() for page in pages)
+    assert commands and [command for command in commands if f"\n    {command} " not in shown] == []
+
+
+def test_contributing_answers_with_one_file_each() -> None:
+    section = (ROOT / "CONTRIBUTING.md").read_text().split("## Where do I change")[1].split("\n## ")[0]
+    files = re.findall(r"^\| (.+?) \| `([^`]+)`", section, re.MULTILINE)
+    assert len(files) >= 5 and [file for _, file in files if not (ROOT / file).is_file()] == []

@@ -9,7 +9,15 @@ from typing import Annotated
 
 import tyro
 
-from sarah.cli.options import episode_of, given_options, parse_options, run_command, with_engine
+from sarah.cli.options import (
+    check_episode_options,
+    episode_of,
+    given_options,
+    parse_options,
+    run_command,
+    say_engine,
+    with_engine,
+)
 from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError, check_range
 from sarah.runs.config import ALGORITHMS, TrainingConfig
@@ -71,7 +79,9 @@ def _defaults(arguments: Sequence[str]) -> CompareOptions:
     """The defaults, of the kind that task and engine take."""
     given = given_options(arguments, "task", "engine", "episode.engine")
     task = given.get("task", CompareOptions.task)
-    return CompareOptions(task=task, episode=episode_of(task, EpisodeConfig(), given))
+    episode = episode_of(task, EpisodeConfig(), given)
+    check_episode_options(arguments, episode)
+    return CompareOptions(task=task, episode=episode)
 
 
 def _compare(arguments: Sequence[str]) -> None:
@@ -88,12 +98,9 @@ def _compare(arguments: Sequence[str]) -> None:
     base = TrainingConfig(task=options.task, episodes=options.episodes, slots=options.slots, episode=episode)
     from sarah.robot.description import describe_robot
     from sarah.simulation.engines import check_engine
-    from sarah.training.optimisers import check_installed
 
     describe_robot(options.episode.dimensions)
     check_engine(episode.engine)
-    for algo in options.algorithms:
-        check_installed(algo)
     from sarah.episode.workers import Workers
     from sarah.reports.race import as_markdown, entries_of, race, rankings, write_csv
     from sarah.reports.training_figures import draw_race
@@ -102,6 +109,7 @@ def _compare(arguments: Sequence[str]) -> None:
     entries = entries_of(options.algorithms, seeds, base, options.evaluations, options.out)
     options.out.mkdir(parents=True, exist_ok=True)
     with Workers(options.workers, options.scheduler) as workers:
+        say_engine(episode, options.engine)
         curves = race(entries, workers)
     table = rankings(curves, options.best_known)
     print(as_markdown(table))

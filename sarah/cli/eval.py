@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.options import changed_episodes, check_has, numbers, parse_options, run_command
+from sarah.cli.options import changed_episodes, check_has, numbers, parse_options, run_command, say_engine
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, BalanceConfig
 from sarah.errors import ConfigurationError, check_range, unknown_name
@@ -87,6 +87,7 @@ def _evaluate(arguments: Sequence[str]) -> None:
         if options.robustness is not None:
             _show_robustness(parameters, config, options, workers)
             return
+        say_engine(config, options.engine)
         evaluation = _evaluation(task, parameters, config, options, workers)
         neutral = TASKS[task].neutral
         baseline = None if neutral is None else _evaluation(task, neutral, config, options, workers)
@@ -139,28 +140,21 @@ def _changed(config: EpisodeConfig, options: EvalOptions, task: str) -> EpisodeC
 
 
 def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[str, str]]:
-    e = evaluation
-    hips, legs = e.statistic("peak_hip_rate", "max"), e.statistic("peak_leg_speed", "max")
+    from sarah.episode.result import METRICS
+
+    diverged = f"; {evaluation.diverged} diverged: no number came back" if evaluation.diverged else ""
     return [
         ("parameters", ", ".join(f"{name} = {value:.3f}" for name, value in parameters.items())),
-        ("score", _statistics(e, "score", "{:.3f}", "median", "mean", "std", "min")),
-        ("steps per second", _statistics(e, "steps_per_second", "{:.2f}", "median", "mean", "std")),
-        ("drift", _statistics(e, "drift", "{:.1f} cm", "median", "mean", "std", "max", scale=100.0)),
-        (
-            "survival",
-            f"{e.survivors} of {e.episodes} episodes"
-            + (f"; {e.diverged} diverged: no number came back" if e.diverged else ""),
+        ("survival", f"{evaluation.survivors} of {evaluation.episodes} episodes{diverged}"),
+        *(
+            (
+                metric.label,
+                ", ".join(f"{metric.text(evaluation.statistic(name, how))} {how}" for how in metric.statistics),
+            )
+            for name, metric in METRICS.items()
+            if metric.statistics
         ),
-        ("by sensors", f"{e.mean('shifts_by_sensors'):.1%} of shifts, {e.mean('lifts_by_sensors'):.1%} of lifts"),
-        ("sole clearance", f"{1000 * e.mean('sole_clearance'):.1f} mm"),
-        ("vibration", f"{e.median('vibration'):.1f} m²/s⁴ above 20 Hz"),
-        ("actuators", f"{e.mean('actuator_power'):.0f} W; peaks {hips:.1f} rad/s and {legs:.2f} m/s"),
     ]
-
-
-def _statistics(evaluation: Evaluation, metric: str, form: str, *names: str, scale: float = 1.0) -> str:
-    """Some statistics of a metric, in one line."""
-    return ", ".join(f"{form.format(scale * evaluation.statistic(metric, name))} {name}" for name in names)
 
 
 def _comparison(evaluation: Evaluation, baseline: Evaluation) -> list[tuple[str, str]]:
@@ -189,6 +183,7 @@ def _show_robustness(
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise ConfigurationError(f"cannot write folder {folder}: {error.strerror}") from error
+    say_engine(config, options.engine)
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
     forces = FORCES if options.push_newtons is None else (options.push_newtons,)
     pushed = push_many((neutral, parameters), config, workers, forces, options.episodes, options.first_seed)

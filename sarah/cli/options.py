@@ -19,7 +19,7 @@ from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import STEPPING, TASKS
 from sarah.errors import ConfigurationError, SarahError, unknown_name
-from sarah.simulation.engines import Engine
+from sarah.simulation.engines import Engine, default_engine
 from sarah.simulation.physics import PHYSICS
 
 if TYPE_CHECKING:
@@ -30,6 +30,11 @@ USAGE_ERROR = 2
 PYTHON_WORDS = {
     r"^Error parsing (\S+): invalid literal for int\(\) with base 10: (.*)": r"\1 must be a whole number, not \2",
     r"^Error parsing (\S+): could not convert string to float: (.*)": r"\1 must be a number, not \2",
+    r"^Error parsing (\S+): Could not parse arguments (.*) into tuple type .*": r"\1 must be numbers, not \2",
+    r"^Error parsing (\S+): Could not find valid parse for arguments: (.*)": r"\1 must be whole numbers, not \2",
+    r"^Error parsing (\S+): no type matching (\S+) could be instantiated from (.*?)\.\s+Got errors.*": (
+        r"\1 must be \2, not \3"
+    ),
     r"^Error parsing [\w.]+: ": "",
 }
 """What Python says of bad values, and what a user is told."""
@@ -91,6 +96,16 @@ def with_engine(episode: EpisodeConfig, engine: str | None) -> EpisodeConfig:
     return episode if engine is None else dataclasses.replace(episode, engine=engine)  # type: ignore[arg-type]  # checked
 
 
+def say_engine(config: EpisodeConfig, asked: str | None) -> None:
+    """Say on standard error that MuJoCo simulates because PyBullet is missing, unless an engine was asked for.
+
+    :param config: the settings
+    :param asked: what --engine was given
+    """
+    if asked is None and config.engine == default_engine() != "pybullet":
+        print("PyBullet is not installed: MuJoCo simulates", file=sys.stderr)
+
+
 def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
     """Run a command; an error of ours is one line, without a traceback.
 
@@ -132,19 +147,19 @@ def episodes_of(subject: str, episode: str | None) -> tuple[list[RunEpisode], Ru
         named
     :raises ConfigurationError: if there is no such thing
     """
-    from sarah.runs.run_episodes import choose, episode_of_parameters, episodes_of_run
+    from sarah.runs.run_episodes import choose_episode, episode_of_parameters, episodes_of_run
 
     if Path(subject).is_dir():
         from sarah.runs.run_folder import RunFolder
 
-        choices = episodes_of_run(RunFolder.open(Path(subject), unfinished=True))
-        return choices, choose(choices, episode)
+        episodes = episodes_of_run(RunFolder.open(Path(subject), unfinished=True))
+        return episodes, choose_episode(episodes, episode)
     if not subject.strip("+-.")[:1].isdigit():
         raise ConfigurationError(f"{subject} is neither a run folder nor numbers separated by commas")
     if episode is not None:
         raise ConfigurationError("--episode is for a run folder")
-    choice = episode_of_parameters(numbers("parameters", subject))
-    return [choice], choice
+    given = episode_of_parameters(numbers("parameters", subject))
+    return [given], given
 
 
 def changed_episodes(
@@ -203,6 +218,18 @@ def check_has(config: EpisodeConfig, name: str, option: str) -> None:
     if not hasattr(config, name):
         tasks = " or ".join(task.name for task in TASKS.values() if hasattr(task.episode, name))
         raise ConfigurationError(f"--{option} is for --task {tasks}")
+
+
+def check_episode_options(arguments: Sequence[str], config: EpisodeConfig) -> None:
+    """Refuse ``--episode.…`` options of settings that only another task has.
+
+    :param arguments: all arguments of a command
+    :param config: settings of the task's episodes
+    """
+    for argument in arguments:
+        name = argument.removeprefix("--episode.").split(".")[0].replace("-", "_")
+        if argument.startswith("--episode.") and any(hasattr(task.episode, name) for task in TASKS.values()):
+            check_has(config, name, argument.removeprefix("--").split("=")[0])
 
 
 def given_options(arguments: Sequence[str], *names: str) -> dict[str, str]:

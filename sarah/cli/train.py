@@ -14,10 +14,19 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.interruption import Interruption
-from sarah.cli.options import episode_of, given_options, parse_options, run_command, with_engine
+from sarah.cli.options import (
+    check_episode_options,
+    episode_of,
+    given_options,
+    parse_options,
+    run_command,
+    say_engine,
+    with_engine,
+)
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS
 from sarah.errors import ConfigurationError, RunFolderError, SarahError, TrainingInterruptedError
+from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import first_difference, read_config
 
@@ -34,7 +43,8 @@ class TrainOptions:
     """Learn the pattern generator's parameters, one episode per action of the agent.
 
     Settings come from the defaults below, then from the file of --config, then from the run of --from, then from the
-    command line. The run folder holds the learned parameters (parameters.json), every episode (episodes.csv), the
+    command line. Those of the agent are of the algorithm that --algo names, those of the episodes of --task: give both
+    before --help. The run folder holds the learned parameters (parameters.json), every episode (episodes.csv), the
     agent (model.zip) and what TensorBoard shows.
 
     :param training: what to train
@@ -79,10 +89,14 @@ def _train(arguments: Sequence[str]) -> None:
     from sarah.episode.workers import Workers
     from sarah.runs.run_folder import RunFolder, new_run_path
     from sarah.simulation.engines import check_engine
-    from sarah.training.optimisers import check_installed
+    from sarah.training.learners import check_device
 
-    check_installed(config.algo)
+    check_device(config.agent)
     check_engine(config.episode.engine)
+    if options.pictures:
+        from sarah.simulation.renderer import check_renderer
+
+        check_renderer()
     if options.resume is not None and _resumed(options.resume, options).is_finished:
         print(f"{options.resume} is finished: there is nothing to resume")
         return
@@ -92,6 +106,7 @@ def _train(arguments: Sequence[str]) -> None:
             run = RunFolder.resumable(options.resume)
         else:
             run = RunFolder.create(options.run_dir or new_run_path(config.task, config.algo, config.seed), config)
+        say_engine(config.episode, options.engine)
         print(f"training {config.algo} on {config.task}: {config.episodes} episodes into {run.path}", flush=True)
         learned = _learned(config, run, workers, options.pictures)
     _summarise(config.task, learned, run.path)
@@ -136,20 +151,35 @@ def _learned(config: TrainingConfig, run: RunFolder, workers: Workers, picture_i
 
 
 def _defaults(arguments: Sequence[str]) -> TrainOptions:
-    """The defaults, as --config and --from change them, of the kind that task and engine take."""
-    given = given_options(arguments, "config", "resume", "from", "task", "engine", "episode.engine")
+    """The defaults, as --config, --from and --agent.preset change them, of the kinds that task, algorithm, engine take.
+
+    The parser of the command line knows settings by their default.
+    """
+    names = ("config", "resume", "from", "task", "algo", "agent.preset", "engine", "episode.engine")
+    given = given_options(arguments, *names)
     if "resume" in given:
         from sarah.runs.run_folder import RunFolder
 
         return TrainOptions(RunFolder.resumable(Path(given["resume"])).config())
     training = read_config(TrainingConfig, Path(given["config"])) if "config" in given else TrainingConfig()
+    training = _with_agent(training, given.get("algo"), given.get("agent.preset"))
     task = given.get("task", training.task)
     if task not in TASKS:  # the real parser's options report it
         return TrainOptions(training)
     episode = episode_of(task, training.episode, given)
+    check_episode_options(arguments, episode)
     if "from" in given and task == BALANCE.name:
         episode = _on_learned_stepping(Path(given["from"]), episode)
     return TrainOptions(dataclasses.replace(training, task=task, episode=episode))
+
+
+def _with_agent(training: TrainingConfig, algo: str | None, preset: str | None) -> TrainingConfig:
+    """A training by another algorithm, with its default settings, or with what another preset of NAF decides."""
+    if algo is not None and algo != training.algo:
+        training = dataclasses.replace(training, algo=algo, agent=settings_of(algo)())
+    if preset is not None and isinstance(training.agent, NAFSettings) and preset != training.agent.preset:
+        training = dataclasses.replace(training, agent=training.agent.with_preset(preset))
+    return training
 
 
 def _on_learned_stepping(path: Path, episode: EpisodeConfig) -> EpisodeConfig:

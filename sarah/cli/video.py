@@ -73,8 +73,10 @@ def _film(arguments: Sequence[str]) -> None:
     if options.subject is None or options.out is None:
         raise ConfigurationError("give a run folder or parameters, and the file to write")
     from sarah.pictures.video import FRAMES_PER_SECOND, check_path, frame_times, frames, write_video
+    from sarah.simulation.renderer import check_renderer
 
     check_path(options.out)
+    check_renderer()
     spec = _spec(options, options.subject)
     from tqdm import tqdm
 

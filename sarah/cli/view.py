@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.options import episodes_of, parse_options, run_command, with_engine
+from sarah.cli.options import episodes_of, parse_options, run_command, say_engine, with_engine
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.errors import ConfigurationError
 
@@ -110,6 +110,7 @@ def _serve(options: ViewOptions, choices: list[RunEpisode], chosen: RunEpisode) 
 
     with serving(options.host, options.port) as server:
         page = Page(server, choices, chosen)
+        say_engine(chosen.spec.config, options.engine)
         if not _is_local(options.host):
             print(f"warning: whoever reaches {options.host} can use this page, as there is no password")
         print(f"SARAH is at http://{options.host}:{server.get_port()} (Ctrl-C ends)", flush=True)

@@ -1,4 +1,4 @@
-"""The settings that episodes of all tasks have."""
+"""Settings that the episodes of every task have."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from sarah.control.constants import ControllerConstants
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.reward import RewardForm
 from sarah.errors import ConfigurationError, check_range, unknown_name
-from sarah.simulation.engines import Engine
+from sarah.simulation.engines import Engine, default_engine
 from sarah.simulation.physics import PHYSICS, Physics, physics_for, physics_type
 from sarah.simulation.randomisation import Randomisation
 
@@ -20,19 +20,19 @@ LONGEST_EPISODE = 3600.0
 
 @dataclass(frozen=True)
 class EpisodeConfig:
-    """What all episodes of an experiment share, whatever the task.
+    """Settings that all episodes of an experiment share, whatever the task.
 
-    :param physics: fineness of the integration; what another engine knows is taken as this one can
-    :param engine: physics engine: ``"pybullet"``, the reference, or ``"mujoco"``
+    :param physics: resolution of the physics in time; fields that the engine does not have are ignored
+    :param engine: physics engine: ``"pybullet"``, the reference, or ``"mujoco"``, the default without PyBullet
     :param randomisation: ranges that each episode's seed draws from
-    :param controller: constants of pattern generator and hip law
-    :param dimensions: dimensions of the robot, names and values where they differ from the xacro's; by default none do
+    :param controller: constants of the pattern generator and the hip law
+    :param dimensions: dimensions of the robot that differ from the xacro's defaults, by name, in SI units
     :param time_limit: time limit of an episode, in s; the paper's first criterion
     :param reward_form: form of equation 2: ``"symmetric"``, or ``"printed"`` for the equation to the letter
     """
 
     physics: Physics = PHYSICS["standard"]
-    engine: Engine = "pybullet"
+    engine: Engine = field(default_factory=default_engine)
     randomisation: Randomisation = Randomisation()
     controller: ControllerConstants = ControllerConstants()
     dimensions: Mapping[str, float] = field(default_factory=dict)
@@ -40,7 +40,7 @@ class EpisodeConfig:
     reward_form: RewardForm = "symmetric"
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be simulated."""
+        """Refuse settings that cannot be simulated."""
         if self.engine not in get_args(Engine):
             raise ConfigurationError(unknown_name("engine", self.engine, get_args(Engine)))
         object.__setattr__(self, "physics", physics_for(self.engine, self.physics))
@@ -64,4 +64,4 @@ class EpisodeConfig:
 
         :param content: values of some fields, as a file gives them
         """
-        return {"physics": physics_type(content.get("engine", cls.engine))}
+        return {"physics": physics_type(content.get("engine", default_engine()))}

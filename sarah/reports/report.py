@@ -1,11 +1,10 @@
-"""A run as one HTML page that needs nothing else: results beside the paper's, video, figures, settings and commands."""
+"""The report of a training as one HTML file: results beside the paper's, video, figures, settings and commands."""
 
 from __future__ import annotations
 
 import shlex
 import tempfile
 from base64 import b64encode
-from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.resources import files
 from importlib.util import find_spec
@@ -16,9 +15,11 @@ from tqdm import tqdm
 
 from sarah.episode.episode import simulate
 from sarah.episode.evaluation import Evaluation, evaluate
+from sarah.episode.result import METRICS
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import TASKS, Task
 from sarah.episode.workers import Executor
+from sarah.errors import ConfigurationError
 from sarah.files import replace_text
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
 from sarah.reports.all_figures import draw_all_figures
@@ -26,11 +27,12 @@ from sarah.reports.training_figures import ALGORITHM_LABELS
 from sarah.robot.description import describe_robot
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
+from sarah.simulation.renderer import check_renderer
 from sarah.training.recommendation import Parameters
 
 CAPTIONS = {
     "figure_4_reward_and_frequency": "Return and step frequency of every episode (the paper's Figure 4)",
-    "figure_5_parameters": "Parameters of every episode (the paper's Figure 5); dotted: where the paper's settled",
+    "figure_5_parameters": "Parameters of every episode (the paper's Figure 5); dotted: the paper's values",
     "figure_6_reward_and_position": "Return and final position of every episode (the paper's Figure 6)",
     "figure_7_parameters": "Parameters of every episode (the paper's Figure 7)",
     "gait_cycle_stepping": "One step with each leg, with the learned parameters",
@@ -38,17 +40,17 @@ CAPTIONS = {
     "figure_3_pattern_generator": "The pattern generator (the paper's Figure 3), drawn from the code",
     "figure_2_robot": "The robot (the paper's Figure 2)",
 }
-"""Of each figure, in the order of the page."""
+"""Caption of each figure, in the order of the page."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """A line of the table of results.
+    """A row of the table of results.
 
-    :param name: what is compared, with its unit
-    :param learned: of the run
-    :param baseline: text for what it is compared with
-    :param paper: what the paper says of it
+    :param name: label of the metric or parameter, with its unit
+    :param learned: value of the learned parameters
+    :param baseline: value of the baseline
+    :param paper: value or remark that the paper gives
     """
 
     name: str
@@ -62,12 +64,12 @@ def write_report(
 ) -> None:
     """Write the page.
 
-    :param run: a finished training
-    :param path: of the page
-    :param executor: that simulates the episodes of the table
-    :param episodes: unseen seeds that the table is of
-    :param seconds: simulated time at which the video begins and ends
-    :raises RunFolderError: if something in the run folder is missing or damaged
+    :param run: run folder of a finished training
+    :param path: path of the HTML file
+    :param executor: executor that simulates the episodes of the table
+    :param episodes: number of episodes on unseen seeds for the table
+    :param seconds: simulated times at which the video begins and ends, in s
+    :raises RunFolderError: if a file in the run folder is missing or damaged
     """
     config, learned = run.config(), run.parameters()
     task = TASKS[config.task]
@@ -81,10 +83,7 @@ def write_report(
         figures = [
             (text, _address(drawn[stem].read_bytes(), "image/png")) for stem, text in CAPTIONS.items() if stem in drawn
         ]
-        video = folder / ("episode.mp4" if find_spec("imageio_ffmpeg") else "episode.gif")
-        caption = _film(EpisodeSpec(learned, 0, config.task, config.episode), video, seconds)
-        is_mp4 = video.suffix == ".mp4"
-        film = _address(video.read_bytes(), "video/mp4" if is_mp4 else "image/gif")
+        film, caption = _film(EpisodeSpec(learned, 0, config.task, config.episode), folder, seconds)
     page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True).from_string(
         (files("sarah.reports") / "report.html").read_text(encoding="utf-8")
     )
@@ -99,7 +98,6 @@ def write_report(
         warnings=_warnings(ours, None if task.neutral is None else theirs),
         figures=figures,
         film=film,
-        is_mp4=is_mp4,
         film_caption=caption,
         settings=run.config_text(),
         settings_address=_address(run.config_text().encode(), "text/yaml"),
@@ -117,45 +115,32 @@ def _parameter_rows(task: Task, learned: Parameters) -> list[Row]:
 
 
 def _result_rows(config: TrainingConfig, learned: Evaluation, baseline: Evaluation) -> list[Row]:
-    is_pushed = TASKS[config.task].has_push
-
-    def row(name: str, text: Callable[[Evaluation], str], paper: str = "") -> Row:
-        return Row(name, text(learned), text(baseline), paper)
-
-    return [
-        row("score, median (1 is the ceiling)", lambda e: f"{e.median('score'):.3f}", "reported as reward, no scale"),
-        row("steps per second, median", lambda e: f"{e.median('steps_per_second'):.2f}", "3 to 5, a human's"),
-        row(
-            f"episodes that lasted {config.episode.time_limit:g} s",
-            lambda e: f"{e.survivors} of {e.episodes}",
-            "no share given" if is_pushed else "30 s ends a simulation that does well",
-        ),
-        row(
-            "distance from the start at the end, median (cm)",
-            lambda e: f"{100 * e.median('drift'):.1f}",
-            "returns to its initial position" if is_pushed else "below 25, or the simulation ends",
-        ),
-        row(
-            "SHIFT, LIFT phases that sensors ended (%)",
-            lambda e: f"{100 * e.mean('shifts_by_sensors'):.0f}, {100 * e.mean('lifts_by_sensors'):.0f}",
-        ),
-        row("clearance of the soles, mean (mm)", lambda e: f"{1000 * e.mean('sole_clearance'):.0f}"),
-        row("vibration above 20 Hz, median (m²/s⁴)", lambda e: f"{e.median('vibration'):.1f}"),
-        row("power of the actuators, mean (W)", lambda e: f"{e.mean('actuator_power'):.0f}"),
-    ]
+    ours, theirs = (f"{evaluation.survivors} of {evaluation.episodes}" for evaluation in (learned, baseline))
+    rows = [Row(f"episodes that lasted {config.episode.time_limit:g} s", ours, theirs, "30 s end a good episode")]
+    for name, metric in METRICS.items():
+        for how in metric.statistics[:1]:
+            ours, theirs = (metric.text(evaluation.statistic(name, how)) for evaluation in (learned, baseline))
+            rows.append(Row(f"{metric.label}, {how}", ours, theirs, metric.paper))
+    return rows
 
 
 def _warnings(learned: Evaluation, baseline: Evaluation | None) -> list[str]:
     found = []
     if not learned.is_gait:
-        found.append("This is not a gait: it steps to a clock, or does not lift its feet.")
+        found.append("This is not a valid gait: the robot steps to a clock, or does not lift its feet.")
     if baseline is not None and learned.chatters(baseline):
-        found.append("The hips chatter: no real robot could do that.")
+        found.append("The hips chatter: no real actuator could follow that.")
     return found
 
 
-def _film(spec: EpisodeSpec, path: Path, seconds: tuple[float, float]) -> str:
-    """Film a part of an episode, and say in a line what there is to see."""
+def _film(spec: EpisodeSpec, folder: Path, seconds: tuple[float, float]) -> tuple[str, str]:
+    """Film a part of an episode, if the renderer is installed, and write a line about it."""
+    try:
+        check_renderer()
+    except ConfigurationError as missing:
+        return "", f"No video: {missing}."
+    name, kind = ("film.mp4", "video/mp4") if find_spec("imageio_ffmpeg") else ("film.gif", "image/gif")
+    path = folder / name
     result = simulate(spec, record_trace=True)
     trace = result.trace
     assert trace is not None
@@ -164,7 +149,8 @@ def _film(spec: EpisodeSpec, path: Path, seconds: tuple[float, float]) -> str:
     times = frame_times(begin, end, FRAMES_PER_SECOND[path.suffix])
     progress = tqdm(times, desc="filming", unit=" frames")
     write_video(frames(trace, describe_robot(spec.config.dimensions), progress), path)
-    return f"The learned parameters on seed {spec.seed}, from {begin:.1f} to {end:.1f} s of {result.duration:.1f} s."
+    caption = f"The learned parameters on seed {spec.seed}, from {begin:.1f} to {end:.1f} s of {result.duration:.1f} s."
+    return _address(path.read_bytes(), kind), caption
 
 
 def _commands(run: RunFolder, config: TrainingConfig) -> list[str]:
@@ -175,5 +161,5 @@ def _commands(run: RunFolder, config: TrainingConfig) -> list[str]:
 
 
 def _address(content: bytes, kind: str) -> str:
-    """An address that holds what it leads to."""
+    """Data address that contains its content."""
     return f"data:{kind};base64,{b64encode(content).decode()}"

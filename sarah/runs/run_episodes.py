@@ -1,4 +1,4 @@
-"""Which episodes there are to choose from."""
+"""The episodes of a run folder, or of given parameters, from which a command chooses one."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from sarah.runs.run_folder import RunFolder
 
 @dataclass(frozen=True)
 class RunEpisode:
-    """An episode to choose.
+    """An episode to look at.
 
-    :param name: what ``--episode`` calls it
-    :param label: what the page's list calls it
-    :param spec: the episode
-    :param score: that the run noted, if it has been simulated there
+    :param name: name on the command line, for ``--episode``
+    :param label: name in the page's list
+    :param spec: specification of the episode
+    :param score: score that the run folder has for it; ``None`` if it was not simulated there
     """
 
     name: str
@@ -29,10 +29,10 @@ class RunEpisode:
 
 
 def episodes_of_run(run: RunFolder) -> list[RunEpisode]:
-    """A run's learned parameters, its best simulation, and then all of them.
+    """Episodes of a training: its learned parameters, its best episode, and then all of its episodes.
 
-    :param run: of a training, which need not be finished
-    :raises RunFolderError: if a row of ``episodes.csv`` cannot be read, or there is nothing at all
+    :param run: run folder of the training, which need not be finished
+    :raises RunFolderError: if a row of ``episodes.csv`` cannot be read, or if there is no episode
     """
     training = run.config()
     task = TASKS[training.task]
@@ -42,27 +42,27 @@ def episodes_of_run(run: RunFolder) -> list[RunEpisode]:
             parameters = tuple(float(row[name]) for name in task.parameter_names)
             spec = EpisodeSpec(parameters, int(row["seed"]), task.name, training.episode)
             score, ending = float(row["score"]), TERMINATIONS[row["termination"]]
-            label = f"simulation {row['index']} · score {score:.2f} · {ending}"
+            label = f"episode {row['index']} · score {score:.2f} · {ending}"
             simulated.append(RunEpisode(row["index"], label, spec, score))
         except (KeyError, TypeError, ValueError) as error:
-            raise RunFolderError(f"the simulations of {run.path} cannot be read: {error!r}") from error
-    choices = []
+            raise RunFolderError(f"the episodes of {run.path} cannot be read: {error!r}") from error
+    shown = []
     if run.is_finished:
         spec = EpisodeSpec(run.parameters(), 0, task.name, training.episode)
-        choices.append(RunEpisode("learned", "learned parameters · seed 0", spec))
+        shown.append(RunEpisode("learned", "learned parameters · seed 0", spec))
     if simulated:
-        best = max(simulated, key=lambda choice: choice.score or 0.0)
-        choices.append(RunEpisode("best", f"best: {best.label}", best.spec, best.score))
-    if not choices:
-        raise RunFolderError(f"{run.path} has no simulations to show yet")
-    return choices + simulated
+        best = max(simulated, key=lambda episode: episode.score or 0.0)
+        shown.append(RunEpisode("best", f"best: {best.label}", best.spec, best.score))
+    if not shown:
+        raise RunFolderError(f"{run.path} has no episodes to show yet")
+    return shown + simulated
 
 
 def episode_of_parameters(parameters: Sequence[float]) -> RunEpisode:
-    """The episode of given parameters with seed 0.
+    """Episode of given parameters, with seed 0.
 
-    :param parameters: P1 to P5, or V1 to V4 of the balance task
-    :raises ConfigurationError: if there are other than five or four of them, or one is not allowed
+    :param parameters: values of P1 to P5, or of V1 to V4 for the task balance
+    :raises ConfigurationError: if there are not five or four of them, or if one is not allowed
     """
     for task in TASKS.values():
         if len(parameters) == len(task.parameter_names):
@@ -75,19 +75,19 @@ def episode_of_parameters(parameters: Sequence[float]) -> RunEpisode:
     raise ConfigurationError(f"parameters must be {counts}, not {len(parameters)}")
 
 
-def choose(choices: list[RunEpisode], name: str | None) -> RunEpisode:
+def choose_episode(episodes: list[RunEpisode], name: str | None) -> RunEpisode:
     """Find an episode by its name.
 
-    :param choices: to choose from
-    :param name: ``learned``, ``best`` or the index of a simulation; the first choice if there is none
+    :param episodes: episodes to choose from
+    :param name: ``learned``, ``best`` or the index of an episode; the first one if ``None``
     :raises ConfigurationError: if there is no such episode
     """
     if name is None:
-        return choices[0]
-    for choice in choices:
-        if choice.name == name:
-            return choice
-    words = [choice.name for choice in choices if not choice.name.isdigit()]
-    simulated = [choice.name for choice in choices if choice.name.isdigit()]
+        return episodes[0]
+    for episode in episodes:
+        if episode.name == name:
+            return episode
+    words = [episode.name for episode in episodes if not episode.name.isdigit()]
+    simulated = [episode.name for episode in episodes if episode.name.isdigit()]
     numbers = [f"{simulated[0]} to {simulated[-1]}"] if simulated else []
     raise ConfigurationError(f"unknown episode {name!r} (allowed: {', '.join(words + numbers)})")

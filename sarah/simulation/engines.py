@@ -1,43 +1,39 @@
-"""The physics engines by name. None is imported before an episode asks for it."""
+"""The physics engines by name, and which of them are installed. None is imported here."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from importlib.util import find_spec
 from typing import Literal
 
 from sarah.errors import ConfigurationError
-from sarah.robot.description import RobotDescription
-from sarah.simulation.physics import Physics
-from sarah.simulation.randomisation import Conditions
-from sarah.simulation.simulator import Simulator
 
 Engine = Literal["pybullet", "mujoco"]
-BuildSimulator = Callable[[RobotDescription, Physics, Conditions], Simulator]
+INSTALLATION = {
+    "pybullet": "pip install pybullet (from Python 3.12 on it is compiled, which takes some minutes)",
+    "mujoco": "pip install 'sarah[mujoco]'",
+}
+"""Command that installs each engine."""
 
 
-def simulator_of(engine: str) -> BuildSimulator:
-    """What builds an engine's simulator.
+def default_engine() -> Engine:
+    """Name of the engine to use by default: PyBullet, the reference, or MuJoCo where PyBullet is not installed."""
+    return "pybullet" if is_installed("pybullet") else "mujoco"
 
-    :param engine: ``"pybullet"`` or ``"mujoco"``
-    :raises ConfigurationError: if the engine is not installed
+
+def is_installed(engine: str) -> bool:
+    """Whether an engine can be imported.
+
+    :param engine: name of the engine, ``"pybullet"`` or ``"mujoco"``
     """
-    check_engine(engine)
-    if engine == "mujoco":
-        from sarah.simulation.mujoco_simulator import MujocoSimulator
-
-        return MujocoSimulator
-    from sarah.simulation.pybullet_simulator import PyBulletSimulator
-
-    return PyBulletSimulator
+    spec = find_spec(engine)
+    return spec is not None and spec.origin is not None  # `pip uninstall` may leave a folder without the package
 
 
 def check_engine(engine: str) -> None:
     """Refuse an engine that is not installed.
 
-    :param engine: ``"pybullet"`` or ``"mujoco"``
+    :param engine: name of the engine, ``"pybullet"`` or ``"mujoco"``
     :raises ConfigurationError: naming how to install it
     """
-    spec = find_spec(engine)
-    if spec is None or spec.origin is None:  # `pip uninstall mujoco` leaves a folder of that name, but no package
-        raise ConfigurationError(f"engine {engine!r} needs the package {engine}: pip install 'sarah[{engine}]'")
+    if not is_installed(engine):
+        raise ConfigurationError(f"engine {engine!r} needs the package {engine}: {INSTALLATION[engine]}")

@@ -1,7 +1,7 @@
-"""One PyBullet world with one robot: build, act, sense, push.
+"""One robot in one PyBullet world: build, act, sense, push.
 
-A world is built for one episode and closed after it: poses reset in place, or a restored state, do not repeat
-bit for bit, a world built anew does.
+A world is built for one episode and closed after it. Only a world that is built anew repeats an episode bit for bit;
+poses that are reset in place, or a restored state, do not.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from sarah.simulation.randomisation import NOMINAL, Conditions
 from sarah.simulation.simulator import GRAVITY, TorsoState, rotate_to_body, specific_force
 
 CONTACT_SECONDS = 0.0015
-"""Time in which contacts push errors of position back to 1/e. PyBullet takes a share per physics step instead; with the
-same share at every rate, coarse steps would make the floor soft. With 1 ms a standing robot creeps at 1 kHz."""
+"""Time in which contacts reduce errors of position to 1/e, in s. PyBullet takes a share per physics step instead; with
+the same share at every rate, coarse steps would make the floor soft. With 1 ms a standing robot creeps at 1 kHz."""
 CONTACT_MARGIN = 0.0003
-"""Distance from which on the solver considers a contact, in m. With 2 mm coarse steps damp the rocking more; PyBullet's
-0.02 also costs time for feet in the air."""
+"""Distance at which the solver begins to consider a contact, in m. With 2 mm, coarse steps damp the rocking more.
+PyBullet's 0.02 also costs time for feet in the air."""
 
 
 class PyBulletSimulator:
     """A :class:`~sarah.simulation.simulator.Simulator` in PyBullet.
 
-    :param robot: the checked robot
-    :param physics: how finely to integrate
+    :param robot: checked robot
+    :param physics: resolution in time
     :param conditions: friction, masses, servo bandwidth and start velocity of this episode
     """
 
@@ -57,7 +57,7 @@ class PyBulletSimulator:
             numSolverIterations=physics.solver_iterations,
             contactERP=corrected,
             contactBreakingThreshold=CONTACT_MARGIN,
-            numNonContactInnerIterations=2,  # motors settle before contacts do: without, standing soles creep
+            numNonContactInnerIterations=2,  # motors settle before contacts do; otherwise standing soles creep
             enableConeFriction=0,  # as good as friction cones here, and cheaper
             enableFileCaching=0,
             physicsClientId=self._client,
@@ -70,7 +70,7 @@ class PyBulletSimulator:
             self.robot.standing_height,
             flags=pybullet.URDF_USE_INERTIA_FROM_FILE
             | pybullet.URDF_IGNORE_VISUAL_SHAPES
-            # PyBullet gives parent-child contact (pad and plate) only with both of these.
+            # PyBullet reports contact between parent and child (pad and plate) only with both of these flags.
             | pybullet.URDF_USE_SELF_COLLISION
             | pybullet.URDF_USE_SELF_COLLISION_INCLUDE_PARENT,
         )
@@ -85,7 +85,7 @@ class PyBulletSimulator:
             self._feet[side] = ([self._links[name] for name in plates], [self.robot.soles[name] for name in plates])
         self._keep_only_pad_contacts()
         self._apply_conditions(conditions)
-        # A servo's share of the way in one physics step, so that it is the same first-order lag at every rate.
+        # A servo's share of the way in one physics step, which makes it the same first-order lag at every rate.
         gain = 1.0 - math.exp(-conditions.actuator_bandwidth / physics.rate)
         self._gains = [gain] * len(self._joints)
         self._added_plate_inertia = physics.added_plate_inertia if isinstance(physics, PyBulletPhysics) else 0.0
@@ -95,7 +95,7 @@ class PyBulletSimulator:
             for link in links
         }
         self._retracted = dict.fromkeys(Side, True)
-        # PyBullet takes them as impulses over the whole tick, and lets every substep spend all of it.
+        # PyBullet takes efforts as impulses over the whole tick, and lets every substep spend all of it.
         self._efforts = [self.robot.efforts[name] / self._substeps for name in ACTUATED_JOINTS]
         self._look()
         self._velocity_before = self._torso.velocity
@@ -116,7 +116,7 @@ class PyBulletSimulator:
 
     def _apply_conditions(self, conditions: Conditions) -> None:
         client = self._client
-        for link, factor in conditions.mass_factors.items():  # of every link
+        for link, factor in conditions.mass_factors.items():  # contains every link
             index = self._links[link]
             dynamics = pybullet.getDynamicsInfo(self._body, index, physicsClientId=client)
             pybullet.changeDynamics(
@@ -130,7 +130,7 @@ class PyBulletSimulator:
                 angularDamping=0.0,
                 physicsClientId=client,
             )
-        # In a call of its own: together with other settings PyBullet applies those to the base instead of the link.
+        # This is a call of its own: PyBullet would apply the other settings to the base instead of the link.
         pybullet.changeDynamics(
             self._body, -1, activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING, physicsClientId=client
         )
@@ -145,7 +145,7 @@ class PyBulletSimulator:
 
         :param targets: positions in the order of ``ACTUATED_JOINTS``, in rad and m
         """
-        if targets == self._targets:  # the servos keep them
+        if targets == self._targets:  # the servos keep their targets
             return
         self._targets = targets
         pybullet.setJointMotorControlArray(
@@ -157,15 +157,15 @@ class PyBulletSimulator:
             positionGains=self._gains,
             physicsClientId=self._client,
         )
-        for side, length in zip(Side, targets[-len(Side) :], strict=True):  # the legs' lengths come last
+        for side, length in zip(Side, targets[-len(Side) :], strict=True):  # the leg lengths come last
             if (length > 0.0) != self._retracted[side]:
                 self._retract(side, length > 0.0)
 
     def _retract(self, side: Side, retracted: bool) -> None:
-        """Leave the plates of a leg that is retracted their own inertia, and give those of another leg the added one.
+        """Give the plates of a retracted leg their own inertia, and those of another leg the added one as well.
 
-        Light plates between the floor and pads that carry a whole robot make the solver converge slowly. While they
-        stand they hardly turn, and their inertia changes little else (docs/robot.md has how much).
+        Light plates between the floor and pads that carry a whole robot make the solver converge slowly. While a plate
+        stands it hardly turns, so its inertia changes little else (docs/explanation/physics.md says how much).
         """
         self._retracted[side] = retracted
         added = 0.0 if retracted else self._added_plate_inertia
@@ -177,7 +177,7 @@ class PyBulletSimulator:
     def push(self, force: Vector) -> None:
         """Push the torso at its centre during the next control tick.
 
-        :param force: in the world's frame, in N
+        :param force: force in the world's frame, in N
         """
         pybullet.applyExternalForce(
             self._body, -1, force, self._torso.position, pybullet.WORLD_FRAME, physicsClientId=self._client
@@ -191,7 +191,7 @@ class PyBulletSimulator:
         self._look()
 
     def torso_state(self) -> TorsoState:
-        """Where the torso really is; no sensor of the robot knows it."""
+        """True state of the torso, which no sensor of the robot measures."""
         return self._torso
 
     def _torso_state(self) -> TorsoState:
@@ -199,7 +199,7 @@ class PyBulletSimulator:
         return TorsoState(position, orientation, *pybullet.getBaseVelocity(self._body, physicsClientId=self._client))
 
     def read(self) -> SensorReading:
-        """The true sensor signals of the last control tick, without noise or delay."""
+        """True sensor signals of the last control tick, without noise or delay."""
         torso = self._torso
         return SensorReading(
             specific_force(torso, self._velocity_before, self._dt),
@@ -211,19 +211,19 @@ class PyBulletSimulator:
     def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
         """Positions of some joints, in rad and m.
 
-        :param names: of the joints
-        :return: a tuple in the same order
+        :param names: names of the joints
+        :return: positions in the same order
         """
         indices = [self._links[name] for name in names]
         return tuple(state[0] for state in pybullet.getJointStates(self._body, indices, self._client))
 
     def actuator_motion(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Speeds (rad/s, m/s) and efforts (Nm, N) of the actuators, in the order of ``ACTUATED_JOINTS``."""
-        # As with contacts, PyBullet reports the impulse of the last substep over the whole tick.
+        # PyBullet divides the impulse of the last substep by the whole tick.
         return self._speeds, tuple([effort * self._substeps for effort in self._joint_efforts])
 
     def _look(self) -> None:
-        """Ask PyBullet where torso and actuators are, and how they move."""
+        """Query the motion of the torso and of the actuators from PyBullet."""
         self._torso = self._torso_state()
         self._positions, self._speeds, _, self._joint_efforts = zip(
             *pybullet.getJointStates(self._body, self._joints, self._client), strict=True
@@ -232,14 +232,14 @@ class PyBulletSimulator:
     def _pressures(self) -> tuple[float, float, float, float]:
         loads = [0.0, 0.0, 0.0, 0.0]
         for contact in pybullet.getContactPoints(self._body, self._body, physicsClientId=self._client):
-            # PyBullet reports the impulse of the last substep over the whole tick.
+            # PyBullet divides the impulse of the last substep by the whole tick.
             loads[self._pads[contact[3], contact[4]]] += contact[9] * self._substeps
         return (loads[0], loads[1], loads[2], loads[3])
 
     def sole_height(self, side: Side) -> float:
         """Height of a foot's lowest sole contact over the floor, in m.
 
-        :param side: foot's side
+        :param side: side of the foot
         """
         lowest = math.inf
         links, soles = self._feet[side]
@@ -254,7 +254,7 @@ class PyBulletSimulator:
         return lowest - self.robot.contact_radius
 
     def close(self) -> None:
-        """Give PyBullet's clients back; the simulation cannot be used any more."""
+        """Give PyBullet's client back; the simulator cannot be used after that."""
         if self._client >= 0:
             give_back_client(self._client)
             self._client = -1

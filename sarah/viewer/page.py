@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import viser
 
 from sarah.episode.ending import TERMINATIONS
-from sarah.episode.result import EpisodeResult
+from sarah.episode.result import METRICS, EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, Task
 from sarah.episode.trace import Trace
@@ -241,21 +241,18 @@ def _on_user(handle: Any, do: Callable[[Any], None]) -> None:
             do(handle.value)
 
 
-ROWS: tuple[tuple[str, Callable[[EpisodeResult], str]], ...] = (
-    ("score", lambda result: f"{result.score:.3f}"),
-    ("", lambda result: TERMINATIONS[result.termination] + ("" if result.survived else f" at {result.duration:.1f} s")),
-    ("steps/s", lambda result: f"{result.steps_per_second:.2f}"),
-    ("drift", lambda result: f"{100 * result.drift:.1f} cm"),
-    ("clearance", lambda result: f"{1000 * result.sole_clearance:.0f} mm"),
-    ("by sensors", lambda result: f"{result.shifts_by_sensors:.0%}, {result.lifts_by_sensors:.0%}"),
-)
+def _ending(result: EpisodeResult) -> str:
+    """How an episode ended, and when if that was early."""
+    return TERMINATIONS[result.termination] + ("" if result.survived else f" at {result.duration:.1f} s")
 
 
 def _comparison(shown: Shown, before: Shown | None, noted_score: float | None) -> str:
     """The table of results, beside those of the episode that was shown before."""
-    rows = [("", "now", "before")]
-    for name, text in ROWS:
-        rows.append((name, text(shown.result), text(before.result) if before is not None else ""))
+    rows = [("", "now", "before"), ("", _ending(shown.result), _ending(before.result) if before is not None else "")]
+    for name, metric in METRICS.items():
+        if metric.statistics:
+            now, then = (one and metric.text(getattr(one.result, name)) for one in (shown, before))
+            rows.append((metric.label, now or "", then or ""))
     lines = [f"<tr><td>{name}</td><td><b>{now}</b></td><td>{old}</td></tr>" for name, now, old in rows]
     note = ""
     if noted_score is not None and abs(noted_score - shown.result.score) > 1e-9:

@@ -7,11 +7,12 @@ import sys
 from pathlib import Path
 
 import pytest
-from laboratory import need_mujoco
+from laboratory import NEEDS_PYBULLET, need
 
 from sarah.cli.eval import EvalOptions, _changed
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import STEPPING
+from sarah.simulation.engines import default_engine, is_installed
 from sarah.simulation.physics import Physics
 
 BIN = Path(sys.executable).parent
@@ -73,14 +74,15 @@ def test_eval_summarises_a_run(trained: tuple[Path, subprocess.CompletedProcess[
     folder, _ = trained
     process = run("sarah-eval", str(folder), "--episodes", "2", cwd=folder)
     assert process.returncode == 0, process.stderr
-    for text in ("parameters", "score", "steps per second", "drift", "survival", "by sensors", "sole clearance"):
+    for text in ("parameters", "score", "steps per second", "drift", "survival", "SHIFT by sensors", "sole clearance"):
         assert text in process.stdout
 
 
+@NEEDS_PYBULLET
 def test_transfer_compares_the_engines_on_the_same_seeds(
     trained: tuple[Path, subprocess.CompletedProcess[str]], tmp_path: Path
 ) -> None:
-    need_mujoco()
+    need("mujoco")
     folder, _ = trained
     process = run("sarah-transfer", str(folder), "--episodes", "2", "--out", "out", "--workers", "2", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
@@ -96,8 +98,9 @@ def test_transfer_compares_the_engines_on_the_same_seeds(
         assert cells[column + 2] == f"{alone['steps_per_second_mean']:.2f}"
 
 
+@NEEDS_PYBULLET
 def test_mujoco_trains_and_its_run_is_evaluated_in_it(tmp_path: Path) -> None:
-    need_mujoco()
+    need("mujoco")
     arguments = ("--algo", "random", "--episodes", "2", "--engine", "mujoco", "--run-dir", "mine")
     process = run("sarah-train", *arguments, *SHORT, "--workers", "2", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
@@ -172,8 +175,9 @@ def test_figures_of_both_trainings(balanced: Path) -> None:
     assert process.returncode == 0, process.stderr
     files = process.stdout.split()
     names = {Path(file).stem for file in files}
-    assert {"figure_2_robot", "figure_3_pattern_generator", "figure_4_reward_and_frequency"} <= names
-    assert len(files) == 12 and all((balanced.parent / file).stat().st_size > 5000 for file in files)
+    assert {"figure_3_pattern_generator", "figure_4_reward_and_frequency"} <= names
+    assert ("figure_2_robot" in names) == is_installed("pybullet")
+    assert len(files) == 2 * len(names) >= 10 and all((balanced.parent / file).stat().st_size > 5000 for file in files)
     assert "no gait cycle of mine" in process.stderr  # in half a second there is none
     alone = run("sarah-figures", "second", cwd=balanced.parent)
     assert sorted(path.name for path in (balanced / "figures").iterdir()) == sorted(
@@ -231,7 +235,7 @@ def test_mistakes_get_one_line_on_a_plain_terminal_too(tmp_path: Path) -> None:
 
 
 def test_a_reader_who_has_had_enough_is_no_error(tmp_path: Path) -> None:
-    command = f"{BIN / 'sarah-eval'} --parameters 1,1,1,1,1 --episodes 1 | true"
+    command = f"{BIN / 'sarah-eval'} --parameters 1,1,1,1,1 --episodes 1 --engine {default_engine()} | true"
     process = subprocess.run(["bash", "-c", command], capture_output=True, text=True, cwd=tmp_path)
     assert process.stderr == ""
 

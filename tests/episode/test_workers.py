@@ -16,6 +16,7 @@ import dask
 import distributed  # noqa: F401  # its settings are there before a test changes one, and stay when that ends
 import psutil
 import pytest
+from laboratory import NEEDS_PYBULLET
 
 from sarah.episode import workers as workers_module
 from sarah.episode.episode import simulate
@@ -139,6 +140,7 @@ def test_who_ran_an_episode_lets_the_following_one_stand() -> None:
     assert outcome.following == stand(following)
 
 
+@NEEDS_PYBULLET
 def test_whoever_stands_twice_keeps_one_world() -> None:
     def worlds() -> int:
         return sum(bullet.pybullet.isConnected(client) for client in range(200))
@@ -219,5 +221,5 @@ def test_a_port_that_says_nothing_is_reported(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(workers_module, "SCHEDULER_SECONDS", 1)
     with socket.create_server(("127.0.0.1", 0)) as server:
         address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
-        with pytest.raises(WorkersError, match=f"{address}': whoever listens there says nothing"):
+        with pytest.raises(WorkersError, match=f"{address}': the port is open, but silent"):
             Workers(scheduler=address).__enter__()

@@ -9,7 +9,7 @@ from importlib.machinery import ModuleSpec
 from pathlib import Path
 
 import pytest
-from laboratory import need_mujoco
+from laboratory import NEEDS_PYBULLET, need
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import Episode, simulate
@@ -19,19 +19,21 @@ from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.errors import ConfigurationError
 from sarah.reports.transfer import LearnedParameters, Transfer
 from sarah.simulation import engines
-from sarah.simulation.engines import simulator_of
+from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import Physics
 
 SHORT = EpisodeConfig(engine="mujoco", time_limit=6.0)
 MUJOCO_IS_MISSING = "import sys\nsys.modules['mujoco'] = None\n"
+PYBULLET_IS_MISSING = "import sys\nsys.modules['pybullet'] = None\n"
 
 
 @pytest.fixture
 def mujoco_engine() -> None:
     """MuJoCo is installed, or the test is skipped."""
-    need_mujoco()
+    need("mujoco")
 
 
+@NEEDS_PYBULLET
 @pytest.mark.parametrize("parameters", [PAPER_STEPPING, TRAINED_STEPPING])
 def test_robot_steps_as_well_in_mujoco_as_in_pybullet(mujoco_engine: None, parameters: tuple[float, ...]) -> None:
     """Measured over 20 seeds: mean scores within 2 % of each other, and all survive."""
@@ -105,7 +107,7 @@ def test_physics_that_diverges_ends_the_episode_and_writes_no_file(
         ("train", ["--engine", "mujoco"]),
         ("eval", ["--parameters", "0.4,1.3,0.1,1,1", "--engine", "mujoco"]),
         ("compare", ["race", "--engine", "mujoco"]),
-        ("transfer", ["run"]),
+        pytest.param("transfer", ["run"], marks=NEEDS_PYBULLET),
     ],
 )
 def test_without_the_extra_a_command_says_how_to_get_it_and_writes_nothing(
@@ -125,6 +127,7 @@ def test_what_pip_leaves_of_mujoco_is_no_engine(monkeypatch: pytest.MonkeyPatch)
         simulator_of("mujoco")
 
 
+@NEEDS_PYBULLET
 def test_without_the_extra_pybullet_works() -> None:
     program = (
         f"{MUJOCO_IS_MISSING}import sarah\n"
@@ -133,6 +136,41 @@ def test_without_the_extra_pybullet_works() -> None:
     )
     process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert process.stdout == "time_limit\n"
+
+
+def command_without_pybullet(command: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    program = f"{PYBULLET_IS_MISSING}from sarah.cli.{command} import main\nsys.argv[1:] = {arguments}\nmain()"
+    return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=cwd)
+
+
+def test_without_pybullet_mujoco_is_the_default_and_a_training_says_so(mujoco_engine: None, tmp_path: Path) -> None:
+    arguments = ("--algo", "random", "--episodes", "2", "--episode.time-limit", "1.5", "--run-dir", "run")
+    process = command_without_pybullet("train", *arguments, cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    assert process.stderr.startswith("PyBullet is not installed: MuJoCo simulates\n")
+    assert "engine: mujoco" in (tmp_path / "run" / "config.yaml").read_text()
+    process = command_without_pybullet("report", "run", "--episodes", "2", cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    page = (tmp_path / "run" / "report.html").read_text()
+    assert "No video: pictures of the robot need the package pybullet" in page and "<video" not in page
+
+
+@pytest.mark.parametrize(
+    ("command", "arguments", "needs"),
+    [
+        ("train", ["--engine", "pybullet"], "engine 'pybullet' needs"),
+        ("train", ["--pictures", "1"], "pictures of the robot need"),
+        ("video", ["0.4,1.3,0.1,1,1", "a.gif"], "pictures of the robot need"),
+        ("transfer", ["run"], "engine 'pybullet' needs"),
+    ],
+)
+def test_without_pybullet_what_needs_it_is_one_line_that_says_how_to_get_it(
+    mujoco_engine: None, command: str, arguments: list[str], needs: str, tmp_path: Path
+) -> None:
+    process = command_without_pybullet(command, *arguments, cwd=tmp_path)
+    said = f"sarah-{command}: error: {needs} the package pybullet: pip install pybullet ("
+    assert process.returncode == 2 and process.stderr.startswith(said) and process.stderr.count("\n") == 1
+    assert not list(tmp_path.iterdir())
 
 
 def test_kept_is_the_share_of_the_score_that_the_other_engine_gives() -> None:

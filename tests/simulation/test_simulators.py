@@ -4,14 +4,14 @@ import math
 from collections.abc import Callable, Iterator
 
 import numpy as np
-import pybullet
 import pytest
-from laboratory import BulletLaboratory, MujocoLaboratory, laboratory
+from laboratory import NEEDS_PYBULLET, BulletLaboratory, MujocoLaboratory, laboratory
 
 from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, GROUPS, PLATES, describe_robot
 from sarah.robot.reading import Side
-from sarah.simulation.engines import simulator_of
+from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
+from sarah.simulation.pybullet_client import pybullet
 from sarah.simulation.pybullet_simulator import PyBulletSimulator
 from sarah.simulation.randomisation import LINKS, NOMINAL, Conditions
 from sarah.simulation.renderer import Renderer
@@ -163,6 +163,7 @@ def test_gyroscope_reads_the_rate_in_the_torsos_frame(lab: Laboratory, build: Bu
     assert simulation.read().angular_rate == pytest.approx((-z, y, x), abs=1e-9)
 
 
+@NEEDS_PYBULLET
 def test_rotation_keeps_length_and_undoes_itself() -> None:
     orientation = pybullet.getQuaternionFromEuler((0.3, -0.5, 0.9))
     vector = (0.2, -1.0, 3.0)
@@ -255,6 +256,7 @@ def test_retracting_a_leg_lifts_its_sole(lab: Laboratory, build: BuildSimulation
     assert simulation.sole_height(Side.LEFT) - simulation.sole_height(Side.RIGHT) == pytest.approx(0.05, abs=0.005)
 
 
+@NEEDS_PYBULLET
 def test_plates_have_the_added_inertia_unless_their_leg_is_retracted() -> None:
     """About the hinge only, and on the masses of this episode."""
     conditions = Conditions(mass_factors=dict.fromkeys(LINKS, 1.05))
@@ -286,6 +288,7 @@ def test_two_simulations_repeat_bit_for_bit(build: BuildSimulation) -> None:
     assert states[0] == states[1]
 
 
+@NEEDS_PYBULLET
 def test_picture_shows_the_robot(build: BuildSimulation) -> None:
     simulation = build()
     picture = Renderer(simulation.robot).draw_simulator(simulation, 160, 120)

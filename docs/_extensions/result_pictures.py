@@ -1,0 +1,281 @@
+"""The pictures of results, drawn from their rows when the site is built.
+
+:data:`PICTURES`, at the end, says which results each picture takes and what draws it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+from matplotlib.figure import Figure
+from result_columns import heading
+from result_rows import chosen
+from result_shapes import (
+    COLOURS,
+    Rows,
+    draw_against,
+    draw_intervals,
+    draw_lines,
+    draw_strips,
+    grouped,
+    legend,
+    numbers,
+    panels,
+)
+
+from experiments import record
+from sarah.pictures.style import COLUMN_WIDTH, STYLE
+
+
+def first_training(rows: Rows) -> Figure:
+    """Where P1 to P5 settled, and the scores."""
+    names, learned = ["P1", "P2", "P3", "P4", "P5"], chosen(rows, "run!=paper")
+    (paper,) = chosen(rows, "run=paper")
+    figure, (left, right) = panels(2, 0.35, width_ratios=(3, 1))
+    for axis, columns in ((left, names), (right, ["score"])):
+        values = {column: numbers(learned, column) for column in columns}
+        draw_strips(axis, values, {column: float(paper[column]) for column in columns}, "the paper")
+    right.set_ylim(0.0, 1.0)
+    legend(figure, left)
+    return figure
+
+
+def second_training(rows: Rows) -> Figure:
+    """Where V1 to V4 settled, and survival."""
+    learned = chosen(rows, "run!=V = 0")
+    (neutral,) = chosen(rows, "run=V = 0")
+    figure, (left, right) = panels(2, 0.35, width_ratios=(4, 3))
+    survival = {"survival": "all", "lateral_survival": "lateral", "sagittal_survival": "sagittal"}
+    for axis, columns in ((left, {name: name for name in ("V1", "V2", "V3", "V4")}), (right, survival)):
+        values = {label: numbers(learned, column) for column, label in columns.items()}
+        draw_strips(axis, values, {label: float(neutral[column]) for column, label in columns.items()}, "V = 0")
+    right.set(ylim=(0.0, 1.05), ylabel="survival of pushes")
+    legend(figure, left)
+    return figure
+
+
+def race(rows: Rows) -> Figure:
+    """Final scores with their intervals, and how many seeds reached 90 and 95 % of the best."""
+    labels = [row["algorithm"] for row in rows]
+    figure, (left, right) = panels(2, 0.4, sharey=True)
+    draw_intervals(left, labels, *(numbers(rows, f"final_score{end}") for end in ("", "_low", "_high")))
+    left.set_xlabel("final score, interquartile mean and 95 % interval")
+    heights = range(len(labels), 0, -1)
+    runs = numbers(rows, "runs")
+    for column, marker, colour in (("reached_90", "o", COLOURS[0]), ("reached_95", "s", COLOURS[1])):
+        shares = [reached / count for reached, count in zip(numbers(rows, column), runs, strict=True)]
+        right.plot(shares, heights, marker, color=colour, markersize=4, label=f"{column[-2:]} % of the best score")
+    right.set(xlabel="share of the seeds that reach it", xlim=(-0.05, 1.05))
+    legend(figure, right)
+    return figure
+
+
+def standard_task(rows: Rows) -> Figure:
+    """Median return, from the lowest seed to the highest."""
+    figure, (axis,) = panels(1, 0.25)
+    ends = [numbers(rows, f"{which}_return") for which in ("median", "lowest", "highest")]
+    draw_intervals(axis, [f"{row['algorithm']}, {row['seeds']} seeds" for row in rows], *ends)
+    axis.set_xlabel(f"return on {rows[0]['task']} after {rows[0]['steps']} steps: median, lowest and highest seed")
+    return figure
+
+
+def naf_preset(rows: Rows) -> Figure:
+    """Score of mu: median and lowest seed."""
+    figure, (axis,) = panels(1, 0.55)
+    middle = numbers(rows, "mu_median_score")
+    draw_intervals(axis, [row["variant"] for row in rows], middle, numbers(rows, "mu_lowest_score"), middle)
+    axis.set_xlabel("score of the agent's own action: median of the seeds, and down to the lowest")
+    return figure
+
+
+def robustness(rows: Rows) -> Figure:
+    """Survival by force, from the sides and from front and back."""
+    figure, axes = panels(2, 0.4, sharey=True)
+    directions = grouped(chosen(rows, "direction!=all"), "{direction}")
+    for axis, (direction, group) in zip(axes, directions.items(), strict=True):
+        draw_lines(axis, group, "push_n", "survival", "{controller}")
+        axis.set_title(f"{direction} pushes")
+    axes[1].set_ylabel("")
+    legend(figure, axes[0])
+    return figure
+
+
+def flexion_laws(rows: Rows) -> Figure:
+    """Survival under each law, a panel for each setting."""
+    settings = grouped(rows, "{control_rate_hz} Hz; {physics_rate_hz} Hz x {solver_iterations}")
+    figure, axes = panels(len(settings), 0.3, sharey=True, sharex=True)
+    for axis, (name, group) in zip(axes, settings.items(), strict=True):
+        labels = [f"{row['signal']}, {row['legs']}" if float(row["V3"]) else "no flexion" for row in group]
+        draw_intervals(axis, labels, *(numbers(group, f"survival{end}") for end in ("", "_low", "_high")))
+        axis.set_title(name, fontsize="medium")
+    figure.supxlabel("survival", fontsize="medium")
+    return figure
+
+
+def stepping_and_hips(rows: Rows) -> Figure:
+    """Scores of twelve sets of P1 to P5."""
+    figure, (axis,) = panels(1, 0.35)
+    neutral = {"V1 = 0": numbers(chosen(rows, "V1=0"), "score")}
+    groups = grouped(chosen(rows, "V1>0"), "{told},\nV1 = {V1}")
+    draw_strips(axis, neutral | {name: numbers(group, "score") for name, group in groups.items()}, {}, "")
+    axis.set_ylabel("score under pushes")
+    return figure
+
+
+def landscape(rows: Rows) -> Figure:
+    """Score along each parameter, in both engines."""
+    parameters = grouped(rows, "{parameter}")
+    figure, axes = panels(len(parameters), 0.28, sharey=True)
+    for axis, (name, group) in zip(axes, parameters.items(), strict=True):
+        draw_lines(axis, group, "value", "score", "{engine}")
+        axis.set(xlabel=name, ylabel="score" if axis is axes[0] else "")
+    legend(figure, axes[0])
+    return figure
+
+
+SETTING = "{physics_rate_hz} Hz x {solver_iterations}, +{added_plate_inertia_kg_m2} kg m²"
+
+
+def physics(rows: Rows) -> Figure:
+    """Score at each setting against the score at the finest."""
+    finest = {row["parameters"]: row["score"] for row in rows if not row["difference"]}
+    coarser = [{**row, "finest_score": finest[row["parameters"]]} for row in rows if row["difference"]]
+    settings = grouped(coarser, SETTING)
+    figure, axes = panels(len(settings), 0.35, sharey=True)
+    for axis, (name, group) in zip(axes, settings.items(), strict=True):
+        draw_against(axis, group, "finest_score", "score", "{task}")
+        axis.set_title(name, fontsize="small")
+        axis.set(xlabel="score at the finest", ylabel="score" if axis is axes[0] else "")
+    legend(figure, axes[0])
+    return figure
+
+
+def slow_gait(rows: Rows) -> Figure:
+    """Score against V1 at each setting."""
+    figure, (axis,) = panels(1, 0.4)
+    draw_lines(axis, rows, "V1", "score", SETTING)
+    legend(figure, axis)
+    return figure
+
+
+def between_engines(label: str) -> Callable[[Rows], Figure]:
+    """Score in MuJoCo against score in PyBullet.
+
+    :param label: template that names the groups
+    """
+
+    def drawn(rows: Rows) -> Figure:
+        figure, axis = plt.subplots(figsize=(1.2 * COLUMN_WIDTH, 1.1 * COLUMN_WIDTH), layout="constrained")
+        draw_against(axis, rows, "pybullet_score", "mujoco_score", label)
+        scores = [score for engine in ("pybullet", "mujoco") for score in numbers(rows, f"{engine}_score")]
+        limits = (min(scores) - 0.05, max(scores) + 0.05)
+        axis.set(xlim=limits, ylim=limits)
+        figure.legend(*axis.get_legend_handles_labels(), loc="outside upper center", ncols=2)
+        return figure
+
+    return drawn
+
+
+def clock(rows: Rows) -> Figure:
+    """How many random sets score above 0.5, and how many of these by a clock."""
+    figure, (axis,) = panels(1, 0.2)
+    heights = range(len(rows))
+    axis.barh(heights, numbers(rows, "sets_above_half"), color=COLOURS[0], label="random sets that score above 0.5")
+    axis.barh(heights, numbers(rows, "clocks_above_half"), color=COLOURS[1], label="of these, clocks")
+    axis.set_yticks(heights, [f"time-outs of {row['time_out_s']} s" for row in rows])
+    legend(figure, axis)
+    return figure
+
+
+def robot_dimensions(rows: Rows) -> Figure:
+    """Survival of each robot."""
+    figure, axes = panels(2, 0.5, sharey=True)
+    for axis, column in zip(axes, ("lateral_survival", "sagittal_survival"), strict=True):
+        for colour, (name, group) in zip(COLOURS, grouped(rows, "V = {V}").items(), strict=False):
+            heights = range(len(group), 0, -1)
+            axis.plot(numbers(group, column), heights, "o", color=colour, markersize=4, alpha=0.8, label=name)
+            axis.set_yticks(heights, [row["robot"] for row in group])
+        axis.set_xlabel(heading(column))
+    legend(figure, axes[0])
+    return figure
+
+
+def updates(rows: Rows) -> Figure:
+    """Updates per second of NAF and TD3."""
+    figure, (axis,) = panels(1, 0.3)
+    for offset, algorithm, colour in ((-0.2, "naf", COLOURS[0]), (0.2, "td3", COLOURS[1])):
+        places = [index + offset for index in range(len(rows))]
+        axis.bar(places, numbers(rows, f"{algorithm}_updates_per_second"), 0.38, color=colour, label=algorithm.upper())
+    labels = [f"{row['layers']}\n{row['observations']} → {row['actions']}" for row in rows]
+    axis.set_xticks(range(len(rows)), labels)
+    axis.set_ylabel("updates per second")
+    legend(figure, axis)
+    return figure
+
+
+def slots_schedule(rows: Rows) -> Figure:
+    """Share of the time that workers are busy."""
+    schedules = grouped(rows, "{schedule}")
+    figure, axes = panels(len(schedules), 0.35, sharey=True)
+    for axis, (name, group) in zip(axes, schedules.items(), strict=True):
+        draw_lines(axis, group, "slots_per_worker", "busy_share", "{workers} workers")
+        axis.set(title=f"outcomes {name}", ylabel="busy share of the workers' time" if axis is axes[0] else "")
+    legend(figure, axes[0])
+    return figure
+
+
+def long_training(rows: Rows) -> Figure:
+    """Memory along a training."""
+    figure, (axis,) = panels(1, 0.3)
+    for colour, name in zip(COLOURS, ("training", "worker_1", "worker_2"), strict=False):
+        memory = numbers(rows, f"{name}_memory_mib")
+        axis.plot(numbers(rows, "episodes"), memory, ".-", color=colour, label=heading(name))
+    axis.set(xlabel="episodes", ylabel="memory (MiB)")
+    axis.set_ylim(bottom=0.0)
+    legend(figure, axis)
+    return figure
+
+
+PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
+    "first_training": (("first_training",), first_training),
+    "second_training": (("second_training",), second_training),
+    "race_stepping": (("race_stepping",), race),
+    "race_balance": (("race_balance",), race),
+    "naf_pendulum": (("naf_pendulum",), standard_task),
+    "naf_inverted_pendulum": (("naf_inverted_pendulum",), standard_task),
+    "naf_preset": (("naf_preset",), naf_preset),
+    "robustness": (("robustness",), robustness),
+    "flexion_laws": (("flexion_laws",), flexion_laws),
+    "stepping_and_hips": (("stepping_and_hips",), stepping_and_hips),
+    "landscape_stepping": (("landscape_stepping",), landscape),
+    "landscape_balance": (("landscape_balance",), landscape),
+    "physics": (("physics",), physics),
+    "physics_slow_gait": (("physics_slow_gait",), slow_gait),
+    "engines": (("engines",), between_engines("{task}")),
+    "transfer": (("transfer_stepping", "transfer_balance"), between_engines("{task}, learned in {learned_in}")),
+    "clock": (("clock",), clock),
+    "robot_dimensions": (("robot_dimensions",), robot_dimensions),
+    "updates": (("updates",), updates),
+    "slots_schedule": (("slots_schedule",), slots_schedule),
+    "long_training": (("long_training",), long_training),
+}
+"""Results of each picture, and what draws their rows."""
+
+
+def draw(name: str, folder: Path) -> tuple[Path, tuple[str, ...]]:
+    """Draw a picture.
+
+    :param name: one of :data:`PICTURES`
+    :param folder: folder of the file
+    :return: the file and the results that it was drawn from
+    :raises KeyError: for a name without a picture
+    """
+    sources, drawn = PICTURES[name]
+    path = folder / f"{name}.svg"
+    with plt.rc_context(STYLE):
+        figure = drawn([row for source in sources for row in record.read(source).rows])
+        figure.savefig(path)
+        plt.close(figure)
+    return path, sources

@@ -1,0 +1,1 @@
+"""What makes the results that the documentation shows: each experiment writes ``results/<name>.csv`` and ``.json``."""

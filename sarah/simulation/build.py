@@ -1,0 +1,29 @@
+"""The simulator that an engine's name stands for. No engine is imported before an episode asks for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from sarah.robot.description import RobotDescription
+from sarah.simulation.engines import check_engine
+from sarah.simulation.physics import Physics
+from sarah.simulation.randomisation import Conditions
+from sarah.simulation.simulator import Simulator
+
+BuildSimulator = Callable[[RobotDescription, Physics, Conditions], Simulator]
+
+
+def simulator_of(engine: str) -> BuildSimulator:
+    """What builds an engine's simulator.
+
+    :param engine: ``"pybullet"`` or ``"mujoco"``
+    :raises ConfigurationError: if the engine is not installed
+    """
+    check_engine(engine)
+    if engine == "mujoco":
+        from sarah.simulation.mujoco_simulator import MujocoSimulator
+
+        return MujocoSimulator
+    from sarah.simulation.pybullet_simulator import PyBulletSimulator
+
+    return PyBulletSimulator
