@@ -1,75 +1,60 @@
-"""The First Training over many seeds: what each algorithm learned, on unseen seeds and at the reference physics.
-
-Run folders go to --runs; a training that is finished there is not run again.
-"""
+"""The First Training over many seeds: what was learned, on unseen seeds and at the reference physics."""
 
 from __future__ import annotations
 
-import argparse
 import dataclasses
-import os
-from pathlib import Path
-from statistics import median
+from collections.abc import Iterator
+from dataclasses import dataclass
 
-from trainings import learned
-
-from sarah.control.pattern_generator import PAPER_PARAMETERS
-from sarah.episode.evaluation import Evaluation
+from experiments.record import Row
+from experiments.trainings import OfTrainings
+from sarah.control.parameters import PAPER_STEPPING, STEPPING_PARAMETERS
+from sarah.episode.evaluation import evaluate
+from sarah.episode.settings import EpisodeConfig
 from sarah.episode.workers import Workers
-from sarah.runs.config import ALGORITHMS, TrainingConfig
+from sarah.runs.config import TrainingConfig
 from sarah.simulation.physics import PHYSICS
-from sarah.training.train import evaluate
 
 
-def row(name: str, parameters: tuple[float, ...], standard: Evaluation, reference: Evaluation) -> str:
-    values = " | ".join(f"{value:.2f}" for value in parameters)
-    kept = reference.score_median / standard.score_median if standard.score_median else 0.0
-    shares = f"{standard.event_driven_shift_mean:.2f}, {standard.event_driven_lift_mean:.2f}"
-    return (
-        f"| {name} | {values} | {standard.score_median:.3f} | {standard.steps_per_second_mean:.2f} "
-        f"| {standard.survival_rate:.0%} | {shares} | {1000 * standard.sole_clearance_mean:.0f} mm "
-        f"| {reference.score_median:.3f} | {kept:.0%} |"
-    )
+@dataclass(frozen=True)
+class FirstTraining(OfTrainings):
+    """First Trainings by NAF, judged beside the paper's P1 to P5.
 
+    :param seeds: number of trainings
+    :param budget: number of episodes of a training
+    :param episodes: number of unseen seeds at the standard physics
+    :param reference_episodes: number of unseen seeds at the reference physics
+    """
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--algo", nargs="+", choices=ALGORITHMS, default=["naf", "td3"])
-    parser.add_argument("--first-seed", type=int, default=0)
-    parser.add_argument("--seeds", type=int, default=10)
-    parser.add_argument("--simulations", type=int, default=TrainingConfig().simulations)
-    parser.add_argument("--episodes", type=int, default=20, help="unseen seeds at the standard physics")
-    parser.add_argument("--reference-episodes", type=int, default=20, help="the same at the reference physics")
-    parser.add_argument("--runs", type=Path, default=Path("runs/benchmark"))
-    options = parser.parse_args()
+    seeds: int = 10
+    budget: int = 100
+    episodes: int = 12
+    reference_episodes: int = 4
 
-    with Workers(os.cpu_count() or 1) as workers:
-        compare(options, workers)
+    def rows(self) -> Iterator[Row]:
+        """A row for the paper's parameters, and one for each training."""
+        with Workers(self.workers) as workers:
+            config = self.episode("stepping")
+            yield self._row("paper", PAPER_STEPPING, config, workers)
+            for seed in range(self.seeds):
+                training = TrainingConfig("stepping", episodes=self.budget, seed=seed, episode=config)
+                learned = self.trained(training, workers).parameters()
+                yield self._row(f"naf seed {seed}", learned, config, workers)
 
-
-def compare(options: argparse.Namespace, workers: Workers) -> None:
-    def evaluations(parameters: tuple[float, ...], config: TrainingConfig) -> tuple[Evaluation, Evaluation]:
-        episode = dataclasses.replace(config.episode, physics=PHYSICS["reference"])
-        reference = dataclasses.replace(config, episode=episode)
-        return (
-            evaluate(parameters, config, range(options.episodes), workers),
-            evaluate(parameters, reference, range(options.reference_episodes), workers),
-        )
-
-    print("| run | P1 | P2 | P3 | P4 | P5 | score | steps/s | survived | by sensors | clearance | reference | kept |")
-    print("|---" * 13 + "|")
-    print(row("paper", PAPER_PARAMETERS, *evaluations(PAPER_PARAMETERS, TrainingConfig())), flush=True)
-    for algo in options.algo:
-        scores = []
-        for seed in range(options.first_seed, options.first_seed + options.seeds):
-            config = TrainingConfig(algo=algo, simulations=options.simulations, seed=seed)
-            parameters = learned(config, options.runs / f"{algo}-{options.simulations}-s{seed}", workers)
-            standard, reference = evaluations(parameters, config)
-            scores.append(standard.score_median)
-            print(row(f"{algo} seed {seed}", parameters, standard, reference), flush=True)
-        above = sum(score > 0.8 for score in scores)
-        print(f"\n{algo}: median {median(scores):.3f}, {above} of {len(scores)} above 0.8\n", flush=True)
-
-
-if __name__ == "__main__":
-    main()
+    def _row(self, run: str, parameters: tuple[float, ...], config: EpisodeConfig, workers: Workers) -> Row:
+        at_reference = dataclasses.replace(config, physics=PHYSICS["reference"])
+        found = evaluate("stepping", parameters, config, range(self.episodes), workers)
+        reference = evaluate("stepping", parameters, at_reference, range(self.reference_episodes), workers)
+        score, reference_score = found.median("score"), reference.median("score")
+        return {
+            "run": run,
+            **{parameter.name: value for parameter, value in zip(STEPPING_PARAMETERS, parameters, strict=True)},
+            "score": score,
+            "steps_per_second": found.mean("steps_per_second"),
+            "survival": found.survival_rate,
+            "shifts_by_sensors": found.mean("shifts_by_sensors"),
+            "lifts_by_sensors": found.mean("lifts_by_sensors"),
+            "sole_clearance_mm": 1000.0 * found.mean("sole_clearance"),
+            "reference_score": reference_score,
+            "kept": reference_score / score if score else None,
+        }

@@ -1,71 +1,77 @@
-"""How much of the balance race is noise: what would be recommended by somebody who knows where to look.
-
-All of a budget's simulations are drawn around V1 to V4 that thousands of simulations have found to be good, and what is
-recommended from them, as in a training, is judged on unseen seeds beside the good ones themselves.
-"""
+"""How much of the balance race is noise: what would be recommended by an algorithm that knows where to look."""
 
 from __future__ import annotations
 
-import argparse
-import os
-from statistics import mean, stdev
+import dataclasses
+from collections.abc import Iterator
+from dataclasses import dataclass
+from statistics import mean
 
 import numpy as np
 
-from sarah.episode.push import Push
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from experiments.experiment import OnWorkers
+from experiments.record import Row
+from experiments.trainings import EPISODES
+from sarah.episode.evaluation import evaluate
+from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE
 from sarah.episode.workers import Workers
-from sarah.runs.config import TrainingConfig
 from sarah.training.recommendation import Parameters, candidates, merit
-from sarah.training.train import evaluate
 
+GOOD = (0.97, 0.13, -0.15, -0.3)
+"""V1 to V4 that did best of 12,600 episodes."""
+DEVIATION = 0.3
+"""Standard deviation of the draws around them, in the units of V."""
 UNSEEN = 5000
 """First seed of the judging episodes."""
+CONFIG = dataclasses.replace(EPISODES["balance"], engine="mujoco")
 
 
-def recommended(
-    good: Parameters, deviation: float, episodes: int, seed: int, base: TrainingConfig, workers: Workers
-) -> tuple[Parameters, float]:
-    """What is recommended after some episodes around good parameters, and the deviation of their scores."""
-    generator = np.random.default_rng(seed)
-    drawn = generator.normal(good, deviation, (episodes, len(good))).clip(BALANCE.low, BALANCE.high)
-    tried = [tuple(map(float, parameters)) for parameters in drawn]
-    specs = [EpisodeSpec(p, int(generator.integers(2**31, 2**32)), "balance", base.episode) for p in tried]
-    results = list(workers.simulate_all(specs))
-    merits = [(p, merit(result.fields())) for p, result in zip(tried, results, strict=True)]
-    (choice,) = candidates(tried[0], merits, 1, BALANCE.width)
-    return choice, stdev(result.score for result in results)
+@dataclass(frozen=True)
+class NoiseLimit(OnWorkers):
+    """All of a budget is drawn around known good V1 to V4, and what is recommended of it is judged beside these.
+
+    :param episodes: number of draws: the budget of the race without its closing comparison
+    :param seeds: number of recommendations
+    :param judged: number of unseen episodes that judge
+    """
+
+    episodes: int = 135
+    seeds: int = 3
+    judged: int = 48
+
+    def rows(self) -> Iterator[Row]:
+        """A row for the good parameters, one for V = 0, and one for what is recommended."""
+        assert BALANCE.neutral is not None
+        with Workers(self.workers) as workers:
+            yield row("best of 12,600 episodes", [self._score(GOOD, workers)])
+            yield row("V = 0", [self._score(BALANCE.neutral, workers)])
+            scores = [self._score(self._recommended(seed, workers), workers) for seed in range(self.seeds)]
+            yield row(f"recommended after {self.episodes} episodes around the best", scores)
+
+    def _score(self, parameters: Parameters, workers: Workers) -> float:
+        return evaluate(BALANCE.name, parameters, CONFIG, range(UNSEEN, UNSEEN + self.judged), workers).mean("score")
+
+    def _recommended(self, seed: int, workers: Workers) -> Parameters:
+        """What is recommended after some episodes around the good parameters."""
+        generator = np.random.default_rng(seed)
+        low, high = ([getattr(parameter, end) for parameter in BALANCE.parameters] for end in ("low", "high"))
+        drawn = generator.normal(GOOD, DEVIATION, (self.episodes, len(GOOD))).clip(low, high)
+        specs = [
+            EpisodeSpec(tuple(map(float, v)), int(generator.integers(FIRST_TRAINING_SEED, 2**32)), BALANCE.name, CONFIG)
+            for v in drawn
+        ]
+        results = workers.simulate_all(specs)
+        tried = [(spec.parameters, merit(result)) for spec, result in zip(specs, results, strict=True)]
+        (choice,) = candidates(BALANCE, specs[0].parameters, tried, 1)
+        return choice
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--good", type=float, nargs=4, default=[0.97, 0.13, -0.15, -0.3], metavar="V")
-    parser.add_argument("--deviations", type=float, nargs="+", default=[0.3], help="of the draws, in V's units")
-    parser.add_argument("--episodes", type=int, default=135, help="of 150, without the closing comparison")
-    parser.add_argument("--seeds", type=int, default=3)
-    parser.add_argument("--judged", type=int, default=48, help="episodes that judge")
-    options = parser.parse_args()
-    episode = EpisodeConfig(engine="mujoco", time_limit=10.0, push=Push(newtons=(75.0, 125.0)))
-    base = TrainingConfig(task="balance", episode=episode)
-    judging = range(UNSEEN, UNSEEN + options.judged)
-    with Workers(os.cpu_count() or 1) as workers:
-        for name, parameters in (("good ones", tuple(options.good)), ("V = 0", (0.0, 0.0, 0.0, 0.0))):
-            print(f"{name}: {evaluate(parameters, base, judging, workers).score_mean:.3f}", flush=True)
-        print(
-            "| deviation of the draws | of their scores | recommended, mean | lowest | highest |\n|---|---|---|---|---|"
-        )
-        for deviation in options.deviations:
-            finals, spreads = [], []
-            for seed in range(options.seeds):
-                choice, spread = recommended(tuple(options.good), deviation, options.episodes, seed, base, workers)
-                finals.append(evaluate(choice, base, judging, workers).score_mean)
-                spreads.append(spread)
-            print(
-                f"| {deviation:g} | {mean(spreads):.2f} | {mean(finals):.3f} | {min(finals):.3f} | {max(finals):.3f} |",
-                flush=True,
-            )
+def row(controller: str, scores: list[float]) -> Row:
+    """A row; of several scores the mean, the lowest and the highest.
 
-
-if __name__ == "__main__":
-    main()
+    :param controller: name of the controller
+    :param scores: mean scores of its parameters
+    """
+    ends = (min(scores), max(scores)) if len(scores) > 1 else (None, None)
+    return {"controller": controller, "score": mean(scores), "score_low": ends[0], "score_high": ends[1]}

@@ -2,49 +2,54 @@
 
 from __future__ import annotations
 
-import argparse
-import os
-from pathlib import Path
+from collections.abc import Iterator
+from dataclasses import dataclass
 from statistics import mean, median
-from typing import get_args
 
-from trainings import learned
+from sarah.runs.agent_settings import NAFSettings
 
-from sarah.agents.naf import PRESETS
-from sarah.episode.spec import EpisodeConfig
+from experiments.record import Row
+from experiments.trainings import OfTrainings
+from sarah.episode.evaluation import evaluate
 from sarah.episode.workers import Workers
 from sarah.runs.config import TrainingConfig
-from sarah.runs.run_folder import RunFolder
-from sarah.simulation.engines import Engine
-from sarah.training.train import evaluate
 
-WARM_UP = PRESETS["one-step"]["learning_starts"]
+WARM_UP = NAFSettings().learning_starts
+"""Number of episodes before NAF learns."""
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--slots", type=int, nargs="+", default=[1, 4, 8, 32])
-    parser.add_argument("--seeds", type=int, default=5)
-    parser.add_argument("--simulations", type=int, default=99, help="below 100, which has no closing comparison")
-    parser.add_argument("--seconds", type=float, default=10.0, help="of each episode")
-    parser.add_argument("--engine", choices=get_args(Engine), default="pybullet")
-    parser.add_argument("--runs", type=Path, default=Path("runs/slots"))
-    options = parser.parse_args()
-    print("| slots | score while learning | of the agent's choice | lowest seed |\n|---|---|---|---|")
-    with Workers(os.cpu_count() or 1) as workers:
-        for slots in options.slots:
-            learning, final = [], []
-            for seed in range(options.seeds):
-                episode = EpisodeConfig(time_limit=options.seconds, engine=options.engine)
-                config = TrainingConfig(simulations=options.simulations, seed=seed, slots=slots, episode=episode)
-                path = options.runs / f"slots{slots}-s{seed}"
-                parameters = learned(config, path, workers)
-                learning.append(
-                    mean(float(row["score"]) for row in list(RunFolder(path).episodes())[max(WARM_UP, 2 * slots) :])
-                )
-                final.append(evaluate(parameters, config, range(10), workers).score_median)
-            print(f"| {slots} | {median(learning):.3f} | {median(final):.3f} | {min(final):.3f} |", flush=True)
+@dataclass(frozen=True)
+class SlotsCost(OfTrainings):
+    """First Trainings by NAF in MuJoCo with several numbers of slots.
 
+    :param slots: numbers of episodes in flight
+    :param seeds: number of trainings with each
+    :param budget: number of episodes of a training; below 100 there is no closing comparison
+    :param episodes: number of unseen seeds that judge
+    """
 
-if __name__ == "__main__":
-    main()
+    slots: tuple[int, ...] = (1, 4, 8, 32)
+    seeds: int = 5
+    budget: int = 99
+    episodes: int = 10
+    time_limit: float | None = 10.0
+
+    def rows(self) -> Iterator[Row]:
+        """A row for each number of slots."""
+        config = self.episode("stepping", "mujoco")
+        with Workers(self.workers) as workers:
+            for slots in self.slots:
+                learning, final = [], []
+                for seed in range(self.seeds):
+                    training = TrainingConfig("stepping", episodes=self.budget, seed=seed, slots=slots, episode=config)
+                    run = self.trained(training, workers)
+                    scores = [float(row["score"]) for row in run.episodes()]
+                    learning.append(mean(scores[max(WARM_UP, 2 * slots) :]))
+                    evaluation = evaluate("stepping", run.parameters(), config, range(self.episodes), workers)
+                    final.append(evaluation.median("score"))
+                yield {
+                    "slots": slots,
+                    "score_while_learning": median(learning),
+                    "score": median(final),
+                    "lowest_score": min(final),
+                }

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import argparse
 import tempfile
 import time
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
-from sarah.episode.spec import EpisodeConfig
+from experiments.record import Row
+from sarah.episode.settings import EpisodeConfig
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
@@ -17,23 +19,36 @@ from sarah.training.train import train
 SHORT = EpisodeConfig(time_limit=1.1, physics=Physics(rate=50, solver_iterations=5, control_rate=50))
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--algorithms", nargs="+", default=ALGORITHMS)
-    parser.add_argument("--simulations", type=int, default=100)
-    options = parser.parse_args()
-    print("| algorithm | simulations | replayed in | journal |\n|---|---|---|---|")
-    for algo in options.algorithms:
-        with tempfile.TemporaryDirectory() as folder:
-            config = TrainingConfig(algo=algo, simulations=options.simulations, episode=SHORT)
-            run = RunFolder.create(Path(folder) / "run", config)
-            train(config, run)
-            start = time.process_time()
-            train(config, run)
-            seconds = time.process_time() - start
-            size = run.journal_path.stat().st_size / 1000
-            print(f"| {algo} | {options.simulations} | {seconds:.1f} s | {size:.0f} kB |", flush=True)
+@dataclass(frozen=True)
+class Resume:
+    """First Trainings that are finished, and resumed.
 
+    :param algorithms: names of the algorithms
+    :param budget: number of episodes of a training
+    """
 
-if __name__ == "__main__":
-    main()
+    algorithms: tuple[str, ...] = ALGORITHMS
+    budget: int = 100
+
+    def rows(self) -> Iterator[Row]:
+        """A row for each algorithm.
+
+        :raises SystemExit: if a replayed training ends with other parameters
+        """
+        for algo in self.algorithms:
+            with tempfile.TemporaryDirectory() as folder:
+                config = TrainingConfig(algo=algo, episodes=self.budget, episode=SHORT)
+                run = RunFolder.create(Path(folder) / "run", config)
+                train(config, run)
+                learned = run.parameters()
+                start = time.process_time()
+                train(config, run)
+                seconds = time.process_time() - start
+                if run.parameters() != learned:
+                    raise SystemExit(f"{algo}: a replayed training ends with other parameters")
+                yield {
+                    "algorithm": algo,
+                    "episodes": self.budget,
+                    "replayed_in_s": round(seconds, 1),
+                    "journal_kb": round(run.journal_path.stat().st_size / 1000),
+                }
