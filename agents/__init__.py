@@ -1,7 +1,9 @@
-"""NAF for stable-baselines3: the algorithm, its policies and a replay buffer for tasks of one step."""
+"""NAF for stable-baselines3: the algorithm, a variant for tasks of one step, policies and a replay buffer."""
 
 from sarah.agents.buffers import RankReplayBuffer
-from sarah.agents.naf import NAF, PRESETS
+from sarah.agents.local_naf import LocalNAF
+from sarah.agents.naf import NAF
 from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy
+from sarah.agents.presets import PRESETS
 
-__all__ = ["NAF", "PRESETS", "CnnPolicy", "MlpPolicy", "MultiInputPolicy", "RankReplayBuffer"]
+__all__ = ["NAF", "PRESETS", "CnnPolicy", "LocalNAF", "MlpPolicy", "MultiInputPolicy", "RankReplayBuffer"]

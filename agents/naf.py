@@ -10,53 +10,14 @@ from stable_baselines3.common.noise import ActionNoise, NormalActionNoise
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from stable_baselines3.common.policies import BasePolicy
 from stable_baselines3.common.type_aliases import GymEnv, MaybeCallback, Schedule
-from stable_baselines3.common.utils import (
-    FloatSchedule,
-    LinearSchedule,
-    get_parameters_by_name,
-    polyak_update,
-)
+from stable_baselines3.common.utils import FloatSchedule, get_parameters_by_name, polyak_update
 from torch import nn
 from torch.optim.swa_utils import get_ema_multi_avg_fn
 
-from sarah.agents.buffers import RankReplayBuffer
 from sarah.agents.critic import QuadraticCritic
 from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy, NAFPolicy
 
 SelfNAF = TypeVar("SelfNAF", bound="NAF")
-
-PRESETS: dict[str, dict[str, Any]] = {
-    # For episodes of one step with a few hundred of them to spend. With several
-    # environments, ``gradient_steps`` is per step of all of them: multiply it by their number.
-    "one-step": dict(
-        learning_rate=1e-3,
-        buffer_size=10_000,
-        learning_starts=5,
-        batch_size=64,
-        gamma=0.0,  # The reward is the return, also where a time limit ends the episode
-        gradient_steps=10,
-        max_grad_norm=10.0,
-        replay_buffer_class=RankReplayBuffer,
-        replay_buffer_kwargs=dict(temperature=4.0),
-        exploration_std=LinearSchedule(0.3, 0.05, end_fraction=0.8),
-        elite_share=0.5,
-        elite_std=LinearSchedule(0.4, 0.15, end_fraction=0.8),
-        elite_draws=16,
-        policy_kwargs=dict(
-            net_arch=dict(V=[32, 32], mu=[32, 32], L=[32, 32]), activation_fn=nn.Tanh, min_curvature=1.0
-        ),
-    ),
-    # The networks of Kouppas et al., literally. Their bias of 1 at the output of mu is the centre
-    # of Box(0, 2), which in scaled actions is 0. On episodes of one step they hardly learn.
-    "paper": dict(
-        policy_kwargs=dict(
-            net_arch=dict(V=[256] * 3, mu=[16] * 4, L=[80] * 4),
-            activation_fn=nn.Sigmoid,
-            squash_mu=False,
-        ),
-    ),
-}
-"""Arguments for known kinds of task: ``NAF("MlpPolicy", env, **PRESETS["one-step"])``."""
 
 
 class NAF(OffPolicyAlgorithm):
@@ -98,16 +59,6 @@ class NAF(OffPolicyAlgorithm):
     :param exploration_std: Standard deviation of the Gaussian exploration noise, in actions scaled
         to [-1, 1]. It can be a function of the current progress remaining (from 1 to 0),
         such as ``LinearSchedule``; 0 switches the noise off. Without effect if ``action_noise`` is given.
-    :param elite_share: Share of the exploring actions that are drawn around the best action of the replay buffer
-        instead of around ``mu``, which a decoy may hold; it can be a function of the current progress remaining
-        (from 1 to 0). Needs a ``RankReplayBuffer``.
-    :param elite_std: Standard deviation of these actions, in scaled actions; it can be a function of the current
-        progress remaining (from 1 to 0)
-    :param elite_draws: How many actions are drawn each time, of which that is done whose neighbourhood in the replay
-        buffer had the highest rewards: wide draws find their way by what is known
-    :param first_action_centre: Whether the first environment's first action is the centre of the action space, often
-        a neutral one. Then actions around the best one are drawn as soon as its outcome is known, and not only after
-        ``learning_starts`` uniform ones
     :param stats_window_size: Window size for the rollout logging, specifying the number of episodes
         to average the reported success rate, mean episode length, and mean reward over
     :param tensorboard_log: the log location for tensorboard (if None, no logging)
@@ -151,10 +102,6 @@ class NAF(OffPolicyAlgorithm):
         n_steps: int = 1,
         max_grad_norm: float = 1.0,
         exploration_std: float | Schedule = 0.1,
-        elite_share: float | Schedule = 0.0,
-        elite_std: float | Schedule = 0.2,
-        elite_draws: int = 1,
-        first_action_centre: bool = False,
         stats_window_size: int = 100,
         tensorboard_log: str | None = None,
         policy_kwargs: dict[str, Any] | None = None,
@@ -192,10 +139,6 @@ class NAF(OffPolicyAlgorithm):
 
         self.max_grad_norm = max_grad_norm
         self.exploration_std = exploration_std
-        self.elite_share = elite_share
-        self.elite_std = elite_std
-        self.elite_draws = elite_draws
-        self.first_action_centre = first_action_centre
 
         if _init_setup_model:
             self._setup_model()
@@ -207,10 +150,6 @@ class NAF(OffPolicyAlgorithm):
         self.batch_norm_stats = get_parameters_by_name(self.q_net, ["running_"])
         self.batch_norm_stats_target = get_parameters_by_name(self.q_net_target, ["running_"])
         self.exploration_schedule = FloatSchedule(self.exploration_std)
-        self.elite_share_schedule = FloatSchedule(self.elite_share)
-        self.elite_std_schedule = FloatSchedule(self.elite_std)
-        if self.elite_share != 0.0 and not isinstance(self.replay_buffer, RankReplayBuffer):
-            raise ValueError(f"elite_share needs a RankReplayBuffer, not a {type(self.replay_buffer).__name__}")
 
     def _create_aliases(self) -> None:
         self.q_net = self.policy.q_net
@@ -227,34 +166,7 @@ class NAF(OffPolicyAlgorithm):
             std = self.exploration_schedule(self._current_progress_remaining)
             action_noise = NormalActionNoise(np.zeros(shape), np.full(shape, std))
             self.logger.record("train/exploration_std", std)
-        action, scaled_action = super()._sample_action(learning_starts, action_noise, n_envs)
-        elite_share = self.elite_share_schedule(self._current_progress_remaining)
-        if elite_share > 0 and self._knows_a_best_action(learning_starts):
-            self._draw_near_best(scaled_action, elite_share)
-            action = self.policy.unscale_action(scaled_action)
-        if self.first_action_centre and self.num_timesteps == 0:
-            scaled_action[0] = 0.0  # Of the first environment: the others warm up as ever
-            action = self.policy.unscale_action(scaled_action)
-        return action, scaled_action
-
-    def _knows_a_best_action(self, learning_starts: int) -> bool:
-        """Whether the draws around it may begin: after the warm-up, or with the outcome of the centre."""
-        assert self.replay_buffer is not None
-        return self.replay_buffer.size() > 0 and (self.first_action_centre or self.num_timesteps >= learning_starts)
-
-    def _draw_near_best(self, scaled_actions: np.ndarray, share: float) -> None:
-        """
-        Replace a share of some exploring actions by draws around the best action.
-
-        :param scaled_actions: One of each environment; changed in place
-        :param share: Of them
-        """
-        assert isinstance(self.replay_buffer, RankReplayBuffer)
-        std = self.elite_std_schedule(self._current_progress_remaining)
-        near_best = np.random.random(len(scaled_actions)) < share
-        for i in np.flatnonzero(near_best):
-            elite = self.replay_buffer.draw_near_best(std, self.elite_draws)
-            scaled_actions[i] = elite.reshape(scaled_actions[i].shape)
+        return super()._sample_action(learning_starts, action_noise, n_envs)
 
     def train(self, gradient_steps: int, batch_size: int = 100) -> None:
         """

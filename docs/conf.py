@@ -17,13 +17,14 @@ sys.path[:0] = [str(HERE / "_extensions"), str(HERE.parent)]  # what renders res
 project = "sarah"
 author = "the sarah contributors"
 release = metadata.version("sarah")
-extensions = ["myst_parser", "sphinx.ext.autodoc", "results"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "reference", "results"]
 html_theme = "furo"
 html_static_path = ["_static"]
 html_css_files = ["tables.css"]
 html_title = f"sarah {release}"
-# reference/commands.md includes the one, reference/api.md leads past the other.
-exclude_patterns = ["reference/generated/commands.md", "reference/generated/modules.rst"]
+# Pages of reference/ include the former, reference/api.md leads past the last.
+INCLUDED = ("commands", "parameters", "settings")
+exclude_patterns = [*(f"reference/generated/{name}.md" for name in INCLUDED), "reference/generated/modules.rst"]
 html_show_copyright = False
 myst_heading_anchors = 3
 suppress_warnings = ["toc.duplicate_entry"]
@@ -58,7 +59,7 @@ def write_commands(app: Sphinx) -> None:
 def write_api(app: Sphinx) -> None:
     """Write a page for every module; by the command, as the extension needs Python 3.11."""
     command = [Path(sys.executable).with_name("sphinx-apidoc"), "-q", "--force", "--separate", "--module-first"]
-    environment = {**os.environ, "SPHINX_APIDOC_OPTIONS": "members,show-inheritance"}
+    environment = {**os.environ, "SPHINX_APIDOC_OPTIONS": "members,show-inheritance,ignore-module-all"}
     arguments = ["--follow-links", "--output-dir", str(GENERATED), str(HERE.parent / "sarah")]
     subprocess.run([*command, *arguments], env=environment, check=True)
 

@@ -1,4 +1,4 @@
-"""The exceptions a user can meet, and the nearest valid name they are told."""
+"""Exceptions that a user can meet, and messages that name the nearest valid name."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 
 LONGEST_NAME = 100
-"""For which a nearest one is looked for."""
+"""Length in characters up to which a nearest valid name is looked for."""
 
 
 class SarahError(Exception):
@@ -15,7 +15,7 @@ class SarahError(Exception):
 
 
 class DescriptionError(SarahError, ValueError):
-    """The robot's dimensions or its URDF are not those of a robot that can be simulated."""
+    """The robot's dimensions or its URDF do not describe SARAH."""
 
 
 class ConfigurationError(SarahError, ValueError):
@@ -23,33 +23,33 @@ class ConfigurationError(SarahError, ValueError):
 
 
 class RunFolderError(SarahError, OSError):
-    """A run folder is missing, not empty, or does not hold what it should."""
+    """A run folder is missing, not empty, or lacks a file that it should have."""
 
 
 class SimulationError(SarahError, RuntimeError):
-    """The physics engine cannot do what is asked of it."""
+    """An episode cannot be simulated, or has no usable result."""
 
 
 class WorkersError(SarahError, RuntimeError):
-    """Workers that were asked for cannot be reached, or die again and again."""
+    """Workers cannot be reached, or they die again and again."""
 
 
 class LearningError(SarahError, RuntimeError):
-    """What learns no longer returns numbers."""
+    """A learning algorithm does not return finite numbers."""
 
 
 class TrainingInterruptedError(SarahError):
-    """A training was asked to stop, and has; it can be resumed."""
+    """A training was stopped before its end; it can be resumed."""
 
 
 def check_range(key: str, value: float | tuple[float, float], low: float, high: float, unit: str = "") -> None:
-    """Refuse what is out of a range.
+    """Refuse a value outside its range.
 
-    :param key: what the value is of
-    :param value: a number, or the two ends of a range, which must be in rising order
-    :param low: smallest that is allowed
-    :param high: largest that is allowed
-    :param unit: of all of them
+    :param key: name of the setting, as the user gives it
+    :param value: number, or both ends of a range, which must be in rising order
+    :param low: smallest allowed value
+    :param high: largest allowed value
+    :param unit: unit of the value and of its limits
     :raises ConfigurationError: naming key, value and range
     """
     first, last = value if isinstance(value, tuple) else (value, value)
@@ -61,11 +61,11 @@ def check_range(key: str, value: float | tuple[float, float], low: float, high: 
 
 
 def check_fields(key: str, config: object, plausible: Mapping[str, tuple[float, float, str]]) -> None:
-    """Refuse a configuration one of whose fields is out of its range.
+    """Refuse a configuration if one of its fields is outside its range.
 
-    :param key: what the names of the fields begin with
-    :param config: the configuration
-    :param plausible: lowest and highest value and unit of the fields, by name
+    :param key: prefix of the fields' names in messages
+    :param config: configuration to check
+    :param plausible: lowest value, highest value and unit of each field, by name
     :raises ConfigurationError: naming key, value and range
     """
     for name, (low, high, unit) in plausible.items():
@@ -73,22 +73,22 @@ def check_fields(key: str, config: object, plausible: Mapping[str, tuple[float, 
 
 
 def shortened(value: object) -> str:
-    """A value as a message shows it: in one line that is not too long.
+    """Representation of a value on one short line, for a message.
 
-    :param value: of any kind
+    :param value: value of any type
     """
     return reprlib.repr(value)
 
 
 def unknown_name(kind: str, name: str, allowed: Iterable[str]) -> str:
-    """Say that a name is unknown, which one was probably meant, and which there are.
+    """Message that a name is unknown, with the nearest valid name and all valid names.
 
-    :param kind: what the name stands for, such as ``"task"``
-    :param name: the name that was given
-    :param allowed: the valid names
+    :param kind: kind of thing that the name stands for, such as ``"task"``
+    :param name: name that was given
+    :param allowed: valid names
     :return: one line for an exception's message
     """
     names = sorted(allowed)
     nearest = get_close_matches(name, names, n=1, cutoff=0.5) if len(name) < LONGEST_NAME else []
     guess = f", did you mean {nearest[0]!r}?" if nearest else ""
-    return f"unknown {kind} {shortened(name)}{guess} (allowed: {', '.join(names)})"
+    return f"unknown {kind} {shortened(name)}{guess} (allowed: {', '.join(names) or 'none'})"

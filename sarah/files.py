@@ -1,4 +1,4 @@
-"""Files that are whole or not there: what is replaced keeps its old content until the new one is on the disk."""
+"""Files that are never half written: the old content stays until the new one is on the disk."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from typing import BinaryIO
 
 @contextmanager
 def replacing(path: Path) -> Iterator[BinaryIO]:
-    """Write a file that takes its place when it is complete.
+    """Write a file that replaces the old one only when it is complete.
 
-    :param path: of the file; what is there stays until then, and if writing fails
+    :param path: path of the file; if writing fails, its old content stays
     """
     unfinished = path.with_name(f"{path.name}.new")
     try:
@@ -31,15 +31,15 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
 def replace_text(path: Path, text: str) -> None:
     """Replace a text file as a whole.
 
-    :param path: of the file
-    :param text: its new content
+    :param path: path of the file
+    :param text: new content
     """
     with replacing(path) as file:
         file.write(text.encode())
 
 
 def _sync_folder(folder: Path) -> None:
-    """Have the new name on the disk too."""
+    """Write the folder's entries to the disk, so that the new name survives a power failure."""
     descriptor = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(descriptor)

@@ -1,4 +1,4 @@
-"""Which versions of what results depend on are installed here."""
+"""Installed versions of Python and of the packages that results depend on."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from importlib.metadata import PackageNotFoundError, version
 
 PACKAGES = ("sarah", "pybullet", "mujoco", "numpy", "stable-baselines3", "gymnasium", "torch", "distributed")
 SIMULATING = ("sarah", "pybullet", "mujoco", "numpy")
-"""Those that an episode's bytes depend on."""
+"""Packages that an episode's bytes depend on."""
 
 
 def versions(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
     """Versions by name, Python's first.
 
-    :param packages: names of distributions
+    :param packages: names of the distributions
     """
     found = {"python": platform.python_version()}
     for package in packages:

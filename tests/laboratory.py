@@ -1,5 +1,6 @@
 """What tests do to a simulated robot that no episode does, in each physics engine: place it, turn it, weigh it."""
 
+import math
 from collections.abc import Sequence
 from itertools import product
 from typing import Any
@@ -8,10 +9,13 @@ import numpy as np
 import pytest
 
 from sarah.robot.description import PLATES
-from sarah.robot.reading import Side
+from sarah.robot.reading import SensorReading, Side, Vector
 from sarah.simulation.engines import is_installed
+from sarah.simulation.physics import PHYSICS
 from sarah.simulation.pybullet_client import pybullet
+from sarah.simulation.simulator import TorsoState
 
+CONTROL_DT = PHYSICS["standard"].control_dt
 NEEDS_PYBULLET = pytest.mark.skipif(not is_installed("pybullet"), reason="needs pybullet")
 
 
@@ -22,27 +26,29 @@ class BulletLaboratory:
 
     def place(self, simulation: Any, height: float = 30.0, roll: float = 0.0, pitch: float = 0.0) -> None:
         """Put the robot in the air, turned by ``roll`` about y or ``pitch`` about x."""
-        orientation = pybullet.getQuaternionFromEuler((pitch, roll, 0.0))
-        client = simulation._client
-        pybullet.resetBasePositionAndOrientation(simulation._body, (0, 0, height), orientation, physicsClientId=client)
-        simulation._torso = simulation._torso_state()
+        orientation = turned(roll, pitch)
+        client = simulation.client
+        pybullet.resetBasePositionAndOrientation(simulation.body, (0, 0, height), orientation, physicsClientId=client)
+        simulation.look()
 
     def turn(self, simulation: Any, rate: Sequence[float]) -> None:
         """Let the torso turn, with a rate in the world's frame."""
-        pybullet.resetBaseVelocity(simulation._body, (0, 0, 0), rate, physicsClientId=simulation._client)
-        simulation._torso = simulation._torso_state()
+        pybullet.resetBaseVelocity(simulation.body, (0, 0, 0), rate, physicsClientId=simulation.client)
+        simulation.look()
 
     def move_joint(self, simulation: Any, name: str, position: float, speed: float) -> None:
         """Put a joint somewhere, in motion."""
-        index = simulation._links[name]
+        index = simulation.links[name]
         pybullet.resetJointState(
-            simulation._body, index, position, targetVelocity=speed, physicsClientId=simulation._client
+            simulation.body, index, position, targetVelocity=speed, physicsClientId=simulation.client
         )
 
     def remove_pads(self, simulation: Any) -> None:
         """Let the plates pass through the pads."""
-        for shank, plate in simulation._pads:
-            pybullet.setCollisionFilterPair(simulation._body, simulation._body, shank, plate, 0, simulation._client)
+        body, links = simulation.body, simulation.links
+        for side, plate in product(Side, PLATES):
+            shank, foot = links[f"{side}_shank"], links[f"{side}_{plate}"]
+            pybullet.setCollisionFilterPair(body, body, shank, foot, 0, simulation.client)
 
     def mass(self, simulation: Any, link: str) -> float:
         """Of a link."""
@@ -66,16 +72,16 @@ class BulletLaboratory:
 
     @staticmethod
     def _dynamics(simulation: Any, link: str) -> Any:
-        return pybullet.getDynamicsInfo(simulation._body, simulation._links[link], physicsClientId=simulation._client)
+        return pybullet.getDynamicsInfo(simulation.body, simulation.links[link], physicsClientId=simulation.client)
 
     @staticmethod
     def _state(simulation: Any, link: str) -> Any:
         return pybullet.getLinkState(
-            simulation._body,
-            simulation._links[link],
+            simulation.body,
+            simulation.links[link],
             computeLinkVelocity=1,
             computeForwardKinematics=1,
-            physicsClientId=simulation._client,
+            physicsClientId=simulation.client,
         )
 
 
@@ -86,51 +92,51 @@ class MujocoLaboratory:
 
     def place(self, simulation: Any, height: float = 30.0, roll: float = 0.0, pitch: float = 0.0) -> None:
         """Put the robot in the air, turned by ``roll`` about y or ``pitch`` about x."""
-        x, y, z, w = pybullet.getQuaternionFromEuler((pitch, roll, 0.0))
-        simulation._data.qpos[:7] = (0.0, 0.0, height, w, x, y, z)
-        simulation._torso = simulation._torso_state()
+        x, y, z, w = turned(roll, pitch)
+        simulation.data.qpos[:7] = (0.0, 0.0, height, w, x, y, z)
+        simulation.look()
 
     def turn(self, simulation: Any, rate: Sequence[float]) -> None:
         """Let the torso turn, with a rate in the world's frame."""
         import mujoco
 
         in_torso = np.zeros(3)
-        mujoco.mju_negQuat(to_torso := np.zeros(4), simulation._data.qpos[3:7])
+        mujoco.mju_negQuat(to_torso := np.zeros(4), simulation.data.qpos[3:7])
         mujoco.mju_rotVecQuat(in_torso, np.array(rate), to_torso)
-        simulation._data.qvel[:6] = (0.0, 0.0, 0.0, *in_torso)
-        simulation._torso = simulation._torso_state()
+        simulation.data.qvel[:6] = (0.0, 0.0, 0.0, *in_torso)
+        simulation.look()
 
     def move_joint(self, simulation: Any, name: str, position: float, speed: float) -> None:
         """Put a joint somewhere, in motion."""
-        joint = simulation._data.joint(name)
+        joint = simulation.data.joint(name)
         joint.qpos[0], joint.qvel[0] = position, speed
 
     def remove_pads(self, simulation: Any) -> None:
         """Let the plates pass where the pads were."""
         for side, plate in product(Side, PLATES):
-            simulation._model.geom(f"{side}_{plate}_pad").pos[2] += 1.0
+            simulation.model.geom(f"{side}_{plate}_pad").pos[2] += 1.0
 
     def mass(self, simulation: Any, link: str) -> float:
         """Of a link."""
-        return float(simulation._model.body(link).mass[0])
+        return float(simulation.model.body(link).mass[0])
 
     def frictions(self, simulation: Any) -> set[float]:
         """Of all soles."""
-        model = simulation._model
+        model = simulation.model
         return {float(friction) for friction in model.pair_friction[model.pair_dim == 3, :2].ravel()}
 
     def link_position(self, simulation: Any, link: str) -> np.ndarray:
         """Of a link's frame, in the world's."""
         import mujoco
 
-        mujoco.mj_kinematics(simulation._model, simulation._data)
-        return np.array(simulation._data.body(link).xpos)
+        mujoco.mj_kinematics(simulation.model, simulation.data)
+        return np.array(simulation.data.body(link).xpos)
 
     def link_velocity(self, simulation: Any, link: str) -> np.ndarray:
         """Of a link's centre of mass, in the world's frame."""
         import mujoco
 
-        model, data = simulation._model, simulation._data
+        model, data = simulation.model, simulation.data
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_comVel(model, data)
@@ -139,6 +145,13 @@ class MujocoLaboratory:
             model, data, mujoco.mjtObj.mjOBJ_BODY, model.body(link).id, velocity, 0
         )  # angular, then linear
         return velocity[3:]
+
+
+def turned(roll: float, pitch: float) -> tuple[float, float, float, float]:
+    """Unit quaternion (x, y, z, w) of a turn by ``pitch`` about x, and then by ``roll`` about y."""
+    x, y = math.sin(pitch / 2), math.sin(roll / 2)
+    w_x, w_y = math.cos(pitch / 2), math.cos(roll / 2)
+    return w_y * x, y * w_x, -y * x, w_y * w_x
 
 
 def laboratory(engine: str) -> BulletLaboratory | MujocoLaboratory:
@@ -151,3 +164,39 @@ def need(engine: str) -> None:
     """Skip the test that calls it if an engine is not installed."""
     if not is_installed(engine):
         pytest.skip(f"needs {engine}")
+
+
+class NoPhysics:
+    """A simulator in which nothing ever moves."""
+
+    def __init__(self, *_: object) -> None:
+        self.time = 0.0
+        self.closed = False
+        self.targets: list[tuple[float, ...]] = []
+
+    def set_targets(self, targets: tuple[float, ...]) -> None:
+        self.targets.append(targets)
+
+    def push(self, force: Vector) -> None:
+        raise AssertionError("nobody pushes in the First Training")
+
+    def advance(self) -> None:
+        self.time += CONTROL_DT
+
+    def read(self) -> SensorReading:
+        return SensorReading((0.0, 0.0, 9.81), (0.0, 0.0, 0.0), (75.0,) * 4, (0.0,) * 6)
+
+    def torso_state(self) -> TorsoState:
+        return TorsoState((0.0, 0.0, 0.84), (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+    def actuator_motion(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        return (0.0,) * 6, (0.0,) * 6
+
+    def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
+        return (0.0,) * len(names)
+
+    def sole_height(self, side: Side) -> float:
+        return 0.0
+
+    def close(self) -> None:
+        self.closed = True

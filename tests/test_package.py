@@ -13,9 +13,9 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 PROGRAM = (
-    "import sarah, sarah.agents.naf, sarah.urdf\n"
+    "import sarah, sarah.agents, sarah.urdf\n"
     "from sarah.robot.description import describe_robot\n"
-    "print(sarah.__file__, describe_robot().standing_height, sorted(sarah.agents.naf.PRESETS))"
+    "print(sarah.__file__, describe_robot().standing_height, sorted(sarah.agents.PRESETS))"
 )
 
 
@@ -37,8 +37,11 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
 
 def test_wheel_holds_the_robot_and_the_agent_and_claims_one_name(built: tuple[Path, Path]) -> None:
     names = zipfile.ZipFile(built[1]).namelist()
-    for name in ("urdf/sarah.urdf.xacro", "urdf/__init__.py", "agents/naf.py", "cli/train.py", "py.typed"):
+    for name in ("urdf/sarah.urdf.xacro", "urdf/__init__.py", "agents/local_naf.py", "cli/train.py", "py.typed"):
         assert f"sarah/{name}" in names
+    assert sorted(names) == sorted(set(names))
+    modules = {str(path.relative_to(ROOT)) for path in (ROOT / "sarah").rglob("*.py")}
+    assert modules <= set(names), "setup.cfg lists every package"
     tops = {name.split("/")[0] for name in names}
     assert {top for top in tops if not top.endswith(".dist-info")} == {"sarah"}
 

@@ -57,12 +57,13 @@ def parameters_page() -> str:
 
 
 def meanings_of(config_type: type) -> dict[str, str]:
-    """What each ``:param:`` line of a dataclass says, as Markdown.
+    """What each ``:param:`` line of a dataclass and of those it extends says, as Markdown.
 
     :param config_type: the dataclass
     """
-    parsed = docstring_parser.parse(config_type.__doc__ or "", docstring_parser.DocstringStyle.REST)
-    return {p.arg_name: markdown(p.description or "") for p in parsed.params}
+    style = docstring_parser.DocstringStyle.REST
+    parsed = (docstring_parser.parse(base.__doc__ or "", style) for base in reversed(config_type.__mro__))
+    return {p.arg_name: markdown(p.description or "") for docstring in parsed for p in docstring.params}
 
 
 def markdown(text: str) -> str:

@@ -1,1 +1,1 @@
-"""Command lines: one thin file per command."""
+"""The commands, with one file for each."""

@@ -1,4 +1,4 @@
-"""``sarah-compare``: a race of algorithms."""
+"""``sarah-compare``: a race of several algorithms."""
 
 from __future__ import annotations
 
@@ -9,7 +9,15 @@ from typing import Annotated
 
 import tyro
 
-from sarah.cli.options import episode_of, given_options, parse_options, run_command, say_engine, with_engine
+from sarah.cli.options import (
+    check_episode_options,
+    episode_of,
+    given_options,
+    parse_options,
+    run_command,
+    say_engine,
+    with_engine,
+)
 from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError, check_range
 from sarah.runs.config import ALGORITHMS, TrainingConfig
@@ -18,31 +26,31 @@ COMMAND = "sarah-compare"
 MOST_SEEDS = 1000
 MOST_EVALUATIONS = 1000
 SCORES = (0.01, 2.0)
-"""What a best known score can be: 1 is the ceiling, and the printed reward can exceed it."""
+"""Range of best known scores: 1 is the ceiling, which the printed form of the reward can exceed."""
 
 
 @dataclass(frozen=True)
 class CompareOptions:
-    """Train several algorithms with several seeds each, and see which needs the fewest episodes.
+    """Train several algorithms with several seeds each, and see which one needs the fewest episodes.
 
-    What a training would have recommended after every five episodes is evaluated on unseen seeds. The table says
-    after how many episodes 90 % and 95 % of the best known score are reached and held over three evaluations, and
-    the final score; it is printed, and written to the folder with a plot. A race that was interrupted goes on where it
-    was.
+    The recommendation after every five episodes of a training is evaluated on unseen seeds. The table says after how
+    many episodes 90 % and 95 % of the best known score are reached and held over three evaluations, and gives the
+    final score. It is printed, and written to the folder with a plot. The same command continues a race that was
+    interrupted.
 
-    :param out: folder of the race; its run folders go there too
-    :param algorithms: to compare
-    :param seeds: how many trainings of each
-    :param first_seed: of the trainings
-    :param task: what to learn: ``stepping`` or ``balance``
-    :param episodes: budget of each training
-    :param slots: episodes in flight in each training
+    :param out: folder of the race, which also holds its run folders
+    :param algorithms: names of the algorithms
+    :param seeds: number of trainings of each algorithm
+    :param first_seed: seed of the first training of each algorithm; the others follow
+    :param task: task to learn, ``stepping`` or ``balance``
+    :param episodes: budget of each training, in episodes
+    :param slots: number of episodes in flight in each training
     :param episode: settings of the episodes
-    :param engine: of the physics, ``pybullet`` or ``mujoco``: short for --episode.engine
-    :param evaluations: number of unseen seeds that every recommendation is evaluated on
-    :param best_known: score that shares are taken of; by default the best final one of the race
-    :param workers: processes that train, on this machine, one training each; with none, this process does
-    :param scheduler: address of a Dask scheduler whose workers train instead; they must share the folder
+    :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
+    :param evaluations: number of unseen seeds on which every recommendation is evaluated
+    :param best_known: score whose shares are to be reached; by default the best final score of the race
+    :param workers: number of processes on this machine that train, one training each; with 0, this process trains
+    :param scheduler: address of a Dask scheduler whose workers train instead; they must share the folder's file system
     """
 
     out: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="DIR", help_behavior_hint="(required)")] = (
@@ -68,10 +76,12 @@ def main() -> None:
 
 
 def _defaults(arguments: Sequence[str]) -> CompareOptions:
-    """The defaults, of the kind that task and engine take."""
+    """Default options, of the type that task and engine take."""
     given = given_options(arguments, "task", "engine", "episode.engine")
     task = given.get("task", CompareOptions.task)
-    return CompareOptions(task=task, episode=episode_of(task, EpisodeConfig(), given))
+    episode = episode_of(task, EpisodeConfig(), given)
+    check_episode_options(arguments, episode)
+    return CompareOptions(task=task, episode=episode)
 
 
 def _compare(arguments: Sequence[str]) -> None:
@@ -91,7 +101,6 @@ def _compare(arguments: Sequence[str]) -> None:
 
     describe_robot(options.episode.dimensions)
     check_engine(episode.engine)
-    say_engine(episode, options.engine)
     from sarah.episode.workers import Workers
     from sarah.reports.race import as_markdown, entries_of, race, rankings, write_csv
     from sarah.reports.training_figures import draw_race
@@ -100,6 +109,7 @@ def _compare(arguments: Sequence[str]) -> None:
     entries = entries_of(options.algorithms, seeds, base, options.evaluations, options.out)
     options.out.mkdir(parents=True, exist_ok=True)
     with Workers(options.workers, options.scheduler) as workers:
+        say_engine(episode, options.engine)
         curves = race(entries, workers)
     table = rankings(curves, options.best_known)
     print(as_markdown(table))

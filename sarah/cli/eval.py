@@ -1,4 +1,4 @@
-"""``sarah-eval``: how good learned, or given, parameters are on unseen seeds."""
+"""``sarah-eval``: the quality of learned, or given, parameters on unseen seeds."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.options import changed_episodes, check_has, numbers, parse_options, run_command
+from sarah.cli.options import changed_episodes, check_has, numbers, parse_options, run_command, say_engine
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, BalanceConfig
 from sarah.errors import ConfigurationError, check_range, unknown_name
@@ -26,22 +26,26 @@ MOST_EPISODES = 1_000_000
 
 @dataclass(frozen=True)
 class EvalOptions:
-    """Simulate a run's learned parameters, or given ones, on unseen seeds, and summarise the episodes.
+    """Simulate learned parameters of a training, or given ones, on unseen seeds, and summarise the episodes.
 
-    :param run: folder of a finished training; its episode settings are used
-    :param task: of --parameters: ``stepping`` (the default), or ``balance``, in which the robot is pushed
-    :param parameters: instead of a run: P1 to P5, or V1 to V4 with --task balance, separated by commas
-    :param stepping: P1 to P5 to balance with, separated by commas; by default the run's own, or trained ones
-    :param push_newtons: force of every push, whose direction and time vary; by default as in the run, or 0 to 100 N
-    :param robustness: folder for a table and a polar plot of survival by push: with and without V1 to V4, by direction,
-        --episodes times at each of 25, 50, 75, 100, 125 and 150 N, or at --push-newtons only
-    :param episodes: how many
+    :param run: run folder of a finished training; its episode settings are used
+    :param task: task of --parameters: ``stepping`` (the default), or ``balance``, in which the robot is pushed
+    :param parameters: parameters to simulate instead of a run folder's, separated by commas: P1 to P5, or V1 to V4
+        with --task balance
+    :param stepping: P1 to P5 for the task balance, separated by commas; by default those of the run folder, or trained
+        ones
+    :param push_newtons: force of every push, in N; direction and time vary. By default as in the training, or
+        0 to 100 N
+    :param robustness: folder for a table and a polar plot of survival by force and direction of the push, for these
+        parameters and the baseline. --episodes is the number at each force: 25, 50, 75, 100, 125 and 150 N, or at the
+        force of --push-newtons only
+    :param episodes: number of episodes
     :param first_seed: seed of the first episode; the others follow. Trainings use seeds from 2^31 up
-    :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default the run's own
-    :param engine: of the physics, ``pybullet`` or ``mujoco``; by default the run's own
-    :param randomisation: leave friction, masses, sensors and so on as designed, instead of varying them by seed
-    :param json: print one JSON object
-    :param workers: processes that simulate, on this machine; with none, this process does. They change no result
+    :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default as in the training
+    :param engine: physics engine, ``pybullet`` or ``mujoco``; by default as in the training
+    :param randomisation: friction, masses, sensors and so on stay as designed, instead of varying by seed
+    :param json: whether to print one JSON object
+    :param workers: number of processes on this machine that simulate; with 0, this process does. It changes no result
     :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
     """
 
@@ -61,7 +65,7 @@ class EvalOptions:
     scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
 
     def __post_init__(self) -> None:
-        """Refuse unknown names and impossible numbers."""
+        """Refuse unknown names, and numbers outside their ranges."""
         check_range("episodes", self.episodes, 1, MOST_EPISODES)
         check_range("first-seed", self.first_seed, 0, LARGEST_SEED)
         if self.task is not None and self.task not in TASKS:
@@ -87,6 +91,7 @@ def _evaluate(arguments: Sequence[str]) -> None:
         if options.robustness is not None:
             _show_robustness(parameters, config, options, workers)
             return
+        say_engine(config, options.engine)
         evaluation = _evaluation(task, parameters, config, options, workers)
         neutral = TASKS[task].neutral
         baseline = None if neutral is None else _evaluation(task, neutral, config, options, workers)
@@ -114,7 +119,7 @@ def _evaluation(
 
 
 def _subject(options: EvalOptions) -> tuple[str, str | None, tuple[float, ...], EpisodeConfig]:
-    """Task, algorithm, parameters and episode settings of what is evaluated."""
+    """Task, algorithm, parameters and episode settings to evaluate."""
     if (options.run is None) == (options.parameters is None):
         raise ConfigurationError("give either a run folder or --parameters")
     if options.run is not None:
@@ -130,7 +135,7 @@ def _subject(options: EvalOptions) -> tuple[str, str | None, tuple[float, ...], 
 
 
 def _changed(config: EpisodeConfig, options: EvalOptions, task: str) -> EpisodeConfig:
-    """The episode settings, as the options change them."""
+    """Episode settings with the changes that the options ask for."""
     if options.robustness is not None:
         check_has(config, "push", "robustness")
     return changed_episodes(
@@ -141,7 +146,7 @@ def _changed(config: EpisodeConfig, options: EvalOptions, task: str) -> EpisodeC
 def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[str, str]]:
     from sarah.episode.result import METRICS
 
-    diverged = f"; {evaluation.diverged} diverged: no number came back" if evaluation.diverged else ""
+    diverged = f"; {evaluation.diverged} diverged: their simulation gave no finite state" if evaluation.diverged else ""
     return [
         ("parameters", ", ".join(f"{name} = {value:.3f}" for name, value in parameters.items())),
         ("survival", f"{evaluation.survivors} of {evaluation.episodes} episodes{diverged}"),
@@ -157,12 +162,12 @@ def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[st
 
 
 def _comparison(evaluation: Evaluation, baseline: Evaluation) -> list[tuple[str, str]]:
-    """The same episodes with V1 to V4 at zero."""
+    """Rows about the baseline: the same episodes with V1 to V4 at zero."""
     score, steps = baseline.median("score"), baseline.mean("steps_per_second")
-    chatter = "it chatters" if evaluation.chatters(baseline) else "no chatter"
+    chatter = "the hips chatter" if evaluation.chatters(baseline) else "no chatter"
     return [
         (
-            "with V = 0",
+            "baseline (V = 0)",
             f"score {score:.3f} median, {baseline.survivors} of {baseline.episodes} survive, {steps:.2f} steps/s",
         ),
         ("", f"vibration {baseline.median('vibration'):.1f} m²/s⁴: {chatter}"),
@@ -172,7 +177,7 @@ def _comparison(evaluation: Evaluation, baseline: Evaluation) -> list[tuple[str,
 def _show_robustness(
     parameters: tuple[float, ...], config: EpisodeConfig, options: EvalOptions, workers: Workers
 ) -> None:
-    """Print the table as Markdown, and write it and the polar plot."""
+    """Print the table as Markdown, and write the table and the polar plot."""
     from sarah.reports.robustness import FORCES, push_many, robustness_table
     from sarah.reports.training_figures import draw_survival
 
@@ -182,6 +187,7 @@ def _show_robustness(
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise ConfigurationError(f"cannot write folder {folder}: {error.strerror}") from error
+    say_engine(config, options.engine)
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
     forces = FORCES if options.push_newtons is None else (options.push_newtons,)
     pushed = push_many((neutral, parameters), config, workers, forces, options.episodes, options.first_seed)

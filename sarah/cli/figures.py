@@ -19,12 +19,12 @@ COMMAND = "sarah-figures"
 class FigureOptions:
     """Draw the paper's figures as PNG and PDF, in a style for print.
 
-    Figures 4 and 5 of First Trainings, 6 and 7 of Second Trainings: several runs of one algorithm become a median and a
-    band between quartiles; several algorithms, several colours. Figure 2, the robot of the first run; Figure 3, the
-    pattern generator's state machine; and a gait cycle with what the first run of each task learned.
+    Figures 4 and 5 show First Trainings, 6 and 7 Second Trainings. Several runs of one algorithm become a median and a
+    band between quartiles; each algorithm has its colour. Figure 2 shows the robot of the first run, and Figure 3 the
+    pattern generator's state machine. A gait cycle shows the learned parameters of the first run of each task.
 
-    :param runs: run folders
-    :param out: folder for the figures; by default the folder figures of the run, if it is only one
+    :param runs: run folders of finished trainings
+    :param out: folder for the figures; by default ``figures`` in the run folder, if there is one run
     """
 
     runs: Annotated[

@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM: what runs is finished first, and a second one stops at once."""
+"""Ctrl-C and SIGTERM: the first signal stops after the present episode, the second one at once."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class Interruption:
-    """A context in which the first signal is noted, and the second has its usual effect.
+    """A context in which the first signal is only recorded, and the second has its usual effect.
 
-    :param command: its name, for the message
+    :param command: name of the command, for the message
     """
 
     signal: int | None
-    """The one that came."""
+    """Number of the signal that came; ``None`` before."""
 
     def __init__(self, command: str) -> None:
         self.signal = None
-        self._message = f"\n{command}: stopping when this simulation is over; once more stops at once\n".encode()
+        self._message = f"\n{command}: stopping when this episode is over; a second signal stops at once\n".encode()
         self._before: dict[int, Any] = {}
 
     def __enter__(self) -> Interruption:
-        """Note signals from now on, but for those that the process ignores."""
+        """Record signals from now on, except for those that the process ignores."""
         self._before = {number: signal.getsignal(number) for number in SIGNALS}
         for number, before in self._before.items():
             if before != signal.SIG_IGN:
@@ -35,7 +35,7 @@ class Interruption:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Give the signals their usual effect back."""
+        """Restore the usual effect of the signals."""
         for number, before in self._before.items():
             signal.signal(number, before)
 

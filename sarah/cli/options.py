@@ -1,4 +1,4 @@
-"""What every command does with its options, and with a user's mistake: one line and a non-zero exit."""
+"""Parts that all commands share: options, settings of episodes, and one line for a user's mistake."""
 
 from __future__ import annotations
 
@@ -30,16 +30,21 @@ USAGE_ERROR = 2
 PYTHON_WORDS = {
     r"^Error parsing (\S+): invalid literal for int\(\) with base 10: (.*)": r"\1 must be a whole number, not \2",
     r"^Error parsing (\S+): could not convert string to float: (.*)": r"\1 must be a number, not \2",
+    r"^Error parsing (\S+): Could not parse arguments (.*) into tuple type .*": r"\1 must be numbers, not \2",
+    r"^Error parsing (\S+): Could not find valid parse for arguments: (.*)": r"\1 must be whole numbers, not \2",
+    r"^Error parsing (\S+): no type matching (\S+) could be instantiated from (.*?)\.\s+Got errors.*": (
+        r"\1 must be \2, not \3"
+    ),
     r"^Error parsing [\w.]+: ": "",
 }
-"""What Python says of bad values, and what a user is told."""
+"""Python's messages about bad values, and the messages that a user gets instead."""
 
 
 def fail(command: str, message: str) -> NoReturn:
-    """Say what is wrong in one line, and exit.
+    """Print one line that says what is wrong, and exit.
 
     :param command: name of the command
-    :param message: what is wrong
+    :param message: message, which becomes one line
     """
     print(f"{command}: error: {' '.join(message.split())}", file=sys.stderr)
     raise SystemExit(USAGE_ERROR)
@@ -50,10 +55,10 @@ def parse_options(
 ) -> OptionsType:
     """Make a command's options from its arguments; ``--help`` prints the help and exits.
 
-    :param options_type: a dataclass; its docstring is the help
+    :param options_type: dataclass of the options; its docstring is the help
     :param command: name of the command
-    :param arguments: that follow it
-    :param default: what options that are not given are
+    :param arguments: arguments after the command's name
+    :param default: options with their default values
     """
     errors = io.StringIO()
     try:
@@ -72,8 +77,8 @@ def parse_options(
 
 
 def _one_line(box: str) -> str:
-    """The message in tyro's frame, and the name that it thinks was meant."""
-    # Without the title. Where the terminal knows no frames, rules stand alone, and one comes first.
+    """Message in tyro's frame, with the name that tyro suggests."""
+    # The title is dropped. A terminal without frames gets plain rules, and one of them comes first.
     text = " ".join(line.strip("╭╮╰╯│ ") for line in box.splitlines()[1:])
     message = next(section.strip() for section in re.split("[─-]{5,}", text) if section.strip())
     for pattern, words in PYTHON_WORDS.items():
@@ -85,34 +90,34 @@ def _one_line(box: str) -> str:
 def with_engine(episode: EpisodeConfig, engine: str | None) -> EpisodeConfig:
     """Episode settings with the physics engine that a command was given.
 
-    :param episode: the settings
-    :param engine: of --engine; without one the settings keep theirs
+    :param episode: settings of episodes
+    :param engine: value of --engine; if ``None``, the settings keep their engine
     """
     return episode if engine is None else dataclasses.replace(episode, engine=engine)  # type: ignore[arg-type]  # checked
 
 
 def say_engine(config: EpisodeConfig, asked: str | None) -> None:
-    """Say on standard error that MuJoCo simulates because PyBullet is missing, unless an engine was asked for.
+    """Print on standard error that MuJoCo simulates because PyBullet is missing, unless an engine was asked for.
 
-    :param config: the settings
-    :param asked: what --engine was given
+    :param config: settings of the episodes
+    :param asked: value of --engine, or ``None``
     """
     if asked is None and config.engine == default_engine() != "pybullet":
-        print("PyBullet is not installed: MuJoCo simulates", file=sys.stderr)
+        print("PyBullet is not installed, so MuJoCo simulates", file=sys.stderr)
 
 
 def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
-    """Run a command; an error of ours is one line, without a traceback.
+    """Run a command, and print one line without a traceback if it raises one of the package's exceptions.
 
-    :param command: its name
-    :param main: what it does with its arguments
+    :param command: name of the command
+    :param main: function that runs it with its arguments
     """
     try:
         main(sys.argv[1:])
         sys.stdout.flush()
     except SarahError as error:
         fail(command, str(error))
-    except BrokenPipeError:  # whoever read the output has had enough, as in `| head`
+    except BrokenPipeError:  # the reader of the output has closed it, as in `| head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except OSError as error:
         fail(command, str(error))
@@ -124,9 +129,9 @@ def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
 def numbers(name: str, text: str) -> tuple[float, ...]:
     """Read numbers that are separated by commas.
 
-    :param name: what the message calls them
-    :param text: as a user gave it
-    :raises ConfigurationError: if one of them is none
+    :param name: name of the option in messages
+    :param text: text that a user gave
+    :raises ConfigurationError: if one of them is not a number
     """
     try:
         return tuple(float(value) for value in text.split(","))
@@ -135,12 +140,12 @@ def numbers(name: str, text: str) -> tuple[float, ...]:
 
 
 def episodes_of(subject: str, episode: str | None) -> tuple[list[RunEpisode], RunEpisode]:
-    """The episodes that a run or parameters amount to, and the one to show.
+    """Episodes of a run folder or of parameters, and the one to show.
 
-    :param subject: folder of a run, or parameters separated by commas
-    :param episode: episode of the run: ``learned``, ``best`` or an index; the first of these that there is, if none is
-        named
-    :raises ConfigurationError: if there is no such thing
+    :param subject: path of a run folder, or parameters separated by commas
+    :param episode: episode of the run folder: ``learned``, ``best`` or an index; ``None`` for the first of these that
+        exists
+    :raises ConfigurationError: if there is no such run folder or episode
     """
     from sarah.runs.run_episodes import choose_episode, episode_of_parameters, episodes_of_run
 
@@ -165,18 +170,17 @@ def changed_episodes(
     randomisation: bool,
     engine: str | None = None,
 ) -> EpisodeConfig:
-    """Episode settings as options change them.
+    """Episode settings with the changes that options ask for.
 
-    :param config: the settings
-    :param stepping: P1 to P5 of the balance task, separated by commas
+    :param config: settings of the episodes
+    :param stepping: P1 to P5 for the task balance, separated by commas
     :param push_newtons: force of every push, in N
     :param physics: name of a setting in :data:`~sarah.simulation.physics.PHYSICS`
-    :param randomisation: whether to leave it on
+    :param randomisation: whether to keep the randomisation
     :param engine: name of the physics engine
-    :raises ConfigurationError: if one of them is not allowed, or the task does not have it
+    :raises ConfigurationError: if a value is not allowed, or if the task does not have the setting
     """
     config = with_engine(config, engine)
-    say_engine(config, engine)
     changes: dict[str, Any] = {}
     if physics is not None:
         if physics not in PHYSICS:
@@ -193,14 +197,14 @@ def changed_episodes(
 
 
 def pushed_by(config: EpisodeConfig, newtons: float) -> Push:
-    """The push of some episode settings, with a fixed force.
+    """Push of some episode settings, with a fixed force.
 
-    :param config: the settings
+    :param config: settings of the episodes
     :param newtons: force of every push, in N
     :raises ConfigurationError: if the task has no push
     """
     check_has(config, "push", "push-newtons")
-    push: Push = getattr(config, "push")  # noqa: B009  # which task has one, only the task knows
+    push: Push = getattr(config, "push")  # noqa: B009  # only some tasks' settings have it
     return dataclasses.replace(push, newtons=(newtons, newtons))
 
 
@@ -216,12 +220,24 @@ def check_has(config: EpisodeConfig, name: str, option: str) -> None:
         raise ConfigurationError(f"--{option} is for --task {tasks}")
 
 
-def given_options(arguments: Sequence[str], *names: str) -> dict[str, str]:
-    """Values of some options, which decide what further options there are.
+def check_episode_options(arguments: Sequence[str], config: EpisodeConfig) -> None:
+    """Refuse ``--episode.…`` options whose settings only another task has.
 
     :param arguments: all arguments of a command
+    :param config: settings of the task's episodes
+    """
+    for argument in arguments:
+        name = argument.removeprefix("--episode.").split(".")[0].replace("-", "_")
+        if argument.startswith("--episode.") and any(hasattr(task.episode, name) for task in TASKS.values()):
+            check_has(config, name, argument.removeprefix("--").split("=")[0])
+
+
+def given_options(arguments: Sequence[str], *names: str) -> dict[str, str]:
+    """Values of some options, which are needed before all options can be parsed.
+
+    :param arguments: arguments of the command
     :param names: names of the options, without dashes
-    :return: values by name; one that lacks its value is left to the real parser
+    :return: values by name; an option without its value is left out, for the real parser to report
     """
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
     for name in names:
@@ -233,11 +249,11 @@ def given_options(arguments: Sequence[str], *names: str) -> dict[str, str]:
 
 
 def episode_of(task: str, episode: EpisodeConfig, given: Mapping[str, str]) -> EpisodeConfig:
-    """Episode settings of the kind that a task and an engine take.
+    """Episode settings of the type that a task and an engine take.
 
-    :param task: name of the task; an unknown one is left to whoever uses it
+    :param task: name of the task; an unknown one is ignored here, for the caller to report
     :param episode: settings of any task's episodes
-    :param given: options that were given: of interest are ``engine`` and ``episode.engine``
+    :param given: values of the options that were given, by name; ``engine`` and ``episode.engine`` are used
     """
     if task in TASKS and type(episode) is not type(TASKS[task].episode):
         episode = TASKS[task].config_of(episode)

@@ -1,4 +1,4 @@
-"""``sarah-report``: a run as one page."""
+"""``sarah-report``: a report of a training as one HTML page."""
 
 from __future__ import annotations
 
@@ -17,15 +17,16 @@ COMMAND = "sarah-report"
 
 @dataclass(frozen=True)
 class ReportOptions:
-    """Write one HTML page about a run: results beside the paper's, video, figures, settings, commands to repeat it.
+    """Write a report of a training as one HTML page: results beside the paper's, video, figures, settings and commands.
 
-    The page holds everything it shows: it can be sent as it is, and opens without a network.
+    The page contains everything that it shows, so one file can be sent to others, and opens without a network.
 
-    :param run: folder of a finished training
+    :param run: run folder of a finished training
     :param out: file to write; by default report.html in the run folder
-    :param episodes: unseen seeds that the table of results is of
-    :param seconds: simulated time at which the video begins and ends; MP4 with the extra ``video``, otherwise GIF
-    :param workers: processes that simulate, on this machine; with none, this process does. They change no result
+    :param episodes: number of episodes on unseen seeds for the table of results
+    :param seconds: simulated times at which the video begins and ends, in s. It is MP4 with the extra ``video``, and
+        otherwise GIF
+    :param workers: number of processes on this machine that simulate; with 0, this process does. It changes no result
     """
 
     run: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN", help_behavior_hint="(required)")] = (
@@ -37,7 +38,7 @@ class ReportOptions:
     workers: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse impossible numbers."""
+        """Refuse numbers outside their ranges."""
         if self.episodes < 1:
             raise ConfigurationError(f"episodes must be at least 1, not {self.episodes!r}")
         if not self.seconds[0] < self.seconds[1]:

@@ -1,4 +1,4 @@
-"""``sarah-train``: learn the pattern generator's parameters."""
+"""``sarah-train``: learn the controller's parameters."""
 
 from __future__ import annotations
 
@@ -14,10 +14,19 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.interruption import Interruption
-from sarah.cli.options import episode_of, given_options, parse_options, run_command, say_engine, with_engine
+from sarah.cli.options import (
+    check_episode_options,
+    episode_of,
+    given_options,
+    parse_options,
+    run_command,
+    say_engine,
+    with_engine,
+)
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS
 from sarah.errors import ConfigurationError, RunFolderError, SarahError, TrainingInterruptedError
+from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import first_difference, read_config
 
@@ -31,22 +40,23 @@ COMMAND = "sarah-train"
 
 @dataclass(frozen=True)
 class TrainOptions:
-    """Learn the pattern generator's parameters, one episode per action of the agent.
+    """Learn the parameters of the pattern generator or of the hip law, with one action of the agent per episode.
 
-    Settings come from the defaults below, then from the file of --config, then from the run of --from, then from the
-    command line. The run folder holds the learned parameters (parameters.json), every episode (episodes.csv), the
-    agent (model.zip) and what TensorBoard shows.
+    Settings come from four places, of which a later one wins: the defaults below, the file of --config, the run folder
+    of --from, and the command line. --algo decides which settings the agent has, and --task those of the episodes:
+    give both before --help. The training writes a run folder with the learned parameters (parameters.json), all
+    episodes (episodes.csv), the agent (model.zip) and the curves that TensorBoard shows.
 
-    :param training: what to train
-    :param engine: of the physics, ``pybullet`` or ``mujoco``: short for --episode.engine
-    :param run_dir: folder of the run, new or empty; by default a new one, runs/<task>/<algo>-s<seed>
-    :param config: YAML file of settings, like the config.yaml of any run
-    :param resume: go on with this run folder's training, as if it had not been interrupted; its settings
-        are used
-    :param from_run: balance with P1 to P5 and the robot of this First Training's run folder
-    :param pictures: number of episodes after which what would be recommended is drawn for TensorBoard: a gait cycle,
-        and a video of 3 s. Each costs some seconds, and changes no result; 0 draws none
-    :param workers: processes that simulate, on this machine; with none, this process does. They change no result
+    :param training: settings of the training
+    :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
+    :param run_dir: run folder to write, new or empty; by default a new one, runs/<task>/<algo>-s<seed>
+    :param config: YAML file of settings, like the config.yaml of any run folder
+    :param resume: run folder of an interrupted training to go on with, with its settings; the result is the same as
+        without the interruption
+    :param from_run: run folder of a First Training, for --task balance: its P1 to P5 and its robot are used
+    :param pictures: number of episodes between pictures of the recommendation for TensorBoard: a gait cycle, and a
+        video of 3 s. Each takes some seconds, and changes no result; 0 for none
+    :param workers: number of processes on this machine that simulate; with 0, this process does. It changes no result
     :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
     """
 
@@ -67,7 +77,7 @@ def main() -> None:
 
 
 def _train(arguments: Sequence[str]) -> None:
-    arguments = [argument.replace("--simulations", "--episodes") for argument in arguments]  # its former name
+    arguments = [argument.replace("--simulations", "--episodes") for argument in arguments]  # an accepted alias
     options = parse_options(TrainOptions, COMMAND, arguments, _defaults(arguments))
     config = options.training
     config = dataclasses.replace(config, episode=with_engine(config.episode, options.engine))
@@ -79,7 +89,9 @@ def _train(arguments: Sequence[str]) -> None:
     from sarah.episode.workers import Workers
     from sarah.runs.run_folder import RunFolder, new_run_path
     from sarah.simulation.engines import check_engine
+    from sarah.training.learners import check_device
 
+    check_device(config.agent)
     check_engine(config.episode.engine)
     if options.pictures:
         from sarah.simulation.renderer import check_renderer
@@ -89,42 +101,42 @@ def _train(arguments: Sequence[str]) -> None:
         print(f"{options.resume} is finished: there is nothing to resume")
         return
 
-    say_engine(config.episode, options.engine)
     with Workers(options.workers, options.scheduler) as workers:
         if options.resume is not None:
             run = RunFolder.resumable(options.resume)
         else:
             run = RunFolder.create(options.run_dir or new_run_path(config.task, config.algo, config.seed), config)
+        say_engine(config.episode, options.engine)
         print(f"training {config.algo} on {config.task}: {config.episodes} episodes into {run.path}", flush=True)
         learned = _learned(config, run, workers, options.pictures)
     _summarise(config.task, learned, run.path)
 
 
 def _resumed(path: Path, options: TrainOptions) -> RunFolder:
-    """The run folder to go on with; warns if versions are not what they were."""
+    """Open the run folder to go on with, and warn if the installed versions are not those it was begun with."""
     from sarah.runs.run_folder import RunFolder
     from sarah.versions import versions
 
     run = RunFolder.resumable(path)
     if options.run_dir is not None or options.config is not None or options.from_run is not None:
-        raise ConfigurationError("--resume goes on with a run as it is: leave --run-dir, --config and --from out")
+        raise ConfigurationError("--resume goes on with a training as it is: leave --run-dir, --config and --from out")
     difference = first_difference(options.training, run.config())
     if difference is not None:
         key, given, there = difference
-        raise ConfigurationError(f"--resume {path}: {key} is {there!r} in this run, not {given!r}: leave it out")
+        raise ConfigurationError(f"--resume {path}: {key} is {there!r} in this training, not {given!r}: leave it out")
     before = run.versions()
     for name, version in versions().items():
         if before.get(name) != version:
             print(
-                f"{COMMAND}: warning: {path} was begun with {name} {before.get(name)}, and this is {version}: "
-                "it may not go on as it would have",
+                f"{COMMAND}: warning: {path} was begun with {name} {before.get(name)}, but {version} is installed: "
+                "it may not continue exactly",
                 file=sys.stderr,
             )
     return run
 
 
 def _learned(config: TrainingConfig, run: RunFolder, workers: Workers, picture_interval: int) -> Learned:
-    """Train; whatever stops it, the message says how to go on."""
+    """Train; if the training stops early, the message says how to go on."""
     from sarah.training.train import train
 
     go_on = f"go on with {COMMAND} --resume {shlex.quote(str(run.path))}"
@@ -135,35 +147,54 @@ def _learned(config: TrainingConfig, run: RunFolder, workers: Workers, picture_i
             print(f"\n{COMMAND}: interrupted; {go_on}", file=sys.stderr)
             raise SystemExit(128 + (interruption.signal or signal.SIGINT)) from None
         except (SarahError, OSError) as error:
-            raise RunFolderError(f"{error}; what is finished is kept, {go_on}") from error
+            raise RunFolderError(f"{error}; finished episodes are kept, {go_on}") from error
 
 
 def _defaults(arguments: Sequence[str]) -> TrainOptions:
-    """The defaults, as --config and --from change them, of the kind that task and engine take."""
-    given = given_options(arguments, "config", "resume", "from", "task", "engine", "episode.engine")
+    """Default options with the changes of --config, --from and --agent.preset, for the task, algorithm and engine.
+
+    The parser takes the names of further options from these defaults.
+    """
+    names = ("config", "resume", "from", "task", "algo", "agent.preset", "engine", "episode.engine")
+    given = given_options(arguments, *names)
     if "resume" in given:
         from sarah.runs.run_folder import RunFolder
 
         return TrainOptions(RunFolder.resumable(Path(given["resume"])).config())
     training = read_config(TrainingConfig, Path(given["config"])) if "config" in given else TrainingConfig()
+    training = _with_agent(training, given.get("algo"), given.get("agent.preset"))
     task = given.get("task", training.task)
-    if task not in TASKS:  # the real parser's options report it
+    if task not in TASKS:  # the real parser reports it
         return TrainOptions(training)
     episode = episode_of(task, training.episode, given)
+    check_episode_options(arguments, episode)
     if "from" in given and task == BALANCE.name:
         episode = _on_learned_stepping(Path(given["from"]), episode)
     return TrainOptions(dataclasses.replace(training, task=task, episode=episode))
 
 
+def _with_agent(training: TrainingConfig, algo: str | None, preset: str | None) -> TrainingConfig:
+    """Training with another algorithm and its default settings, or with the settings of another preset of NAF."""
+    if algo is not None and algo != training.algo:
+        training = dataclasses.replace(training, algo=algo, agent=settings_of(algo)())
+    if preset is not None and isinstance(training.agent, NAFSettings) and preset != training.agent.preset:
+        training = dataclasses.replace(training, agent=training.agent.with_preset(preset))
+    return training
+
+
 def _on_learned_stepping(path: Path, episode: EpisodeConfig) -> EpisodeConfig:
-    """Episode settings with what a First Training learned, and the robot that it learned on."""
+    """Episode settings with the P1 to P5 and the robot of a First Training.
+
+    :param path: path of its run folder
+    :param episode: settings of the episodes
+    """
     from sarah.runs.run_folder import RunFolder
 
     run = RunFolder.open(path)
     learned = run.config()
     if learned.task != STEPPING.name:
         raise ConfigurationError(
-            f"{path} learned {learned.task!r}, and --from needs a run that learned {STEPPING.name!r}"
+            f"{path} learned {learned.task!r}, but --from needs the run folder of a training of {STEPPING.name!r}"
         )
     return BALANCE.config_of(episode, stepping=run.parameters(), dimensions=learned.episode.dimensions)
 
@@ -175,15 +206,15 @@ def _summarise(task: str, learned: Learned, path: Path) -> None:
     score = f"{evaluation.median('score'):.3f}"
     print(f"score       {score} (median of {evaluation.episodes} unseen seeds; 1 is the ceiling)")
     print(f"steps       {evaluation.mean('steps_per_second'):.2f} per second")
-    compared = f", {baseline.survival_rate:.0%} with V = 0" if baseline else ""
+    compared = f", {baseline.survival_rate:.0%} for the baseline (V = 0)" if baseline else ""
     print(f"survival    {evaluation.survival_rate:.0%}{compared}")
     shifts, lifts = evaluation.mean("shifts_by_sensors"), evaluation.mean("lifts_by_sensors")
     clearance = 1000 * evaluation.mean("sole_clearance")
     print(f"by sensors  {shifts:.0%} of shifts, {lifts:.0%} of lifts; sole clearance {clearance:.0f} mm")
     if learned.diverged:
-        print(f"diverged    {learned.diverged} episodes: no number came back")
+        print(f"diverged    {learned.diverged} episodes: their simulation gave no finite state")
     if not evaluation.is_gait:
-        print("            not a gait: it steps to a clock, or does not lift its feet")
+        print("            no valid gait: the robot steps to a clock, or does not lift its feet")
     if baseline is not None and evaluation.chatters(baseline):
-        print("            it chatters: no real robot could do that")
+        print("            the hips chatter: no real actuator could follow that")
     print(f"run folder  {path}")

@@ -1,4 +1,4 @@
-"""``sarah-transfer``: what was learned in one physics engine, in the other."""
+"""``sarah-transfer``: learned parameters in both physics engines."""
 
 from __future__ import annotations
 
@@ -23,17 +23,19 @@ COMMAND = "sarah-transfer"
 
 @dataclass(frozen=True)
 class TransferOptions:
-    """Simulate runs' learned parameters in both physics engines, on the same unseen seeds and with the same pushes.
+    """Simulate the learned parameters of trainings in both physics engines, on the same unseen seeds and pushes.
 
-    A table of mean scores, survival, steps per second and vibration is printed, and written with a figure of the
-    score in one engine against the score in the other. ``kept`` is the share of its score that a run takes along.
+    A table of mean scores, survival, steps per second and vibration is printed, and written to a folder. A figure shows
+    the score in one engine against the score in the other. ``kept`` is the score in the other engine, as a share of
+    that in the engine of the training.
 
-    :param runs: folders of finished trainings, in either engine and of either task; their episode settings are used
-    :param out: folder for the table and the figure; by default the folder figures of the run, if it is only one
-    :param episodes: how many in each engine
+    :param runs: run folders of finished trainings, of any engine and task; their episode settings are used
+    :param out: folder for the table and the figure; by default ``figures`` in the run folder, if there is one run
+    :param episodes: number of episodes in each engine
     :param first_seed: seed of the first episode; the others follow. Trainings use seeds from 2^31 up
-    :param push_newtons: force of every push in task balance, whose direction and time vary; by default as in the run
-    :param workers: processes that simulate, on this machine; with none, this process does. They change no result
+    :param push_newtons: force of every push in N, for the task balance; direction and time vary. By default as in the
+        training
+    :param workers: number of processes on this machine that simulate; with 0, this process does. It changes no result
     :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
     """
 

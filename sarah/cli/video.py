@@ -23,20 +23,21 @@ COMMAND = "sarah-video"
 
 @dataclass(frozen=True)
 class VideoOptions:
-    """Film an episode: the robot from its front, a close look at its feet, phase, steps per second, score and push.
+    """Film an episode: the robot from its front, a close view of its feet, phase, steps per second, score and push.
 
-    :param subject: folder of a run, or numbers separated by commas: P1 to P5, or V1 to V4, to balance pushes with
+    :param subject: run folder, or numbers separated by commas: P1 to P5 for stepping, or V1 to V4 for the task balance
     :param out: file to write: MP4, which needs the extra ``video``, or GIF, which is smaller
-    :param episode: episode of a run: ``learned`` for its learned parameters, ``best``, or an index in its episodes.csv;
-        by default what it learned
-    :param seed: of the episode: robot, sensors and push vary with it; by default the episode's own, or 0
-    :param stepping: P1 to P5 to balance with, separated by commas; by default the run's own, or trained ones
-    :param push_newtons: force of the push; by default as in the run, or 0 to 100 N
-    :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default the run's own
-    :param engine: of the physics, ``pybullet`` or ``mujoco``; by default the run's own
-    :param randomisation: leave friction, masses, sensors and so on as designed, instead of varying them by seed
-    :param seconds: simulated time at which the video begins and ends; by default all of it
-    :param speed: 0.25 shows everything four times as slow
+    :param episode: episode of a run folder: ``learned`` for the learned parameters, ``best``, or an index of its
+        episodes.csv; by default ``learned``, or ``best`` if the training is not finished
+    :param seed: seed of the episode, by which robot, sensors and push vary; by default the episode's own, or 0
+    :param stepping: P1 to P5 for the task balance, separated by commas; by default those of the run folder, or trained
+        ones
+    :param push_newtons: force of the push, in N; by default as in the training, or 0 to 100 N
+    :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default as in the training
+    :param engine: physics engine, ``pybullet`` or ``mujoco``; by default as in the training
+    :param randomisation: friction, masses, sensors and so on stay as designed, instead of varying by seed
+    :param seconds: simulated times at which the video begins and ends, in s; by default those of the episode
+    :param speed: speed of the video; 0.25 shows everything four times as slow
     """
 
     subject: Annotated[
@@ -56,7 +57,7 @@ class VideoOptions:
     speed: float = 1.0
 
     def __post_init__(self) -> None:
-        """Refuse impossible numbers."""
+        """Refuse numbers outside their ranges."""
         if not 0.01 <= self.speed <= 10.0:
             raise ConfigurationError(f"speed must be between 0.01 and 10, not {self.speed!r}")
         if self.seconds is not None and not self.seconds[0] < self.seconds[1]:
@@ -97,7 +98,7 @@ def _film(arguments: Sequence[str]) -> None:
 
 
 def _spec(options: VideoOptions, subject: str) -> EpisodeSpec:
-    """The episode to film."""
+    """Specification of the episode to film."""
     spec = episodes_of(subject, options.episode)[1].spec
     config = changed_episodes(
         spec.config, options.stepping, options.push_newtons, options.physics, options.randomisation, options.engine
@@ -106,7 +107,7 @@ def _spec(options: VideoOptions, subject: str) -> EpisodeSpec:
 
 
 def _caption(spec: EpisodeSpec, result: EpisodeResult) -> str:
-    """What is filmed, in one line."""
+    """Line about the filmed episode."""
     from sarah.episode.ending import TERMINATIONS
 
     names = TASKS[spec.task].parameter_names

@@ -1,4 +1,4 @@
-"""``sarah-view``: see the robot in the browser, and turn its parameters."""
+"""``sarah-view``: see the robot in the browser, and change its parameters."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ DEFAULT_PORT = 8080
 class ViewOptions:
     """Play episodes on a page in the browser, where sliders change all parameters and a button pushes the robot.
 
-    :param subject: folder of a training, which need not be finished, or numbers separated by commas: P1 to P5, or V1 to
-        V4, to balance pushes with; by default what NAF learned once
-    :param episode: episode of a run: ``learned`` for its learned parameters, ``best``, or an index in its episodes.csv;
-        by default what it learned
-    :param seed: of the episode: robot, sensors and push vary with it; by default the episode's own, or 0
-    :param engine: of the physics, ``pybullet`` or ``mujoco``; by default the run's own
-    :param export: write the episode into this one HTML file, which needs no server, and show no page
-    :param host: address to serve the page at. Whoever reaches another one than 127.0.0.1 can use the page, as there is
-        no password
-    :param port: to serve the page at; the next free one if it is taken
+    :param subject: run folder, of a training that need not be finished, or numbers separated by commas: P1 to P5 for
+        stepping, or V1 to V4 for the task balance; by default P1 to P5 that NAF learned in one training
+    :param episode: episode of a run folder: ``learned`` for the learned parameters, ``best``, or an index of its
+        episodes.csv; by default ``learned``, or ``best`` if the training is not finished
+    :param seed: seed of the episode, by which robot, sensors and push vary; by default the episode's own, or 0
+    :param engine: physics engine, ``pybullet`` or ``mujoco``; by default as in the training
+    :param export: HTML file to write the episode to, instead of showing a page; the file needs no server
+    :param host: address to serve the page at. Everyone who can reach another address than 127.0.0.1 can use the page,
+        as there is no password
+    :param port: port to serve the page at; the next free one if it is taken
     """
 
     subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS]")] = ",".join(
@@ -72,7 +72,6 @@ def _view(arguments: Sequence[str]) -> None:
     from sarah.simulation.engines import check_engine
 
     check_engine(chosen.spec.config.engine)
-    say_engine(chosen.spec.config, options.engine)
     if options.seed is not None:
         spec = dataclasses.replace(chosen.spec, seed=options.seed)
         chosen = dataclasses.replace(chosen, label=f"{chosen.label}, with seed {spec.seed}", spec=spec, score=None)
@@ -84,7 +83,7 @@ def _view(arguments: Sequence[str]) -> None:
 
 
 def _in_engine(choice: RunEpisode, engine: str) -> RunEpisode:
-    """The same episode in a physics engine; another one's score is not the run's."""
+    """The same episode in a physics engine; its score in the run folder is dropped if the engine differs."""
     config = with_engine(choice.spec.config, engine)
     spec = dataclasses.replace(choice.spec, config=config)
     return dataclasses.replace(choice, spec=spec, score=choice.score if spec == choice.spec else None)
@@ -96,7 +95,7 @@ def _export(path: Path, chosen: RunEpisode) -> None:
     from sarah.viewer.recording import record
     from sarah.viewer.server import serving
 
-    if path.is_dir() or not path.parent.is_dir():  # before all the work
+    if path.is_dir() or not path.parent.is_dir():  # checked before the long simulation
         reason = "it is a folder" if path.is_dir() else f"folder {path.parent} does not exist"
         raise ConfigurationError(f"cannot write {path}: {reason}")
     bar = tqdm(total=1.0, desc=chosen.label, bar_format="{desc}: {percentage:3.0f}% {bar}", disable=None)
@@ -111,8 +110,9 @@ def _serve(options: ViewOptions, choices: list[RunEpisode], chosen: RunEpisode) 
 
     with serving(options.host, options.port) as server:
         page = Page(server, choices, chosen)
+        say_engine(chosen.spec.config, options.engine)
         if not _is_local(options.host):
-            print(f"warning: whoever reaches {options.host} can use this page, as there is no password")
+            print(f"warning: everyone who can reach {options.host} can use this page, as there is no password")
         print(f"SARAH is at http://{options.host}:{server.get_port()} (Ctrl-C ends)", flush=True)
         with contextlib.suppress(KeyboardInterrupt):
             threading.Event().wait()

@@ -1,4 +1,4 @@
-"""The controller's own constants: what it does not learn, and no randomisation varies."""
+"""The controller's own constants, which no training learns and no randomisation varies."""
 
 from __future__ import annotations
 
@@ -27,33 +27,33 @@ PLAUSIBLE = {
     "pitch_time_constant": (1e-4, 100.0, "s"),
     "largest_rate": (0.1, 1000.0, "rad/s"),
 }
-"""Lowest and highest value that a controller can have, and its unit. Beyond, somebody has mistaken the unit."""
+"""Lowest value, highest value and unit of each constant. Beyond them, somebody has mistaken the unit."""
 
 
 @dataclass(frozen=True)
 class ControllerConstants:
-    """Time-outs, gains, time constants and lengths of pattern generator and hip law. All are reconstructed.
+    """Time-outs, gains, time constants and lengths of the pattern generator and the hip law. All are reconstructed.
 
     :param minimum_phase_seconds: shortest duration of a phase, in s
-    :param time_out_seconds: duration that P4 and P5 stretch to a phase's time-out, in s
+    :param time_out_seconds: shortest time-out of a phase, in s; P4 and P5 stretch it, by the factor 1 + P4 or 1 + P5
     :param rate_scale: factor on P3 in the condition that ends SHIFT
     :param shift_extension: length by which the swing leg extends in SHIFT, in m
     :param lift_retraction: length by which the swing leg retracts in LIFT, in m
     :param leg_speed: speed of the ramp that leg length targets follow, in m/s
     :param tilt_time_constant: time constant of the tilt's low-pass, in s
     :param rate_time_constant: time constant of the rate's low-pass, in s
-    :param abduction_tilt: tilt that a radian of the hip law's abduction, without its constant, counts for, in m/s^2
-    :param abduction_rate_share: share of the abduction's own rate that counts as rate
-    :param largest_acceleration: acceleration to which readings are clipped before the low-passes, in m/s^2
+    :param abduction_tilt: tilt that counts for each radian of the hip law's abduction without its constant, in m/s^2
+    :param abduction_rate_share: share of the abduction's rate that is added to the rate about y
+    :param largest_acceleration: limit to which the acceleration is clipped before the low-passes, in m/s^2
     :param abduction_scale: abduction per lateral acceleration at V1 = 1, in rad per m/s^2
-    :param pitch_scale: swing leg flexion per pitch at V3 = 1
+    :param pitch_scale: flexion of the swing leg per pitch at V3 = 1
     :param flexion_scale: constant flexion at V4 = 1, in rad; 0.1 rad would lean the robot over its toes
     :param largest_hip_angle: limit of either hip target, in rad
     :param hip_speed: speed of the ramp that hip targets follow, in rad/s
     :param stable_time_constant: time constant of the hips' own low-pass of the lateral acceleration, in s
-    :param pitch_time_constant: time over which the integral of the rate about x forgets, in s: longer than a fall, and
-        it forgets a gyroscope's bias
-    :param largest_rate: rate about x to which readings are clipped before they are integrated, in rad/s
+    :param pitch_time_constant: time constant of the leaky integral that gives the pitch, in s: longer than a fall, and
+        short enough to forget a gyroscope's bias
+    :param largest_rate: limit to which the rate about x is clipped before it is integrated, in rad/s
     """
 
     minimum_phase_seconds: float = 0.04
@@ -77,7 +77,7 @@ class ControllerConstants:
     largest_rate: float = 10.0
 
     def __post_init__(self) -> None:
-        """Refuse what no controller can have."""
+        """Refuse values that no controller can have."""
         check_fields("controller", self, PLAUSIBLE)
 
 

@@ -1,19 +1,19 @@
-"""The hip law: how V1 to V4 tilt the hips so that the robot steps back to where it stood.
+"""The hip law: how V1 to V4 move the hips so that the robot steps back to where it stood.
 
     abduction of both hips      -0.05 (V1 stable_x + V2)
     flexion of the swing leg    2.5 V3 pitch + 0.02 V4
     flexion of the stance leg  0.02 V4                     each within 0.3 rad, at 6 rad/s
 
 Positive abduction turns both feet to the left of the torso, positive flexion turns a foot forward. stable_x is the
-lateral acceleration after a low-pass of its own, slower than the pattern generator's; with V1 above zero both feet go
-to the side that the torso was pushed to. pitch is how far the torso has lately turned about its x axis, the leaky
-integral of that rate; with V3 above zero the swing leg turns on with the fall, and takes up momentum that would
+lateral acceleration after a low-pass of the hips' own, slower than the pattern generator's. With V1 above zero both
+feet go to the side that the torso was pushed to. pitch is how far the torso has lately turned about its x axis: the
+leaky integral of that rate. With V3 above zero the swing leg turns on with the fall, and takes up momentum that would
 otherwise tip the robot over the stance foot.
 
-A reconstruction: the paper says only that V1 and V3 multiply signals of the x and the y axis, that V2 and V4 are
-constants, and that the sums adjust abduction and flexion. Its forward acceleration gave no law that helps, for a
-reason: where the torso sits, the acceleration of a falling robot and its tilt cancel in the accelerometer
-(``make results NAME=flexion_laws`` compares the candidates).
+The law is a reconstruction. The paper says only that V1 and V3 multiply signals of the x and the y axis, that V2 and
+V4 are constants, and that the sums adjust abduction and flexion. Laws with the forward acceleration did not help, for
+a reason: where the torso sits, the acceleration of a falling robot and its tilt cancel in the accelerometer
+(``make results NAME=flexion_laws`` compares the laws).
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from sarah.robot.reading import SensorReading, Side
 
 @dataclass(frozen=True)
 class BalanceParameters:
-    """The four parameters of the second training, each within -2 and 2; zeros lock the hips.
+    """The four parameters of the Second Training, each within -2 and 2; zeros lock the hips.
 
-    :param V1: how much the lateral acceleration abducts both hips
-    :param V2: constant added to it, in m/s^2
-    :param V3: how much the torso's pitch flexes the swing leg
+    :param V1: gain from the lateral acceleration to the abduction of both hips
+    :param V2: constant added to that acceleration, in m/s^2
+    :param V3: gain from the torso's pitch to the flexion of the swing leg
     :param V4: constant flexion of both legs, in units of 0.02 rad
     """
 
@@ -42,11 +42,11 @@ class BalanceParameters:
 
 
 class HipLaw:
-    """Hip targets from sensors. Call :meth:`sense` and then :meth:`tick` once per control tick.
+    """Hip targets from sensor readings. Call :meth:`sense` and then :meth:`tick` once per control tick.
 
-    :param parameters: V1 to V4
-    :param dt: control period in s
-    :param constants: gains, limits, speeds and time constants
+    :param parameters: values of V1 to V4
+    :param dt: control period, in s
+    :param constants: gains, limits, speeds and time constants of the controller
     """
 
     def __init__(
@@ -68,16 +68,19 @@ class HipLaw:
 
     @property
     def sway(self) -> float:
-        """Abduction without V2's constant, in rad: what of it comes and goes with the rocking."""
+        """Abduction without V2's constant, in rad: the part that comes and goes with the rocking."""
         return self.abduction + self._constants.abduction_scale * self._parameters.V2
 
     @property
     def abduction_rate(self) -> float:
-        """How fast the last tick moved the abduction target, in rad/s."""
+        """Speed of the abduction target in the last tick, in rad/s."""
         return (self.abduction - self._abduction_before) / self._dt
 
     def sense(self, reading: SensorReading) -> None:
-        """Filter one reading without acting on it, as while standing."""
+        """Filter one reading without acting on it, as while standing.
+
+        :param reading: sensor reading of this tick
+        """
         constants = self._constants
         self._stable_x(clipped(reading.acceleration[0], constants.largest_acceleration))
         rate = clipped(reading.angular_rate[0], constants.largest_rate)
@@ -86,7 +89,7 @@ class HipLaw:
     def tick(self, swing: Side) -> None:
         """Move the targets by one control tick.
 
-        :param swing: the leg that swings
+        :param swing: side of the swing leg
         """
         v, constants = self._parameters, self._constants
         constant = constants.flexion_scale * v.V4

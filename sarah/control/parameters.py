@@ -1,4 +1,4 @@
-"""What P1 to P5 and V1 to V4 are: every page, figure, help text and report takes them from here."""
+"""The learned parameters P1 to P5 and V1 to V4; every page, figure, help text and report takes them from here."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ class Parameter:
     """A learned parameter of the controller.
 
     :param name: name as in the paper
-    :param low: lowest value that is tried
-    :param high: highest value that is tried
+    :param low: lowest value that a training tries
+    :param high: highest value that a training tries
     :param unit: SI unit; empty for a number without one
     :param meaning: effect on the controller, as a noun phrase
-    :param paper: value or remark that the paper has for it
+    :param paper: value or remark that the paper gives
     """
 
     name: str
@@ -36,7 +36,7 @@ class Parameter:
 
     @property
     def width(self) -> float:
-        """Width of its range."""
+        """Width of the range between the lowest and the highest value."""
         return self.high - self.low
 
 
@@ -49,13 +49,13 @@ STEPPING_PARAMETERS = (
     Parameter("P4", 0.0, 2.0, "", "stretch of the time-out of LIFT", "hardly matters"),
     Parameter("P5", 0.0, 2.0, "", "stretch of the time-outs of SHIFT and LAND", "hardly matters"),
 )
-"""P1 to P5. The paper observed that they must be positive; the upper ends are ours."""
+"""P1 to P5. The paper observed that they must be positive; the upper ends are this project's."""
 BALANCE_PARAMETERS = (
     Parameter("V1", -2.0, 2.0, "", "gain from lateral acceleration to abduction of both hips", MATTERS),
     Parameter("V2", -2.0, 2.0, "m/s²", "constant added to that acceleration", CONSTANT),
     Parameter("V3", -2.0, 2.0, "", "gain from the torso's pitch to flexion of the swing leg", MATTERS),
     Parameter("V4", -2.0, 2.0, "", "constant flexion of both legs, in units of 0.02 rad", CONSTANT),
 )
-"""V1 to V4. The paper gives no numbers; the ranges are ours."""
+"""V1 to V4. The paper gives no numbers; the ranges are this project's."""
 PAPER_STEPPING = (0.4, 1.3, 0.1, 1.0, 1.0)
-"""P1 to P5 where the paper's training settled; its P4 and P5 did not matter and are set to 1 here."""
+"""Values of P1 to P5 that the paper's training found; P4 and P5 did not matter there and are set to 1 here."""

@@ -12,9 +12,9 @@ y axis, and the sensors, not a clock, decide when each phase of a step ends::
             until the swing foot is loaded, or 0.5 (1 + P5) s
 
 Tilt is the low-passed lateral acceleration and rate the low-passed angular rate about y, both positive towards the
-stance leg; the hip law's abduction, which the torso does not feel, is added to both. The time-outs are slow on
+stance leg. The hip law's abduction, which the torso does not feel, is added to both. The time-outs are slow on
 purpose: with faster ones a learner uses them as an open-loop clock and ignores the sensors (``make results NAME=clock``
-compares 0.3 s and 0.5 s). Plain floats only: it runs once per control tick, and on a robot.
+compares 0.3 s and 0.5 s). The code uses plain floats only, because it runs once per control tick, and on a robot.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from sarah.robot.filters import LowPass, clipped, ramped
 from sarah.robot.reading import SensorReading, Side
 
 STAND_SECONDS = 1.0
-"""Duration of standing before it begins to step, in s; the paper's."""
+"""Duration of standing before the robot begins to step, in s; it is the paper's."""
 
 
 class Phase(Enum):
@@ -42,13 +42,13 @@ class Phase(Enum):
 
 @dataclass(frozen=True)
 class SteppingParameters:
-    """The five parameters of the first training, each within 0 and 2.
+    """The five parameters of the First Training, each between 0 and 2.
 
     :param P1: rate of rocking back at which the swing foot is put down, in rad/s
     :param P2: tilt (lateral acceleration) over the stance leg at which the swing foot may leave, in m/s^2
     :param P3: five times the rate towards the stance leg at which it may leave, in rad/s
-    :param P4: stretches the time-out of LIFT
-    :param P5: stretches the time-outs of SHIFT and LAND
+    :param P4: stretch of the time-out of LIFT
+    :param P5: stretch of the time-outs of SHIFT and LAND
     """
 
     P1: float
@@ -60,11 +60,11 @@ class SteppingParameters:
 
 @dataclass(frozen=True)
 class PhaseChange:
-    """What ended a phase.
+    """The end of a phase.
 
-    :param ended: the phase that ended
+    :param ended: phase that ended
     :param by_sensors: whether its sensor condition ended it, and not its time-out
-    :param is_step: whether a step was completed: a swing foot that was off the floor has landed
+    :param is_step: whether it completed a step, in which a swing foot that was off the floor has landed
     """
 
     ended: Phase
@@ -73,19 +73,19 @@ class PhaseChange:
 
 
 class PatternGenerator:
-    """The state machine. Call :meth:`tick` once per control tick with a fresh reading.
+    """State machine that makes the steps. Call :meth:`tick` once per control tick with a new reading.
 
-    :param parameters: P1 to P5
-    :param pad_threshold: load above which a foot counts as carrying, in N
-    :param dt: control period in s
-    :param hips: the hip law; without one the hips are locked, as in the first training
-    :param constants: time-outs, lengths, speeds and time constants
+    :param parameters: values of P1 to P5
+    :param pad_threshold: load above which a foot counts as loaded, in N
+    :param dt: control period, in s
+    :param hips: hip law; without one the hips are locked, as in the First Training
+    :param constants: time-outs, lengths, speeds and time constants of the controller
     """
 
     stance: Side
-    """The leg that carries the robot."""
+    """Leg that carries the robot."""
     swing: Side
-    """The other one."""
+    """Other leg, which moves."""
 
     def __init__(
         self,
@@ -116,7 +116,7 @@ class PatternGenerator:
 
     @property
     def tilt(self) -> float:
-        """Lateral acceleration towards the stance leg, in m/s^2: leaning over it is positive.
+        """Lateral acceleration towards the stance leg, in m/s^2; leaning over that leg is positive.
 
         Abduction keeps the torso upright while the legs lean, and counts as tilt too.
         """
@@ -125,12 +125,15 @@ class PatternGenerator:
 
     @property
     def rate(self) -> float:
-        """Angular rate about y towards the stance leg, in rad/s; the abduction's has a share in it."""
+        """Angular rate about y towards the stance leg, in rad/s, with a share of the abduction's rate."""
         abduction_rate = 0.0 if self.hips is None else self.hips.abduction_rate
         return self.stance.value * (self._rate_y.value + self.constants.abduction_rate_share * abduction_rate)
 
     def sense(self, reading: SensorReading) -> None:
-        """Filter one reading without acting on it, as while standing. One that is not finite is passed over."""
+        """Filter one reading without acting on it, as while standing.
+
+        :param reading: sensor reading of this tick; one that is not finite is ignored
+        """
         if not reading.is_finite:
             return
         self._stable_x(clipped(reading.acceleration[0], self.constants.largest_acceleration))
@@ -144,7 +147,7 @@ class PatternGenerator:
     def tick(self, reading: SensorReading) -> PhaseChange | None:
         """Advance by one control tick.
 
-        :param reading: what the sensors say now
+        :param reading: sensor reading of this tick
         :return: the phase change that this tick made, if it made one; :attr:`targets` follow the new phase
         """
         self.sense(reading)
@@ -161,7 +164,7 @@ class PatternGenerator:
 
     @property
     def targets(self) -> tuple[float, float, float, float, float, float]:
-        """Joint targets in the order of ``ACTUATED_JOINTS``."""
+        """Joint targets in the order of ``ACTUATED_JOINTS``, in rad and m."""
         left, right = self._lengths[Side.LEFT], self._lengths[Side.RIGHT]
         if self.hips is None:
             return (0.0, 0.0, 0.0, 0.0, left, right)
@@ -210,7 +213,7 @@ class PatternGenerator:
         return self._loads[side] > self._pad_threshold
 
     def _ramp_legs(self) -> None:
-        """Move both leg targets towards where the phase wants them; positive lengths retract."""
+        """Move both leg length targets towards those of the phase; positive lengths retract."""
         constants = self.constants
         swing_length = 0.0
         if self.phase is Phase.SHIFT:

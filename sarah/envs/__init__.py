@@ -1,4 +1,4 @@
-"""Episodes as environments: of gymnasium, and of stable-baselines3 with many in flight.
+"""Episodes as environments: one of gymnasium, and one of stable-baselines3 with many episodes in flight.
 
-It may import episode and what it may import.
+It may import episode and what that may import.
 """

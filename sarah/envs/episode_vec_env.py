@@ -1,9 +1,9 @@
-"""Many episodes at once, as one environment of stable-baselines3 that answers in the order it was asked.
+"""Many episodes at once, as one environment of stable-baselines3 that answers in order.
 
 Stepping many environments side by side waits for the slowest of each round, and episodes last from 2 to 30 s. Here a
-fixed number of episodes is in flight instead: a step hands one more in, and waits only for the oldest. What it returns
-is therefore the outcome of an action some steps before, and the buffers of :mod:`sarah.training.replay` store it with
-that action. The order of the outcomes, and so the training, does not depend on who simulates them.
+fixed number of episodes is in flight instead: a step submits one more, and waits only for the oldest. So a step returns
+the outcome of an action some steps before, and the buffers of :mod:`sarah.training.replay` store it with that action.
+The order of the outcomes, and with it the training, does not depend on the workers.
 """
 
 from __future__ import annotations
@@ -37,15 +37,16 @@ class _Running(NamedTuple):
 class EpisodeVecEnv(VecEnv):
     """Episodes of one :class:`~sarah.envs.sarah_env.SarahEnv`, several of them in flight.
 
-    Step k hands in the episode of its action and returns the outcome of step ``k - slots + 1``: its return is the
-    reward, and ``info`` holds its ``spec``, ``result`` and ``transition`` (observation, action, last observation). The
-    first ``slots - 1`` steps have no outcome, and an empty ``info``. The last ``slots - 1`` steps hand nothing in.
+    Step k submits the episode of its action and returns the outcome of step ``k - slots + 1``: the reward is that
+    episode's return, and ``info`` contains its ``spec``, ``result`` and ``transition`` (observation, action, last
+    observation). The first ``slots - 1`` steps have no outcome, and an empty ``info``. The last ``slots - 1`` steps
+    submit nothing.
 
-    :param task: ``"stepping"`` or ``"balance"``
+    :param task: name of the task, ``"stepping"`` or ``"balance"``
     :param config: settings of the episodes
-    :param episodes: how many there are; they take ``episodes + slots - 1`` steps
-    :param slots: how many are in flight
-    :param workers: that simulate them
+    :param episodes: number of episodes; they take ``episodes + slots - 1`` steps
+    :param slots: number of episodes in flight
+    :param workers: executor that simulates the episodes
     """
 
     def __init__(self, task: str, config: EpisodeConfig, episodes: int, slots: int, workers: Executor) -> None:
@@ -60,11 +61,11 @@ class EpisodeVecEnv(VecEnv):
         self._waiting: deque[tuple[EpisodeSpec, Callable[[], SensorReading]]] = deque()
 
     def reset(self) -> np.ndarray:
-        """Begin anew, with the episodes that follow from the seed of :meth:`seed`.
+        """Begin anew, with the episodes that the seed of :meth:`seed` draws.
 
-        :return: the observation of the first, of shape (1, 16)
+        :return: the observation of the first episode, of shape (1, 16)
         """
-        if self._seeds[0] is not None:  # as SarahEnv: without a new seed its generator goes on
+        if self._seeds[0] is not None:  # without a new seed the generator goes on, as in SarahEnv
             self._env.np_random = np.random.default_rng(self._seeds[0])
         self._reset_seeds()
         self._running.clear()
@@ -77,22 +78,22 @@ class EpisodeVecEnv(VecEnv):
         return self._observation[None]
 
     def step_async(self, actions: np.ndarray) -> None:
-        """Hand in the episode of an action, unless there have been enough.
+        """Submit the episode of an action, unless all episodes have been submitted.
 
-        :param actions: one action, of shape (1, number of parameters)
+        :param actions: one action in [-1, 1], of shape (1, number of parameters)
         """
         self._steps += 1
         if self._steps > self._episodes:
             return
         spec, _ = self._waiting.popleft()
         spec = replace(spec, parameters=parameters_from(actions[0], TASKS[self._task]))
-        # Whoever runs it then lets the episode stand that the agent acts on when this one's outcome is there.
+        # The worker then lets another episode stand, which the agent acts on when it knows this one's outcome.
         following = self._next_spec() if self._begun < self._episodes else None
         job = self._workers.submit(finish_episode, spec, following)
         self._running.append(_Running(spec, following, self._observation, actions[0].copy(), job))
 
     def step_wait(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
-        """Wait for the oldest episode in flight, if there are as many as there are slots, and for the next to stand."""
+        """Wait for the oldest episode if all slots are in flight, and for the next episode to stand."""
         reward, info = 0.0, dict[str, Any]()
         if self._steps >= self._slots:
             reward, info = self._oldest_outcome()
@@ -100,13 +101,13 @@ class EpisodeVecEnv(VecEnv):
         return self._observation[None], np.array([reward], np.float32), np.array([True]), [info]
 
     def _next_spec(self) -> EpisodeSpec:
-        """Of the next episode, which stands before its parameters are known: until then any do."""
+        """Specification of the next episode, with the baseline's parameters until its own are known."""
         self._begun += 1
         anything = TASKS[self._task].baseline
         return EpisodeSpec(anything, draw_seed(self._env.np_random), self._task, self._config)
 
     def _observe(self) -> None:
-        """See how the next episode stands; after the last one the observation stays."""
+        """Wait for the observation of the next episode; after the last episode the observation stays."""
         if self._waiting:
             _, reading = self._waiting[0]
             self._observation = observation_from(reading())
@@ -121,20 +122,20 @@ class EpisodeVecEnv(VecEnv):
         return result.episode_return, info
 
     def close(self) -> None:
-        """Nothing is left open: the workers belong to whoever made them."""
+        """Do nothing: the workers are closed by the caller who made them."""
 
     def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
-        """An attribute of the environment, as a list of one."""
+        """Attribute of the environment, as a list of one value."""
         return [getattr(self._env, attr_name)]
 
     def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
-        """Refused: an episode's settings are those of its specification."""
-        raise NotImplementedError("episodes are simulated elsewhere: make another environment instead")
+        """Refuse to change the environment: an episode's settings are those of its specification."""
+        raise NotImplementedError("episodes are simulated in workers: make another environment instead")
 
     def env_method(self, method_name: str, *args: Any, indices: VecEnvIndices = None, **kwargs: Any) -> list[Any]:
-        """Refused, as :meth:`set_attr`."""
-        raise NotImplementedError("episodes are simulated elsewhere: there is no environment to call")
+        """Refuse to call the environment, as :meth:`set_attr`."""
+        raise NotImplementedError("episodes are simulated in workers: there is no environment to call")
 
     def env_is_wrapped(self, wrapper_class: type[gymnasium.Wrapper], indices: VecEnvIndices = None) -> list[bool]:
-        """No wrapper is around the episodes."""
+        """Answer that no wrapper is around the episodes."""
         return [False]

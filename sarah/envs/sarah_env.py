@@ -20,21 +20,21 @@ if TYPE_CHECKING:
 
 OBSERVATION_BOUND = 5.0
 OBSERVATION_SCALES = (*(GRAVITY,) * 3, *(1.0,) * 3, *(100.0,) * 4, *(1.0,) * 4, *(0.1,) * 2)
-"""What each signal is divided by to be of order 1, in SI units."""
+"""Divisor of each of the 16 signals, in its SI unit, which makes it of order 1."""
 
 
 class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
-    """Choose the task's parameters once, and see what comes of it.
+    """An environment in which an agent chooses the task's parameters once, and the episode's return is the reward.
 
-    ``reset`` lets the robot stand for one second, ``step`` runs the pattern generator to the episode's end and
-    always terminates. The observation is the 16 sensor signals after standing, each divided by its
-    ``OBSERVATION_SCALES`` and clipped; the action is P1 to P5, or V1 to V4, with the box of the parameters scaled to
-    [-1, 1]; the reward is the episode's return. ``info`` holds the episode's ``seed``, and after the step the
-    ``parameters`` and the ``result``, an :class:`~sarah.episode.result.EpisodeResult`.
+    ``reset`` lets the robot stand for one second. ``step`` runs the pattern generator to the episode's end and always
+    terminates. The observation is the 16 sensor signals after standing, each divided by its ``OBSERVATION_SCALES`` and
+    clipped to [-5, 5]. The action is P1 to P5, or V1 to V4, with the box of the parameters scaled to [-1, 1]. ``info``
+    contains the episode's ``seed``, and after the step the ``parameters`` and the ``result``, an
+    :class:`~sarah.episode.result.EpisodeResult`.
 
-    :param task: ``"stepping"``: choose P1 to P5; ``"balance"``: choose V1 to V4 and be pushed
-    :param config: settings of the episodes; the task's own if ``None``
-    :param render_mode: ``"rgb_array"``, or ``None``
+    :param task: name of the task: ``"stepping"`` to choose P1 to P5, ``"balance"`` to choose V1 to V4 and be pushed
+    :param config: settings of the episodes; by default the task's own
+    :param render_mode: ``"rgb_array"`` for pictures, or ``None``
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 1}
@@ -56,9 +56,9 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
     ) -> tuple[np.ndarray, dict[str, Any]]:
         """Build a new world and stand for one second.
 
-        :param seed: of the generator that draws the episodes' seeds; ``info["seed"]`` is the one drawn, with which
+        :param seed: seed of the generator that draws the episodes' seeds; with the drawn one, ``info["seed"]``,
             :func:`sarah.simulate` repeats the episode
-        :param options: none are known
+        :param options: options of gymnasium, which are ignored
         """
         super().reset(seed=seed)
         self._close_episode()
@@ -69,8 +69,8 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """Run the pattern generator to the episode's end.
 
-        :param action: of the task, scaled to [-1, 1]
-        :raises ConfigurationError: if the action is not finite or out of its box, or the episode is over
+        :param action: values of the task's parameters, in order, scaled to [-1, 1]
+        :raises ConfigurationError: if the action is not finite or out of its box, or if the episode is over
         """
         if self._episode is None or self._episode.termination is not None:
             raise ConfigurationError("the episode is over: call reset before step")
@@ -80,9 +80,10 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         return observation_from(self._episode.last_reading), result.episode_return, True, False, info
 
     def render(self) -> np.ndarray | None:
-        """Draw the robot as it stands now: uint8 of shape (480, 640, 3).
+        """Draw the robot as it stands now.
 
-        The picture of :mod:`sarah.pictures.video` without what is written over it, so that others can write their own.
+        :return: uint8 array of shape (480, 640, 3), the picture of :mod:`sarah.pictures.video` without its text;
+            ``None`` without a render mode
         """
         if self.render_mode is None or self._episode is None:
             return None
@@ -93,7 +94,7 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         return self._renderer.draw_simulator(self._episode.simulation)
 
     def close(self) -> None:
-        """Give the physics engine's resources back."""
+        """Give the resources of the physics engine and the renderer back."""
         self._close_episode()
         if self._renderer is not None:
             self._renderer.close()
@@ -108,16 +109,16 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
 def draw_seed(generator: np.random.Generator) -> int:
     """Draw the seed of a training's next episode.
 
-    :param generator: of the environment
+    :param generator: random generator of the environment
     """
     return int(generator.integers(FIRST_TRAINING_SEED, 2**32))
 
 
 def observation_from(reading: SensorReading) -> np.ndarray:
-    """Turn 16 sensor signals into an observation.
+    """Scale 16 sensor signals to an observation.
 
-    :param reading: in SI units
-    :return: float32 of shape (16,), of order 1
+    :param reading: sensor reading, in SI units
+    :return: float32 array of shape (16,), of order 1
     """
     signals = (*reading.acceleration, *reading.angular_rate, *reading.pressures, *reading.joints)
     if not reading.is_finite:
@@ -129,8 +130,8 @@ def observation_from(reading: SensorReading) -> np.ndarray:
 def parameters_from(action: np.ndarray, task: Task) -> tuple[float, ...]:
     """Turn an action into a task's parameters.
 
-    :param action: one number within [-1, 1] for each parameter
-    :param task: whose parameters
+    :param action: one number in [-1, 1] for each parameter
+    :param task: task that owns the parameters
     :raises ConfigurationError: if the action is not finite or out of its box
     """
     values = np.asarray(action, dtype=float)

@@ -1,4 +1,4 @@
-"""How an episode ends: the paper's three criteria, a fall, and a simulation that diverges."""
+"""The end of an episode: the paper's three criteria, a fall, and a simulation that diverges."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ BOX_HALF_WIDTH = 0.25
 OSCILLATION_SECONDS = 5.0
 """Simulated time by which the robot must oscillate, in s; the paper's third criterion."""
 OSCILLATION_STEPS = 2
-"""Number of steps that is an oscillation: one with each leg."""
+"""Number of steps that make an oscillation: one with each leg."""
 LEAST_UPRIGHT = math.cos(math.radians(45.0))
 """Cosine of the torso's tilt beyond which the robot has fallen."""
 TERMINATIONS = {
@@ -22,22 +22,22 @@ TERMINATIONS = {
     "fell": "fell",
     "diverged": "diverged",
 }
-"""How an episode can end, and what pages say of it: the paper's three criteria, a tilt beyond 45 degrees, and a state
-or signal that is no number or beyond all bounds."""
+"""Ways in which an episode can end, with the words of the pages for each: the paper's three criteria, a tilt beyond 45
+degrees, and a state or signal that is not finite or far beyond what a robot can have."""
 
 
 def termination(
     torso: TorsoState, start: Vector, steps: int, time: float, time_limit: float, control_dt: float
 ) -> str | None:
-    """Say whether an episode ends, and how.
+    """Check whether an episode ends, and how.
 
-    :param torso: the torso's state
+    :param torso: state of the torso
     :param start: position of the torso's centre when the episode began, in m
     :param steps: number of completed steps
     :param time: simulated time, in s
     :param time_limit: time limit of the episode, in s
-    :param control_dt: duration of a control tick, in s; half of it is granted to rounding
-    :return: one of :data:`TERMINATIONS`; nothing if the episode goes on
+    :param control_dt: duration of a control tick, in s; half of it is the tolerance for rounding
+    :return: one of :data:`TERMINATIONS`; ``None`` if the episode goes on
     """
     if not torso.is_finite:
         return "diverged"

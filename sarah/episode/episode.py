@@ -1,4 +1,4 @@
-"""One episode, tick by tick: a specification in, its result out, the same bytes every time."""
+"""One episode, tick by tick: its specification determines its result, byte for byte."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ from sarah.simulation.simulator import TorsoState
 class Episode:
     """A robot in its world: :meth:`stand`, then :meth:`run`, then :meth:`close`.
 
-    Whoever wants to look at the robot in between calls :meth:`start` and then :meth:`tick` until :attr:`termination`
-    says how the episode ended.
+    To observe the robot in between, call :meth:`start` and then :meth:`tick` until :attr:`termination` says how the
+    episode ended.
 
-    :param config: settings that all episodes of an experiment share; the task's
+    :param config: settings that all episodes of an experiment share, of the task's type
     :param seed: seed of this episode
-    :param task: what is learned in it
-    :param record_trace: whether to keep a trace of every control tick
-    :param build: function that makes the simulator from robot, physics and conditions; by default the configuration's
-        engine
+    :param task: task that owns the parameters and the push
+    :param record_trace: whether to record every control tick in a trace
+    :param build: function that makes the simulator from robot, physics and conditions; by default that of the
+        configuration's engine
     """
 
     generator: PatternGenerator
     """Source of the joint targets, from :meth:`start` on."""
     standing_readings: list[SensorReading]
-    """What was sensed during the first second."""
+    """Sensor readings of the first second."""
 
     def __init__(
         self,
@@ -81,7 +81,7 @@ class Episode:
     def stand(self) -> SensorReading:
         """Stand for the first second.
 
-        :return: the last reading of that second: the observation that the agent acts on
+        :return: the last reading of that second, which is the observation that the agent acts on
         """
         for _ in range(round(STAND_SECONDS / self._dt)):
             self.standing_readings.append(self._sense())
@@ -91,7 +91,7 @@ class Episode:
     def run(self, parameters: tuple[float, ...]) -> EpisodeResult:
         """Let the pattern generator run until the episode ends.
 
-        :param parameters: values of the task's parameters
+        :param parameters: values of the task's parameters, in order
         :return: the result
         """
         self.start(parameters)
@@ -100,9 +100,9 @@ class Episode:
         return self.result()
 
     def start(self, parameters: tuple[float, ...]) -> None:
-        """Make the pattern generator, which knows what was sensed while standing.
+        """Make the pattern generator, and filter the readings of the standing robot with it.
 
-        :param parameters: values of the task's parameters
+        :param parameters: values of the task's parameters, in order
         """
         constants = self.config.controller
         stepping, balance = self.task.controller_parameters(self.task.checked(parameters), self.config)
@@ -112,7 +112,7 @@ class Episode:
             self.generator.sense(reading)
 
     def tick(self) -> None:
-        """Sense, decide, act, simulate and judge one control tick."""
+        """Advance by one control tick: sense, decide, act, simulate and judge."""
         simulation, generator, gait = self.simulation, self.generator, self._gait
         reading = self._sense()
         if self.termination is not None:
@@ -134,7 +134,7 @@ class Episode:
         self._judge()
 
     def result(self) -> EpisodeResult:
-        """What has come out of the episode so far; of an episode that goes on, its ``termination`` is empty."""
+        """Result of the episode so far; while the episode goes on, its ``termination`` is empty."""
         elapsed = self._ticks * self._dt
         return EpisodeResult(
             score=self._return / self._highest_return,
@@ -156,12 +156,12 @@ class Episode:
         truth = self.simulation.read()
         if truth.is_finite:
             self._truth, self.last_reading = truth, self._sensors(truth)
-        else:  # what has been sensed stays
+        else:  # the last finite reading stays
             self.termination = "diverged"
         return self.last_reading
 
     def _push_now(self) -> Vector | None:
-        """The push's force in N, if its time has come."""
+        """Force of the push in N, while it lasts."""
         if self.push is None:
             return None
         since_begin = STAND_SECONDS + self._ticks * self._dt - self.push.begin
@@ -169,20 +169,20 @@ class Episode:
         return self.push.force if is_now else None
 
     def _judge(self) -> None:
-        """Add this tick's reward, and see whether the episode ends."""
+        """Add this tick's reward, and check whether the episode ends."""
         elapsed = self._ticks * self._dt
         torso = self.simulation.torso_state()
         self.termination = termination(
             torso, self._first.position, self._gait.steps, STAND_SECONDS + elapsed, self.config.time_limit, self._dt
         )
-        if self.termination == "diverged":  # the result keeps to the last finite state
+        if self.termination == "diverged":  # the result is that of the last finite state
             return
         self._last = torso
         frequency = self._gait.steps_per_second(self._ticks)
         self._return += reward_rate(*self._displacement(torso), frequency, self.config.reward_form) * self._dt
 
     def _displacement(self, torso: TorsoState) -> tuple[float, float, float]:
-        """Torso position as equation 2 wants it: x and y from the start, z over the floor."""
+        """Torso position as in equation 2: x and y from the start, z over the floor, in m."""
         x, y, z = torso.position
         return (x - self._first.position[0], y - self._first.position[1], z)
 
@@ -213,12 +213,12 @@ class Episode:
 
 
 def simulate(spec: EpisodeSpec, record_trace: bool = False) -> EpisodeResult:
-    """Simulate one episode, from a fresh world to its end.
+    """Simulate one episode, from a new world to its end.
 
-    :param spec: everything that the result depends on; the same spec gives the same bytes in any process
-    :param record_trace: whether the result has a :class:`~sarah.episode.trace.Trace`
+    :param spec: specification, which determines the result: the same one gives the same bytes in any process
+    :param record_trace: whether to record a :class:`~sarah.episode.trace.Trace` in the result
     :return: the result
-    :raises SimulationError: if there is nothing to trace, because the robot did not even stand
+    :raises SimulationError: if there is nothing to trace, because the simulation diverged while the robot stood
     """
     episode = Episode(spec.config, spec.seed, TASKS[spec.task], record_trace)
     try:

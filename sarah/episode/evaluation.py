@@ -1,4 +1,4 @@
-"""How good a parameter set is: many episodes on fixed seeds, and what they have in common."""
+"""The quality of parameters: many episodes on fixed seeds, and their statistics."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ STATISTICS: dict[str, Callable[[Sequence[float]], float]] = {
     "min": min,
     "max": max,
 }
-"""How a metric of several episodes becomes one number."""
+"""Statistics that make one number of a metric's values in several episodes."""
 SMALLEST_SENSOR_SHARE = 0.9
-"""Share of SHIFT and of LIFT phases that sensors end, below which a gait is a clock."""
+"""Share of SHIFT and of LIFT phases ended by sensors below which a gait follows the time-outs, as a clock."""
 SMALLEST_CLEARANCE = 0.010
-"""Sole clearance in m below which a gait is a shuffle."""
+"""Sole clearance below which a gait is a shuffle, in m."""
 LARGEST_ACCELERATION_RATIO = 1.5
-"""Ratio of the torso's acceleration above 20 Hz to the baseline's beyond which a controller chatters."""
+"""Ratio of the torso's acceleration above 20 Hz to the baseline's, beyond which a controller chatters."""
 
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Episodes of one parameter set, and what they have in common.
+    """Episodes of the same parameters, and their statistics.
 
-    :param results: results of at least one episode
+    :param results: results of the episodes, at least one
     """
 
     results: tuple[EpisodeResult, ...]
 
     def statistic(self, metric: str, name: str) -> float:
-        """One number for a metric of all episodes.
+        """Statistic of a metric over all episodes.
 
         :param metric: name of the metric, one of :data:`~sarah.episode.result.METRICS`
         :param name: name of the statistic, one of :data:`STATISTICS`
@@ -80,25 +80,25 @@ class Evaluation:
 
     @property
     def diverged(self) -> int:
-        """Number of episodes that ended because the simulation returned no numbers."""
+        """Number of episodes that ended because the simulation diverged."""
         return sum(result.termination == "diverged" for result in self.results)
 
     @property
     def is_gait(self) -> bool:
-        """Whether the robot steps by its sensors and lifts its feet, and does not shuffle to a clock."""
+        """Whether the gait is valid: sensors end its phases, and the soles clear the floor."""
         shares = (self.mean("shifts_by_sensors"), self.mean("lifts_by_sensors"))
         return min(shares) >= SMALLEST_SENSOR_SHARE and self.mean("sole_clearance") >= SMALLEST_CLEARANCE
 
     def chatters(self, baseline: Evaluation) -> bool:
         """Whether the hips shake the torso at frequencies that no real actuator follows.
 
-        :param baseline: the same episodes with V1 to V4 at zero; if those fell too early to tell, there is no verdict
+        :param baseline: same episodes with V1 to V4 at zero; if they ended too early to measure, the answer is no
         """
         still = baseline.median("vibration")
         return self.median("vibration") > LARGEST_ACCELERATION_RATIO**2 * still > 0.0
 
     def summary(self) -> dict[str, Any]:
-        """Every statistic of every metric, as files and ``--json`` have them."""
+        """Statistics of all metrics by name, for files and for ``--json``."""
         statistics = {
             f"{metric}_{name}": self.statistic(metric, name)
             for metric in METRICS
@@ -119,13 +119,13 @@ def evaluate(
     seeds: Iterable[int],
     workers: Executor | None = None,
 ) -> Evaluation:
-    """Simulate parameters on some seeds.
+    """Simulate the same parameters on several seeds.
 
     :param task: name of the task
-    :param parameters: values of its parameters
+    :param parameters: values of the task's parameters, in order
     :param config: settings of the episodes
-    :param seeds: seeds of the episodes; those below 2^31 are in no training
-    :param workers: who simulates; by default this process does
+    :param seeds: seeds of the episodes; no training uses those below 2^31
+    :param workers: executor that simulates the episodes; by default this process does
     """
     specs = [EpisodeSpec(parameters, seed, task, config) for seed in seeds]
     return Evaluation(tuple((workers or Workers()).simulate_all(specs)))

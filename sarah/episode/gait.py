@@ -1,4 +1,4 @@
-"""Step detection: steps per second, sole clearance, and how much of the gait the sensors drive."""
+"""Step detection: steps per second, sole clearance, and the share of the phases that sensors end."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from typing import Any
 from sarah.control.pattern_generator import Phase, PhaseChange
 
 WINDOW_SECONDS = 2.0
-"""Over which steps per second are counted."""
+"""Length of the window in which steps are counted, in s."""
 SHORTEST_WINDOW_SECONDS = 0.5
-"""What the time since the start counts as at least."""
+"""Shortest length of that window while the episode begins, in s."""
 
 
 class GaitRecord:
-    """Follows one episode's gait. Ticks are control ticks since the pattern generator's start.
+    """Record of one episode's gait. Ticks are control ticks since the pattern generator's start.
 
     :param control_rate: control ticks per second
     """
@@ -32,17 +32,17 @@ class GaitRecord:
         self._ends_by_sensors = {Phase.SHIFT: 0, Phase.LIFT: 0, Phase.LAND: 0}
 
     def swing(self, sole_height: float) -> None:
-        """Note how high the swing foot's lowest sole contact is, while a foot swings.
+        """Record the height of the swing foot's lowest sole contact, while a foot swings.
 
-        :param sole_height: over the floor, in m
+        :param sole_height: height over the floor, in m
         """
         self._swing_height = max(self._swing_height, sole_height)
 
     def phase_change(self, tick: int, change: PhaseChange) -> None:
-        """Note the end of a phase, and the step that it may complete.
+        """Record the end of a phase, and the step that it may complete.
 
-        :param tick: in which the phase ended, from 0
-        :param change: what the pattern generator reported
+        :param tick: control tick in which the phase ended, from 0
+        :param change: phase change that the pattern generator reported
         """
         if change.ended is Phase.STAND:
             return
@@ -56,16 +56,16 @@ class GaitRecord:
             self._swing_height = 0.0
 
     def steps_per_second(self, ticks: int) -> float:
-        """The f of equation 2: steps of the last 2 s; at first, of the time that has passed, at least 0.5 s.
+        """Steps per second in the last 2 s, the f of equation 2; at first, since the start, over at least 0.5 s.
 
-        :param ticks: that have passed; must not run backwards
+        :param ticks: control ticks since the start, which must not decrease from call to call
         """
         while self._recent and self._recent[0] < ticks - self._window:
             self._recent.popleft()
         return len(self._recent) * self._control_rate / max(self._shortest_window, min(self._window, ticks))
 
     def by_sensors(self, phase: Phase) -> float:
-        """Share of a phase's ends that its sensor condition made, and not its time-out; 0 if it never ended.
+        """Share of a phase's ends that its sensor condition caused, and not its time-out; 0 if it never ended.
 
         :param phase: SHIFT, LIFT or LAND
         """
@@ -77,7 +77,7 @@ class GaitRecord:
         return median(self._clearances) if self._clearances else 0.0
 
     def metrics(self) -> dict[str, Any]:
-        """The metrics of :class:`~sarah.episode.result.EpisodeResult` that follow from the gait."""
+        """Metrics of :class:`~sarah.episode.result.EpisodeResult` that follow from the gait."""
         return {
             "steps": self.steps,
             "shifts_by_sensors": self.by_sensors(Phase.SHIFT),

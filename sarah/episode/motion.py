@@ -1,7 +1,7 @@
-"""How smooth an episode's motion is, and what it asks of the actuators.
+"""The smoothness of an episode's motion, and the load on the actuators.
 
-Reward and survival cannot see a controller that chatters: one that shakes the robot at frequencies that no real
-actuator follows. The torso's acceleration above 20 Hz does.
+A controller chatters if it shakes the robot at frequencies that no real actuator follows. Reward and survival do not
+show that, but the torso's acceleration above 20 Hz does.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from sarah.robot.description import ACTUATED_JOINTS
 from sarah.robot.reading import Vector
 
 CHATTER_HZ = 20.0
-"""Above the gait's own harmonics, below half the control rate."""
+"""Frequency above which motion counts as vibration, in Hz: above the gait's harmonics, below half the control rate."""
 SEGMENT_SECONDS = 0.5
-"""Length of the segments that spectra are averaged over."""
+"""Length of the segments that spectra are averaged over, in s."""
 IS_HIP = np.array([not name.endswith("leg_length") for name in ACTUATED_JOINTS])
-"""Which actuators turn; the others are the prismatic legs."""
+"""Mask of the actuators that turn; the others are the prismatic legs."""
 
 
 class MotionRecord:
-    """Follows one episode's torso acceleration and actuators.
+    """Record of one episode's torso acceleration and actuators.
 
-    :param control_rate: ticks per second
+    :param control_rate: control ticks per second
     """
 
     def __init__(self, control_rate: int) -> None:
@@ -35,11 +35,11 @@ class MotionRecord:
         self._efforts: list[Sequence[float]] = []
 
     def tick(self, acceleration: Vector, speeds: Sequence[float], efforts: Sequence[float]) -> None:
-        """Note one control tick.
+        """Record one control tick.
 
-        :param acceleration: the torso's true specific force, in m/s^2
-        :param speeds: of the actuators in the order of ``ACTUATED_JOINTS``, in rad/s and m/s
-        :param efforts: torques and forces of the same, in Nm and N
+        :param acceleration: true specific force in the torso's frame, in m/s^2
+        :param speeds: speeds of the actuators in the order of ``ACTUATED_JOINTS``, in rad/s and m/s
+        :param efforts: efforts of the actuators in the same order, in Nm and N
         """
         self._accelerations.append(acceleration)
         self._speeds.append(speeds)
@@ -47,19 +47,19 @@ class MotionRecord:
 
     @property
     def actuator_power(self) -> float:
-        """Mean over the ticks of the six actuators' mechanical power, braking counted like driving, in W."""
+        """Mechanical power of the six actuators, in W: mean over the ticks, with braking counted like driving."""
         if not self._speeds:
             return 0.0
         return float(np.abs(np.array(self._speeds) * np.array(self._efforts)).sum(axis=1).mean())
 
     @property
     def peak_hip_rate(self) -> float:
-        """Fastest motion of a hip joint, in rad/s."""
+        """Largest speed of a hip joint, in rad/s."""
         return self._peak_speed(IS_HIP)
 
     @property
     def peak_leg_speed(self) -> float:
-        """Fastest change of a leg's length, in m/s."""
+        """Largest speed of a leg's length, in m/s."""
         return self._peak_speed(~IS_HIP)
 
     def _peak_speed(self, which: np.ndarray) -> float:
@@ -67,11 +67,11 @@ class MotionRecord:
 
     @property
     def vibration(self) -> float:
-        """Mean square of the torso's acceleration above 20 Hz, all axes together, in m^2/s^4; 0 at first."""
+        """Mean square of the torso's acceleration above 20 Hz, all axes together, in m^2/s^4; 0 for less than 0.5 s."""
         return power_above(np.array(self._accelerations), self._control_rate, CHATTER_HZ)
 
     def metrics(self) -> dict[str, Any]:
-        """The metrics of :class:`~sarah.episode.result.EpisodeResult` that follow from motion."""
+        """Metrics of :class:`~sarah.episode.result.EpisodeResult` that follow from the motion."""
         return {
             "vibration": self.vibration,
             "actuator_power": self.actuator_power,
@@ -81,24 +81,24 @@ class MotionRecord:
 
 
 def power_above(signals: np.ndarray, rate: int, hertz: float) -> float:
-    """Mean square of what signals hold above a frequency, summed over the signals.
+    """Mean square of the components of signals above a frequency, summed over the signals.
 
-    By Welch's method (1967): the mean over half-overlapping segments of half a second, so that a short burst counts
-    alike whenever it comes.
+    It is estimated by Welch's method (1967): the mean over half-overlapping segments of half a second. So a short burst
+    counts alike whenever it occurs.
 
-    :param signals: of shape (time, signals)
+    :param signals: samples of the signals, of shape (time, signals)
     :param rate: samples per second
-    :param hertz: the frequency
+    :param hertz: frequency, in Hz
     :return: in the signals' unit squared; 0 for less than one segment
     """
     length = round(SEGMENT_SECONDS * rate)
     if len(signals) < length:
         return 0.0
     segments = np.lib.stride_tricks.sliding_window_view(signals, length, axis=0)[:: length // 2]
-    window = np.hanning(length)  # so that slow motion does not leak into high frequencies
+    window = np.hanning(length)  # keeps slow motion from leaking into high frequencies
     centred = segments - segments.mean(axis=-1, keepdims=True)
     spectra = 2.0 * np.abs(np.fft.rfft(centred * window, axis=-1)) ** 2 / (length * (window**2).sum())
     if length % 2 == 0:
-        spectra[..., -1] /= 2.0  # half the rate has no negative twin
+        spectra[..., -1] /= 2.0  # half the sampling rate has no negative twin
     above = np.fft.rfftfreq(length, 1.0 / rate) > hertz
     return float(spectra[..., above].sum(axis=(1, 2)).mean())

@@ -17,19 +17,20 @@ PLAUSIBLE = {
     "at_seconds": (STAND_SECONDS, LONGEST_EPISODE, "s"),
     "duration": (0.0, 10.0, "s"),
 }
-"""Lowest and highest value that a push can have, and its unit. Beyond, somebody has mistaken the unit."""
+"""Lowest value, highest value and unit of each setting. Beyond them, somebody has mistaken the unit."""
 
 
 @dataclass(frozen=True)
 class Push:
     """The push of the balance task, drawn for each episode from its seed. Equal ends of a range fix the value.
 
-    It acts on the torso's centre, horizontally and with constant force.
+    It acts horizontally on the torso's centre, with constant force.
 
-    :param newtons: uniform range of the force, in N; the paper's is up to 100 N
-    :param degrees: uniform range of the direction: 0 pushes to the robot's right, 90 forward
-    :param at_seconds: uniform range of when it begins; the paper's is after the first second
-    :param duration: in s
+    :param newtons: uniform range of the force, in N; the paper pushed with up to 100 N
+    :param degrees: uniform range of the direction, in degrees: 0 pushes to the robot's right, 90 forward
+    :param at_seconds: uniform range of the simulated time at which it begins, in s; the paper pushed after the first
+        second
+    :param duration: duration, in s
     """
 
     newtons: tuple[float, float] = (0.0, 100.0)
@@ -38,7 +39,7 @@ class Push:
     duration: float = 0.15
 
     def __post_init__(self) -> None:
-        """Refuse what is no push, or comes while the robot is still held to be standing."""
+        """Refuse impossible pushes, and pushes that begin while the robot stands."""
         check_fields("push", self, PLAUSIBLE)
 
 
@@ -46,9 +47,9 @@ class Push:
 class DrawnPush:
     """One episode's push.
 
-    :param force: on the torso's centre, in the world's frame, in N
+    :param force: force on the torso's centre, in the world's frame, in N
     :param begin: simulated time at which it begins, in s
-    :param duration: in s
+    :param duration: duration, in s
     """
 
     force: Vector
@@ -59,8 +60,8 @@ class DrawnPush:
 def draw_push(ranges: Push, seed: int) -> DrawnPush:
     """Draw one episode's push, independently of its conditions.
 
-    :param ranges: what to draw from
-    :param seed: of the episode; the same seed draws the same direction and time at any force
+    :param ranges: ranges to draw from
+    :param seed: seed of the episode; the same seed draws the same direction and time at any force
     """
     generator = random.Random(f"push {seed}")
     newtons = generator.uniform(*ranges.newtons)

@@ -1,4 +1,4 @@
-"""What came out of an episode, and the one table of the metrics that judge it."""
+"""The result of an episode, and the one table of metrics that judge it."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from sarah.errors import SimulationError
 
 @dataclass(frozen=True)
 class Metric:
-    """A number that an episode ends with.
+    """A metric: a number that describes an episode.
 
-    :param label: name for people
+    :param label: name on pages and in tables
     :param unit: SI unit; empty for a number without one
-    :param meaning: what it measures, as a noun phrase
-    :param statistics: summaries of several episodes' values, names of
-        :data:`~sarah.episode.evaluation.STATISTICS`, the one that tells most first
-    :param group: group of the learning curves that it is one of; empty for none
-    :param shown: how people see it: a factor, decimals, and the unit after the factor
-    :param paper: what the paper says of it
+    :param meaning: quantity that it measures, as a noun phrase
+    :param statistics: statistics of several episodes that are shown, the most telling one first; names of
+        :data:`~sarah.episode.evaluation.STATISTICS`
+    :param group: group of its learning curve; empty if it has none
+    :param shown: display format: factor on the SI value, number of decimals, and unit after the factor
+    :param paper: value or remark that the paper gives
     """
 
     label: str
@@ -35,7 +35,7 @@ class Metric:
     paper: str = ""
 
     def text(self, value: float) -> str:
-        """A value as people see it, with its unit.
+        """Text of a value with its unit, for people.
 
         :param value: value in the SI unit
         """
@@ -49,12 +49,12 @@ def _metric(label: str, unit: str, meaning: str, *statistics: str, **others: Any
 
 @dataclass(frozen=True)
 class EpisodeResult:
-    """What came out of an episode. Every number is a metric, which :data:`METRICS` explains.
+    """The result of an episode. Every number is a metric, and :data:`METRICS` explains it.
 
-    :param termination: how it ended: one of :data:`~sarah.episode.ending.TERMINATIONS`
+    :param termination: way in which it ended, one of :data:`~sarah.episode.ending.TERMINATIONS`
     :param final_position: position of the torso's centre at the end, x and y relative to the start, z over the floor,
         in m
-    :param trace: what happened in every control tick, on request
+    :param trace: record of every control tick, if it was asked for
     """
 
     termination: str
@@ -130,7 +130,7 @@ class EpisodeResult:
     trace: Trace | None = field(default=None, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        """Refuse numbers that would poison whoever learns from them."""
+        """Refuse numbers that are not finite, from which nobody could learn."""
         for name, value in self.fields().items():
             if not isinstance(value, str) and not math.isfinite(
                 math.hypot(*value) if isinstance(value, tuple) else value
@@ -138,11 +138,11 @@ class EpisodeResult:
                 raise SimulationError(f"{name} of an episode must be finite, not {value!r}")
 
     def fields(self) -> dict[str, Any]:
-        """Every field but the trace, by name."""
+        """Values of all fields but the trace, by name."""
         return {field.name: getattr(self, field.name) for field in dataclasses.fields(self) if field.name != "trace"}
 
     def columns(self) -> dict[str, Any]:
-        """What ``episodes.csv`` holds of it, by column."""
+        """Values of its row in ``episodes.csv``, by column."""
         values = self.fields()
         x, y, _ = values.pop("final_position")
         return {"return": values.pop("episode_return"), **values, "x": x, "y": y}
@@ -166,7 +166,7 @@ METRICS: Mapping[str, Metric] = {
         "horizontal distance of the torso from its start at the end",
         ("median", "mean", "std", "max"),
         shown=(100.0, 1, "cm"),
-        paper="below 25 cm, or the simulation ends",
+        paper="below 25 cm, or the episode ends",
     ),
 }
-"""Every metric by the name of its field or property in :class:`EpisodeResult`."""
+"""Metrics by the name of their field or property in :class:`EpisodeResult`."""

@@ -11,16 +11,16 @@ TARGET_STEPS_PER_SECOND = 3.0
 
 
 def reward_rate(x: float, y: float, height: float, steps_per_second: float, form: RewardForm = "symmetric") -> float:
-    """R of equation 2: (0.5 - c_x) (0.5 - c_y) 2^(-(f - 3)^4) c_z.
+    """Reward R of equation 2: (0.5 - c_x) (0.5 - c_y) 2^(-(f - 3)^4) c_z.
 
     The printed equation has no absolute values and so rewards drifting towards negative x and y. The symmetric
     form uses ``max(0.5 - |c|, 0)`` instead, which is largest at the start position.
 
-    :param x: c_x, displacement of the torso from its start to the right, in m
-    :param y: c_y, the same forward, in m
-    :param height: c_z, height of the torso's centre over the floor, in m
-    :param steps_per_second: f
-    :param form: ``"symmetric"``, or ``"printed"`` for the equation to the letter
+    :param x: displacement c_x of the torso from its start to the right, in m
+    :param y: displacement c_y of the torso from its start forward, in m
+    :param height: height c_z of the torso's centre over the floor, in m
+    :param steps_per_second: frequency f of the steps, in 1/s
+    :param form: form of the equation: ``"symmetric"``, or ``"printed"`` for the equation to the letter
     :return: reward per second
     """
     frequency_factor = 2.0 ** -((steps_per_second - TARGET_STEPS_PER_SECOND) ** 4)
@@ -30,9 +30,9 @@ def reward_rate(x: float, y: float, height: float, steps_per_second: float, form
 
 
 def highest_return(standing_height: float, seconds: float) -> float:
-    """The ceiling of the symmetric return: standing height, start position and three steps per second all along.
+    """Ceiling of the symmetric return: standing height, start position and three steps per second all along.
 
-    :param standing_height: of the torso's centre, in m
-    :param seconds: that the pattern generator runs
+    :param standing_height: height of the standing torso's centre over the floor, in m
+    :param seconds: time that the pattern generator runs, in s
     """
     return HALF_WIDTH * HALF_WIDTH * standing_height * seconds

@@ -1,4 +1,4 @@
-"""The settings that episodes of all tasks have."""
+"""Settings that the episodes of every task have."""
 
 from __future__ import annotations
 
@@ -20,15 +20,18 @@ LONGEST_EPISODE = 3600.0
 
 @dataclass(frozen=True)
 class EpisodeConfig:
-    """What all episodes of an experiment share, whatever the task.
+    """Settings that all episodes of an experiment share, whatever the task.
 
-    :param physics: fineness of the integration; what another engine knows is taken as this one can
-    :param engine: physics engine: ``"pybullet"``, the reference, or ``"mujoco"``, the default without PyBullet
+    :param physics: resolution of the physics in time; fields that the engine does not have are ignored
+    :param engine: physics engine: ``pybullet``, the reference, or ``mujoco``, the default where PyBullet is not
+        installed
     :param randomisation: ranges that each episode's seed draws from
-    :param controller: constants of pattern generator and hip law
-    :param dimensions: dimensions of the robot, names and values where they differ from the xacro's; by default none do
+    :param controller: constants of the pattern generator and the hip law
+    :param dimensions: dimensions of the robot that differ from their defaults: values by name in SI units, such as
+        hinge_height 0.04
     :param time_limit: time limit of an episode, in s; the paper's first criterion
-    :param reward_form: form of equation 2: ``"symmetric"``, or ``"printed"`` for the equation to the letter
+    :param reward_form: form of the reward, the paper's equation 2: ``symmetric``, or ``printed`` for the equation to
+        the letter
     """
 
     physics: Physics = PHYSICS["standard"]
@@ -40,7 +43,7 @@ class EpisodeConfig:
     reward_form: RewardForm = "symmetric"
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be simulated."""
+        """Refuse settings that cannot be simulated."""
         if self.engine not in get_args(Engine):
             raise ConfigurationError(unknown_name("engine", self.engine, get_args(Engine)))
         object.__setattr__(self, "physics", physics_for(self.engine, self.physics))

@@ -1,4 +1,4 @@
-"""Everything that an episode's result depends on."""
+"""The specification of an episode: everything that its result depends on."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from sarah.episode.tasks import task_named
 from sarah.errors import ConfigurationError
 
 FIRST_TRAINING_SEED = 2**31
-"""First seed of the episodes that trainings draw; smaller ones stay unseen by every training."""
+"""First seed that trainings draw for their episodes; no training uses a smaller one."""
 
 
 @dataclass(frozen=True)
 class EpisodeSpec:
-    """Everything that an episode's result depends on.
+    """The specification of an episode: everything that its result depends on.
 
-    :param parameters: values of the task's parameters: P1 to P5, or V1 to V4
-    :param seed: seed of the conditions, the push and the sensor noise; a whole number from 0
+    :param parameters: values of the task's parameters, in order: P1 to P5, or V1 to V4
+    :param seed: seed of the conditions, the push and the sensor noise; a whole number, not negative
     :param task: name of the task: ``"stepping"`` or ``"balance"``
     :param config: settings that all episodes of an experiment share; by default the task's own
-    :raises ConfigurationError: for an unknown task, another task's settings, parameters out of their box, or a seed
-        that is none
+    :raises ConfigurationError: for an unknown task, another task's settings, parameters out of their box, or an
+        invalid seed
     """
 
     parameters: tuple[float, ...]
@@ -30,7 +30,7 @@ class EpisodeSpec:
     config: EpisodeConfig = None  # type: ignore[assignment]  # the task's own
 
     def __post_init__(self) -> None:
-        """Refuse what has no result of its own, and take the parameters as floats."""
+        """Refuse invalid specifications, and convert the parameters to floats."""
         task = task_named(self.task)
         object.__setattr__(self, "parameters", task.checked(self.parameters))
         object.__setattr__(self, "config", task.episode if self.config is None else task.checked_config(self.config))

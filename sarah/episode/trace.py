@@ -1,4 +1,4 @@
-"""What happened in an episode, tick by tick: what a viewer shows, a video films and a plot draws."""
+"""The record of an episode, tick by tick, for the viewer, videos and plots."""
 
 from __future__ import annotations
 
@@ -13,30 +13,31 @@ from sarah.errors import SimulationError
 
 @dataclass(frozen=True)
 class Trace:
-    """One row for every control tick in which the pattern generator ran: arrays whose first axis is time.
+    """Arrays with one row for every control tick in which the pattern generator ran.
 
-    A row is what was so when the tick began, and what was decided in it.
+    A row contains the state at the beginning of the tick, and what the controller decided in it.
 
     :param time: simulated time, from the end of the first second of standing, in s
-    :param position: of the torso's centre in the world, in m; shape (ticks, 3)
-    :param orientation: of the torso, unit quaternions (x, y, z, w); shape (ticks, 4)
+    :param position: position of the torso's centre in the world's frame, in m; shape (ticks, 3)
+    :param orientation: orientation of the torso, as unit quaternions (x, y, z, w); shape (ticks, 4)
     :param joints: true positions of the actuated joints in the order of
         :data:`~sarah.robot.description.ACTUATED_JOINTS`, in rad and m; leg lengths are positive when retracted; shape
         (ticks, 6)
     :param ankles: true positions of :data:`~sarah.robot.description.ANKLE_JOINTS`, in rad; shape (ticks, 4)
-    :param targets: of the actuated joints; shape (ticks, 6)
-    :param pressures: as sensed, in N: left fore, left hind, right fore, right hind; shape (ticks, 4)
-    :param acceleration: specific force as sensed, in the torso's frame, in m/s^2; shape (ticks, 3)
-    :param angular_rate: as sensed, in the torso's frame, in rad/s; shape (ticks, 3)
-    :param phase: of the pattern generator: ``"shift"``, ``"lift"`` or ``"land"``
-    :param stance: the stance leg: +1 right, -1 left
+    :param targets: targets of the actuated joints, in rad and m; shape (ticks, 6)
+    :param pressures: sensed loads on the pads, in N: left fore, left hind, right fore, right hind; shape (ticks, 4)
+    :param acceleration: sensed specific force in the torso's frame, in m/s^2; shape (ticks, 3)
+    :param angular_rate: sensed angular rate in the torso's frame, in rad/s; shape (ticks, 3)
+    :param phase: phase of the pattern generator: ``"shift"``, ``"lift"`` or ``"land"``
+    :param stance: side of the stance leg: +1 right, -1 left
     :param stable_x: low-passed lateral acceleration, in m/s^2
-    :param tilt: what P2 is compared with (:attr:`~sarah.control.pattern_generator.PatternGenerator.tilt`), in m/s^2
-    :param rate: what P1 and P3 are compared with (:attr:`~sarah.control.pattern_generator.PatternGenerator.rate`),
-        in rad/s
-    :param steps_per_second: of the last 2 s
-    :param push: force on the torso's centre during the tick, in the world's frame, in N; shape (ticks, 3)
-    :param score: reached when the tick began
+    :param tilt: value that P2 is compared with (:attr:`~sarah.control.pattern_generator.PatternGenerator.tilt`), in
+        m/s^2
+    :param rate: value that P1 and P3 are compared with
+        (:attr:`~sarah.control.pattern_generator.PatternGenerator.rate`), in rad/s
+    :param steps_per_second: steps per second in the last 2 s
+    :param push: force of the push during the tick, in the world's frame, in N; shape (ticks, 3)
+    :param score: score so far
     """
 
     time: np.ndarray
@@ -59,10 +60,10 @@ class Trace:
 
     @classmethod
     def of(cls, rows: Sequence[Mapping[str, Any]]) -> Trace:
-        """Make a trace of its rows.
+        """Make a trace from its rows.
 
-        :param rows: one for each tick, with a value for every field
-        :raises SimulationError: if there are none
+        :param rows: values by field, one row for each tick
+        :raises SimulationError: if there are no rows
         """
         if not rows:
             raise SimulationError("there is nothing to show: the simulation diverged while the robot stood")
@@ -73,8 +74,8 @@ class Trace:
         return len(self.time)
 
     def tick_at(self, time: float) -> int:
-        """The last tick that began by a time.
+        """Index of the last tick that began by a time.
 
-        :param time: simulated time in s; before the first tick and after the last one, those
+        :param time: simulated time, in s; the first and the last tick stand for times outside the trace
         """
         return max(0, int(np.searchsorted(self.time, time + 1e-9, side="right")) - 1)

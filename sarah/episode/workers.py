@@ -1,7 +1,7 @@
-"""Where episodes are simulated: in this process, in worker processes of this machine, or on a Dask cluster.
+"""Places where episodes are simulated: this process, worker processes on this machine, or a Dask cluster.
 
-An episode is a pure function of its specification, so where it runs, in which order, and how often it had to be begun
-anew after a worker died, changes nothing in its result.
+An episode is a pure function of its specification. So its result does not depend on where it runs, in which order, or
+how often it was repeated because a worker died.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ if TYPE_CHECKING:
     from distributed import Client, LocalCluster
 
 MOST_WAITING = 8
-"""Episodes that a process keeps standing, waiting for their parameters. Each takes some 15 MB, and one whose parameters
-went to another process waits in vain; whoever does not stand here stands anew, for a thirtieth of an episode."""
+"""Largest number of episodes that a process keeps standing until their parameters are known. Each takes some 15 MB.
+Parameters may go to another process, which then lets the episode stand anew, at a thirtieth of an episode's cost."""
 SCHEDULER_SECONDS = 10
-"""How long to wait for a connection to a scheduler."""
+"""Time limit for connecting to a scheduler, in s."""
 SAFE_PATH = "PYTHONSAFEPATH"
-"""Keeps Python from putting the working folder on its search path, from Python 3.11 on."""
+"""Environment variable that keeps Python 3.11 and later from searching the working folder for modules."""
 NICENESS = 5
 """Niceness of local workers, so that the learner gets the processor first."""
 UNWATCHED = {
@@ -43,22 +43,22 @@ UNWATCHED = {
     "distributed.admin.tick.interval": "1s",
     "distributed.admin.system-monitor.interval": "10s",
 }
-"""How little the processes of this machine watch themselves. As Dask has it, every 10 to 500 ms, it takes the
-processor from the episodes."""
+"""Settings with which Dask's workers on this machine watch themselves less. By default they do so every 10 to 500 ms,
+which takes the processor from the episodes."""
 MOST_WORKERS = 1000
-"""On one machine."""
+"""Largest number of workers on one machine."""
 ATTEMPTS = 20
-"""How often an episode is handed in: a scheduler gives it up after the deaths of a few workers."""
+"""Largest number of times that an episode is submitted: a scheduler gives it up after the deaths of a few workers."""
 
 _waiting: OrderedDict[tuple[Any, ...], Episode] = OrderedDict()
 
 
 class Outcome(NamedTuple):
-    """An episode that is over.
+    """Outcome of an episode that has ended.
 
-    :param result: what came of it
-    :param reading: the sensors' last one
-    :param following: the last reading of the episode that was to stand after it, if one was
+    :param result: result of the episode
+    :param reading: last reading of its sensors
+    :param following: last reading of the standing robot of the following episode, if there was one
     """
 
     result: EpisodeResult
@@ -67,21 +67,21 @@ class Outcome(NamedTuple):
 
 
 class Job(Protocol):
-    """Something that is simulated, now or later, here or elsewhere."""
+    """A call that is computed now or later, in this process or another."""
 
     def result(self) -> Any:
-        """What came of it; waits for it."""
+        """Wait for the call, and return what it returned."""
 
 
 def begin_episode(spec: EpisodeSpec) -> SensorReading:
-    """Let an episode stand for its first second, and keep it until its parameters are known.
+    """Let the robot of an episode stand for the first second, and keep the episode until its parameters are known.
 
-    :param spec: of the episode; its parameters do not matter
-    :return: the sensors' last reading, which the agent acts on
+    :param spec: specification of the episode; its parameters do not matter
+    :return: the last sensor reading, which the agent acts on
     """
     episode = _standing(spec)
     before = _waiting.pop(_key(spec), None)
-    if before is not None:  # whoever asked for it never let it run
+    if before is not None:  # it was never finished
         before.close()
     _waiting[_key(spec)] = episode
     if len(_waiting) > MOST_WAITING:
@@ -90,10 +90,11 @@ def begin_episode(spec: EpisodeSpec) -> SensorReading:
 
 
 def finish_episode(spec: EpisodeSpec, following: EpisodeSpec | None = None) -> Outcome:
-    """Run an episode to its end: the one that stands here, or, if none does, one from the beginning.
+    """Run an episode to its end. It goes on from the episode that stands in this process, or begins anew.
 
-    :param spec: of the episode
-    :param following: of another one, to let stand afterwards; a task of its own would cost the scheduler as much
+    :param spec: specification of the episode
+    :param following: specification of an episode to let stand afterwards; a separate job would cost the scheduler as
+        much as the episode's own
     """
     episode = _waiting.pop(_key(spec), None) or _standing(spec)
     try:
@@ -114,7 +115,7 @@ def _standing(spec: EpisodeSpec) -> Episode:
 
 
 def close_waiting_episodes() -> None:
-    """Close the episodes of this process that stand and wait for parameters."""
+    """Close this process's episodes that stand and wait for parameters."""
     while _waiting:
         _waiting.popitem()[1].close()
 
@@ -124,20 +125,21 @@ def _key(spec: EpisodeSpec) -> tuple[Any, ...]:
 
 
 class Executor(ABC):
-    """Whoever has things simulated."""
+    """Something that computes calls, in this process or in others."""
 
     @abstractmethod
     def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
-        """Have something done.
+        """Submit a call.
 
-        :param function: :func:`begin_episode`, :func:`finish_episode`, :func:`sarah.simulate`, or another module's
-        :param subjects: of the function: specifications of episodes, or what else it takes
+        :param function: function to call: :func:`begin_episode`, :func:`finish_episode`, :func:`sarah.simulate`, or
+            one of another module
+        :param subjects: arguments of the function, such as specifications of episodes
         """
 
     def simulate_all(self, specs: Sequence[EpisodeSpec]) -> Iterator[EpisodeResult]:
         """Simulate many episodes.
 
-        :param specs: of the episodes
+        :param specs: specifications of the episodes
         :return: their results, in the same order
         """
         jobs = [self.submit(simulate, spec) for spec in specs]
@@ -145,58 +147,62 @@ class Executor(ABC):
 
 
 class Workers(Executor):
-    """A context in which episodes are simulated.
+    """Workers that simulate episodes, as a context.
 
-    Worker processes import the main module: a script that starts some does it under ``if __name__ == "__main__":``.
+    Worker processes import the main module, so a script must start workers under ``if __name__ == "__main__":``.
 
-    :param count: worker processes to start on this machine; with none, episodes run in this process, when they are
-        asked for
+    :param count: number of worker processes to start on this machine; with 0, this process simulates an episode when
+        its result is asked for
     :param scheduler: address of a Dask scheduler, such as ``tcp://10.0.0.1:8786``, whose workers are used instead
-    :raises ConfigurationError: if the count is none that a machine can start, or both are given
+    :raises ConfigurationError: if the count is negative or too large, or if count and scheduler are both given
     :raises WorkersError: on entering, if no scheduler answers
     """
+
+    client: Client | None
+    """Client of Dask's scheduler, in the context; nothing if this process simulates."""
 
     def __init__(self, count: int = 0, scheduler: str | None = None) -> None:
         check_range("workers", count, 0, MOST_WORKERS)
         if count and scheduler is not None:
-            raise ConfigurationError("workers are started here, a scheduler has its own: give one of the two")
+            raise ConfigurationError("workers start on this machine, but a scheduler has its own: give one of the two")
         self._count = count
         self._scheduler = scheduler
-        self._client: Client | None = None
+        self.client = None
         self._cluster: LocalCluster | None = None
         self._safe_path = ""
 
     def __enter__(self) -> Workers:
-        """Start the workers, or find them."""
+        """Start the workers, or connect to the scheduler."""
         if self._scheduler is not None:
-            self._client = _connect(self._scheduler)
+            self.client = _connect(self._scheduler)
         elif self._count:
-            # Otherwise a new process imports what lies in the working folder, such as a pickle.py in somebody's run.
+            # Otherwise a worker imports modules from the working folder, such as a pickle.py in somebody's run folder.
             self._safe_path = os.environ.get(SAFE_PATH, "")
             os.environ[SAFE_PATH] = "1"
-            self._cluster, self._client = _start(self._count)
+            self._cluster, self.client = _start(self._count)
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Stop what was started; a cluster goes on without this client."""
+        """Stop the workers that were started; the workers of a scheduler go on without this client."""
         close_waiting_episodes()
-        if self._client is not None:
-            self._client.close()
+        if self.client is not None:
+            self.client.close()
         if self._cluster is not None:
             self._cluster.close()
-            os.environ[SAFE_PATH] = self._safe_path  # empty is as good as unset
+            os.environ[SAFE_PATH] = self._safe_path  # Python takes an empty value as unset
 
     def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
-        """Have something done: simulated, or trained.
+        """Submit a call, of an episode or of a whole training.
 
-        :param function: :func:`begin_episode`, :func:`finish_episode`, :func:`sarah.simulate`, or another module's
-        :param subjects: of the function: specifications of episodes, or what else it takes
+        :param function: function to call: :func:`begin_episode`, :func:`finish_episode`, :func:`sarah.simulate`, or
+            one of another module
+        :param subjects: arguments of the function, such as specifications of episodes
         """
-        if self._client is None:
+        if self.client is None:
             return _LocalJob(function, *subjects)
-        return _RemoteJob(functools.partial(self._client.submit, function, *subjects, pure=False))
+        return _RemoteJob(functools.partial(self.client.submit, function, *subjects, pure=False))
 
 
 class _LocalJob:
@@ -217,30 +223,30 @@ class _RemoteJob:
         for _ in range(ATTEMPTS):
             try:
                 return self._future.result()
-            except KilledWorker:  # a scheduler gives up after a few deaths, which a pure function need not
+            except KilledWorker:  # the scheduler gave up after a few deaths, but a pure function can be repeated
                 self._future = self._submit()
             except CancelledError as error:
                 raise WorkersError(f"the connection to the scheduler is lost: {error}") from error
-        raise WorkersError(f"an episode was handed in {ATTEMPTS} times, and each time its workers died")
+        raise WorkersError(f"an episode was submitted {ATTEMPTS} times, and its workers died each time")
 
 
 def _connect(address: str) -> Client:
     try:
         client = _client_in_time(address)
     except futures.TimeoutError as error:
-        raise WorkersError(f"no Dask scheduler answers at {address!r}: whoever listens there says nothing") from error
+        raise WorkersError(f"no Dask scheduler answers at {address!r}: the port is open, but silent") from error
     except (OSError, ValueError, TypeError, RuntimeError) as error:
         raise WorkersError(f"no Dask scheduler answers at {address!r}: {error}") from error
     here = versions(SIMULATING)
     for worker, there in client.run(versions, SIMULATING).items():
         if there != here:
             client.close()
-            raise WorkersError(f"worker {worker} has {there}, and results would differ: here is {here}")
+            raise WorkersError(f"results would differ: worker {worker} has {there}, but this process has {here}")
     return client
 
 
 def _client_in_time(address: str) -> Client:
-    """A client, made in a thread: Dask waits for ever at a port where nobody says anything."""
+    """Make a client in a thread of its own, because Dask waits for ever at a port where nothing answers."""
     from distributed import Client
 
     made: futures.Future[Client] = futures.Future()
@@ -260,7 +266,7 @@ def _start(count: int) -> tuple[LocalCluster, Client]:
     from distributed import Client, LocalCluster, WorkerPlugin
 
     class Serve(WorkerPlugin):
-        """Leave Ctrl-C, which reaches workers too, to the training, and the processor to the learner they wait for."""
+        """Ignore Ctrl-C, which the training handles, and give the learner's process priority over the worker."""
 
         def setup(self, worker: Any) -> None:
             signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -271,8 +277,8 @@ def _start(count: int) -> tuple[LocalCluster, Client]:
             n_workers=count,
             threads_per_worker=1,
             host="127.0.0.1",
-            dashboard_address="127.0.0.1:0",  # any free port; otherwise 8787, which another may hold
-            security=True,  # others on this machine reach the ports too
+            dashboard_address="127.0.0.1:0",  # any free port; the default 8787 may be taken
+            security=True,  # other users of this machine can reach the ports too
             memory_limit=0,
             silence_logs=logging.CRITICAL,
         )

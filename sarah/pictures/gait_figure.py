@@ -1,4 +1,4 @@
-"""One gait cycle as time plots: what the pattern generator feels, what it compares it with, and what the legs do."""
+"""One gait cycle as time plots: sensor signals, the parameters they are compared with, and the motion of the legs."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
 
 THRESHOLD = "#A51417"
 PADS_SHOWN = 700.0
-"""Upper end of the axis of loads, in N: a landing's impact goes far beyond."""
+"""Upper end of the axis of loads, in N: the impact of a landing exceeds it by far."""
 AFTER_SECONDS = 8.0
-"""Simulated time from which on the cycle is looked for: by then the gait has settled."""
+"""Simulated time after which a cycle is chosen, in s: by then the gait has settled."""
 
 
 def gait_cycle(trace: Trace) -> slice:
-    """Find one cycle, a step with each leg, once the gait has settled; in a short episode, the last one that there is.
+    """Find one gait cycle, a step with each leg, after the gait has settled; in a short episode, the last cycle.
 
-    :param trace: of an episode
-    :return: rows of the trace, from the begin of a SHIFT with the right leg as stance leg to the next such
-    :raises ConfigurationError: if the robot made no whole cycle
+    :param trace: trace of an episode
+    :return: rows of the trace, from the beginning of a SHIFT with the right leg as stance leg to the next such SHIFT
+    :raises ConfigurationError: if the robot completed no cycle
     """
     begins = (trace.phase == Phase.SHIFT.value) & (trace.stance == 1)
     begins[1:] &= ~begins[:-1]
-    cycles = list(itertools.pairwise(np.flatnonzero(begins)))[1:]  # the first one begins the gait
+    cycles = list(itertools.pairwise(np.flatnonzero(begins)))[1:]  # the first cycle begins the gait
     if not cycles:
-        raise ConfigurationError("the robot makes no whole one")
+        raise ConfigurationError("the robot completes no cycle")
     begin, end = next((cycle for cycle in cycles if trace.time[cycle[0]] >= AFTER_SECONDS), cycles[-1])
     return slice(int(begin), int(end) + 1)
 
@@ -45,12 +45,12 @@ def draw_gait_cycle(
 ) -> list[Path]:
     """Draw one gait cycle, with the parameters that end its phases.
 
-    :param trace: of an episode
-    :param parameters: P1 to P5 of that episode
+    :param trace: trace of an episode
+    :param parameters: values of P1 to P5 in that episode
     :param path: path of the picture, without suffix
-    :param constants: the controller's constants in that episode
+    :param constants: constants of the controller in that episode
     :return: the files, PNG and PDF
-    :raises ConfigurationError: if the robot made no whole cycle; nothing is drawn then
+    :raises ConfigurationError: if the robot completed no cycle; nothing is drawn then
     """
     rows = gait_cycle(trace)
     time, stance = trace.time[rows], trace.stance[rows]
@@ -105,7 +105,7 @@ def _both(axis: Axes, time: np.ndarray, left: np.ndarray, right: np.ndarray) -> 
 
 
 def _threshold(axis: Axes, time: np.ndarray, counts: np.ndarray, value: float, name: str, side: str = "center") -> None:
-    """A parameter, where it is compared with; its name stands on a side of it, for two may be close together."""
+    """Draw a parameter while it is compared, with its name on one side of it, as two may be close together."""
     axis.plot(time, np.where(counts, value, np.nan), color=THRESHOLD, linewidth=1.2, linestyle=(0, (2, 1)))
     axis.annotate(
         name,

@@ -1,4 +1,4 @@
-"""What parameters do, as pictures for TensorBoard: a gait cycle, and a short video as GIF, which it plays."""
+"""Pictures of a gait for TensorBoard: a gait cycle, and a short video as GIF."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_v
 from sarah.robot.description import describe_robot
 
 EPISODE_SECONDS = 10.0
-"""Simulated at most."""
+"""Longest duration of the simulated episode, in s."""
 VIDEO_SECONDS = 3.0
-"""The last ones of the episode are filmed."""
+"""Duration of the video, which shows the end of the episode, in s."""
 
 
 @dataclass(frozen=True)
 class Picture:
     """An encoded picture.
 
-    :param name: that TensorBoard shows it under
-    :param width: in pixels
-    :param height: in pixels
-    :param content: of its file, PNG or GIF
+    :param name: name of the picture in TensorBoard
+    :param width: width, in pixels
+    :param height: height, in pixels
+    :param content: bytes of its file, PNG or GIF
     """
 
     name: str
@@ -41,17 +41,17 @@ class Picture:
 
 
 def draw_gait(parameters: tuple[float, ...], task: str, config: EpisodeConfig) -> list[Picture]:
-    """Simulate parameters on seed 0, and draw what they do.
+    """Simulate an episode with seed 0, and draw its gait.
 
-    :param parameters: to draw
-    :param task: whose parameters they are
+    :param parameters: values of the task's parameters, in order
+    :param task: name of the task
     :param config: settings of the episode
-    :return: a video, and a gait cycle if the robot makes one; nothing if it does not even stand
+    :return: a video, and a gait cycle if the robot completes one; nothing if the robot cannot even stand
     """
     short = dataclasses.replace(config, time_limit=min(EPISODE_SECONDS, config.time_limit))
     try:
         trace = simulate(EpisodeSpec(parameters, 0, task, short), record_trace=True).trace
-    except SimulationError:  # it diverges: the curves show that
+    except SimulationError:  # the simulation diverges, which the learning curves show
         return []
     assert trace is not None
     stepping, _ = TASKS[task].controller_parameters(parameters, config)
@@ -63,7 +63,7 @@ def draw_gait(parameters: tuple[float, ...], task: str, config: EpisodeConfig) -
         pictures = [_picture("gait/video", folder / "video.gif")]
         try:
             draw_gait_cycle(trace, stepping, folder / "cycle", config.controller)
-        except ConfigurationError:  # it makes no step
+        except ConfigurationError:  # the robot completes no gait cycle
             return pictures
         return [*pictures, _picture("gait/cycle", folder / "cycle.png")]
 

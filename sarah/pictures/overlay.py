@@ -1,4 +1,4 @@
-"""What is written and drawn over a video's frames."""
+"""The text and symbols over a video's frames."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from sarah.simulation.scenery import View
 
 INK, PALE_INK = "#1B1F24", "#5A6470"
 METRES_PER_NEWTON = 0.005
-"""Length of a push's arrow."""
+"""Length of a push's arrow per force, in m/N."""
 PUSH_SHOWN_SECONDS = 0.6
-"""How long the arrow stays, from the push's begin on: the push itself is over before the eye has found it."""
+"""Time for which the arrow is shown, in s: the push itself is over before a viewer has noticed it."""
 LABEL_OFFSET = np.array((0.26, 0.20, 0.0))
-"""Of the arrow's label from the torso's centre: to the right, upward and ahead as the camera sees it, in m."""
+"""Position of the arrow's label from the torso's centre: to the right, upward and ahead in the picture, in m."""
 DIRECTIONS = ("to its right", "forward", "to its left", "backward")
 STRIP_SECONDS = 2.0
-"""Of the past that the strip of phases shows."""
+"""Length of the past that the strip of phases shows, in s."""
 
 
 class Overlay:
-    """Writes over the frames of one episode.
+    """Draws text and symbols over the frames of one episode.
 
-    :param trace: of the episode
-    :param view: of the camera
-    :param caption: what is filmed, one line or more
+    :param trace: trace of the episode
+    :param view: view of the camera
+    :param caption: text below the robot, one line or more
     """
 
     def __init__(self, trace: Trace, view: View, caption: str) -> None:
@@ -45,9 +45,9 @@ class Overlay:
         self._push_tick = int(np.argmax(forces > 0.0)) if forces.any() else None
 
     def draw(self, picture: Image.Image, tick: int) -> None:
-        """Write over a frame.
+        """Draw over a frame.
 
-        :param picture: of the size of the view
+        :param picture: frame of the view's size
         :param tick: row of the trace
         """
         pen = ImageDraw.Draw(picture)
@@ -77,7 +77,7 @@ class Overlay:
         pen.text((1.5 * unit, self._view.height - 1.2 * unit), self._caption, font=size, fill=PALE_INK, anchor="ld")
 
     def _draw_phases(self, pen: ImageDraw.ImageDraw, tick: int) -> None:
-        """The phases of the last seconds, which of the two legs swings in each of them, and their colours' names."""
+        """Draw the phases of the last seconds, each in the row of its swing leg, and the names of their colours."""
         unit = self._unit
         begin, end, top = 3.0 * unit, 16.5 * unit, 20.5 * unit
         for row, side in enumerate(Side):
@@ -98,7 +98,7 @@ class Overlay:
         pen.text((begin, y + 1.5 * unit), note, font=_font(0.85 * unit), fill=PALE_INK)
 
     def _past_phases(self, tick: int) -> Iterator[tuple[tuple[float, float], str, Side]]:
-        """Each phase of the last seconds: how long ago it began and ended, its name, and its swing leg."""
+        """Phases of the last seconds: how long ago each began and ended in s, its name, and its swing leg."""
         trace = self._trace
         now = trace.time[tick]
         rows = slice(trace.tick_at(now - STRIP_SECONDS), tick + 1)
@@ -109,7 +109,7 @@ class Overlay:
             yield (began, ages[end]), str(phase[begin]), Side(int(stance[begin])).other
 
     def _draw_push(self, pen: ImageDraw.ImageDraw, tick: int, force: np.ndarray) -> None:
-        """An arrow that ends at the torso's centre, with the force in newtons."""
+        """Draw an arrow that ends at the torso's centre, and the force in newtons."""
         unit = self._unit
         head = self._trace.position[tick]
         tail = head - METRES_PER_NEWTON * force
@@ -129,7 +129,7 @@ class Overlay:
 
 @lru_cache(maxsize=16)
 def _font(size: float, bold: bool = False) -> ImageFont.FreeTypeFont:
-    """The font that matplotlib brings with it."""
+    """Font that comes with matplotlib, in a size in pixels."""
     import matplotlib
 
     name = "DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf"

@@ -1,4 +1,4 @@
-"""The paper's Figure 2: the robot, its groups, its joints and its sensors, from the URDF that is simulated."""
+"""The paper's Figure 2: the robot with its groups, joints and sensors, drawn from the URDF that is simulated."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ CAMERA = Camera(height=0.46, distance=2.3, yaw=152.0, pitch=-9.0)
 HEIGHT = 1.3 * COLUMN_WIDTH
 PIXELS_PER_INCH = 300
 TRIAD = (0.07, 0.50, 0.0)
-"""Where the axes are drawn, on the floor, in m."""
+"""Place of the origin of the drawn axes, on the floor, in m."""
 TRIAD_LENGTH = 0.10
 UP_AXIS = 2
 
 
 @dataclass(frozen=True)
 class Label:
-    """Words beside the robot, and the point of it that they are about.
+    """Words beside the robot, and the point of the robot that they name.
 
-    :param text: one line or two
-    :param point: in the world, in m
-    :param height: of the words, from 0 at the picture's lower edge to 1
-    :param is_left: whether they stand on the picture's left
-    :param colour: of the words
+    :param text: words, on one line or two
+    :param point: point in the world's frame, in m; shape (3,)
+    :param height: height of the words, from 0 at the picture's lower edge to 1
+    :param is_left: whether the words stand on the picture's left
+    :param colour: colour of the words
     """
 
     text: str
@@ -46,9 +46,9 @@ class Label:
 
 
 def labels_of(robot: RobotDescription) -> list[Label]:
-    """What there is to say of a robot.
+    """Labels of a robot's groups, joints and sensors.
 
-    :param robot: standing with all joints at zero
+    :param robot: robot, which stands with all joints at zero
     """
     import yourdfpy
 
@@ -56,7 +56,7 @@ def labels_of(robot: RobotDescription) -> list[Label]:
     torso = np.array((0.0, 0.0, robot.standing_height))
 
     def at(link: str, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> np.ndarray:
-        """A point of a link's frame, in the world."""
+        """Point of a link's frame, in the world's frame."""
         point = model.get_transform(link, "torso") @ (x, y, z, 1.0)
         return np.asarray(torso + point[:3])
 
@@ -86,7 +86,7 @@ def labels_of(robot: RobotDescription) -> list[Label]:
 
 
 def _joint(robot: RobotDescription, joint: str) -> str:
-    """A joint's name, axis and limits."""
+    """Text with a joint's name, axis and limits."""
     name = joint.split("_", 1)[1].replace("_", " ")
     if joint in ANKLE_JOINTS:
         return f"{name},\npassive"
@@ -100,8 +100,8 @@ def _joint(robot: RobotDescription, joint: str) -> str:
 def draw_robot(robot: RobotDescription, path: Path) -> list[Path]:
     """Draw the standing robot with its groups, joints and sensors named.
 
-    :param robot: to draw
-    :param path: of the picture, without suffix
+    :param robot: robot to draw
+    :param path: path of the picture, without suffix
     :return: the files, PNG and PDF
     """
     width, height = round(COLUMN_WIDTH * PIXELS_PER_INCH), round(HEIGHT * PIXELS_PER_INCH)
@@ -146,7 +146,7 @@ def _draw_label(axis: Axes, view: View, label: Label) -> None:
 
 
 def _draw_triad(axis: Axes, view: View) -> None:
-    """The axes of torso and world: x to the robot's right, y forward, z up."""
+    """Draw the axes of torso and world: x to the robot's right, y forward, z up."""
     origin = np.array(TRIAD)
     for index, name in enumerate("xyz"):
         tip = origin + TRIAD_LENGTH * np.eye(3)[index]

@@ -1,7 +1,7 @@
-"""The paper's Figure 3: the pattern generator's state machine and the hip law, drawn from the code that runs.
+"""The paper's Figure 3: the pattern generator's state machine and the hip law, drawn from the running code.
 
-Nothing is written here twice. The conditions come from running the generator's own condition with names in place of
-numbers; phases, their order, time-outs and leg lengths from running the generator itself.
+The figure repeats nothing by hand. The conditions come from evaluating the generator's own condition with names in
+place of numbers. Phases, their order, time-outs and leg lengths come from running the generator.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
 from sarah.robot.reading import SensorReading, Side
 
 SILENCE = SensorReading((0.0, 0.0, 9.81), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), (0.0,) * 6)
-"""Reading with which no sensor ends a phase."""
+"""Reading with which no sensor condition ends a phase."""
 DT = 0.001
 MINUS = "\u2212"
 TILT, RATE = CONSTANTS.abduction_tilt, CONSTANTS.abduction_rate_share
@@ -39,10 +39,10 @@ acceleration. pitch (rad): leaky integral of the angular rate about x.
 
 
 class Name:
-    """A quantity without a value: arithmetic writes a formula, and a comparison is noted and holds.
+    """A quantity without a value: arithmetic writes a formula, and a comparison is recorded and true.
 
-    :param text: the formula
-    :param noted: where comparisons are noted
+    :param text: formula of the quantity
+    :param noted: list that records the comparisons
     """
 
     def __init__(self, text: str, noted: list[str]) -> None:
@@ -50,12 +50,12 @@ class Name:
         self._noted = noted
 
     def __mul__(self, other: Any) -> Name:
-        """Write a product, numbers first."""
+        """Write a product, with numbers first."""
         first, second = (self, other) if isinstance(other, Name) else (other, self)
         return Name(f"{_text(first, True)} {_text(second, True)}", self._noted)
 
     def __rmul__(self, other: Any) -> Name:
-        """Write a product of a number."""
+        """Write a product with a number."""
         return self * other
 
     def __add__(self, other: Any) -> Name:
@@ -67,12 +67,12 @@ class Name:
         return Name(f"{MINUS}{_text(self, True)}", self._noted)
 
     def __gt__(self, other: Any) -> bool:
-        """Note that this must be larger."""
+        """Record that this must be larger."""
         self._noted.append(f"{self.text} > {_text(other)}")
         return True
 
     def __lt__(self, other: Any) -> bool:
-        """Note that this must be smaller."""
+        """Record that this must be smaller."""
         self._noted.append(f"{self.text} < {_text(other)}")
         return True
 
@@ -84,15 +84,15 @@ def _text(value: Any, is_factor: bool = False) -> str:
 
 @dataclass(frozen=True)
 class PhaseFacts:
-    """What the generator does in a phase, and what ends it.
+    """A phase of the pattern generator, and the conditions that end it.
 
-    :param phase: which
-    :param following: the phase after it
-    :param swaps_legs: whether the other leg swings then
-    :param conditions: which together end it; they depend on sensors
-    :param time_out: formula in s that ends it if they do not
-    :param swing_length: target of the swing leg in m, positive when retracted
-    :param stance_length: target of the stance leg
+    :param phase: phase of the generator
+    :param following: phase after it
+    :param swaps_legs: whether the other leg swings after it
+    :param conditions: sensor conditions that together end it
+    :param time_out: formula of the time-out in s, which ends it otherwise
+    :param swing_length: target of the swing leg's length, in m, positive when retracted
+    :param stance_length: target of the stance leg's length, in m, positive when retracted
     """
 
     phase: Phase
@@ -105,9 +105,9 @@ class PhaseFacts:
 
 
 def read_state_machine() -> list[PhaseFacts]:
-    """Read off the pattern generator what it does.
+    """Extract the phases from the pattern generator.
 
-    :return: its phases but the standing one, in their order
+    :return: all phases but STAND, in their order
     """
     observed = _observe(0.0, 0.0)
     stretched = {"P4": _observe(1.0, 0.0), "P5": _observe(0.0, 1.0)}
@@ -134,7 +134,7 @@ def read_state_machine() -> list[PhaseFacts]:
 
 
 def _observe(p4: float, p5: float) -> list[tuple[Phase, float, dict[Side, float], Side]]:
-    """Phase, duration in s, leg lengths at its end and swing leg, of one step in silence and the phase after it."""
+    """Phase, duration in s, final leg lengths in m, swing leg: for one step without sensors and the phase after it."""
     generator = PatternGenerator(SteppingParameters(1.0, 1.0, 1.0, p4, p5), dt=DT)
     generator.tick(SILENCE)
     seen: list[tuple[Phase, float, dict[Side, float], Side]] = []
@@ -150,7 +150,7 @@ def _observe(p4: float, p5: float) -> list[tuple[Phase, float, dict[Side, float]
 
 
 def _conditions(phase: Phase) -> tuple[str, ...]:
-    """What the sensors must say to end a phase."""
+    """Sensor conditions that end a phase."""
     noted: list[str] = []
     parameters = SteppingParameters(*(Name(name, noted) for name in SteppingParameters.__dataclass_fields__))  # type: ignore[arg-type]
 
@@ -173,9 +173,9 @@ def _conditions(phase: Phase) -> tuple[str, ...]:
 
 
 def read_hip_law() -> dict[str, str]:
-    """Read off the hip law what it does.
+    """Extract the formulas from the hip law.
 
-    :return: formulas of the targets by what they are of
+    :return: formulas of the hip targets, by name of the target
     """
     noted: list[str] = []
     parameters = BalanceParameters(*(Name(name, noted) for name in BalanceParameters.__dataclass_fields__))  # type: ignore[arg-type]
@@ -197,9 +197,9 @@ def read_hip_law() -> dict[str, str]:
 
 
 def draw_state_machine(path: Path) -> list[Path]:
-    """Draw the state machine: what it does in white boxes, the conditions that end a phase in coloured ones.
+    """Draw the state machine: actions in white boxes, and the conditions that end a phase in coloured ones.
 
-    :param path: of the picture, without suffix
+    :param path: path of the picture, without suffix
     :return: the files, PNG and PDF
     """
     with plt.rc_context(STYLE):
@@ -235,14 +235,14 @@ def draw_state_machine(path: Path) -> list[Path]:
 
 
 def _leg(name: str, length: float) -> str:
-    """What a leg does."""
+    """Words for the motion of a leg."""
     millimetres = round(1000 * abs(length))
     how = f"retracts by {millimetres} mm" if length > 0 else f"pushes by {millimetres} mm" if length < 0 else "straight"
     return f"{name} leg {how}"
 
 
 def _box(axis: Axes, top: float, text: str, colour: str, height: float = 1.3) -> float:
-    """A box with its text, the first line of a white one in bold; returns its lower edge."""
+    """Draw a box with its text, and return its lower edge; the first line in a white box is bold."""
     left, width = 0.2, 8.6
     axis.add_patch(
         plt.Rectangle((left, top - height), width, height, facecolor=colour, edgecolor="black", linewidth=0.8)

@@ -1,4 +1,4 @@
-"""How plots look in print: legible at the width of a column, told apart by the colour-blind, text that stays text."""
+"""The style of plots: legible in print at the width of a column, and clear to colour-blind people."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
 
 COLUMN_WIDTH = 3.5
-"""Of a two-column page, in inches."""
+"""Width of a column on a two-column page, in inches."""
 STYLE: dict[Any, Any] = {
     "font.size": 8,
     "axes.spines.top": False,
@@ -21,15 +21,15 @@ STYLE: dict[Any, Any] = {
     "grid.linewidth": 0.4,
     "grid.alpha": 0.5,
     "legend.frameon": False,
-    "pdf.fonttype": 42,  # text stays text
+    "pdf.fonttype": 42,  # text stays text, and is not drawn as curves
 }
 
 
 def save(figure: Figure, path: Path) -> list[Path]:
     """Write a figure as PNG and PDF, and close it.
 
-    :param figure: to write
-    :param path: of the picture, without suffix
+    :param figure: figure to write
+    :param path: path of the picture, without suffix
     :return: the files
     """
     files = [path.with_suffix(suffix) for suffix in (".png", ".pdf")]

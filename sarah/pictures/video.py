@@ -1,4 +1,4 @@
-"""An episode as a video: the robot from its front, a close look at its feet, and what the pattern generator does."""
+"""An episode as a video: the robot from its front, a close view of its feet, and the state of the pattern generator."""
 
 from __future__ import annotations
 
@@ -20,35 +20,35 @@ from sarah.simulation.scenery import STANDARD_CAMERA, Camera, View
 SUFFIXES = (".mp4", ".gif")
 WIDTH, HEIGHT = 1024, 576
 SAMPLES = 2 / 3
-"""Of the robot along each side of a pixel: most of a frame's time goes into them."""
+"""Samples of the robot along each side of a pixel, which take most of a frame's time."""
 FEET_CAMERA = Camera(height=0.11, distance=0.85, yaw=180.0, pitch=-4.0)
 FEET_WIDTH, FEET_HEIGHT, FEET_MARGIN = 280, 165, 20
-"""Of the close look at the feet, in the lower right corner, in pixels."""
+"""Size of the close view of the feet, and its distance from the lower right corner, in pixels."""
 FRAMES_PER_SECOND = {".mp4": 25.0, ".gif": 20.0}
 GIF_SIZE = (640, 360)
-"""Smaller, for a GIF is big."""
+"""Size of a GIF, in pixels: smaller than a video, because GIF files are large."""
 GIF_COLOURS = 200
 
 
 def frame_times(begin: float, end: float, frames_per_second: float, speed: float = 1.0) -> np.ndarray:
     """Simulated times of the frames of a video, in s.
 
-    :param begin: of the first one
-    :param end: that none is behind
-    :param frames_per_second: of the video
-    :param speed: of the video: 0.5 shows everything half as fast
+    :param begin: simulated time of the first frame, in s
+    :param end: simulated time that no frame exceeds, in s
+    :param frames_per_second: frames per second of the video
+    :param speed: speed of the video: 0.5 is half as fast as real time
     """
     count = int((end - begin) * frames_per_second / speed + 1e-6) + 1
     return begin + np.arange(count) * speed / frames_per_second
 
 
 def frames(trace: Trace, robot: RobotDescription, times: Iterable[float], caption: str = "") -> Iterator[Image.Image]:
-    """Draw an episode; only the frames that are asked for.
+    """Draw frames of an episode.
 
-    :param trace: of the episode
-    :param robot: that was simulated
-    :param times: of the frames, in s
-    :param caption: to write below
+    :param trace: trace of the episode
+    :param robot: robot of the episode
+    :param times: simulated times of the frames, in s
+    :param caption: text below the robot
     :return: RGB pictures of 1024 x 576 pixels
     """
     renderer = Renderer(robot, SAMPLES)
@@ -72,10 +72,10 @@ def frames(trace: Trace, robot: RobotDescription, times: Iterable[float], captio
 
 
 def check_path(path: Path) -> None:
-    """Refuse what no video can be written to, before it is drawn.
+    """Refuse a file that no video can be written to, before the video is drawn.
 
-    :param path: of the file
-    :raises ConfigurationError: if it is neither MP4 nor GIF, its folder is not there, or the extra is not installed
+    :param path: path of the file
+    :raises ConfigurationError: if it is neither MP4 nor GIF, its folder does not exist, or the extra is not installed
     """
     if path.suffix not in SUFFIXES:
         raise ConfigurationError(f"a video must end in {' or '.join(SUFFIXES)}, not {path.name!r}")
@@ -89,12 +89,12 @@ def check_path(path: Path) -> None:
 
 
 def write_video(pictures: Iterable[Image.Image], path: Path) -> None:
-    """Write frames as MP4 (H.264) or as GIF that repeats, which is smaller.
+    """Write frames as MP4 (H.264), or as a repeating GIF, which is smaller.
 
     The file appears when it is complete.
 
-    :param pictures: of 1024 x 576 pixels, as many per second as :data:`FRAMES_PER_SECOND` says
-    :param path: of the file
+    :param pictures: frames of 1024 x 576 pixels, at the rate of :data:`FRAMES_PER_SECOND`
+    :param path: path of the file
     """
     unfinished = path.with_name(f".{path.stem}.unfinished{path.suffix}")
     try:
@@ -126,7 +126,7 @@ def _write_gif(pictures: Iterable[Image.Image], path: Path) -> None:
 
 
 def _palette(pictures: list[Image.Image]) -> Image.Image:
-    """One palette for all frames, which would flicker otherwise: colours of some, and all that mean something."""
+    """Make one palette for all frames, which would flicker otherwise, of some frames and all colours with a meaning."""
     samples = pictures[:: max(1, len(pictures) // 6)]
     width, height = samples[0].size
     sheet = Image.new("RGB", (width, (len(samples) + 1) * height))

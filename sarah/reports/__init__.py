@@ -1,4 +1,4 @@
-"""What comes of trainings: the paper's figures, reports, races, robustness and transfer.
+"""Reports of trainings: the paper's figures, HTML pages, races, robustness and transfer.
 
-It may import training and viewer, and what they may import.
+It may import training and viewer, and what those may import.
 """

@@ -1,4 +1,4 @@
-"""All figures of run folders: the paper's 2 to 7, and a gait cycle."""
+"""All figures of run folders: the paper's Figures 2 to 7, and gait cycles."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ _log = logging.getLogger(__name__)
 def draw_all_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
     """Draw Figures 4 to 7 of all runs, the robot of the first run, the state machine, and a gait cycle of each task.
 
-    :param runs: finished trainings
-    :param folder: where to; made if it is not there
+    :param runs: run folders of finished trainings
+    :param folder: folder for the figures, which is made if it does not exist
     :return: the files, PNG and PDF
-    :raises RunFolderError: if a run has no episodes, or damaged ones; nothing is drawn then
+    :raises RunFolderError: if a run folder has no episodes, or damaged ones; nothing is drawn then
     """
     files = draw_figures(runs, folder)
     files += _draw_robot(runs[0], folder / "figure_2_robot")
@@ -38,7 +38,7 @@ def draw_all_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
 
 
 def _draw_robot(run: RunFolder, path: Path) -> list[Path]:
-    """Draw a run's robot, where there is what draws it."""
+    """Draw a training's robot, if the renderer is installed."""
     try:
         return draw_robot(describe_robot(run.config().episode.dimensions), path)
     except ConfigurationError as error:
@@ -47,7 +47,7 @@ def _draw_robot(run: RunFolder, path: Path) -> list[Path]:
 
 
 def _draw_cycle(run: RunFolder, path: Path) -> list[Path]:
-    """Draw a gait cycle with a run's learned parameters, if they make one."""
+    """Draw a gait cycle with a training's learned parameters, if the robot completes one."""
     config, learned = run.config(), run.parameters()
     trace = simulate(EpisodeSpec(learned, 0, config.task, config.episode), record_trace=True).trace
     assert trace is not None

@@ -1,8 +1,8 @@
-"""A race: several algorithms, several seeds each, judged by what each would recommend along the way.
+"""A race: several algorithms with several seeds each, compared by their recommendations.
 
-Each training is a run folder. What it would have recommended after every five episodes is evaluated on seeds that no
-training sees, and written beside it in ``race.csv``; a training whose ``race.csv`` is there is not run again, only
-evaluated again if the number of unseen seeds has changed.
+Each training has a run folder. Its recommendations after every five episodes are evaluated on seeds that no training
+sees, and the scores are written to ``race.csv`` in the run folder. A training with a ``race.csv`` is not run again; if
+the number of unseen seeds has changed, it is only evaluated again.
 """
 
 from __future__ import annotations
@@ -26,28 +26,29 @@ from sarah.episode.tasks import TASKS
 from sarah.episode.workers import Workers
 from sarah.errors import RunFolderError
 from sarah.files import replace_text
+from sarah.runs.agent_settings import settings_of
 from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 from sarah.training.train import train
 
 RACE_FILE = "race.csv"
-"""Name of the file in every run folder of a race: scores of what was recommended, along the way and in the end."""
+"""Name of the file in every run folder of a race: scores of its recommendations, during the training and at its end."""
 HELD = 3
-"""Number of evaluations in a row that must reach a share of the best known score."""
+"""Number of consecutive evaluations that must reach a share of the best known score."""
 SHARES = (0.9, 0.95)
-"""Shares of the best known score; episodes until then are counted."""
+"""Shares of the best known score; the table counts the episodes until each is reached."""
 CONFIDENCE = 0.95
 BOOTSTRAP_DRAWS = 2000
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One training of the race.
+    """One training of a race.
 
     :param config: settings of the training
-    :param folder: its run folder
-    :param evaluations: number of unseen seeds that every recommendation is evaluated on
+    :param folder: path of its run folder
+    :param evaluations: number of unseen seeds on which every recommendation is evaluated
     """
 
     config: TrainingConfig
@@ -57,11 +58,11 @@ class Entry:
 
 @dataclass(frozen=True)
 class RaceCurve:
-    """What became of one training.
+    """The scores of one training's recommendations.
 
-    :param algo: the algorithm
-    :param episodes: numbers of episodes after which something was evaluated, rising; the last is the end
-    :param scores: mean over the unseen seeds, of the same length
+    :param algo: name of the algorithm
+    :param episodes: numbers of episodes before each evaluation, rising; the last one is the budget
+    :param scores: mean score of each evaluation over the unseen seeds, of the same length
     :param seconds: wall time of the training, without the evaluations, in s
     """
 
@@ -73,14 +74,15 @@ class RaceCurve:
 
 @dataclass(frozen=True)
 class Ranking:
-    """How one algorithm did.
+    """The results of one algorithm in a race.
 
-    :param algo: its name
-    :param runs: how many seeds
-    :param reached: by share of the best known score: how many of the runs reached it
-    :param episodes: by share: the median number of episodes until then, infinite for runs that did not
+    :param algo: name of the algorithm
+    :param runs: number of trainings, one for each seed
+    :param reached: number of trainings that reached a share of the best known score, by share
+    :param episodes: median number of episodes until a share is reached, by share; trainings that did not reach it count
+        as infinite
     :param final: interquartile mean of the final scores, and the ends of its 95 % bootstrap interval
-    :param seconds: median wall time of a training
+    :param seconds: median wall time of a training, in s
     """
 
     algo: str
@@ -92,11 +94,11 @@ class Ranking:
 
 
 def race(entries: Sequence[Entry], workers: Workers) -> list[RaceCurve]:
-    """Run the trainings that are not there yet, each in one process, and read them all.
+    """Run the trainings that are not complete, each in one process, and read the scores of all.
 
-    :param entries: the trainings; on a cluster their folders must be on a file system that all workers share
-    :param workers: that train
-    :raises RunFolderError: if a folder holds something else, or a training with other settings
+    :param entries: trainings of the race; on a cluster, all workers must share the file system of their folders
+    :param workers: workers that train
+    :raises RunFolderError: if a folder is not a run folder of a race, or has a training with other settings
     """
     for entry in entries:
         if entry.folder.exists() and not is_run(entry):
@@ -110,28 +112,34 @@ def race(entries: Sequence[Entry], workers: Workers) -> list[RaceCurve]:
 
 
 def is_run(entry: Entry) -> bool:
-    """Whether a training and an evaluation of it are complete."""
+    """Whether a training and an evaluation of it are complete.
+
+    :param entry: training of the race
+    """
     return (entry.folder / RACE_FILE).is_file()
 
 
 def is_evaluated(entry: Entry) -> bool:
-    """Whether the evaluation is complete too on as many unseen seeds as the race asks for."""
+    """Whether a training is complete, and evaluated on as many unseen seeds as the race asks for.
+
+    :param entry: training of the race
+    """
     return is_run(entry) and _rows(entry.folder)[0].get("evaluations") == str(entry.evaluations)
 
 
 def run_entry(entry: Entry) -> None:
     """Train, and evaluate every recommendation, in a folder that gets its name when it is complete.
 
-    A training that is complete is only evaluated.
+    A complete training is only evaluated.
 
-    :param entry: the training
-    :raises RunFolderError: if another race is training it
+    :param entry: training of the race
+    :raises RunFolderError: if another race runs this training
     """
     if is_run(entry):
         _evaluate_recommendations(entry, entry.folder, read_curve(entry).seconds)
         return
     unfinished = entry.folder.with_name(f"{entry.folder.name}.unfinished")
-    if unfinished.exists():  # an interrupted race left it, or another one is at it
+    if unfinished.exists():  # an interrupted race left it, or another race is using it
         journal = RunFolder(unfinished).journal_path
         with Journal(journal, Workers()) if journal.exists() else nullcontext():
             shutil.rmtree(unfinished)
@@ -143,7 +151,7 @@ def run_entry(entry: Entry) -> None:
 
 
 def _evaluate_recommendations(entry: Entry, folder: Path, seconds: float) -> None:
-    """Write what everything that was recommended along the way, and in the end, scores."""
+    """Write the scores of all recommendations, during the training and at its end."""
     run = RunFolder(folder)
     names = TASKS[entry.config.task].parameter_names
     along = [(int(row["episodes"]), tuple(float(row[name]) for name in names)) for row in run.recommendations()]
@@ -161,9 +169,9 @@ def _evaluate_recommendations(entry: Entry, folder: Path, seconds: float) -> Non
 
 
 def read_curve(entry: Entry) -> RaceCurve:
-    """Read what :func:`run_entry` wrote.
+    """Read the scores that :func:`run_entry` wrote.
 
-    :param entry: a training that is complete
+    :param entry: training that is complete
     """
     rows = _rows(entry.folder)
     return RaceCurve(
@@ -180,10 +188,10 @@ def _rows(folder: Path) -> list[dict[str, str]]:
 
 
 def episodes_until(curve: RaceCurve, score: float) -> float:
-    """Number of episodes after which a score is reached and held over :data:`HELD` evaluations; infinite if never.
+    """Number of episodes until a score is reached and held over :data:`HELD` evaluations; infinite if it never is.
 
-    :param curve: of a training
-    :param score: to reach
+    :param curve: scores of a training
+    :param score: score to reach
     """
     reached = [value >= score for value in curve.scores]
     for index in range(len(reached) - HELD + 1):
@@ -193,11 +201,11 @@ def episodes_until(curve: RaceCurve, score: float) -> float:
 
 
 def rankings(curves: Sequence[RaceCurve], best_known: float | None = None) -> list[Ranking]:
-    """Sum up the race.
+    """Summarise a race by algorithm.
 
-    :param curves: of all trainings
-    :param best_known: score that shares are taken of; by default the best final one of the race
-    :return: one for each algorithm, the quickest to the higher share first
+    :param curves: scores of all trainings
+    :param best_known: score whose shares are to be reached; by default the best final score of the race
+    :return: one ranking for each algorithm; the one that reaches the highest share soonest comes first
     """
     best = max(curve.scores[-1] for curve in curves) if best_known is None else best_known
     table = []
@@ -218,10 +226,10 @@ def rankings(curves: Sequence[RaceCurve], best_known: float | None = None) -> li
 
 
 def interquartile_mean(values: Sequence[float]) -> tuple[float, float, float]:
-    """Mean of the middle half, with its bootstrap interval (Agarwal et al. 2021).
+    """Mean of the middle half of some values, with its bootstrap interval (Agarwal et al. 2021).
 
-    :param values: of the runs
-    :return: the mean and the ends of its 95 % interval; of a single value, it three times
+    :param values: values to average, one for each training
+    :return: the mean and both ends of its 95 % interval; for a single value, three times that value
     """
     cut = len(values) // 4
     draws = np.random.default_rng(0).choice(np.asarray(values), (BOOTSTRAP_DRAWS, len(values)))
@@ -232,9 +240,9 @@ def interquartile_mean(values: Sequence[float]) -> tuple[float, float, float]:
 
 
 def as_markdown(table: Sequence[Ranking]) -> str:
-    """The rankings as a Markdown table.
+    """Markdown table of the rankings.
 
-    :param table: from :func:`rankings`
+    :param table: rankings from :func:`rankings`
     """
     shares = "".join(f" {share:.0%} of the best after | reached by |" for share in SHARES)
     lines = [f"| algorithm | runs |{shares} final score | wall time |", "|---" * (4 + 2 * len(SHARES)) + "|"]
@@ -250,8 +258,8 @@ def as_markdown(table: Sequence[Ranking]) -> str:
 def write_csv(table: Sequence[Ranking], path: Path) -> None:
     """Write the rankings as CSV.
 
-    :param table: from :func:`rankings`
-    :param path: of the file
+    :param table: rankings from :func:`rankings`
+    :param path: path of the file
     """
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
@@ -265,16 +273,20 @@ def write_csv(table: Sequence[Ranking], path: Path) -> None:
 def entries_of(
     algorithms: Sequence[str], seeds: Sequence[int], base: TrainingConfig, evaluations: int, folder: Path
 ) -> list[Entry]:
-    """Every algorithm with every seed.
+    """Entries of a race: every algorithm with every seed.
 
-    :param algorithms: their names
-    :param seeds: of the trainings
-    :param base: settings that they share
-    :param evaluations: number of unseen seeds that every recommendation is evaluated on
-    :param folder: that holds the run folders
+    :param algorithms: names of the algorithms
+    :param seeds: seeds of the trainings
+    :param base: settings that all trainings share
+    :param evaluations: number of unseen seeds on which every recommendation is evaluated
+    :param folder: folder for the run folders
     """
     return [
-        Entry(dataclasses.replace(base, algo=algo, seed=seed), folder / f"{algo}-s{seed}", evaluations)
+        Entry(
+            dataclasses.replace(base, algo=algo, agent=settings_of(algo)(), seed=seed),
+            folder / f"{algo}-s{seed}",
+            evaluations,
+        )
         for seed in seeds
         for algo in algorithms
     ]

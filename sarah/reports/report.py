@@ -1,4 +1,4 @@
-"""A run as one HTML page that needs nothing else: results beside the paper's, video, figures, settings and commands."""
+"""The report of a training as one HTML file: results beside the paper's, video, figures, settings and commands."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from sarah.training.recommendation import Parameters
 
 CAPTIONS = {
     "figure_4_reward_and_frequency": "Return and step frequency of every episode (the paper's Figure 4)",
-    "figure_5_parameters": "Parameters of every episode (the paper's Figure 5); dotted: where the paper's settled",
+    "figure_5_parameters": "Parameters of every episode (the paper's Figure 5); dotted: the paper's values",
     "figure_6_reward_and_position": "Return and final position of every episode (the paper's Figure 6)",
     "figure_7_parameters": "Parameters of every episode (the paper's Figure 7)",
     "gait_cycle_stepping": "One step with each leg, with the learned parameters",
@@ -40,17 +40,17 @@ CAPTIONS = {
     "figure_3_pattern_generator": "The pattern generator (the paper's Figure 3), drawn from the code",
     "figure_2_robot": "The robot (the paper's Figure 2)",
 }
-"""Of each figure, in the order of the page."""
+"""Caption of each figure, in the order of the page."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """A line of the table of results.
+    """A row of the table of results.
 
-    :param name: what is compared, with its unit
-    :param learned: of the run
-    :param baseline: text for what it is compared with
-    :param paper: what the paper says of it
+    :param name: label of the metric or parameter, with its unit
+    :param learned: value of the learned parameters
+    :param baseline: value of the baseline
+    :param paper: value or remark that the paper gives
     """
 
     name: str
@@ -64,12 +64,12 @@ def write_report(
 ) -> None:
     """Write the page.
 
-    :param run: a finished training
-    :param path: of the page
-    :param executor: that simulates the episodes of the table
-    :param episodes: unseen seeds that the table is of
-    :param seconds: simulated time at which the video begins and ends
-    :raises RunFolderError: if something in the run folder is missing or damaged
+    :param run: run folder of a finished training
+    :param path: path of the HTML file
+    :param executor: executor that simulates the episodes of the table
+    :param episodes: number of episodes on unseen seeds for the table
+    :param seconds: simulated times at which the video begins and ends, in s
+    :raises RunFolderError: if a file in the run folder is missing or damaged
     """
     config, learned = run.config(), run.parameters()
     task = TASKS[config.task]
@@ -116,7 +116,7 @@ def _parameter_rows(task: Task, learned: Parameters) -> list[Row]:
 
 def _result_rows(config: TrainingConfig, learned: Evaluation, baseline: Evaluation) -> list[Row]:
     ours, theirs = (f"{evaluation.survivors} of {evaluation.episodes}" for evaluation in (learned, baseline))
-    rows = [Row(f"episodes that lasted {config.episode.time_limit:g} s", ours, theirs, "30 s ends one that does well")]
+    rows = [Row(f"episodes that lasted {config.episode.time_limit:g} s", ours, theirs, "30 s end a good episode")]
     for name, metric in METRICS.items():
         for how in metric.statistics[:1]:
             ours, theirs = (metric.text(evaluation.statistic(name, how)) for evaluation in (learned, baseline))
@@ -127,14 +127,14 @@ def _result_rows(config: TrainingConfig, learned: Evaluation, baseline: Evaluati
 def _warnings(learned: Evaluation, baseline: Evaluation | None) -> list[str]:
     found = []
     if not learned.is_gait:
-        found.append("This is not a gait: it steps to a clock, or does not lift its feet.")
+        found.append("This is not a valid gait: the robot steps to a clock, or does not lift its feet.")
     if baseline is not None and learned.chatters(baseline):
-        found.append("The hips chatter: no real robot could do that.")
+        found.append("The hips chatter: no real actuator could follow that.")
     return found
 
 
 def _film(spec: EpisodeSpec, folder: Path, seconds: tuple[float, float]) -> tuple[str, str]:
-    """Film a part of an episode, if there is what draws it, and say in a line what there is to see."""
+    """Film a part of an episode, if the renderer is installed, and write a line about it."""
     try:
         check_renderer()
     except ConfigurationError as missing:
@@ -161,5 +161,5 @@ def _commands(run: RunFolder, config: TrainingConfig) -> list[str]:
 
 
 def _address(content: bytes, kind: str) -> str:
-    """An address that holds what it leads to."""
+    """Data address that contains its content."""
     return f"data:{kind};base64,{b64encode(content).decode()}"

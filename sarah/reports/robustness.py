@@ -1,6 +1,6 @@
-"""How hard a push the robot comes back from: survival by force and direction, against the same pushes without V1 to V4.
+"""The force of a push that the robot survives: survival by force and direction, for several controllers.
 
-Both controllers meet the same pushes on the same seeds, in random directions at random times. A push is lateral if it
+All controllers meet the same pushes on the same seeds, in random directions at random times. A push is lateral if it
 points within 45 degrees of the robot's right or left, and sagittal otherwise.
 """
 
@@ -19,25 +19,25 @@ from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.workers import Workers
 
 FORCES = (25.0, 50.0, 75.0, 100.0, 125.0, 150.0)
-"""Of the pushes, in N."""
+"""Forces of the pushes, in N."""
 PUSHED_BETWEEN = (2.0, 4.0)
-"""When the pushes begin, in s: one to three seconds after the pattern generator's start."""
+"""Range of the simulated times at which the pushes begin, in s: 1 to 3 s after the pattern generator's start."""
 SECONDS_AFTER = 10.0
-"""How long after the latest push the robot must stay up."""
+"""Time after the latest push that the robot must stay up, in s."""
 DIRECTIONS = ("all", "lateral", "sagittal")
 SECTORS = (16, 8, 4)
-"""How many directions survival may be shown by."""
+"""Numbers of directions by which survival can be shown."""
 CONFIDENCE_QUANTILE = 1.96
-"""Of the normal distribution, for intervals of 95 %."""
+"""Quantile of the normal distribution for intervals of 95 %."""
 
 
 @dataclass(frozen=True)
 class PushedEpisode:
-    """One episode with its push.
+    """One episode and its push.
 
-    :param newtons: of the push
-    :param radians: its direction: 0 to the right, pi/2 forward
-    :param result: what came of it
+    :param newtons: force of the push, in N
+    :param radians: direction of the push, in rad: 0 to the right, pi/2 forward
+    :param result: result of the episode
     """
 
     newtons: float
@@ -46,21 +46,23 @@ class PushedEpisode:
 
     @property
     def direction(self) -> str:
-        """``"lateral"`` or ``"sagittal"``."""
+        """Group of the push's direction: ``"lateral"`` or ``"sagittal"``."""
         return "lateral" if abs(math.cos(self.radians)) > abs(math.sin(self.radians)) else "sagittal"
 
 
 @dataclass(frozen=True)
 class Robustness:
-    """What pushes of one force in one group of directions did.
+    """Statistics of the episodes with pushes of one force in one group of directions.
 
-    :param newtons: of the pushes
-    :param direction: one of :data:`DIRECTIONS`
-    :param episodes: how many
-    :param survival: share that stayed up, and the ends of its 95 % interval
-    :param score_median: of the episodes' scores
-    :param drift_median: of the horizontal distance from the start at the end, in m
-    :param vibration_median: of the torso's acceleration power above 20 Hz, in m^2/s^4
+    :param newtons: force of the pushes, in N
+    :param direction: group of directions, one of :data:`DIRECTIONS`
+    :param episodes: number of episodes
+    :param survival: share of the episodes that survived
+    :param survival_low: lower end of the 95 % interval of that share
+    :param survival_high: upper end of the 95 % interval of that share
+    :param score_median: median score
+    :param drift_median: median horizontal distance from the start at the end, in m
+    :param vibration_median: median mean square of the torso's acceleration above 20 Hz, in m^2/s^4
     """
 
     newtons: float
@@ -82,14 +84,14 @@ def push_many(
     episodes: int = 100,
     first_seed: int = 0,
 ) -> list[list[PushedEpisode]]:
-    """Push several controllers by the same pushes.
+    """Simulate the same pushes of several controllers.
 
-    :param controllers: V1 to V4 of each
+    :param controllers: values of V1 to V4 of each controller
     :param config: settings of the episodes; time limit, and force and time of the push, are replaced
-    :param workers: that simulate them
-    :param forces: in N
-    :param episodes: of each force
-    :param first_seed: of the episodes; each force meets the same seeds, and so the same directions and times
+    :param workers: workers that simulate the episodes
+    :param forces: forces of the pushes, in N
+    :param episodes: number of episodes for each force
+    :param first_seed: first seed; each force has the same seeds, and so the same directions and times
     :return: the episodes of each controller
     """
     settings: dict[float, BalanceConfig] = {}
@@ -111,7 +113,7 @@ def push_many(
 def robustness_table(episodes: Sequence[PushedEpisode]) -> list[Robustness]:
     """Summarise pushed episodes by force and direction.
 
-    :param episodes: of one controller
+    :param episodes: episodes of one controller
     """
     rows = []
     for newtons in sorted({episode.newtons for episode in episodes}):
@@ -137,10 +139,10 @@ def _summary(newtons: float, direction: str, group: Sequence[EpisodeResult]) -> 
 
 
 def wilson_interval(successes: int, trials: int) -> tuple[float, float]:
-    """Wilson's 95 % interval of a probability (Wilson 1927); it stays within 0 and 1 and is not empty at either end.
+    """Wilson's 95 % interval of a probability (Wilson 1927), which stays within 0 and 1 and is never empty.
 
-    :param successes: how many
-    :param trials: of how many
+    :param successes: number of successes
+    :param trials: number of trials
     """
     z2 = CONFIDENCE_QUANTILE**2
     share = successes / trials
@@ -150,11 +152,11 @@ def wilson_interval(successes: int, trials: int) -> tuple[float, float]:
 
 
 def survival_by_direction(episodes: Sequence[PushedEpisode], sectors: int) -> dict[float, list[float | None]]:
-    """Share of survivors by force and sector of direction.
+    """Share of episodes that survived, by force and sector of direction.
 
-    :param episodes: of one controller
-    :param sectors: how many, the first of them centred on a push to the right, then counter-clockwise
-    :return: by force in N; ``None`` where no push pointed
+    :param episodes: episodes of one controller
+    :param sectors: number of sectors; the first is centred on a push to the right, the others follow counter-clockwise
+    :return: shares of the sectors by force in N; ``None`` for a sector without pushes
     """
     table: dict[float, list[float | None]] = {}
     for newtons in sorted({episode.newtons for episode in episodes}):
@@ -169,9 +171,9 @@ def survival_by_direction(episodes: Sequence[PushedEpisode], sectors: int) -> di
 
 
 def finest_sectors(episodes: Sequence[PushedEpisode]) -> int:
-    """The largest of :data:`SECTORS` of which none is without pushes; if there is none such, the smallest.
+    """Largest of :data:`SECTORS` with pushes in every sector; the smallest of them if there is none.
 
-    :param episodes: of one controller
+    :param episodes: episodes of one controller
     """
     without_gaps = (n for n in SECTORS if all(None not in row for row in survival_by_direction(episodes, n).values()))
     return next(without_gaps, SECTORS[-1])

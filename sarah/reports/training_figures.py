@@ -1,9 +1,9 @@
 """The paper's Figures 4 to 7 from run folders, and survival against direction and force of a push.
 
-Figures 4 to 7 show what was tried, and what came of it, against training steps. A training step is one episode. One
-run shows its episodes as dots and their running median as a line; several runs of an algorithm show the median over
-the runs of that line, and the band between their quartiles. The episodes that compare the best candidates at the end
-are no steps of learning: a single run shows them as hollow dots, and no line goes through them.
+Figures 4 to 7 show parameters and results against training steps; a training step is one episode. A single run shows
+its episodes as dots, and their running median as a line. Several runs of an algorithm show the median of those lines
+over the runs, and the band between their quartiles. The episodes that compare the candidates at the end are no steps
+of learning: a single run shows them as hollow dots, and no line goes through them.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
 from sarah.reports.robustness import PushedEpisode, finest_sectors, survival_by_direction
 from sarah.runs.run_folder import RunFolder
 
-if TYPE_CHECKING:  # it brings the trainings with it
+if TYPE_CHECKING:  # the import would load the learning algorithms
     from sarah.reports.race import RaceCurve
 
 WINDOW = 15
-"""Number of episodes that the running median is over."""
+"""Number of episodes in the window of the running median."""
 CHORDS = 8
-"""Number of straight lines that the arc of a sector is drawn with."""
+"""Number of straight lines that make the arc of a sector."""
 COLOURS = {
     "naf": "#0072B2",
     "td3": "#D55E00",
@@ -45,9 +45,9 @@ COLOURS = {
     "tpe": "#F0E442",
     "random": "#000000",
 }
-"""Colour of each algorithm; told apart by the colour-blind (Okabe and Ito)."""
+"""Colour of each algorithm, which colour-blind people can tell apart (Okabe and Ito)."""
 ALGORITHM_LABELS = {algo: algo.upper() for algo in COLOURS} | {"random": "random search"}
-"""What pictures and pages call each algorithm."""
+"""Name of each algorithm in pictures and on pages."""
 
 Panels = list[tuple[str, str]]
 """Column of ``episodes.csv`` and label of each panel, from top to bottom."""
@@ -62,18 +62,18 @@ FIGURES: dict[Task, dict[str, Panels]] = {
         "figure_7_parameters": [(parameter.name, parameter.label) for parameter in BALANCE.parameters],
     },
 }
-"""The paper's figures of each training."""
+"""Figures of the paper, by task."""
 PAPER = dict(zip(STEPPING.parameter_names[:3], PAPER_STEPPING[:3], strict=True))
-"""Where the paper's parameters settled, of those that matter."""
+"""Values of P1 to P3 that the paper's training found."""
 
 
 @dataclass(frozen=True)
 class RunCurves:
-    """What the runs of one algorithm went through.
+    """The episodes of all runs of one algorithm.
 
-    :param algorithm: its name
-    :param columns: of ``episodes.csv`` as numbers, each of shape (runs, episodes)
-    :param learning: number of episodes that come before the comparison of candidates
+    :param algorithm: name of the algorithm
+    :param columns: columns of ``episodes.csv`` as numbers, each of shape (runs, episodes)
+    :param learning: number of episodes before the comparison of candidates
     """
 
     algorithm: str
@@ -84,10 +84,10 @@ class RunCurves:
 def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
     """Draw Figures 4 and 5 of First Trainings, and 6 and 7 of Second Trainings, as PNG and PDF.
 
-    :param runs: whose episodes to draw
-    :param folder: where to; made if it is not there
+    :param runs: run folders whose episodes are drawn
+    :param folder: folder for the figures, which is made if it does not exist
     :return: the files
-    :raises RunFolderError: if a run has no episodes, or damaged ones; nothing is drawn then
+    :raises RunFolderError: if a run folder has no episodes, or damaged ones; nothing is drawn then
     """
     curves = {task: _curves([run for run in runs if run.config().task == task.name], task) for task in FIGURES}
     folder.mkdir(parents=True, exist_ok=True)
@@ -168,20 +168,20 @@ def _draw_panel(axis: Axes, curves: RunCurves, column: str) -> None:
 
 
 def running_median(values: np.ndarray) -> np.ndarray:
-    """Median of each value and those around it, fewer at the ends.
+    """Running median: of each value and those around it, which are fewer at both ends.
 
-    :param values: of shape (n,)
-    :return: of shape (n,)
+    :param values: values of shape (n,)
+    :return: medians of shape (n,)
     """
     half = WINDOW // 2
     return np.array([np.median(values[max(0, i - half) : i + half + 1]) for i in range(len(values))])
 
 
 def draw_race(curves: Sequence[RaceCurve], path: Path) -> list[Path]:
-    """Draw the score of what each algorithm would choose against episodes: median and quartiles over its runs.
+    """Draw the score of each algorithm's recommendations against episodes: median and quartiles over its runs.
 
-    :param curves: of all trainings
-    :param path: of the picture, without suffix
+    :param curves: scores of all trainings
+    :param path: path of the picture, without suffix
     :return: the files, PNG and PDF
     """
     with plt.rc_context(STYLE):
@@ -195,15 +195,15 @@ def draw_race(curves: Sequence[RaceCurve], path: Path) -> list[Path]:
             axis.plot(episodes, middle, color=COLOURS[algo], linewidth=1.2, label=label)
         axis.set_xlabel("episodes")
         axis.set_ylabel("score on unseen seeds")
-        figure.legend(loc="outside upper center", ncols=2)  # three columns of all eight do not fit
+        figure.legend(loc="outside upper center", ncols=2)  # three columns would not fit for eight algorithms
         return save(figure, path)
 
 
 def draw_survival(controllers: Mapping[str, Sequence[PushedEpisode]], path: Path) -> list[Path]:
-    """Draw survival against direction and force of the push, one polar plot for each controller.
+    """Draw survival against direction and force of the push, with one polar plot for each controller.
 
-    :param controllers: pushed episodes by the controller's name
-    :param path: of the picture, without suffix
+    :param controllers: pushed episodes, by name of the controller
+    :param path: path of the picture, without suffix
     :return: the files, PNG and PDF
     """
     with plt.rc_context({**STYLE, "axes.grid": False}):
@@ -232,7 +232,7 @@ def _draw_survival(axis: Any, survival: Mapping[float, Sequence[float | None]]) 
     mesh: QuadMesh = axis.pcolormesh(edges, rings, shares.repeat(CHORDS, axis=1), cmap="cividis", vmin=0.0, vmax=1.0)
     axis.set_rmax(rings[-1])
     labels = axis.set_rgrids(forces, [f"{force:.0f} N" for force in forces], angle=67.5, fontsize=6)[1]
-    for label in labels:  # readable on every colour
+    for label in labels:  # a white outline keeps them legible on every colour
         label.set_path_effects([withStroke(linewidth=2, foreground="white")])
     axis.set_thetagrids((0, 90, 180, 270), ("right", "forward", "left", "back"))
     return mesh

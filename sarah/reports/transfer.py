@@ -1,4 +1,4 @@
-"""What was learned in one physics engine, in the other: the same seeds and pushes in both."""
+"""The transfer of learned parameters from one physics engine to the other, on the same seeds and pushes."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ ENGINES: tuple[Engine, ...] = get_args(Engine)
 
 @dataclass(frozen=True)
 class LearnedParameters:
-    """Learned parameters.
+    """Learned parameters of a training.
 
-    :param name: of the run
-    :param task: ``"stepping"`` or ``"balance"``
-    :param parameters: P1 to P5, or V1 to V4
-    :param config: settings of the episodes; its engine is the one they were learned in
+    :param name: name of the run folder
+    :param task: name of the task, ``"stepping"`` or ``"balance"``
+    :param parameters: values of P1 to P5, or of V1 to V4
+    :param config: settings of the episodes; its engine is the one that they were learned in
     """
 
     name: str
@@ -35,10 +35,10 @@ class LearnedParameters:
 
 @dataclass(frozen=True)
 class Transfer:
-    """Learned parameters in every engine.
+    """Evaluations of learned parameters in every engine.
 
-    :param learned: what was evaluated
-    :param evaluations: by engine
+    :param learned: learned parameters
+    :param evaluations: evaluations by engine
     """
 
     learned: LearnedParameters
@@ -46,18 +46,18 @@ class Transfer:
 
     @property
     def kept(self) -> float:
-        """Score in the other engine over that in the one they were learned in; 0 if they score nothing there."""
+        """Score in the other engine, as a share of that in the engine of the training; 0 if the latter is 0."""
         at_home = self.evaluations[self.learned.config.engine].mean("score")
         (abroad,) = (e.mean("score") for engine, e in self.evaluations.items() if engine != self.learned.config.engine)
         return abroad / at_home if at_home else 0.0
 
 
 def transfer(many: Sequence[LearnedParameters], seeds: Sequence[int], workers: Workers) -> list[Transfer]:
-    """Evaluate parameters in every engine.
+    """Evaluate learned parameters in every engine.
 
-    :param many: what was learned
-    :param seeds: of the episodes, the same for all
-    :param workers: that simulate them
+    :param many: learned parameters of several trainings
+    :param seeds: seeds of the episodes, the same for all
+    :param workers: workers that simulate the episodes
     """
     specs = [
         EpisodeSpec(learned.parameters, seed, learned.task, dataclasses.replace(learned.config, engine=engine))
@@ -71,9 +71,9 @@ def transfer(many: Sequence[LearnedParameters], seeds: Sequence[int], workers: W
 
 
 def as_markdown(transfers: Sequence[Transfer]) -> str:
-    """The table: a row for each run.
+    """Markdown table with a row for each run.
 
-    :param transfers: of the runs
+    :param transfers: evaluations of the runs
     """
     head = " | ".join(f"{engine}: score | survival | steps/s | vibration" for engine in ENGINES)
     lines = [f"| run | task | learned in | {head} | kept |", "|---" * (4 + 4 * len(ENGINES)) + "|"]

@@ -1,4 +1,4 @@
-"""The score in one physics engine against the score in the other."""
+"""The figure of the transfer: the score in one physics engine against the score in the other."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
 from sarah.reports.transfer import Transfer
 
 ENGINE_COLOURS = {"pybullet": "#0072B2", "mujoco": "#D55E00"}
-"""Told apart by the colour-blind (Okabe and Ito)."""
+"""Colours of the engines, which colour-blind people can tell apart (Okabe and Ito)."""
 TASK_MARKERS = {"stepping": "o", "balance": "^"}
 
 
 def draw_transfer(transfers: Sequence[Transfer], path: Path) -> list[Path]:
-    """Draw the score in one engine against the score in the other: a point for each run.
+    """Draw the score in one engine against the score in the other, with a point for each run.
 
-    Equal scores lie on the line; between the dotted ones the worse is at least 90 % of the better.
+    Equal scores lie on the line. Between the dotted lines the worse score is at least 90 % of the better.
 
-    :param transfers: of the runs
-    :param path: of the picture, without suffix
+    :param transfers: evaluations of the runs
+    :param path: path of the picture, without suffix
     :return: the files, PNG and PDF
     """
     across, up = ENGINE_COLOURS

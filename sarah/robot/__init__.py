@@ -1,4 +1,4 @@
-"""The robot itself: its description as a checked URDF, what it senses, and filters for that.
+"""The robot itself: its description as a checked URDF, its sensor readings, and filters for them.
 
 It may import errors.
 """

@@ -1,7 +1,7 @@
 """The robot: from the xacro to a checked URDF text.
 
-PyBullet crashes on some malformed URDFs and silently accepts others, so every text is checked here before any
-engine sees it: by yourdfpy for its syntax, and by rules of our own for what makes it SARAH.
+PyBullet crashes on some malformed URDFs and silently accepts others. So every text is checked here before an engine
+sees it: yourdfpy checks the syntax, and this module's own rules check that the robot is SARAH.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ JOINT_AXES = {
     **dict.fromkeys(("left_forefoot", "right_forefoot"), (1.0, 0.0, 0.0)),
     **dict.fromkeys(("left_hindfoot", "right_hindfoot"), (-1.0, 0.0, 0.0)),
 }
-"""In the torso's frame: positive swings a leg to the left, forward, retracts it, and turns a plate against its pad."""
+"""Axes in the torso's frame. Positive swings a leg left or forward, retracts it, or turns a plate onto its pad."""
 GROUPS = {
     "top": ("torso", "left_hip", "right_hip"),
     "left leg": ("left_thigh", "left_shank", "left_forefoot", "left_hindfoot"),
@@ -43,17 +43,17 @@ GROUPS = {
 """The paper's three groups of links, of equal mass."""
 GROUP_MASS = 10.0
 DIMENSION_FACTOR = 10.0
-"""How much smaller or larger than its default a dimension may be: beyond, somebody has mistaken the unit."""
+"""Largest factor by which a dimension may differ from its default: beyond it, somebody has mistaken the unit."""
 
 _XACRO_NAMESPACE = "{http://www.ros.org/wiki/xacro}"
-_xacro_lock = threading.Lock()  # xacro keeps its state in globals
+_xacro_lock = threading.Lock()  # xacro keeps its state in global variables
 
 
 @dataclass(frozen=True)
 class RobotDescription:
     """A checked robot.
 
-    :param urdf: the URDF text
+    :param urdf: text of the URDF
     :param standing_height: height of the torso's centre over the floor with all joints at zero, in m
     :param limits: lowest and highest position of each joint, in rad or m
     :param efforts: largest force or torque of each joint, in N or Nm
@@ -86,9 +86,9 @@ def _default_dimensions() -> tuple[tuple[str, float], ...]:
 def describe_robot(dimensions: Mapping[str, float] | None = None) -> RobotDescription:
     """Build and check the robot.
 
-    :param dimensions: values for some of :func:`default_dimensions`; the others keep their defaults
+    :param dimensions: values of some of :func:`default_dimensions`, in SI units; the others keep their defaults
     :return: the checked robot; equal dimensions give the same object
-    :raises DescriptionError: if a dimension is unknown or no number near its default, or the robot is refused
+    :raises DescriptionError: if a dimension is unknown or not a number near its default, or if the robot is invalid
     """
     given = dict(dimensions or {})
     check_dimensions(given)
@@ -98,8 +98,8 @@ def describe_robot(dimensions: Mapping[str, float] | None = None) -> RobotDescri
 def check_dimensions(dimensions: Mapping[str, Any]) -> None:
     """Refuse dimensions that the robot does not have.
 
-    :param dimensions: names and values, as a user gave them
-    :raises DescriptionError: for an unknown name, or a value that is no number near the default
+    :param dimensions: values by name, in SI units, as a user gave them
+    :raises DescriptionError: for an unknown name, or a value that is not a number near the default
     """
     allowed = default_dimensions()
     for name, value in dimensions.items():
@@ -130,14 +130,14 @@ def _expand_xacro(dimensions: Mapping[str, float]) -> str:
         _xacro_lock,
     ):
         document = xacro.process_file(str(path), mappings={name: repr(value) for name, value in dimensions.items()})
-    # Only the robot element: xacro's leading comment holds the path of the source.
+    # Only the robot element: xacro's leading comment contains the path of the source.
     return document.documentElement.toprettyxml(indent="  ")
 
 
 def check_urdf(urdf: str) -> RobotDescription:
-    """Check that a URDF text is SARAH, and read off what a simulation needs to know.
+    """Check that a URDF text describes SARAH, and extract what a simulator needs.
 
-    :param urdf: the text
+    :param urdf: text of the URDF
     :return: the checked robot
     :raises DescriptionError: naming the first rule that the text breaks
     """
@@ -151,7 +151,7 @@ def check_urdf(urdf: str) -> RobotDescription:
     try:
         model = yourdfpy.URDF.load(io.StringIO(urdf), load_meshes=False)
         valid = model.validate()
-    except Exception as error:  # yourdfpy raises whatever its XML handling meets
+    except Exception as error:  # yourdfpy lets through every exception of its XML parsing
         raise DescriptionError(f"yourdfpy cannot read the URDF: {error}") from error
     if not valid:
         raise DescriptionError(
@@ -163,7 +163,7 @@ def check_urdf(urdf: str) -> RobotDescription:
 
 
 def _check_tree(root: ElementTree.Element) -> None:
-    """Unique names, known parents, and one root from which every link is reached."""
+    """Require unique names, known parents, and one root from which every link is reached."""
     links = [link.get("name", "") for link in root.findall("link")]
     joints = [joint.get("name", "") for joint in root.findall("joint")]
     for kind, names in (("link", links), ("joint", joints)):
@@ -194,7 +194,7 @@ def _check_tree(root: ElementTree.Element) -> None:
 
 
 def _check_joints(model: Any) -> None:
-    """The ten joints, of the right kinds, with limits around zero."""
+    """Require the ten joints, of the right kinds, with limits around zero."""
     joints = model.joint_map
     for name, kind in JOINT_TYPES.items():
         if name not in joints:
@@ -215,7 +215,7 @@ def _check_joints(model: Any) -> None:
 
 
 def _check_inertials(model: Any) -> None:
-    """Positive masses, positive definite inertias, and three groups of 10 kg."""
+    """Require positive masses, positive definite inertias, and three groups of 10 kg."""
     import numpy as np
 
     links = model.link_map

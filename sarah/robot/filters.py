@@ -1,4 +1,4 @@
-"""Filters that run once per control tick, in plain floats."""
+"""Filters that run once per control tick, on plain floats."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ class LowPass:
         self._gain = low_pass_gain(time_constant, dt)
 
     def __call__(self, sample: float) -> float:
-        """Take one sample and return the filtered value."""
+        """Filter one sample, and return the filtered value."""
         self.value += self._gain * (sample - self.value)
         return self.value
 
 
 def low_pass_gain(time_constant: float, dt: float) -> float:
-    """Share of the way to a constant signal that a first-order low-pass goes in one tick.
+    """Share of the way to a constant signal that a first-order low-pass covers in one tick.
 
     :param time_constant: time constant, in s
     :param dt: control period, in s
@@ -34,18 +34,18 @@ def low_pass_gain(time_constant: float, dt: float) -> float:
 def clipped(value: float, limit: float) -> float:
     """Clip a value to [-limit, limit].
 
-    :param value: the value
+    :param value: value to clip
     :param limit: largest magnitude, not negative
     """
     return max(-limit, min(limit, value))
 
 
 def ramped(now: float, goal: float, largest_change: float) -> float:
-    """Move a value towards its goal, by one tick's largest change at most.
+    """Move a value towards its goal, by the largest change of one tick at most.
 
-    :param now: the value
-    :param goal: where it is to go
-    :param largest_change: of this tick, not negative
+    :param now: present value
+    :param goal: value to move to
+    :param largest_change: largest change in one tick, not negative
     """
     change = goal - now
     if change > largest_change:

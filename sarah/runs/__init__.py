@@ -1,4 +1,4 @@
 """A training's settings and its run folder: everything that is written to disk and read back.
 
-It may import episode and what it may import; no learner.
+It may import episode and what that may import, but no learning algorithm.
 """

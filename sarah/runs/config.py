@@ -1,6 +1,6 @@
-"""What a training's settings are, as a plain dataclass.
+"""The settings of a training, as a plain dataclass.
 
-Light on purpose: commands import it before anything slow.
+The module imports nothing slow, because every command imports it first.
 """
 
 from __future__ import annotations
@@ -12,35 +12,37 @@ from typing import Any
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED
 from sarah.episode.tasks import task_named
-from sarah.errors import ConfigurationError, check_range, shortened, unknown_name
+from sarah.errors import ConfigurationError, check_range, shortened
+from sarah.runs.agent_settings import AGENT_SETTINGS, AgentSettings, LearnerSettings, settings_of
 
 MOST_EPISODES = 1_000_000
 MOST_SLOTS = 10_000
 
 EPISODES_PER_CANDIDATE = 5
-"""Episodes of each candidate in the comparison that ends a training."""
+"""Number of episodes per candidate in the comparison at the end of a training."""
 BUDGET_PER_CANDIDATE = 50
-"""Episodes of the whole training for each candidate: a tenth of them goes into the comparison."""
+"""Number of episodes of a training for each candidate: a tenth of them goes into the comparison."""
 
-AGENTS = ("naf", "td3", "sac", "ddpg")
-"""Algorithms that learn by reinforcement, with networks."""
-OPTIMISERS = ("cma-es", "gp", "tpe", "random")
-"""Black-box optimisers."""
-ALGORITHMS = AGENTS + OPTIMISERS
+ALGORITHMS = tuple(AGENT_SETTINGS)
+AGENTS = tuple(algo for algo, settings in AGENT_SETTINGS.items() if issubclass(settings, LearnerSettings))
+"""Algorithms of reinforcement learning, with networks."""
+OPTIMISERS = tuple(algo for algo in ALGORITHMS if algo not in AGENTS)
+"""Black-box optimisers, which see returns only."""
 
 
 @dataclass(frozen=True)
 class TrainingConfig:
-    """A training: what ``sarah-train`` does.
+    """The settings of a training.
 
-    :param task: name of what to learn: ``stepping`` is the paper's first training, P1 to P5, and ``balance`` its
-        second, V1 to V4
-    :param algo: what learns: ``naf``, stable-baselines3's ``td3``, ``sac`` or ``ddpg``, or an optimiser that only sees
-        returns: ``cma-es``, ``gp`` (Gaussian process), ``tpe`` or ``random``
-    :param episodes: budget; every episode is one action of the agent and up to 30 s of the robot
+    :param task: task: ``stepping`` learns P1 to P5 of the pattern generator, as the paper's First Training; ``balance``
+        learns V1 to V4 of the hip law under pushes, as its Second Training
+    :param algo: algorithm: ``naf``, stable-baselines3's ``td3``, ``sac`` or ``ddpg``, or an optimiser that sees returns
+        only: ``cma-es``, ``gp`` (Gaussian process), ``tpe`` or ``random``
+    :param episodes: budget of the training; an episode is one action of the agent, and up to 30 s of the robot
     :param seed: seed of the training and of all its episodes
-    :param slots: episodes in flight: each action is chosen knowing all outcomes but those of the slots - 1 before
-        it. Another number is another training; the number of workers is not
+    :param slots: number of episodes that are simulated at the same time: an action is chosen without the outcomes of
+        the slots - 1 episodes before it. It changes the result of a training; the number of workers does not
+    :param agent: settings of the algorithm; by default the algorithm's own
     :param episode: settings of the episodes; by default the task's own
     """
 
@@ -49,14 +51,18 @@ class TrainingConfig:
     episodes: int = 100
     seed: int = 0
     slots: int = 4
+    agent: AgentSettings = None  # type: ignore[assignment]  # the algorithm's own
     episode: EpisodeConfig = None  # type: ignore[assignment]  # the task's own
 
     def __post_init__(self) -> None:
         """Refuse unknown names and impossible budgets."""
-        task = task_named(self.task)
+        task, settings = task_named(self.task), settings_of(self.algo)
         object.__setattr__(self, "episode", task.episode if self.episode is None else task.checked_config(self.episode))
-        if self.algo not in ALGORITHMS:
-            raise ConfigurationError(unknown_name("algo", self.algo, ALGORITHMS))
+        object.__setattr__(self, "agent", settings() if self.agent is None else self.agent)
+        if type(self.agent) is not settings:
+            raise ConfigurationError(
+                f"agent must be the {settings.__name__} of algo {self.algo!r}, not {type(self.agent).__name__}"
+            )
         check_range("episodes", self.episodes, 1, MOST_EPISODES)
         check_range("slots", self.slots, 1, MOST_SLOTS)
         if not 0 <= self.seed < FIRST_TRAINING_SEED:
@@ -69,16 +75,17 @@ class TrainingConfig:
         """Types of fields that depend on other fields.
 
         :param content: values of some fields, as a file gives them
-        :raises ConfigurationError: if they name no task
+        :raises ConfigurationError: if they name no task or no algorithm
         """
-        return {"episode": type(task_named(str(content.get("task", cls.task))).episode)}
+        task, algo = content.get("task", cls.task), content.get("algo", cls.algo)
+        return {"agent": settings_of(str(algo)), "episode": type(task_named(str(task)).episode)}
 
     @property
     def candidate_count(self) -> int:
-        """Number of candidates that the budget affords to compare at the end; with one, there is nothing to compare."""
+        """Number of candidates that the budget allows to compare at the end; with one there is no comparison."""
         return max(1, self.episodes // BUDGET_PER_CANDIDATE)
 
     @property
     def compared_episodes(self) -> int:
-        """Number of episodes that the comparison of candidates takes, at the end of the budget."""
+        """Number of episodes in the comparison of candidates, which are the last of the budget."""
         return self.candidate_count * EPISODES_PER_CANDIDATE if self.candidate_count > 1 else 0

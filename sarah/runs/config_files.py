@@ -1,11 +1,12 @@
-"""Settings as YAML files: read with every mistake named, written so that they are read back."""
+"""Settings as YAML files: reading names every mistake, and writing makes files that can be read back."""
 
 from __future__ import annotations
 
 import dataclasses
+import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from sarah.errors import ConfigurationError, SarahError, shortened, unknown_name
 from sarah.files import replace_text
@@ -13,15 +14,17 @@ from sarah.robot.description import check_dimensions
 from sarah.runs.config import TrainingConfig
 
 ConfigType = TypeVar("ConfigType")
+EXPONENT = re.compile(r"[-+]?\d+[eE][-+]?\d+")
+"""Numbers such as 3e-4, which YAML 1.1 takes for texts as they have no decimal point."""
 
 
 def first_difference(config: Any, other: Any, key: str = "") -> tuple[str, Any, Any] | None:
-    """Where two configurations of a kind differ.
+    """Find the first difference between two configurations of the same type.
 
-    :param config: a dataclass of :mod:`sarah.runs.config`
-    :param other: another one
-    :param key: what the names begin with
-    :return: the key and both values; nothing if they are equal
+    :param config: configuration, a dataclass
+    :param other: configuration to compare with
+    :param key: prefix of the fields' names
+    :return: the key and both values; ``None`` if the configurations are equal
     """
     for item in dataclasses.fields(config):
         value, there = getattr(config, item.name), getattr(other, item.name)
@@ -34,11 +37,11 @@ def first_difference(config: Any, other: Any, key: str = "") -> tuple[str, Any, 
 
 
 def read_config(config_type: type[ConfigType], path: Path) -> ConfigType:
-    """Read a configuration from a YAML file. What the file does not name keeps its default.
+    """Read a configuration from a YAML file. Fields that the file does not name keep their defaults.
 
-    :param config_type: the dataclass to make
-    :param path: of the file
-    :raises ConfigurationError: naming file, key and value, if something in it is not allowed
+    :param config_type: dataclass of the configuration
+    :param path: path of the file
+    :raises ConfigurationError: naming file, key and value, if a value is not allowed
     """
     import yaml
 
@@ -51,7 +54,7 @@ def read_config(config_type: type[ConfigType], path: Path) -> ConfigType:
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise ConfigurationError(f"{path} is not YAML: {' '.join(str(error).split())}") from error
     if repeated is not None:
-        raise ConfigurationError(f"{path}: key {shortened(repeated)} stands there twice")
+        raise ConfigurationError(f"{path}: key {shortened(repeated)} is given twice")
     try:
         config = _from_mapping(config_type, {} if content is None else content, "")
         if isinstance(config, TrainingConfig):
@@ -62,7 +65,7 @@ def read_config(config_type: type[ConfigType], path: Path) -> ConfigType:
 
 
 def _repeated_key(node: Any) -> str | None:
-    """A key that a mapping has more than once, of which YAML would keep the last; only mappings in mappings count."""
+    """Find a key that a mapping gives more than once; YAML itself would silently keep the last one."""
     seen = set()
     for key, value in node.value if node is not None and node.id == "mapping" else ():
         if key.value in seen:
@@ -74,10 +77,10 @@ def _repeated_key(node: Any) -> str | None:
 
 
 def write_config(config: Any, path: Path) -> None:
-    """Write a configuration as YAML, every value spelled out, so that :func:`read_config` gives it back.
+    """Write a configuration as YAML with all its values, so that :func:`read_config` returns it.
 
-    :param config: a dataclass of :mod:`sarah.runs.config`
-    :param path: of the file
+    :param config: configuration, a dataclass
+    :param path: path of the file
     """
     import yaml
 
@@ -85,7 +88,7 @@ def write_config(config: Any, path: Path) -> None:
 
 
 def _to_plain(value: Any) -> Any:
-    """YAML's own types only: safe loaders refuse tuples."""
+    """Convert tuples to lists, because safe YAML loaders refuse tuples."""
     if isinstance(value, Mapping):
         return {key: _to_plain(item) for key, item in value.items()}
     return [_to_plain(item) for item in value] if isinstance(value, tuple) else value
@@ -105,18 +108,20 @@ def _from_mapping(config_type: type[ConfigType], content: Any, key: str) -> Conf
 
 
 def _converted(expected: Any, value: Any, key: str) -> Any:
-    """A value of the expected type, or an error that names the key."""
+    """Convert a value to the expected type, or raise an error that names the key."""
     if dataclasses.is_dataclass(expected):
         return _from_mapping(expected, value, f"{key}.")  # type: ignore[arg-type]
     if get_origin(expected) is tuple:
-        parts = get_args(expected)
-        if not isinstance(value, (list, tuple)) or len(value) != len(parts):
-            raise ConfigurationError(f"{key} must be a list of {len(parts)} values, not {shortened(value)}")
-        return tuple(_converted(part, item, key) for part, item in zip(parts, value, strict=True))
+        return _converted_tuple(get_args(expected), value, key)
+    if get_origin(expected) is Union:
+        number, names = get_args(expected)
+        return _converted(names if isinstance(value, str) else number, value, key)
     if get_origin(expected) is Mapping:
         if not isinstance(value, Mapping):
             raise ConfigurationError(f"{key} must hold names and values, not {shortened(value)}")
         return {name: _converted(get_args(expected)[1], item, f"{key}.{name}") for name, item in value.items()}
+    if expected is float and isinstance(value, str) and EXPONENT.fullmatch(value):
+        value = float(value)
     allowed = {float: (float, int), int: (int,), bool: (bool,)}.get(expected, (str,))
     if not isinstance(value, allowed) or (isinstance(value, bool) and expected is not bool):
         kind = {float: "a number", int: "a whole number", bool: "true or false"}.get(expected, "a text")
@@ -127,3 +132,14 @@ def _converted(expected: Any, value: Any, key: str) -> Any:
         return float(value) if expected is float else value
     except OverflowError:
         raise ConfigurationError(f"{key} must be a number that a float can hold, not {shortened(value)}") from None
+
+
+def _converted_tuple(parts: tuple[Any, ...], value: Any, key: str) -> tuple[Any, ...]:
+    """A tuple of the expected parts, of which an ellipsis stands for as many as there are of the one before it."""
+    is_list = isinstance(value, (list, tuple))
+    if Ellipsis in parts:
+        parts = (parts[0],) * len(value) if is_list else ()
+    if not is_list or len(value) != len(parts):
+        values = f"a list of {len(parts)} values" if parts else "a list"
+        raise ConfigurationError(f"{key} must be {values}, not {shortened(value)}")
+    return tuple(_converted(part, item, key) for part, item in zip(parts, value, strict=True))

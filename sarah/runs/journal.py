@@ -1,12 +1,12 @@
-"""The journal of a training: what came of every simulation, so that an interrupted training can be resumed exactly.
+"""The journal of a training: the outcome of every episode, from which an interrupted training resumes exactly.
 
-A training is deterministic: what it simulates next follows from its configuration and from what came of the
-simulations before. So a resumed training runs again from its beginning, and what the journal knows is taken from there
-instead of being simulated. That costs the learner's share of the time, a few per cent, and gives back everything,
-whatever learns: generators, replay buffer, optimiser and schedules are where they were because they went there again.
+A training is deterministic: its next episode follows from its configuration and from the outcomes so far. So a resumed
+training runs again from its beginning, but takes the outcomes that the journal has instead of simulating the episodes.
+That costs only the learner's share of the time, a few per cent. It restores random generators, replay buffer, optimiser
+and schedules of any algorithm, because they go through the same states again.
 
-A row is a checksum and a JSON object, and is on the disk before the training goes on. A damaged row is left out, and
-its simulation simulated again.
+A row is a checksum and a JSON object, and is on the disk before the training goes on. A damaged row is ignored, and its
+episode is simulated again.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ _log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class _Kind:
-    """How what a function returns is written and read.
+    """Conversion of a function's outcome to JSON and back.
 
-    :param plain: to what JSON knows
-    :param value: back
+    :param plain: function that makes values for JSON of an outcome
+    :param value: function that makes the outcome of values from JSON
     """
 
     plain: Callable[[Any], Any]
@@ -69,10 +69,10 @@ _NAMES: dict[Callable[..., Any], str] = {
 
 @dataclass(frozen=True)
 class _Row:
-    """What is known.
+    """A known outcome.
 
-    :param request: number, kind, seed and parameters of a simulation
-    :param value: what came of it
+    :param request: number, kind, seed and parameters of the episode
+    :param value: outcome of the episode
     """
 
     request: dict[str, Any]
@@ -80,12 +80,14 @@ class _Row:
 
 
 class Journal(Executor):
-    """Has episodes simulated that it does not know yet. A context, in which no other training can use the file.
+    """An executor that takes known outcomes from the journal's file, and has all other episodes simulated.
 
-    :param path: of the file, which must be there
-    :param executor: that simulates
-    :param interrupted: asked after every simulation whether the training shall stop
-    :raises RunFolderError: on entering, if the file is missing, or another training uses it
+    It is a context, in which no other training can use the file.
+
+    :param path: path of the file, which must exist
+    :param executor: executor that simulates episodes
+    :param interrupted: function that says after every episode whether the training is to stop
+    :raises RunFolderError: on entering, if the file is missing or another training uses it
     """
 
     def __init__(self, path: Path, executor: Executor, interrupted: Callable[[], bool] = lambda: False) -> None:
@@ -98,18 +100,18 @@ class Journal(Executor):
 
     @property
     def replaying(self) -> bool:
-        """Whether there is something left that is known and has not been asked for."""
+        """Whether the journal has outcomes that the training has not yet asked for."""
         return bool(self._known)
 
     def __enter__(self) -> Journal:
-        """Lock the file and read it."""
+        """Lock the file, and read it."""
         try:
             descriptor = os.open(self._path, os.O_RDWR | os.O_APPEND)
         except FileNotFoundError:
             raise RunFolderError(f"{self._path.parent} cannot be resumed: it has no {self._path.name}") from None
         self._file = open(descriptor, "r+b", buffering=0)  # closed on leaving
         try:
-            # The lock goes with the process, however it ends.
+            # The system releases the lock when the process ends, however it ends.
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             self._read()
         except BaseException as error:
@@ -122,7 +124,7 @@ class Journal(Executor):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Close the file, and give the lock back."""
+        """Close the file, and release the lock."""
         self._file.close()
 
     def _read(self) -> None:
@@ -138,15 +140,15 @@ class Journal(Executor):
             else:
                 self._known[row.request["index"]] = row
         if damaged:
-            _log.warning("%s: damaged rows: %d; what they held is simulated again", self._path, damaged)
+            _log.warning("%s: damaged rows: %d; their episodes are simulated again", self._path, damaged)
 
     def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
-        """Have an episode simulated, unless it is known what comes of it.
+        """Have an episode simulated, unless its outcome is known.
 
-        :param function: :func:`~sarah.episode.workers.begin_episode`,
+        :param function: function to call: :func:`~sarah.episode.workers.begin_episode`,
             :func:`~sarah.episode.workers.finish_episode` or :func:`sarah.simulate`
-        :param subjects: the episode's specification, and what else the function takes
-        :raises RunFolderError: if the training asks for something else than it did when the journal was written
+        :param subjects: arguments of the function, the episode's specification first
+        :raises RunFolderError: if the training asks for another episode than it did when the journal was written
         """
         request = _request(self._submitted, function, subjects[0])
         row = self._known.pop(self._submitted, None)
@@ -161,21 +163,21 @@ class Journal(Executor):
         return _KnownJob(self, row.value)
 
     def add(self, request: dict[str, Any], value: Any) -> None:
-        """Write what came of a simulation.
+        """Write the outcome of an episode.
 
-        :param request: its number, kind, seed and parameters
-        :param value: what came of it
+        :param request: number, kind, seed and parameters of the episode
+        :param value: outcome of the episode
         """
         row = {**request, "outcome": _KINDS[request["kind"]].plain(value)}
         text = json.dumps(row, allow_nan=False, separators=(",", ":")).encode()
         left = memoryview(b"%08x %s\n" % (zlib.crc32(text), text))
-        while left:  # a disk that is nearly full takes a part
+        while left:  # a disk that is nearly full takes only a part
             left = left[self._file.write(left) :]
-        if request["kind"] != "begin":  # that is cheap to do again
+        if request["kind"] != "begin":  # standing is cheap to simulate again
             os.fsync(self._file.fileno())
 
     def stop_if_interrupted(self) -> None:
-        """Raise :class:`~sarah.errors.TrainingInterruptedError` if the training shall stop."""
+        """Raise :class:`~sarah.errors.TrainingInterruptedError` if the training is to stop."""
         if self._interrupted():
             raise TrainingInterruptedError("the training was interrupted")
 
@@ -208,7 +210,7 @@ def _request(index: int, function: Callable[..., Any], spec: EpisodeSpec) -> dic
 
 
 def _read_row(line: bytes) -> _Row | None:
-    """A row of the journal, or nothing if it is damaged."""
+    """Read a row of the journal; return ``None`` if it is damaged."""
     checksum, _, text = line.partition(b" ")
     try:
         if int(checksum, 16) != zlib.crc32(text):

@@ -1,4 +1,4 @@
-"""The episodes of a run folder that there are to look at."""
+"""The episodes of a run folder, or of given parameters, from which a command chooses one."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from sarah.runs.run_folder import RunFolder
 class RunEpisode:
     """An episode to look at.
 
-    :param name: what ``--episode`` calls it
-    :param label: what the page's list calls it
-    :param spec: the episode
-    :param score: that the run noted, if it has been simulated there
+    :param name: name on the command line, for ``--episode``
+    :param label: name in the page's list
+    :param spec: specification of the episode
+    :param score: score that the run folder has for it; ``None`` if it was not simulated there
     """
 
     name: str
@@ -29,10 +29,10 @@ class RunEpisode:
 
 
 def episodes_of_run(run: RunFolder) -> list[RunEpisode]:
-    """A run's learned parameters, its best episode, and then all of them.
+    """Episodes of a training: its learned parameters, its best episode, and then all of its episodes.
 
-    :param run: of a training, which need not be finished
-    :raises RunFolderError: if a row of ``episodes.csv`` cannot be read, or there is nothing at all
+    :param run: run folder of the training, which need not be finished
+    :raises RunFolderError: if a row of ``episodes.csv`` cannot be read, or if there is no episode
     """
     training = run.config()
     task = TASKS[training.task]
@@ -59,10 +59,10 @@ def episodes_of_run(run: RunFolder) -> list[RunEpisode]:
 
 
 def episode_of_parameters(parameters: Sequence[float]) -> RunEpisode:
-    """The episode of given parameters with seed 0.
+    """Episode of given parameters, with seed 0.
 
-    :param parameters: P1 to P5, or V1 to V4 of the balance task
-    :raises ConfigurationError: if there are other than five or four of them, or one is not allowed
+    :param parameters: values of P1 to P5, or of V1 to V4 for the task balance
+    :raises ConfigurationError: if there are not five or four of them, or if one is not allowed
     """
     for task in TASKS.values():
         if len(parameters) == len(task.parameter_names):
@@ -79,7 +79,7 @@ def choose_episode(episodes: list[RunEpisode], name: str | None) -> RunEpisode:
     """Find an episode by its name.
 
     :param episodes: episodes to choose from
-    :param name: ``learned``, ``best`` or an index; the first episode if there is none
+    :param name: ``learned``, ``best`` or the index of an episode; the first one if ``None``
     :raises ConfigurationError: if there is no such episode
     """
     if name is None:

@@ -1,16 +1,16 @@
-"""The run folder: the only file that knows its layout.
+"""The run folder: only this module knows its layout.
 
-    config.yaml  command.txt  versions.txt     what was run, how, and with which versions
-    journal.jsonl                              what came of every episode, in full: what a training is resumed from
+    config.yaml  command.txt  versions.txt     the settings, the command and the versions of the training
+    journal.jsonl                              the outcome of every episode in full, from which a training is resumed
     episodes.csv                               one row per episode; any row can be simulated again
-    recommendations.csv                        what would have been recommended, every five episodes
+    recommendations.csv                        the recommendation after every five episodes
     progress.csv  events.out.tfevents.*        the learning curves, for tables and for TensorBoard
     model.zip                                  the agent, in stable-baselines3's format; optimisers have none
-    parameters.json                            the learned parameters: what a robot would be sent
-    figures/  report.html                      what sarah-figures and sarah-report make of this run
+    parameters.json                            the learned parameters, which a robot would be given
+    figures/  report.html                      the products of sarah-figures and sarah-report
 
-Everything but the model is read without unpickling, and no command reads the model: opening somebody's run executes
-none of its code.
+Every file but the model is read without unpickling, and no command reads the model. So opening somebody's run folder
+executes none of its code.
 """
 
 from __future__ import annotations
@@ -34,15 +34,15 @@ from sarah.runs.config_files import read_config, write_config
 from sarah.versions import versions
 
 EVENTS = "events.out.tfevents."
-"""Beginning of the names of TensorBoard's files."""
+"""Prefix of the names of TensorBoard's files."""
 
 
 def new_run_path(task: str, algo: str, seed: int) -> Path:
-    """A run folder's default place, ``runs/<task>/<algo>-s<seed>``, with a number behind it if that is taken.
+    """Default path of a run folder, ``runs/<task>/<algo>-s<seed>``, with a number behind it if that one exists.
 
-    :param task: what is learned
-    :param algo: what learns
-    :param seed: of the training
+    :param task: name of the task
+    :param algo: name of the algorithm
+    :param seed: seed of the training
     """
     base = Path("runs") / task / f"{algo}-s{seed}"
     path, number = base, 2
@@ -52,9 +52,9 @@ def new_run_path(task: str, algo: str, seed: int) -> Path:
 
 
 class RunFolder:
-    """A run's files.
+    """The files of a training.
 
-    :param path: of the folder; :meth:`create` makes a new one, :meth:`open` checks one that is there
+    :param path: path of the folder; :meth:`create` makes a new folder, :meth:`open` checks an existing one
     """
 
     def __init__(self, path: Path) -> None:
@@ -72,10 +72,10 @@ class RunFolder:
 
     @classmethod
     def create(cls, path: Path, config: TrainingConfig) -> RunFolder:
-        """Make a new run folder and note what will be run.
+        """Make a new run folder, and write the settings, the command and the versions of the training.
 
-        :param path: of the folder, which must be new or empty
-        :param config: of the training
+        :param path: path of the folder, which must be new or empty
+        :param config: settings of the training
         :raises RunFolderError: if the folder is not empty or cannot be written
         """
         try:
@@ -86,7 +86,7 @@ class RunFolder:
             replace_text(path / "command.txt", shlex.join(sys.argv) + "\n")
             lines = (f"{name} {version}\n" for name, version in versions().items())
             replace_text(run._versions_path, "".join(lines))
-            write_config(config, run._config_path)  # last: what has one can be resumed
+            write_config(config, run._config_path)  # last, because a folder that has it can be resumed
         except RunFolderError:
             raise
         except OSError as error:
@@ -94,7 +94,7 @@ class RunFolder:
         return run
 
     def _claim(self) -> bool:
-        """Make the journal, unless another training made it at the same time."""
+        """Make the journal's file, unless another training made it at the same time."""
         try:
             self.journal_path.touch(exist_ok=False)
         except FileExistsError:
@@ -105,9 +105,9 @@ class RunFolder:
     def open(cls, path: Path, unfinished: bool = False) -> RunFolder:
         """Open the folder of a training.
 
-        :param path: of the folder
-        :param unfinished: whether one without learned parameters will do
-        :raises RunFolderError: if it is not there, or has no learned parameters
+        :param path: path of the folder
+        :param unfinished: whether to accept a training without learned parameters
+        :raises RunFolderError: if the folder does not exist, or has no learned parameters
         """
         run = cls(path)
         if not path.is_dir():
@@ -122,8 +122,8 @@ class RunFolder:
     def resumable(cls, path: Path) -> RunFolder:
         """Open the folder of a training that was interrupted, or is finished.
 
-        :param path: of the folder
-        :raises RunFolderError: if it is not there, or lacks what a training is resumed from
+        :param path: path of the folder
+        :raises RunFolderError: if the folder does not exist, or lacks a file that a training is resumed from
         """
         run = cls(path)
         if not path.is_dir():
@@ -135,11 +135,11 @@ class RunFolder:
 
     @property
     def is_finished(self) -> bool:
-        """Whether the training has ended, with learned parameters."""
+        """Whether the training has finished, with learned parameters."""
         return self._parameters_path.is_file()
 
     def versions(self) -> dict[str, str]:
-        """Read which versions the training began with, by name."""
+        """Read the versions with which the training began, by name of the package."""
         try:
             lines = self._versions_path.read_text(encoding="utf-8").splitlines()
         except (OSError, UnicodeDecodeError) as error:
@@ -151,29 +151,29 @@ class RunFolder:
         return read_config(TrainingConfig, self._config_path)
 
     def config_text(self) -> str:
-        """Read ``config.yaml`` as it stands."""
+        """Read the text of ``config.yaml``."""
         return self._config_path.read_text(encoding="utf-8")
 
     def append_episode(self, index: int, spec: EpisodeSpec, result: EpisodeResult) -> None:
         """Add one episode to ``episodes.csv``.
 
         :param index: number of the episode, from 0
-        :param spec: what was simulated
-        :param result: what came of it
+        :param spec: specification of the episode
+        :param result: result of the episode
         """
         parameters = dict(zip(TASKS[spec.task].parameter_names, spec.parameters, strict=True))
         row = {"index": index, "seed": spec.seed, **parameters, **result.columns()}
         _append_row(self._episodes_path, tuple(row), row)
 
     def episodes(self) -> Iterator[dict[str, str]]:
-        """Read ``episodes.csv``, row by row, as text; nothing if nothing has been simulated yet."""
+        """Read ``episodes.csv``, row by row, as text; there are no rows before the first episode."""
         return _rows(self._episodes_path)
 
     def append_recommendation(self, episodes: int, parameters: Mapping[str, float]) -> None:
         """Add a row to ``recommendations.csv``.
 
-        :param episodes: number of episodes that the recommendation knows of
-        :param parameters: what would be recommended, by name
+        :param episodes: number of episodes that the recommendation is based on
+        :param parameters: values of the recommended parameters, by name
         """
         row = {"episodes": episodes, **parameters}
         _append_row(self._recommendations_path, tuple(row), row)
@@ -185,15 +185,15 @@ class RunFolder:
     def append_progress(self, columns: Sequence[str], values: Mapping[str, Any]) -> None:
         """Add a row to ``progress.csv``.
 
-        :param columns: of the file
-        :param values: by column; those that are not named stay empty
+        :param columns: names of all columns of the file
+        :param values: values by column; other columns stay empty
         """
         _append_row(self._progress_path, columns, values)
 
     def widen_progress(self, columns: Sequence[str]) -> None:
         """Give ``progress.csv`` more columns.
 
-        :param columns: those that it has, and new ones
+        :param columns: names of the present columns, and then of new ones
         """
         text = io.StringIO(newline="")
         writer = csv.DictWriter(text, columns)
@@ -202,7 +202,7 @@ class RunFolder:
         replace_text(self._progress_path, text.getvalue())
 
     def remove_records(self) -> None:
-        """Remove what is written along with the episodes: a resumed training writes all of it anew."""
+        """Remove the tables and curves of the episodes: a resumed training writes all of them anew."""
         tables = (self._episodes_path, self._recommendations_path, self._progress_path)
         for path in (*tables, *self.path.glob(f"{EVENTS}*")):
             path.unlink(missing_ok=True)
@@ -210,14 +210,14 @@ class RunFolder:
     def write_parameters(self, content: Mapping[str, Any]) -> None:
         """Write ``parameters.json``.
 
-        :param content: with at least the learned ``parameters`` by name
+        :param content: values to write, which include the learned ``parameters`` by name
         """
         replace_text(self._parameters_path, json.dumps(content, indent=2) + "\n")
 
     def parameters(self) -> tuple[float, ...]:
         """Read the learned parameters, in the order of the task.
 
-        :raises RunFolderError: if the file does not hold exactly these
+        :raises RunFolderError: if the file does not contain exactly the task's parameters
         """
         task = TASKS[self.config().task]
         names = task.parameter_names

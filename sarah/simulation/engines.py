@@ -16,23 +16,23 @@ INSTALLATION = {
 
 
 def default_engine() -> Engine:
-    """PyBullet, the reference; MuJoCo where PyBullet is not installed."""
+    """Name of the engine to use by default: PyBullet, the reference, or MuJoCo where PyBullet is not installed."""
     return "pybullet" if is_installed("pybullet") else "mujoco"
 
 
 def is_installed(engine: str) -> bool:
     """Whether an engine can be imported.
 
-    :param engine: ``"pybullet"`` or ``"mujoco"``
+    :param engine: name of the engine, ``"pybullet"`` or ``"mujoco"``
     """
     spec = find_spec(engine)
-    return spec is not None and spec.origin is not None  # `pip uninstall` may leave a folder, but no package
+    return spec is not None and spec.origin is not None  # `pip uninstall` may leave a folder without the package
 
 
 def check_engine(engine: str) -> None:
     """Refuse an engine that is not installed.
 
-    :param engine: ``"pybullet"`` or ``"mujoco"``
+    :param engine: name of the engine, ``"pybullet"`` or ``"mujoco"``
     :raises ConfigurationError: naming how to install it
     """
     if not is_installed(engine):

@@ -1,6 +1,6 @@
-"""One robot in its world, in MuJoCo: build, act, sense, push.
+"""One robot in one MuJoCo world: build, act, sense, push.
 
-A process compiles the model of a robot once. Every episode changes a copy of its own: friction, masses, servos.
+A process compiles the model of a robot once. Every episode changes its own copy of it: friction, masses, servos.
 """
 
 from __future__ import annotations
@@ -19,33 +19,37 @@ from sarah.simulation.randomisation import NOMINAL, Conditions
 from sarah.simulation.simulator import GRAVITY, TorsoState, rotate_to_body, specific_force
 
 CONTACT_STEPS = 0.5
-"""Time constant in which a contact stops what comes towards it, in physics steps."""
+"""Time constant with which a contact stops what moves towards it, in physics steps."""
 CONTACT_SECONDS = 0.015
-"""Time constant in which contacts push errors of position back. MuJoCo finds a contact when it has been passed, and
-pushing back faster would throw the foot up again."""
+"""Time constant with which contacts correct errors of position, in s. MuJoCo finds a contact only when the bodies
+overlap, and a faster correction would throw the foot up again."""
 CONTACT_IMPEDANCE = 0.99
-"""Share of that which a contact achieves against the loads on it."""
+"""Impedance of contacts, from 0 to 1: share of the full constraint force that a contact applies."""
 HIP_DAMPING, LEG_DAMPING = 10_000.0, 20_000.0
-"""Effort per deviation from the speed that a servo wants, in Nms/rad and Ns/m."""
+"""Effort per deviation from the speed that a servo demands, in Nms/rad and Ns/m."""
 JOINT_DAMPING = 2.0
-"""Factor on the URDF's joint damping: PyBullet, the reference, takes it twice."""
+"""Factor on the URDF's joint damping, which PyBullet, the reference, applies twice."""
 LOWEST_RATE = 300
-"""Physics steps per second that are taken at least: contacts are softer at lower rates."""
+"""Lowest number of physics steps per second: contacts are softer at lower rates."""
 STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS | mujoco.mjtState.mjSTATE_WARMSTART
-"""What a physics step begins with."""
+"""State that a physics step begins with."""
 
-# A state that is not finite ends the episode; MuJoCo would also write a file to wherever the process runs.
+# A state that is not finite ends the episode. MuJoCo's own warning would also write a file where the process runs.
 mujoco.set_mju_user_warning(lambda message: None)
 
 
 class MujocoSimulator:
     """A :class:`~sarah.simulation.simulator.Simulator` in MuJoCo.
 
-    :param robot: the checked robot
-    :param physics: how finely to integrate, at least at 300 Hz; the solver stops before its last iteration when it has
-        converged
+    :param robot: checked robot
+    :param physics: resolution in time, at least 300 Hz; the solver may converge, and stop, before its last iteration
     :param conditions: friction, masses, servo bandwidth and start velocity of this episode
     """
+
+    model: mujoco.MjModel
+    """MuJoCo's model of this robot, for any of MuJoCo's own functions."""
+    data: mujoco.MjData
+    """MuJoCo's state of it."""
 
     def __init__(
         self,
@@ -58,45 +62,45 @@ class MujocoSimulator:
         self._dt = physics.control_dt
         self._substeps = math.ceil(max(physics.rate, LOWEST_RATE) / physics.control_rate)
         rate = self._substeps * physics.control_rate
-        self._model = copy.copy(_compiled(robot.urdf, rate, physics.solver_iterations))
-        self._data = mujoco.MjData(self._model)
+        self.model = copy.copy(_compiled(robot.urdf, rate, physics.solver_iterations))
+        self.data = mujoco.MjData(self.model)
         self._apply_conditions(rate, conditions)
-        self._addresses = {name: int(self._model.joint(name).qposadr[0]) for name in (*ACTUATED_JOINTS, *ANKLE_JOINTS)}
+        self._addresses = {name: int(self.model.joint(name).qposadr[0]) for name in (*ACTUATED_JOINTS, *ANKLE_JOINTS)}
         self._positions = [self._addresses[name] for name in ACTUATED_JOINTS]
-        self._speeds = [int(self._model.joint(name).dofadr[0]) for name in ACTUATED_JOINTS]
+        self._speeds = [int(self.model.joint(name).dofadr[0]) for name in ACTUATED_JOINTS]
         self._limits = [robot.efforts[name] for name in ACTUATED_JOINTS]
         shares = [damping / limit for damping, limit in zip(self._damping, self._limits, strict=True)]
         self._servos = list(zip(shares, self._positions, self._speeds, strict=True))
         self._feet = {
             side: [
-                self._model.geom(_sole(side, plate, index)).id
+                self.model.geom(_sole(side, plate, index)).id
                 for plate in PLATES
                 for index in range(len(robot.soles[f"{side}_{plate}"]))
             ]
             for side in Side
         }
-        self._before = np.empty(mujoco.mj_stateSize(self._model, STATE))
-        self._data.qpos[2] = robot.standing_height
-        self._data.qvel[:2] = conditions.start_velocity
-        # Views of MuJoCo's memory.
-        self._qpos, self._qvel, self._pads = self._data.qpos, self._data.qvel, self._data.sensordata
-        self._pushed = self._data.xfrc_applied[self._model.body("torso").id, :3]
+        self._before = np.empty(mujoco.mj_stateSize(self.model, STATE))
+        self.data.qpos[2] = robot.standing_height
+        self.data.qvel[:2] = conditions.start_velocity
+        # These are views of MuJoCo's memory.
+        self._qpos, self._qvel, self._pads = self.data.qpos, self.data.qvel, self.data.sensordata
+        self._pushed = self.data.xfrc_applied[self.model.body("torso").id, :3]
         self._is_pushed = False
         self._targets: tuple[float, ...] = (0.0,) * len(ACTUATED_JOINTS)
         self._shares = list(self._targets)
-        self._torso = self._torso_state()
+        self.look()
         self._velocity_before = self._torso.velocity
 
     def _apply_conditions(self, rate: int, conditions: Conditions) -> None:
-        model = self._model
+        model = self.model
         for link, factor in conditions.mass_factors.items():
             index = model.body(link).id
             model.body_mass[index] *= factor
             model.body_inertia[index] *= factor
-        mujoco.mj_setConst(model, self._data)  # what MuJoCo derives from them
-        mujoco.mj_resetData(model, self._data)
+        mujoco.mj_setConst(model, self.data)  # updates what MuJoCo derives from the masses
+        mujoco.mj_resetData(model, self.data)
         model.pair_friction[:, :2] = conditions.friction
-        # MuJoCo takes the position at a step's end: with this rate a servo is the same first-order lag at every step.
+        # MuJoCo takes the position at a step's end. With this rate a servo is the same first-order lag at every rate.
         self._rate = (math.exp(conditions.actuator_bandwidth / rate) - 1.0) * rate
         self._damping = [LEG_DAMPING if name.endswith("leg_length") else HIP_DAMPING for name in ACTUATED_JOINTS]
         for actuator in range(len(ACTUATED_JOINTS)):
@@ -105,34 +109,34 @@ class MujocoSimulator:
     def _let_follow(self, actuator: int) -> None:
         """Let a servo follow its target."""
         damping = self._damping[actuator]
-        self._model.actuator_gainprm[actuator, 0] = damping * self._rate
-        self._model.actuator_biasprm[actuator, :3] = (0.0, -damping * self._rate, -damping)
+        self.model.actuator_gainprm[actuator, 0] = damping * self._rate
+        self.model.actuator_biasprm[actuator, :3] = (0.0, -damping * self._rate, -damping)
 
     def _let_give(self, actuator: int, effort: float) -> None:
-        """Let a servo give an effort, whatever its target."""
-        self._model.actuator_gainprm[actuator, 0] = 0.0
-        self._model.actuator_biasprm[actuator, :3] = (effort, 0.0, 0.0)
+        """Let a servo apply an effort, in Nm or N, whatever its target."""
+        self.model.actuator_gainprm[actuator, 0] = 0.0
+        self.model.actuator_biasprm[actuator, :3] = (effort, 0.0, 0.0)
 
     def set_targets(self, targets: tuple[float, ...]) -> None:
         """Set where the servos move the joints from now on.
 
         :param targets: positions in the order of ``ACTUATED_JOINTS``, in rad and m
         """
-        if targets != self._targets:  # the servos keep them
+        if targets != self._targets:  # the servos keep their targets
             self._targets = targets
-            self._data.ctrl[:] = targets
+            self.data.ctrl[:] = targets
 
     def push(self, force: Vector) -> None:
         """Push the torso at its centre during the next control tick.
 
-        :param force: in the world's frame, in N
+        :param force: force in the world's frame, in N
         """
         self._pushed[:] = force
         self._is_pushed = True
 
     def advance(self) -> None:
         """Simulate one control tick."""
-        model, data, before = self._model, self._data, self._before
+        model, data, before = self.model, self.data, self._before
         self._velocity_before = self._torso.velocity
         for _ in range(self._substeps):
             mujoco.mj_getState(model, data, before, STATE)
@@ -141,17 +145,17 @@ class MujocoSimulator:
             if max(shares) > 1.0 or min(shares) < -1.0:
                 shares = self._step_again(shares)
         self._shares = shares
-        if self._is_pushed:  # MuJoCo would go on
+        if self._is_pushed:  # MuJoCo keeps the force until it is reset
             self._pushed[:] = 0.0
             self._is_pushed = False
         self.time += self._dt
-        self._torso = self._torso_state()
+        self.look()
 
     def _step_again(self, shares: list[float]) -> list[float]:
-        """Take a physics step again, in which servos that exceeded their limits give what they can.
+        """Repeat a physics step, in which servos that exceeded their limits apply their largest effort.
 
-        :param shares: of the servos' limits that they took
-        :return: that they take now
+        :param shares: efforts of the servos in the step, as shares of their limits
+        :return: efforts in the repeated step, as shares of the limits
         """
         limited: dict[int, float] = {}
         while max(shares) > 1.0 or min(shares) < -1.0:
@@ -159,8 +163,8 @@ class MujocoSimulator:
                 if abs(share) > 1.0:
                     limited[actuator] = math.copysign(1.0, share)
                     self._let_give(actuator, limited[actuator] * self._limits[actuator])
-            mujoco.mj_setState(self._model, self._data, self._before, STATE)
-            mujoco.mj_step(self._model, self._data)
+            mujoco.mj_setState(self.model, self.data, self._before, STATE)
+            mujoco.mj_step(self.model, self.data)
             shares = self._effort_shares()
             for actuator, share in limited.items():
                 shares[actuator] = share
@@ -169,7 +173,7 @@ class MujocoSimulator:
         return shares
 
     def _effort_shares(self) -> list[float]:
-        """Efforts of servos that follow their targets, at the end of the last physics step, over their limits."""
+        """Efforts of servos that follow their targets, after the last physics step, as shares of their limits."""
         positions, speeds, rate = self._qpos.tolist(), self._qvel.tolist(), self._rate
         return [
             damping * (rate * (target - positions[position]) - speeds[speed])
@@ -177,33 +181,34 @@ class MujocoSimulator:
         ]
 
     def torso_state(self) -> TorsoState:
-        """Where the torso really is; no sensor of the robot knows it."""
+        """True state of the torso, which no sensor of the robot measures."""
         return self._torso
 
-    def _torso_state(self) -> TorsoState:
+    def look(self) -> None:
+        """Take where the torso is, and how it moves, from MuJoCo; needed when others have moved it."""
         x, y, z, orientation_w, orientation_x, orientation_y, orientation_z = self._qpos[:7].tolist()
         orientation = (orientation_x, orientation_y, orientation_z, orientation_w)
         velocity_x, velocity_y, velocity_z, *rate = self._qvel[:6].tolist()
-        self._angular_rate: Vector = tuple(rate)  # MuJoCo's is in the torso's frame
+        self._angular_rate: Vector = tuple(rate)  # MuJoCo gives it in the torso's frame
         to_world = (-orientation_x, -orientation_y, -orientation_z, orientation_w)
         angular_velocity = rotate_to_body(to_world, self._angular_rate)
-        return TorsoState((x, y, z), orientation, (velocity_x, velocity_y, velocity_z), angular_velocity)
+        self._torso = TorsoState((x, y, z), orientation, (velocity_x, velocity_y, velocity_z), angular_velocity)
 
     def read(self) -> SensorReading:
-        """The true sensor signals of the last control tick, without noise or delay."""
+        """True sensor signals of the last control tick, without noise or delay."""
         positions = self._qpos.tolist()
         return SensorReading(
             specific_force(self._torso, self._velocity_before, self._dt),
             self._angular_rate,
-            tuple(self._pads[::3].tolist()),  # the normal forces
+            tuple(self._pads[::3].tolist()),  # the first of three components is the normal force
             tuple([positions[index] for index in self._positions]),
         )
 
     def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
         """Positions of some joints, in rad and m.
 
-        :param names: of the joints
-        :return: a tuple in the same order
+        :param names: names of the joints
+        :return: positions in the same order
         """
         return tuple(float(self._qpos[self._addresses[name]]) for name in names)
 
@@ -216,14 +221,14 @@ class MujocoSimulator:
     def sole_height(self, side: Side) -> float:
         """Height of a foot's lowest sole contact over the floor, in m.
 
-        :param side: foot's side
+        :param side: side of the foot
         """
-        mujoco.mj_kinematics(self._model, self._data)  # a step leaves the positions of its beginning
-        heights = self._data.geom_xpos[:, 2].tolist()
+        mujoco.mj_kinematics(self.model, self.data)  # a step leaves the link positions of its beginning
+        heights = self.data.geom_xpos[:, 2].tolist()
         return min([heights[sole] for sole in self._feet[side]]) - self.robot.contact_radius
 
     def close(self) -> None:
-        """Nothing is left open: MuJoCo's memory goes with the object."""
+        """Do nothing: MuJoCo's memory is freed with the object."""
 
 
 def _sole(side: Side, plate: str, index: int) -> str:
@@ -232,18 +237,18 @@ def _sole(side: Side, plate: str, index: int) -> str:
 
 @lru_cache(maxsize=8)
 def _compiled(urdf: str, rate: int, solver_iterations: int) -> mujoco.MjModel:
-    """A robot on a plane, as designed. Only soles touch the floor, and only pads their plates."""
+    """Model of a robot on a plane, as designed. Only soles touch the floor, and only pads touch their plates."""
     spec = mujoco.MjSpec.from_string(urdf)
-    spec.compiler.fusestatic = False  # otherwise the torso becomes a part of the world
+    spec.compiler.fusestatic = False  # otherwise the torso becomes part of the world
     spec.body("torso").add_freejoint()
     spec.option.timestep = 1.0 / rate
     spec.option.gravity = (0.0, 0.0, -GRAVITY)
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
     spec.option.iterations = solver_iterations
     spec.option.disableflags |= (
-        mujoco.mjtDisableBit.mjDSBL_REFSAFE  # contacts are as hard as asked
-        | mujoco.mjtDisableBit.mjDSBL_AUTORESET  # who diverges ends, and does not begin anew
-        | mujoco.mjtDisableBit.mjDSBL_ISLAND  # there is one robot
+        mujoco.mjtDisableBit.mjDSBL_REFSAFE  # contacts stay as hard as asked
+        | mujoco.mjtDisableBit.mjDSBL_AUTORESET  # a diverging simulation ends the episode instead of starting anew
+        | mujoco.mjtDisableBit.mjDSBL_ISLAND  # there is only one robot
     )
     damping = rate / CONTACT_STEPS
     hardness = {"solref": (-damping / CONTACT_SECONDS, -damping), "solimp": (*[CONTACT_IMPEDANCE] * 2, 0.001, 0.5, 2.0)}
@@ -251,14 +256,14 @@ def _compiled(urdf: str, rate: int, solver_iterations: int) -> mujoco.MjModel:
         geom.contype = geom.conaffinity = 0
     spec.worldbody.add_geom(name="floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0, 0, 1), contype=0, conaffinity=0)
     for side in Side:
-        # In the order of the URDF: the forefoot's first.
+        # The pads are in the order of the URDF: the forefoot's first.
         for plate, pad in zip(PLATES, spec.body(f"{side}_shank").geoms, strict=True):
             pad.name = f"{side}_{plate}_pad"
             soles = 0
             for geom in spec.body(f"{side}_{plate}").geoms:
                 if geom.type == mujoco.mjtGeom.mjGEOM_BOX:
                     geom.name = f"{side}_{plate}"
-                    # Without friction: the hinge leaves nothing to slide.
+                    # This contact needs no friction: the hinge leaves nothing to slide.
                     spec.add_pair(geomname1=pad.name, geomname2=geom.name, condim=1, **hardness)
                     spec.add_sensor(
                         name=pad.name,
@@ -273,7 +278,7 @@ def _compiled(urdf: str, rate: int, solver_iterations: int) -> mujoco.MjModel:
                     spec.add_pair(geomname1="floor", geomname2=geom.name, condim=3, **hardness)
     for name in (*ACTUATED_JOINTS, *ANKLE_JOINTS):
         joint = spec.joint(name)
-        joint.actfrclimited = mujoco.mjtLimited.mjLIMITED_FALSE  # would cut what MuJoCo computes before a step
+        joint.actfrclimited = mujoco.mjtLimited.mjLIMITED_FALSE  # would clip what MuJoCo computes before a step
         joint.damping *= JOINT_DAMPING
         joint.solref_limit, joint.solimp_limit = hardness["solref"], hardness["solimp"]
     for name in ACTUATED_JOINTS:

@@ -1,4 +1,4 @@
-"""How finely time is divided, and the named settings of it."""
+"""Resolution of the physics in time, and its named settings."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LARGEST_ADDED_INERTIA = 1.0
 
 @dataclass(frozen=True)
 class Physics:
-    """How finely time is divided.
+    """Resolution of the physics in time.
 
     :param rate: physics steps per second, a multiple of the control rate; MuJoCo takes at least 300
     :param solver_iterations: iterations of the physics engine's constraint solver, per physics step
@@ -36,7 +36,7 @@ class Physics:
         check_range("physics.solver_iterations", self.solver_iterations, 1, MOST_SOLVER_ITERATIONS)
 
     def at_control_rate(self, control_rate: int) -> Physics:
-        """The same physics for another control rate; its own rate is raised to the next multiple of that.
+        """Physics for another control rate; the physics rate is raised to the next multiple of it.
 
         :param control_rate: control ticks per second
         """
@@ -51,37 +51,37 @@ class Physics:
 
 @dataclass(frozen=True)
 class PyBulletPhysics(Physics):
-    """How finely PyBullet divides time, and what makes few solver iterations enough there.
+    """Resolution of PyBullet's physics in time, and an added inertia with which few solver iterations are enough.
 
-    :param added_plate_inertia: inertia that each foot plate gets about its hinge while its leg is not retracted, in
-        kg m^2; 0 is the robot as it is
+    :param added_plate_inertia: inertia added to each foot plate about its hinge while its leg is not retracted, in
+        kg m^2; 0 leaves the robot as it is
     """
 
     added_plate_inertia: float = 0.008
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be simulated."""
+        """Refuse values that cannot be simulated."""
         super().__post_init__()
         check_range("physics.added_plate_inertia", self.added_plate_inertia, 0.0, LARGEST_ADDED_INERTIA, "kg m^2")
 
 
 PHYSICS = {"standard": PyBulletPhysics(), "reference": PyBulletPhysics(1000, 100, added_plate_inertia=0.0)}
-"""Named settings: what training uses, and the finer one that published results are checked with. Another engine than
-PyBullet takes of them what it has."""
+"""Named settings: ``standard``, which trainings use, and the finer ``reference``, which checks results. MuJoCo
+ignores the fields that it does not have."""
 
 
 def physics_type(engine: str) -> type[Physics]:
-    """The kind of settings that an engine takes.
+    """Type of the settings that an engine takes.
 
-    :param engine: ``"pybullet"`` or ``"mujoco"``
+    :param engine: name of the engine, ``"pybullet"`` or ``"mujoco"``
     """
     return PyBulletPhysics if engine == "pybullet" else Physics
 
 
 def physics_for(engine: str, physics: Physics) -> Physics:
-    """Settings as an engine takes them: those that only another engine knows are left out, or get their named values.
+    """Settings of any engine as another engine takes them; fields of PyBullet alone are dropped or get named values.
 
-    :param engine: ``"pybullet"`` or ``"mujoco"``
+    :param engine: name of the engine that takes them, ``"pybullet"`` or ``"mujoco"``
     :param physics: settings of any engine
     """
     if type(physics) is physics_type(engine):

@@ -1,7 +1,7 @@
-"""One PyBullet world with one robot: build, act, sense, push.
+"""One robot in one PyBullet world: build, act, sense, push.
 
-A world is built for one episode and closed after it: poses reset in place, or a restored state, do not repeat
-bit for bit, a world built anew does.
+A world is built for one episode and closed after it. Only a world that is built anew repeats an episode bit for bit;
+poses that are reset in place, or a restored state, do not.
 """
 
 from __future__ import annotations
@@ -17,20 +17,27 @@ from sarah.simulation.randomisation import NOMINAL, Conditions
 from sarah.simulation.simulator import GRAVITY, TorsoState, rotate_to_body, specific_force
 
 CONTACT_SECONDS = 0.0015
-"""Time in which contacts push errors of position back to 1/e. PyBullet takes a share per physics step instead; with the
-same share at every rate, coarse steps would make the floor soft. With 1 ms a standing robot creeps at 1 kHz."""
+"""Time in which contacts reduce errors of position to 1/e, in s. PyBullet takes a share per physics step instead; with
+the same share at every rate, coarse steps would make the floor soft. With 1 ms a standing robot creeps at 1 kHz."""
 CONTACT_MARGIN = 0.0003
-"""Distance from which on the solver considers a contact, in m. With 2 mm coarse steps damp the rocking more; PyBullet's
-0.02 also costs time for feet in the air."""
+"""Distance at which the solver begins to consider a contact, in m. With 2 mm, coarse steps damp the rocking more.
+PyBullet's 0.02 also costs time for feet in the air."""
 
 
 class PyBulletSimulator:
     """A :class:`~sarah.simulation.simulator.Simulator` in PyBullet.
 
-    :param robot: the checked robot
-    :param physics: how finely to integrate
+    :param robot: checked robot
+    :param physics: resolution in time
     :param conditions: friction, masses, servo bandwidth and start velocity of this episode
     """
+
+    client: int
+    """Number of PyBullet's client, for any of PyBullet's own functions."""
+    body: int
+    """Number of the robot's body."""
+    links: dict[str, int]
+    """Index of each link, by its name and by that of the joint which carries it."""
 
     def __init__(
         self,
@@ -42,7 +49,7 @@ class PyBulletSimulator:
         self.time = 0.0
         self._dt = physics.control_dt
         self._substeps = physics.rate // physics.control_rate
-        self._client = take_client()
+        self.client = take_client()
         try:
             self._build(physics, conditions)
         except BaseException:
@@ -57,70 +64,70 @@ class PyBulletSimulator:
             numSolverIterations=physics.solver_iterations,
             contactERP=corrected,
             contactBreakingThreshold=CONTACT_MARGIN,
-            numNonContactInnerIterations=2,  # motors settle before contacts do: without, standing soles creep
+            numNonContactInnerIterations=2,  # motors settle before contacts do; otherwise standing soles creep
             enableConeFriction=0,  # as good as friction cones here, and cheaper
             enableFileCaching=0,
-            physicsClientId=self._client,
+            physicsClientId=self.client,
         )
-        pybullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self._client)
+        pybullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self.client)
         self._build_floor()
-        self._body, self._links = load_robot(
-            self._client,
+        self.body, self.links = load_robot(
+            self.client,
             self.robot.urdf,
             self.robot.standing_height,
             flags=pybullet.URDF_USE_INERTIA_FROM_FILE
             | pybullet.URDF_IGNORE_VISUAL_SHAPES
-            # PyBullet gives parent-child contact (pad and plate) only with both of these.
+            # PyBullet reports contact between parent and child (pad and plate) only with both of these flags.
             | pybullet.URDF_USE_SELF_COLLISION
             | pybullet.URDF_USE_SELF_COLLISION_INCLUDE_PARENT,
         )
-        self._joints = [self._links[name] for name in ACTUATED_JOINTS]
+        self._joints = [self.links[name] for name in ACTUATED_JOINTS]
         self._pads: dict[tuple[int, int], int] = {}
         for index, (side, plate) in enumerate(product(Side, PLATES)):
-            shank, foot = self._links[f"{side}_shank"], self._links[f"{side}_{plate}"]
+            shank, foot = self.links[f"{side}_shank"], self.links[f"{side}_{plate}"]
             self._pads[shank, foot] = self._pads[foot, shank] = index
         self._feet = {}
         for side in Side:
             plates = [f"{side}_{plate}" for plate in PLATES]
-            self._feet[side] = ([self._links[name] for name in plates], [self.robot.soles[name] for name in plates])
+            self._feet[side] = ([self.links[name] for name in plates], [self.robot.soles[name] for name in plates])
         self._keep_only_pad_contacts()
         self._apply_conditions(conditions)
-        # A servo's share of the way in one physics step, so that it is the same first-order lag at every rate.
+        # A servo's share of the way in one physics step, which makes it the same first-order lag at every rate.
         gain = 1.0 - math.exp(-conditions.actuator_bandwidth / physics.rate)
         self._gains = [gain] * len(self._joints)
         self._added_plate_inertia = physics.added_plate_inertia if isinstance(physics, PyBulletPhysics) else 0.0
         self._plate_inertias = {
-            link: pybullet.getDynamicsInfo(self._body, link, physicsClientId=self._client)[2]
+            link: pybullet.getDynamicsInfo(self.body, link, physicsClientId=self.client)[2]
             for links, _ in self._feet.values()
             for link in links
         }
         self._retracted = dict.fromkeys(Side, True)
-        # PyBullet takes them as impulses over the whole tick, and lets every substep spend all of it.
+        # PyBullet takes efforts as impulses over the whole tick, and lets every substep spend all of it.
         self._efforts = [self.robot.efforts[name] / self._substeps for name in ACTUATED_JOINTS]
-        self._look()
+        self.look()
         self._velocity_before = self._torso.velocity
         self._targets: tuple[float, ...] = ()
         self.set_targets((0.0,) * len(self._joints))
 
     def _build_floor(self) -> None:
-        shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self._client)
-        floor = pybullet.createMultiBody(0.0, shape, physicsClientId=self._client)
-        pybullet.changeDynamics(floor, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=self._client)
+        shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self.client)
+        floor = pybullet.createMultiBody(0.0, shape, physicsClientId=self.client)
+        pybullet.changeDynamics(floor, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=self.client)
 
     def _keep_only_pad_contacts(self) -> None:
-        links = sorted(set(self._links.values()))
+        links = sorted(set(self.links.values()))
         for first in links:
             for second in links:
                 if first < second and (first, second) not in self._pads:
-                    pybullet.setCollisionFilterPair(self._body, self._body, first, second, 0, self._client)
+                    pybullet.setCollisionFilterPair(self.body, self.body, first, second, 0, self.client)
 
     def _apply_conditions(self, conditions: Conditions) -> None:
-        client = self._client
-        for link, factor in conditions.mass_factors.items():  # of every link
-            index = self._links[link]
-            dynamics = pybullet.getDynamicsInfo(self._body, index, physicsClientId=client)
+        client = self.client
+        for link, factor in conditions.mass_factors.items():  # contains every link
+            index = self.links[link]
+            dynamics = pybullet.getDynamicsInfo(self.body, index, physicsClientId=client)
             pybullet.changeDynamics(
-                self._body,
+                self.body,
                 index,
                 mass=dynamics[0] * factor,
                 localInertiaDiagonal=[inertia * factor for inertia in dynamics[2]],
@@ -130,76 +137,72 @@ class PyBulletSimulator:
                 angularDamping=0.0,
                 physicsClientId=client,
             )
-        # In a call of its own: together with other settings PyBullet applies those to the base instead of the link.
+        # This is a call of its own: PyBullet would apply the other settings to the base instead of the link.
         pybullet.changeDynamics(
-            self._body, -1, activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING, physicsClientId=client
+            self.body, -1, activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING, physicsClientId=client
         )
         for name in ANKLE_JOINTS:  # otherwise PyBullet's default motor holds them
             pybullet.setJointMotorControl2(
-                self._body, self._links[name], pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client
+                self.body, self.links[name], pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client
             )
-        pybullet.resetBaseVelocity(self._body, (*conditions.start_velocity, 0.0), physicsClientId=client)
+        pybullet.resetBaseVelocity(self.body, (*conditions.start_velocity, 0.0), physicsClientId=client)
 
     def set_targets(self, targets: tuple[float, ...]) -> None:
         """Set where the servos move the joints from now on.
 
         :param targets: positions in the order of ``ACTUATED_JOINTS``, in rad and m
         """
-        if targets == self._targets:  # the servos keep them
+        if targets == self._targets:  # the servos keep their targets
             return
         self._targets = targets
         pybullet.setJointMotorControlArray(
-            self._body,
+            self.body,
             self._joints,
             pybullet.POSITION_CONTROL,
             targetPositions=targets,
             forces=self._efforts,
             positionGains=self._gains,
-            physicsClientId=self._client,
+            physicsClientId=self.client,
         )
-        for side, length in zip(Side, targets[-len(Side) :], strict=True):  # the legs' lengths come last
+        for side, length in zip(Side, targets[-len(Side) :], strict=True):  # the leg lengths come last
             if (length > 0.0) != self._retracted[side]:
                 self._retract(side, length > 0.0)
 
     def _retract(self, side: Side, retracted: bool) -> None:
-        """Leave the plates of a leg that is retracted their own inertia, and give those of another leg the added one.
+        """Give the plates of a retracted leg their own inertia, and those of another leg the added one as well.
 
-        Light plates between the floor and pads that carry a whole robot make the solver converge slowly. While they
-        stand they hardly turn, and their inertia changes little else (docs/robot.md has how much).
+        Light plates between the floor and pads that carry a whole robot make the solver converge slowly. While a plate
+        stands it hardly turns, so its inertia changes little else (docs/explanation/physics.md says how much).
         """
         self._retracted[side] = retracted
         added = 0.0 if retracted else self._added_plate_inertia
         for link in self._feet[side][0]:
             about_hinge, *others = self._plate_inertias[link]
             inertia = (about_hinge + added, *others)
-            pybullet.changeDynamics(self._body, link, localInertiaDiagonal=inertia, physicsClientId=self._client)
+            pybullet.changeDynamics(self.body, link, localInertiaDiagonal=inertia, physicsClientId=self.client)
 
     def push(self, force: Vector) -> None:
         """Push the torso at its centre during the next control tick.
 
-        :param force: in the world's frame, in N
+        :param force: force in the world's frame, in N
         """
         pybullet.applyExternalForce(
-            self._body, -1, force, self._torso.position, pybullet.WORLD_FRAME, physicsClientId=self._client
+            self.body, -1, force, self._torso.position, pybullet.WORLD_FRAME, physicsClientId=self.client
         )
 
     def advance(self) -> None:
         """Simulate one control tick."""
         self._velocity_before = self._torso.velocity
-        pybullet.stepSimulation(physicsClientId=self._client)
+        pybullet.stepSimulation(physicsClientId=self.client)
         self.time += self._dt
-        self._look()
+        self.look()
 
     def torso_state(self) -> TorsoState:
-        """Where the torso really is; no sensor of the robot knows it."""
+        """True state of the torso, which no sensor of the robot measures."""
         return self._torso
 
-    def _torso_state(self) -> TorsoState:
-        position, orientation = pybullet.getBasePositionAndOrientation(self._body, physicsClientId=self._client)
-        return TorsoState(position, orientation, *pybullet.getBaseVelocity(self._body, physicsClientId=self._client))
-
     def read(self) -> SensorReading:
-        """The true sensor signals of the last control tick, without noise or delay."""
+        """True sensor signals of the last control tick, without noise or delay."""
         torso = self._torso
         return SensorReading(
             specific_force(torso, self._velocity_before, self._dt),
@@ -211,39 +214,41 @@ class PyBulletSimulator:
     def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
         """Positions of some joints, in rad and m.
 
-        :param names: of the joints
-        :return: a tuple in the same order
+        :param names: names of the joints
+        :return: positions in the same order
         """
-        indices = [self._links[name] for name in names]
-        return tuple(state[0] for state in pybullet.getJointStates(self._body, indices, self._client))
+        indices = [self.links[name] for name in names]
+        return tuple(state[0] for state in pybullet.getJointStates(self.body, indices, self.client))
 
     def actuator_motion(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Speeds (rad/s, m/s) and efforts (Nm, N) of the actuators, in the order of ``ACTUATED_JOINTS``."""
-        # As with contacts, PyBullet reports the impulse of the last substep over the whole tick.
+        # PyBullet divides the impulse of the last substep by the whole tick.
         return self._speeds, tuple([effort * self._substeps for effort in self._joint_efforts])
 
-    def _look(self) -> None:
-        """Ask PyBullet where torso and actuators are, and how they move."""
-        self._torso = self._torso_state()
+    def look(self) -> None:
+        """Take the state of torso and actuators from PyBullet; needed when others have moved them."""
+        position, orientation = pybullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client)
+        velocities = pybullet.getBaseVelocity(self.body, physicsClientId=self.client)
+        self._torso = TorsoState(position, orientation, *velocities)
         self._positions, self._speeds, _, self._joint_efforts = zip(
-            *pybullet.getJointStates(self._body, self._joints, self._client), strict=True
+            *pybullet.getJointStates(self.body, self._joints, self.client), strict=True
         )
 
     def _pressures(self) -> tuple[float, float, float, float]:
         loads = [0.0, 0.0, 0.0, 0.0]
-        for contact in pybullet.getContactPoints(self._body, self._body, physicsClientId=self._client):
-            # PyBullet reports the impulse of the last substep over the whole tick.
+        for contact in pybullet.getContactPoints(self.body, self.body, physicsClientId=self.client):
+            # PyBullet divides the impulse of the last substep by the whole tick.
             loads[self._pads[contact[3], contact[4]]] += contact[9] * self._substeps
         return (loads[0], loads[1], loads[2], loads[3])
 
     def sole_height(self, side: Side) -> float:
         """Height of a foot's lowest sole contact over the floor, in m.
 
-        :param side: foot's side
+        :param side: side of the foot
         """
         lowest = math.inf
         links, soles = self._feet[side]
-        states = pybullet.getLinkStates(self._body, links, computeForwardKinematics=1, physicsClientId=self._client)
+        states = pybullet.getLinkStates(self.body, links, computeForwardKinematics=1, physicsClientId=self.client)
         for state, contacts in zip(states, soles, strict=True):
             frame_height, (x, y, z, w) = state[4][2], state[5]
             up_x, up_y, up_z = 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
@@ -254,7 +259,7 @@ class PyBulletSimulator:
         return lowest - self.robot.contact_radius
 
     def close(self) -> None:
-        """Give PyBullet's clients back; the simulation cannot be used any more."""
-        if self._client >= 0:
-            give_back_client(self._client)
-            self._client = -1
+        """Give PyBullet's client back; the simulator cannot be used after that."""
+        if self.client >= 0:
+            give_back_client(self.client)
+            self.client = -1

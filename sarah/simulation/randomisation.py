@@ -1,4 +1,4 @@
-"""What nobody knows exactly about a robot, and one episode's draw of it."""
+"""The uncertain properties of a robot and its world, and one episode's draw of them."""
 
 from __future__ import annotations
 
@@ -23,26 +23,26 @@ PLAUSIBLE = {
     "delay_ticks": (0, 100, "ticks"),
     "start_speed": (0.0, 10.0, "m/s"),
 }
-"""Lowest and highest value that a robot can have, and its unit. Beyond, somebody has mistaken the unit."""
+"""Lowest value, highest value and unit of each setting. Beyond them, somebody has mistaken the unit."""
 
 
 @dataclass(frozen=True)
 class Randomisation:
-    """What nobody knows exactly about a robot, drawn for each episode from its seed.
+    """Uncertain properties of the robot and its world, drawn for each episode from its seed.
 
-    Parameters learned on one exact robot exploit it, so they must hold under a little of everything. The ranges
-    are reconstructed, the paper gives none. A pair is a uniform range; equal ends fix the value.
+    Parameters learned on one exact robot exploit it, so they must hold under a little of everything. The ranges are
+    reconstructed, as the paper gives none. A pair is a uniform range; equal ends fix the value.
 
-    :param enabled: whether to randomise; off leaves the robot as designed, with a random start velocity only
-    :param friction: Coulomb friction coefficient between sole and floor
+    :param enabled: whether to randomise; if not, the robot is as designed, except for a random start velocity
+    :param friction: range of the Coulomb friction coefficient between sole and floor
     :param mass_deviation: largest relative deviation of each link's mass and inertia
-    :param actuator_bandwidth: of the position servos, per second
-    :param pad_threshold: pad load above which a foot counts as carrying, in N
+    :param actuator_bandwidth: range of the position servos' bandwidth, per second
+    :param pad_threshold: range of the load above which a foot counts as loaded, in N
     :param acceleration_noise: standard deviation of the accelerometer's white noise, in m/s^2
     :param angular_rate_noise: standard deviation of the gyroscope's white noise, in rad/s
-    :param imu_bandwidth: of the first-order low-pass inside the inertial measurement unit, in Hz
+    :param imu_bandwidth: bandwidth of the first-order low-pass inside the inertial measurement unit, in Hz
     :param pad_noise: standard deviation of each pressure pad's white noise, in N
-    :param delay_ticks: control ticks of delay between sensing and acting
+    :param delay_ticks: delay between sensing and acting, in control ticks
     :param start_speed: standard deviation of the torso's velocity along x and y at the start, in m/s
     """
 
@@ -65,19 +65,19 @@ class Randomisation:
 
 @dataclass(frozen=True)
 class Conditions:
-    """One episode's draw: the robot and the world as they really are.
+    """One episode's draw: the properties of its robot and world.
 
     :param friction: Coulomb friction coefficient between sole and floor
     :param mass_factors: factor on the mass and inertia of every link
-    :param actuator_bandwidth: of the position servos, per second
-    :param pad_threshold: pad load above which a foot counts as carrying, in N
-    :param acceleration_noise: standard deviation in m/s^2
-    :param angular_rate_noise: standard deviation in rad/s
-    :param imu_bandwidth: of the inertial measurement unit's low-pass, in Hz
-    :param pad_noise: standard deviation in N
-    :param delay_ticks: control ticks between sensing and acting
-    :param start_velocity: of the torso along x and y, in m/s
-    :param sensor_seed: of the sensor noise
+    :param actuator_bandwidth: bandwidth of the position servos, per second
+    :param pad_threshold: load above which a foot counts as loaded, in N
+    :param acceleration_noise: standard deviation of the accelerometer's white noise, in m/s^2
+    :param angular_rate_noise: standard deviation of the gyroscope's white noise, in rad/s
+    :param imu_bandwidth: bandwidth of the inertial measurement unit's low-pass, in Hz; infinite for none
+    :param pad_noise: standard deviation of each pressure pad's white noise, in N
+    :param delay_ticks: delay between sensing and acting, in control ticks
+    :param start_velocity: velocity of the torso along x and y at the start, in m/s
+    :param sensor_seed: seed of the sensor noise
     """
 
     friction: float = 0.9
@@ -93,7 +93,7 @@ class Conditions:
     sensor_seed: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse factors that leave a link out."""
+        """Refuse factors that omit a link."""
         if set(self.mass_factors) != set(LINKS):
             raise ConfigurationError(f"mass_factors must name every link: {', '.join(LINKS)}")
 
@@ -105,8 +105,8 @@ NOMINAL = Conditions()
 def draw_conditions(ranges: Randomisation, seed: int) -> Conditions:
     """Draw one episode's conditions.
 
-    :param ranges: what to draw from
-    :param seed: of the episode; the same seed draws the same conditions
+    :param ranges: ranges to draw from
+    :param seed: seed of the episode; the same seed draws the same conditions
     :return: the draw; with the randomisation off, the robot as designed with perfect sensors and a start velocity
     """
     # Each quantity takes a fixed number of draws, so that changing one range leaves the others' draws alone.

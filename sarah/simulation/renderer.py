@@ -1,4 +1,4 @@
-"""Pictures of the robot, in a world of their own: the one that is simulated holds nothing that can be seen."""
+"""Pictures of the robot, drawn in a world of their own: the simulated world contains nothing visible."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from sarah.simulation.scenery import STANDARD_CAMERA, Camera, View, floor, shade
 from sarah.simulation.simulator import Simulator
 
 MARGIN = 0.05
-"""Around the corners of torso and feet, in m, within which all of the robot lies; nothing else is drawn."""
+"""Distance around the corners of torso and feet, in m, that contains the whole robot; nothing else is drawn."""
 SHOE_MARGIN = 1.2
-"""Length and width of a shoe, in those of its sole contacts."""
+"""Length and width of a shoe, as multiples of those between its sole contacts."""
 NEAR, FAR = 0.05, 10.0
 LIGHT = (-1.5, 2.5, 3.0)
-"""Direction towards the light, in the world."""
+"""Direction towards the light, in the world's frame."""
 
 
 def check_renderer() -> None:
-    """Refuse to draw where PyBullet, which draws, is not installed.
+    """Refuse to draw where PyBullet, which draws the pictures, is not installed.
 
     :raises ConfigurationError: naming how to install it
     """
@@ -35,11 +35,11 @@ def check_renderer() -> None:
 
 
 class Renderer:
-    """Draws a robot in any pose, by PyBullet's software renderer.
+    """Draws a robot in any pose with PyBullet's software renderer.
 
-    :param robot: the checked robot
-    :param samples: of the robot along each side of a pixel: 2 smooth its edges; less than 1 is softer, and quicker, for
-        time grows with their square
+    :param robot: checked robot
+    :param samples: samples of the robot along each side of a pixel: 2 gives smooth edges; less than 1 is softer and
+        faster, as the time grows with their square
     :raises ConfigurationError: if PyBullet is not installed
     """
 
@@ -66,12 +66,12 @@ class Renderer:
     ) -> np.ndarray:
         """Draw one pose.
 
-        :param position: of the torso's centre, in m
-        :param orientation: of the torso: unit quaternion (x, y, z, w)
-        :param joints: positions in rad and m by name; joints that are not named stay where they were, at first at zero
-        :param width: of the picture, in pixels
-        :param height: of the picture, in pixels
-        :param camera: where to look from
+        :param position: position of the torso's centre, in m
+        :param orientation: orientation of the torso, as a unit quaternion (x, y, z, w)
+        :param joints: positions by joint, in rad and m; other joints stay where they were, at first at zero
+        :param width: width of the picture, in pixels
+        :param height: height of the picture, in pixels
+        :param camera: place and direction of the camera
         :return: uint8 array of shape (height, width, 3)
         """
         client = self._client
@@ -90,7 +90,7 @@ class Renderer:
         return picture
 
     def _torso_corners(self) -> np.ndarray:
-        """Of a box around the torso, in its frame."""
+        """Corners of a box around the torso, in its frame."""
         shapes = pybullet.getVisualShapeData(self._body, physicsClientId=self._client)
         boxes = [shape for shape in shapes if shape[1] == -1 and shape[2] == pybullet.GEOM_BOX]
         reach = np.max([np.abs(box[5]) + np.array(box[3]) / 2 for box in boxes], axis=0)
@@ -151,10 +151,10 @@ class Renderer:
     ) -> np.ndarray:
         """Draw a simulator's robot as it stands.
 
-        :param simulator: of any engine
-        :param width: of the picture, in pixels
-        :param height: of the picture, in pixels
-        :param camera: where to look from
+        :param simulator: simulator of any engine
+        :param width: width of the picture, in pixels
+        :param height: height of the picture, in pixels
+        :param camera: place and direction of the camera
         :return: uint8 array of shape (height, width, 3)
         """
         names = ACTUATED_JOINTS + ANKLE_JOINTS
@@ -163,7 +163,7 @@ class Renderer:
         return self.draw(torso.position, torso.orientation, joints, width, height, camera)
 
     def close(self) -> None:
-        """Give PyBullet's client back; nothing can be drawn any more."""
+        """Give PyBullet's client back; the renderer cannot draw after that."""
         if self._client >= 0:
             give_back_client(self._client)
             self._client = -1

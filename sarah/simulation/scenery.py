@@ -1,4 +1,4 @@
-"""What is around the robot in a picture: the camera's view, a tiled floor, and the feet's shadows on it."""
+"""The surroundings of the robot in a picture: the camera's view, a tiled floor, and the feet's shadows on it."""
 
 from __future__ import annotations
 
@@ -10,28 +10,28 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFilter
 
 FIELD_OF_VIEW = math.radians(35.0)
-"""Of the camera, from the picture's lower to its upper edge."""
+"""Angle of the camera's view from the lower to the upper edge of the picture, in rad."""
 TILE = 0.25
-"""Length of the floor's tiles, in m: a torso that moves by one of them from its start has left the episode's box."""
+"""Length of the floor's tiles, in m; a torso that moves by one tile from its start has left the episode's box."""
 LIGHT_TILE, DARK_TILE = np.array((243.0, 245.0, 247.0)), np.array((214.0, 221.0, 229.0))
 SKY = np.array((252.0, 252.0, 253.0))
 FADING_DISTANCE = 3.0
-"""From the camera, in m, over which the floor fades to 1/e into the sky."""
+"""Distance from the camera over which the floor fades to 1/e into the sky, in m."""
 SHADOW = 0.45
 """Share of the light that a shadow takes."""
 SHADOW_BLUR = 0.004
-"""Of a picture's height."""
+"""Blur of the shadows, as a share of the picture's height."""
 SAMPLES = 2
-"""Of the floor, along each side of a pixel."""
+"""Samples of the floor along each side of a pixel."""
 
 
 class Camera(NamedTuple):
-    """Where a picture is taken from: it looks at a point above where the robot starts, and stands still.
+    """Place of a camera that stands still and looks at a point above the robot's start.
 
-    :param height: of the point over the floor, in m
-    :param distance: from it, in m
-    :param yaw: in degrees; 180 looks at the robot from its front
-    :param pitch: in degrees; negative looks down
+    :param height: height of that point over the floor, in m
+    :param distance: distance of the camera from that point, in m
+    :param yaw: direction of the view about the vertical, in degrees; 180 looks at the robot from its front
+    :param pitch: direction of the view over the horizon, in degrees; negative looks down
     """
 
     height: float = 0.48
@@ -44,17 +44,17 @@ STANDARD_CAMERA = Camera()
 
 
 class View:
-    """How a camera that stands still sees the world.
+    """Projection of the world into the picture of a camera that stands still.
 
-    :param width: of the picture, in pixels
-    :param height: of the picture, in pixels
-    :param camera: where it stands
+    :param width: width of the picture, in pixels
+    :param height: height of the picture, in pixels
+    :param camera: place and direction of the camera
     """
 
     def __init__(self, width: int, height: int, camera: Camera) -> None:
         self.width, self.height = width, height
         self.focal_length = height / 2 / math.tan(FIELD_OF_VIEW / 2)
-        """In pixels."""
+        """Focal length, in pixels."""
         yaw, pitch = math.radians(camera.yaw), math.radians(camera.pitch)
         right = (math.cos(yaw), math.sin(yaw), 0.0)
         ahead = (-math.sin(yaw) * math.cos(pitch), math.cos(yaw) * math.cos(pitch), math.sin(pitch))
@@ -63,9 +63,9 @@ class View:
         self.position = np.array((0.0, 0.0, camera.height)) - camera.distance * self.axes[2]
 
     def pixels(self, points: np.ndarray) -> np.ndarray:
-        """Where points of the world appear.
+        """Project points of the world into the picture.
 
-        :param points: in m, of shape (n, 3), before the camera
+        :param points: points in the world's frame and in front of the camera, in m, of shape (n, 3)
         :return: pixels to the right and down from the picture's upper left corner, of shape (n, 2)
         """
         right, up, ahead = self.axes @ (np.asarray(points) - self.position).T
@@ -73,11 +73,11 @@ class View:
         return np.stack((self.width / 2 + scale * right, self.height / 2 - scale * up), axis=1)
 
     def rectangle(self, points: np.ndarray, margin: float) -> tuple[int, int, int, int]:
-        """The part of the picture in which points of the world appear.
+        """Find the part of the picture that contains points of the world.
 
-        :param points: in m, of shape (n, 3), before the camera
-        :param margin: around them, in m
-        :return: left, top, right and bottom in pixels, right and bottom not included; empty if they are out of it
+        :param points: points in the world's frame and in front of the camera, in m, of shape (n, 3)
+        :param margin: distance around the points that it contains too, in m
+        :return: left, top, right and bottom in pixels, without right and bottom themselves; empty if it is outside
         """
         around = np.concatenate([points + margin * sign * axis for axis in self.axes[:2] for sign in (-1, 1)])
         pixels, corner = self.pixels(around), (self.width, self.height)
@@ -88,18 +88,18 @@ class View:
 
 @lru_cache(maxsize=4)
 def floor(width: int, height: int, camera: Camera) -> np.ndarray:
-    """Draw the tiled floor, up to where it fades into the sky.
+    """Draw the tiled floor, which fades into the sky.
 
-    :param width: of the picture, in pixels
-    :param height: of the picture, in pixels
-    :param camera: where to look from
+    :param width: width of the picture, in pixels
+    :param height: height of the picture, in pixels
+    :param camera: place and direction of the camera
     :return: uint8 array of shape (height, width, 3) that must not be changed
     """
     view = View(width, height, camera)
     right = ((np.arange(SAMPLES * width) + 0.5) / SAMPLES - width / 2) / view.focal_length
     up = (height / 2 - (np.arange(SAMPLES * height) + 0.5) / SAMPLES)[:, None] / view.focal_length
     ray_x, ray_y, ray_z = (right * view.axes[0, i] + up * view.axes[1, i] + view.axes[2, i] for i in range(3))
-    length = view.position[2] / np.maximum(-ray_z, 1e-6)  # of the ray, down to the floor
+    length = view.position[2] / np.maximum(-ray_z, 1e-6)  # length of the ray down to the floor
     x, y = length * ray_x, length * ray_y
     nearness = np.exp(-(x**2 + y**2) / FADING_DISTANCE**2)
     is_dark = (np.floor((view.position[0] + x) / TILE) + np.floor((view.position[1] + y) / TILE)) % 2
@@ -111,10 +111,10 @@ def floor(width: int, height: int, camera: Camera) -> np.ndarray:
 
 
 def shaded(picture: np.ndarray, outlines: list[np.ndarray]) -> np.ndarray:
-    """Darken what lies in the shadow.
+    """Darken the parts of a picture that lie in shadow.
 
     :param picture: uint8 array of shape (height, width, 3)
-    :param outlines: of the shadows, in pixels, each of shape (corners, 2)
+    :param outlines: outlines of the shadows, in pixels, each of shape (corners, 2)
     :return: uint8 array of the same shape
     """
     height, width, _ = picture.shape

@@ -1,4 +1,4 @@
-"""What the robot senses: one reading per control tick, with the band limit, noise and delay of real sensors."""
+"""Imperfect sensors: one reading per control tick, with the band limit, noise and delay of real sensors."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from sarah.robot.filters import low_pass_gain
 from sarah.robot.reading import SensorReading
 
 TICKS_AT_ONCE = 256
-"""For which noise is drawn ahead."""
+"""Number of control ticks for which noise is drawn at once."""
 
 
 class ImperfectSensors:
-    """What real sensors add: band limit and white noise of the inertial measurement unit, noise of the pads, delay.
+    """Model of real sensors: band limit and noise of the inertial measurement unit, noise of the pads, and delay.
 
-    :param acceleration_noise: standard deviation in m/s^2
-    :param angular_rate_noise: standard deviation in rad/s
-    :param imu_bandwidth: of the inertial measurement unit's first-order low-pass, in Hz; infinite for none
-    :param pad_noise: standard deviation in N, on each pad
-    :param delay_ticks: control ticks by which every signal comes late
-    :param seed: of the noise
-    :param dt: control period in s
+    :param acceleration_noise: standard deviation of the accelerometer's white noise, in m/s^2
+    :param angular_rate_noise: standard deviation of the gyroscope's white noise, in rad/s
+    :param imu_bandwidth: bandwidth of the inertial measurement unit's first-order low-pass, in Hz; infinite for none
+    :param pad_noise: standard deviation of each pressure pad's white noise, in N
+    :param delay_ticks: delay of all signals, in control ticks
+    :param seed: seed of the noise
+    :param dt: control period, in s
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class ImperfectSensors:
         self._imu = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
     def __call__(self, truth: SensorReading) -> SensorReading:
-        """Take the true reading of this tick and return what the controller gets to see."""
+        """Take the true reading of this tick, and return the reading that the controller sees."""
         self._pending.append(self._band_limited(truth))
         (ax, ay, az), (wx, wy, wz), (a, b, c, d), joints = self._pending[0]
         nax, nay, naz, nwx, nwy, nwz, na, nb, nc, nd = self._next_noise()
@@ -63,7 +63,7 @@ class ImperfectSensors:
             return truth
         x, y, z, about_x, about_y, about_z = self._imu
         (ax, ay, az), (wx, wy, wz), pressures, joints = truth
-        # As LowPass; six calls would cost every tick a microsecond.
+        # The same filter as LowPass: six calls of it would cost a microsecond per tick.
         x += gain * (ax - x)
         y += gain * (ay - y)
         z += gain * (az - z)
@@ -74,7 +74,7 @@ class ImperfectSensors:
         return SensorReading((x, y, z), (about_x, about_y, about_z), pressures, joints)
 
     def _next_noise(self) -> list[float]:
-        """One tick's noise of the ten noisy signals; drawn for many ticks at once, which is faster."""
+        """Noise of the ten noisy signals in one tick. It is drawn for many ticks at once, which is faster."""
         noise = next(self._noise, None)
         if noise is None:
             drawn = self._generator.standard_normal((TICKS_AT_ONCE, len(self._deviations)))

@@ -1,4 +1,4 @@
-"""What an episode needs of a physics engine, whichever it is."""
+"""The protocol of a simulator: what an episode needs of a physics engine."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from typing import NamedTuple, Protocol
 from sarah.robot.reading import SensorReading, Side, Vector
 
 GRAVITY = 9.81
-"""In m/s^2."""
+"""Acceleration of gravity, in m/s^2."""
 LARGEST_STATE = 1e3
-"""In any SI unit: a torso that is farther away, or faster, is in a simulation that diverges."""
+"""Largest state of a torso, in any SI unit: a larger one means that the simulation diverges."""
 
 
 class TorsoState(NamedTuple):
-    """Where the torso really is, in the world's frame.
+    """True state of the torso, in the world's frame.
 
-    :param position: of its centre, in m
-    :param orientation: unit quaternion (x, y, z, w)
-    :param velocity: in m/s
-    :param angular_velocity: in rad/s
+    :param position: position of its centre, in m
+    :param orientation: orientation as a unit quaternion (x, y, z, w)
+    :param velocity: velocity of its centre, in m/s
+    :param angular_velocity: angular velocity, in rad/s
     """
 
     position: Vector
@@ -40,17 +40,17 @@ class TorsoState(NamedTuple):
 
     @property
     def is_finite(self) -> bool:
-        """Whether the physics engine still returns numbers that a robot's state can have."""
+        """Whether the state consists of finite numbers that a robot's state can have."""
         position, orientation, velocity, angular_velocity = self
         return math.hypot(*position, *orientation, *velocity, *angular_velocity) < LARGEST_STATE
 
 
 class Simulator(Protocol):
-    """A robot in its world, built for one episode: it stands on a plane, soles just touching, all joints at zero."""
+    """A robot in its world, built for one episode: it stands on a plane, its soles touch it, all joints are at zero."""
 
     @property
     def time(self) -> float:
-        """Simulated so far, in s."""
+        """Simulated time so far, in s."""
 
     def set_targets(self, targets: tuple[float, ...]) -> None:
         """Set where the servos move the joints from now on.
@@ -61,22 +61,23 @@ class Simulator(Protocol):
     def push(self, force: Vector) -> None:
         """Push the torso at its centre during the next control tick.
 
-        :param force: in the world's frame, in N
+        :param force: force in the world's frame, in N
         """
 
     def advance(self) -> None:
         """Simulate one control tick."""
 
     def read(self) -> SensorReading:
-        """The true sensor signals of the last control tick, without noise or delay."""
+        """True sensor signals of the last control tick, without noise or delay."""
 
     def torso_state(self) -> TorsoState:
-        """Where the torso really is; no sensor of the robot knows it."""
+        """True state of the torso, which no sensor of the robot measures."""
 
     def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
         """Positions of some joints, in rad and m.
 
-        :param names: of the joints
+        :param names: names of the joints
+        :return: positions in the same order
         """
 
     def actuator_motion(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -85,18 +86,18 @@ class Simulator(Protocol):
     def sole_height(self, side: Side) -> float:
         """Height of a foot's lowest sole contact over the floor, in m.
 
-        :param side: foot's side
+        :param side: side of the foot
         """
 
     def close(self) -> None:
-        """Give the engine's resources back; the simulator cannot be used any more."""
+        """Give the engine's resources back; the simulator cannot be used after that."""
 
 
 def rotate_to_body(orientation: tuple[float, float, float, float], vector: Vector) -> Vector:
-    """Turn a vector from the world's frame into a body's.
+    """Rotate a vector from the world's frame into a body's frame.
 
-    :param orientation: the body's unit quaternion (x, y, z, w)
-    :param vector: in the world's frame
+    :param orientation: orientation of the body, as a unit quaternion (x, y, z, w)
+    :param vector: vector in the world's frame
     :return: the same vector in the body's frame
     """
     x, y, z, w = orientation
@@ -109,12 +110,12 @@ def rotate_to_body(orientation: tuple[float, float, float, float], vector: Vecto
 
 
 def specific_force(torso: TorsoState, velocity_before: Vector, dt: float) -> Vector:
-    """What an ideal accelerometer in the torso reads: the mean over a control tick, without gravity.
+    """Mean specific force over a control tick, which an ideal accelerometer in the torso reads.
 
-    :param torso: at the end of the tick
-    :param velocity_before: at its beginning, in the world's frame, in m/s
-    :param dt: of the tick, in s
-    :return: in the torso's frame, in m/s^2
+    :param torso: state of the torso at the end of the tick
+    :param velocity_before: velocity at the beginning of the tick, in the world's frame, in m/s
+    :param dt: duration of the tick, in s
+    :return: specific force in the torso's frame, in m/s^2; (0, 0, 9.81) at rest
     """
     now, before = torso.velocity, velocity_before
     force = ((now[0] - before[0]) / dt, (now[1] - before[1]) / dt, (now[2] - before[2]) / dt + GRAVITY)

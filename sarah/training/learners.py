@@ -4,37 +4,51 @@ from __future__ import annotations
 
 import dataclasses
 from collections import deque
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import torch
 from stable_baselines3 import DDPG, SAC, TD3
 from stable_baselines3.common.noise import NormalActionNoise
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
+from stable_baselines3.common.utils import LinearSchedule
 from stable_baselines3.common.vec_env import VecEnv
+from torch import nn
 
-from sarah.agents.naf import NAF, PRESETS
+from sarah.agents import LocalNAF
 from sarah.envs.episode_vec_env import EpisodeVecEnv
 from sarah.envs.sarah_env import draw_seed, observation_from, parameters_from
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import TASKS, Task
 from sarah.episode.workers import Executor, Job
+from sarah.errors import ConfigurationError
 from sarah.files import replacing
+from sarah.runs.agent_settings import (
+    AgentSettings,
+    DDPGSettings,
+    LearnerSettings,
+    NAFSettings,
+    SACSettings,
+    TD3Settings,
+)
 from sarah.runs.config import OPTIMISERS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.randomisation import Randomisation
-from sarah.training.optimisers import Searcher, make_searcher
+from sarah.training.optimisers import Optimiser, make_optimiser
 from sarah.training.recommendation import Parameters
 from sarah.training.recorder import EpisodeRecorder, check_weights
 from sarah.training.replay import LateRankReplayBuffer, LateReplayBuffer
 
-WARM_UP = 30
-"""Simulations before NAF's rivals learn; twice the slots, if that is more."""
+SCHEDULED_SHARE = 0.8
+"""Share of a training after which what NAF's settings change in its course has its last value."""
+ACTIVATIONS = {"tanh": nn.Tanh, "relu": nn.ReLU, "sigmoid": nn.Sigmoid}
 
 
 def learn(
     config: TrainingConfig,
-    simulations: int,
+    episodes: int,
     run: RunFolder,
     recorder: EpisodeRecorder,
     workers: Executor,
@@ -42,22 +56,22 @@ def learn(
     """Learn by what the configuration names.
 
     :param config: of the training
-    :param simulations: to learn from
+    :param episodes: to learn from
     :param run: where an agent is saved
-    :param recorder: of the simulations
+    :param recorder: of the episodes
     :param workers: that simulate
     :return: what the algorithm itself would choose in the end
     """
     if config.algo in OPTIMISERS:
-        return _search(config, simulations, recorder, workers)
-    env = EpisodeVecEnv(config.task, config.episode, simulations, config.slots, workers)
+        return _search(config, episodes, recorder, workers)
+    env = EpisodeVecEnv(config.task, config.episode, episodes, config.slots, workers)
     model = make_agent(config, env)
     model.set_logger(recorder.log)
     standing = nominal_observation(config)
     recorder.choose = lambda: chosen_parameters(model, standing, TASKS[config.task])
-    # The recorder logs every simulation; stable-baselines3's own averages are left out.
+    # The recorder logs every episode; stable-baselines3's own averages are left out.
     model.learn(
-        simulations + config.slots - 1,
+        episodes + config.slots - 1,
         callback=recorder,
         log_interval=None,  # type: ignore[arg-type]
     )
@@ -73,31 +87,88 @@ def spread_seed(config: TrainingConfig) -> int:
 
 
 def make_agent(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
-    """Make the reinforcement learner that a configuration names, with the settings that suit one action per episode.
+    """Make the reinforcement learner that a configuration names, with its settings.
 
     :param config: of the training
     :param env: to learn from
     """
-    warm_up = PRESETS["one-step"]["learning_starts"] if config.algo == "naf" else WARM_UP
+    settings = config.agent
+    assert isinstance(settings, LearnerSettings)
+    check_device(settings)
+    # All algorithms of stable-baselines3's kind take these under the same names.
+    common = {item.name: getattr(settings, item.name) for item in dataclasses.fields(LearnerSettings)}
     # Learning begins with as many outcomes as are in flight.
-    common: dict[str, Any] = dict(seed=spread_seed(config), learning_starts=max(warm_up, 2 * config.slots))
-    if config.algo == "naf":
-        common["first_action_centre"] = TASKS[config.task].neutral is not None  # few uniform draws come near V = 0
-        return NAF("MlpPolicy", env, **{**PRESETS["one-step"], "replay_buffer_class": LateRankReplayBuffer, **common})
-    # Their defaults are for long episodes of small rewards; here the reward is the return.
-    settings = dict(
-        batch_size=64,
-        gamma=0.0,
-        gradient_steps=PRESETS["one-step"]["gradient_steps"],
-        policy_kwargs=dict(net_arch=[64, 64]),
-        replay_buffer_class=LateReplayBuffer,
-        **common,
+    common["learning_starts"] = max(settings.learning_starts, 2 * config.slots)
+    algorithm, own_arguments = LEARNERS[type(settings)]
+    own = own_arguments(settings, TASKS[config.task])
+    return algorithm("MlpPolicy", env, seed=spread_seed(config), **common, **own)
+
+
+def check_device(settings: AgentSettings) -> None:
+    """Refuse a device that is not there, for which stable-baselines3 would take the processor.
+
+    :param settings: Settings of an algorithm
+    :raises ConfigurationError: naming the device
+    """
+    if isinstance(settings, LearnerSettings) and settings.device.startswith("cuda"):
+        found = torch.cuda.device_count()
+        if (torch.device(settings.device).index or 0) >= found:
+            raise ConfigurationError(f"agent.device {settings.device!r} is not here: torch finds {found} CUDA devices")
+
+
+def _naf_arguments(settings: NAFSettings, task: Task) -> dict[str, Any]:
+    layers = dict(V=settings.v_layers, mu=settings.mu_layers, L=settings.l_layers, shared=settings.shared_layers)
+    return dict(
+        replay_buffer_class=LateRankReplayBuffer,
+        replay_buffer_kwargs=dict(temperature=settings.temperature),
+        max_grad_norm=settings.max_grad_norm,
+        exploration_std=LinearSchedule(*settings.exploration_std, end_fraction=SCHEDULED_SHARE),
+        elite_share=settings.elite_share,
+        elite_std=LinearSchedule(*settings.elite_std, end_fraction=SCHEDULED_SHARE),
+        elite_draws=settings.elite_draws,
+        first_action_centre=task.neutral is not None,  # few uniform draws come near V = 0
+        policy_kwargs=dict(
+            net_arch={name: list(widths) for name, widths in layers.items()},
+            activation_fn=ACTIVATIONS[settings.activation],
+            squash_mu=settings.squash_mu,
+            min_curvature=settings.min_curvature,
+        ),
     )
-    if config.algo == "sac":
-        return SAC("MlpPolicy", env, **settings)
-    dimensions = len(TASKS[config.task].parameter_names)
-    noise = NormalActionNoise(np.zeros(dimensions), np.full(dimensions, 0.2))
-    return {"td3": TD3, "ddpg": DDPG}[config.algo]("MlpPolicy", env, action_noise=noise, **settings)
+
+
+def _ddpg_arguments(settings: DDPGSettings, task: Task) -> dict[str, Any]:
+    dimensions = len(task.parameter_names)
+    return dict(
+        replay_buffer_class=LateReplayBuffer,
+        policy_kwargs=dict(net_arch=list(settings.layers)),
+        action_noise=NormalActionNoise(np.zeros(dimensions), np.full(dimensions, settings.action_noise_std)),
+    )
+
+
+def _td3_arguments(settings: TD3Settings, task: Task) -> dict[str, Any]:
+    return dict(
+        **_ddpg_arguments(settings, task),
+        policy_delay=settings.policy_delay,
+        target_policy_noise=settings.target_policy_noise,
+        target_noise_clip=settings.target_noise_clip,
+    )
+
+
+def _sac_arguments(settings: SACSettings, task: Task) -> dict[str, Any]:
+    return dict(
+        replay_buffer_class=LateReplayBuffer,
+        policy_kwargs=dict(net_arch=list(settings.layers)),
+        ent_coef=settings.ent_coef,
+    )
+
+
+LEARNERS: dict[type[LearnerSettings], tuple[type[OffPolicyAlgorithm], Callable[[Any, Task], dict[str, Any]]]] = {
+    NAFSettings: (LocalNAF, _naf_arguments),
+    TD3Settings: (TD3, _td3_arguments),
+    SACSettings: (SAC, _sac_arguments),
+    DDPGSettings: (DDPG, _ddpg_arguments),
+}
+"""Class of every kind of settings' algorithm, and what makes its arguments beyond those that all share."""
 
 
 def nominal_observation(config: TrainingConfig) -> np.ndarray:
@@ -124,28 +195,28 @@ def chosen_parameters(model: OffPolicyAlgorithm, observation: np.ndarray, task: 
     return parameters_from(action, task)
 
 
-def _search(config: TrainingConfig, simulations: int, recorder: EpisodeRecorder, workers: Executor) -> Parameters:
+def _search(config: TrainingConfig, episodes: int, recorder: EpisodeRecorder, workers: Executor) -> Parameters:
     """Let a black-box optimiser try parameters, as many in flight as there are slots; its choice is returned."""
     task = TASKS[config.task]
-    searcher = make_searcher(config.algo, len(task.parameter_names), spread_seed(config))
+    optimiser = make_optimiser(config.algo, config.agent, len(task.parameter_names), spread_seed(config))
     generator = np.random.default_rng(spread_seed(config))
-    recorder.choose = lambda: parameters_from(searcher.choice(), task)
+    recorder.choose = lambda: parameters_from(optimiser.choice(), task)
     running: deque[tuple[np.ndarray, EpisodeSpec, Job]] = deque()
-    for _ in range(simulations):
-        while len(running) == config.slots or not searcher.ready():
-            _tell_oldest(running, searcher, recorder)
-        action = searcher.ask()
+    for _ in range(episodes):
+        while len(running) == config.slots or not optimiser.ready():
+            _tell_oldest(running, optimiser, recorder)
+        action = optimiser.ask()
         spec = EpisodeSpec(parameters_from(action, task), draw_seed(generator), config.task, config.episode)
         running.append((action, spec, workers.submit(simulate, spec)))
     while running:
-        _tell_oldest(running, searcher, recorder)
+        _tell_oldest(running, optimiser, recorder)
     return recorder.choose()
 
 
 def _tell_oldest(
-    running: deque[tuple[np.ndarray, EpisodeSpec, Job]], searcher: Searcher, recorder: EpisodeRecorder
+    running: deque[tuple[np.ndarray, EpisodeSpec, Job]], optimiser: Optimiser, recorder: EpisodeRecorder
 ) -> None:
     action, spec, job = running.popleft()
     result = job.result()
-    searcher.tell(action, result.episode_return)
+    optimiser.tell(action, result.episode_return)
     recorder.record(spec, result)

@@ -1,7 +1,7 @@
 """Learning curves, for tables and for TensorBoard.
 
-Written here and not by stable-baselines3's writers: their CSV has its columns in another order in every process, and
-TensorBoard's own writer has a thread that alone learns of a full disk.
+This module replaces stable-baselines3's writers. The order of the columns in their CSV files changes from process to
+process, and TensorBoard's own writer notices a full disk only in a thread.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ if TYPE_CHECKING:
     from sarah.pictures.gait_snapshot import Picture
 
 RGB = 3
-"""What TensorBoard calls the colours of a picture."""
+"""Number by which TensorBoard knows the colours of a picture."""
 LEARNED = ("learned/score", "learned/steps_per_second", "learned/survival_rate", "learned/sole_clearance")
-"""What a training ends with, beside its hyper-parameters."""
+"""Names of the final values of a training, which TensorBoard shows beside its hyper-parameters."""
 
 
 class CurveWriter:
-    """``progress.csv`` and TensorBoard's event file of a run.
+    """Writer of a training's ``progress.csv`` and of TensorBoard's event file.
 
-    :param run: the run folder
+    :param run: run folder of the training
     """
 
     def __init__(self, run: RunFolder) -> None:
         self._run = run
         self._columns: list[str] = []
-        # TensorBoard goes by the name: what comes later in the alphabet is newer.
+        # TensorBoard takes the last file in the alphabet for the newest.
         name = f"{EVENTS}{time.time():.0f}.{socket.gethostname()}.{os.getpid()}"
         self._file = (run.path / name).open("wb")
         self._events = RecordWriter(self._file)
@@ -52,8 +52,8 @@ class CurveWriter:
     def write(self, values: dict[str, Any], excluded: dict[str, tuple[str, ...]], step: int) -> None:
         """Add a point to each curve.
 
-        :param values: by name of the curve
-        :param excluded: by name: where a value is not wanted, ``"csv"`` or ``"tensorboard"``
+        :param values: values by name of the curve
+        :param excluded: formats that leave a curve out, ``"csv"`` or ``"tensorboard"``, by name of the curve
         :param step: number of episodes so far
         """
         row = filter_excluded_keys(values, excluded, "csv")
@@ -71,7 +71,7 @@ class CurveWriter:
     def show(self, pictures: list[Picture], step: int) -> None:
         """Add pictures, which only TensorBoard shows.
 
-        :param pictures: to add
+        :param pictures: pictures to add
         :param step: number of episodes so far
         """
         values = [
@@ -96,9 +96,9 @@ class CurveWriter:
 
 
 def hyper_parameters(config: TrainingConfig) -> dict[str, str | int | float]:
-    """What TensorBoard's table of hyper-parameters shows of a training: few, and the same columns for every one.
+    """Values of a training for TensorBoard's table of hyper-parameters: few, and the same columns for all trainings.
 
-    :param config: of the training
+    :param config: settings of the training
     """
     episode = config.episode
     return {

@@ -10,12 +10,10 @@ from typing import Any, Protocol
 
 import numpy as np
 
-CMA_DEVIATION = 0.6
-"""CMA-ES' first standard deviation, in scaled actions."""
-CMA_POPULATION = 8
+from sarah.runs.agent_settings import AgentSettings, EvolutionSettings
 
 
-class Searcher(Protocol):
+class Optimiser(Protocol):
     """An optimiser that is asked and told, in the same order, with several trials in between."""
 
     def ready(self) -> bool:
@@ -70,16 +68,17 @@ class EvolutionStrategy:
 
     A generation is asked for together, and the next one only when all of it has been told.
 
+    :param settings: Settings of the strategy
     :param dimensions: of an action
     :param seed: of the draws
     """
 
-    def __init__(self, dimensions: int, seed: int) -> None:
+    def __init__(self, settings: EvolutionSettings, dimensions: int, seed: int) -> None:
         import cma
 
         # The package takes a seed of 0 for the time of day.
-        options = {"bounds": [-1.0, 1.0], "popsize": CMA_POPULATION, "seed": seed % 2**31 + 1, "verbose": -9}
-        self._strategy = cma.CMAEvolutionStrategy(np.zeros(dimensions), CMA_DEVIATION, options)
+        options = {"bounds": [-1.0, 1.0], "popsize": settings.population, "seed": seed % 2**31 + 1, "verbose": -9}
+        self._strategy = cma.CMAEvolutionStrategy(np.zeros(dimensions), settings.deviation, options)
         self._unasked: deque[np.ndarray] = deque()
         self._told: list[tuple[np.ndarray, float]] = []
         self._generation: list[np.ndarray] = []
@@ -142,17 +141,18 @@ class OptunaSearch:
         return np.array([self._study.best_params[name] for name in self._box])
 
 
-def make_searcher(algo: str, dimensions: int, seed: int) -> Searcher:
+def make_optimiser(algo: str, settings: AgentSettings, dimensions: int, seed: int) -> Optimiser:
     """Make an optimiser by name.
 
     :param algo: ``"cma-es"``, ``"gp"`` (Gaussian process), ``"tpe"`` (tree-structured Parzen estimator), ``"random"``
+    :param settings: Settings of that optimiser
     :param dimensions: of an action
     :param seed: of everything that it draws
     """
     if algo == "random":
         return RandomSearch(dimensions, seed)
-    if algo == "cma-es":
-        return EvolutionStrategy(dimensions, seed)
+    if isinstance(settings, EvolutionSettings):
+        return EvolutionStrategy(settings, dimensions, seed)
     from optuna.samplers import GPSampler, TPESampler
 
     return OptunaSearch(dimensions, GPSampler(seed=seed) if algo == "gp" else TPESampler(seed=seed))

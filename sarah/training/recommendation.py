@@ -1,9 +1,9 @@
-"""Which parameters a training recommends: those whose neighbourhood did best, and a few simulated again side by side.
+"""The recommendation of a training: the best of a few candidates, which are simulated again side by side.
 
-An agent's own choice stops at the edge of a flat crest, the best single episode was lucky, and the reward does not see
-a robot that steps to a clock or drags its feet: what falls short of a gait has less merit here than its score. So
-parameters are judged by the episodes around them, whatever learns; and the last episodes of a budget compare the
-best few, each on the same new seeds.
+An agent's own choice stops at the edge of a flat crest. The best single episode was lucky. And the reward does not show
+a robot that steps to a clock or drags its feet, so an episode without a valid gait has less merit here than its score.
+For all algorithms, therefore, parameters are judged by the merit of the episodes around them. The last episodes of a
+budget compare the best candidates, all on the same new seeds.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from sarah.episode.tasks import Task
 Parameters = tuple[float, ...]
 
 NEIGHBOURHOOD = 0.075
-"""Distance over which one episode says something of another's parameters, as a share of each one's range."""
+"""Distance up to which an episode counts for other parameters than its own, as a share of each parameter's range."""
 DISTINCT = 0.1
-"""Smallest distance between candidates, as such a share."""
+"""Smallest distance between candidates, as a share of each parameter's range."""
 
 
 def merit(result: EpisodeResult) -> float:
-    """What an episode says for its parameters: its score, less in proportion as the robot did not really step.
+    """Merit of an episode: its score, reduced in proportion to what its gait lacks to be valid.
 
-    :param result: what came of the episode
+    :param result: result of the episode
     """
     merit = result.score * min(1.0, result.sole_clearance / SMALLEST_CLEARANCE)
     for share in (result.shifts_by_sensors, result.lifts_by_sensors):
@@ -40,14 +40,13 @@ def merit(result: EpisodeResult) -> float:
 def candidates(
     task: Task, choice: Parameters, tried: Sequence[tuple[Parameters, float]], count: int
 ) -> list[Parameters]:
-    """What is worth simulating again.
+    """Choose the candidates: parameters whose neighbourhoods have the highest merit, not too close together.
 
-    :param task: whose parameters they are
-    :param choice: the algorithm's own
+    :param task: task that owns the parameters
+    :param choice: parameters that the algorithm itself would choose
     :param tried: parameters and merit of every episode so far
     :param count: number of candidates
-    :return: of the choice and the tried parameters those whose neighbourhoods did best, the best one first, not too
-        close together
+    :return: candidates among the algorithm's choice and the tried parameters, the best one first
     """
     parameters = [choice, *(tried_parameters for tried_parameters, _ in tried)]
     places = np.array(parameters) / [parameter.width for parameter in task.parameters]

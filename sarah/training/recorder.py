@@ -1,4 +1,4 @@
-"""What a training leaves behind while it runs: every simulation, and what it would recommend at the time."""
+"""The records of a training while it goes on: every episode, and the recommendation from time to time."""
 
 from __future__ import annotations
 
@@ -23,32 +23,31 @@ from sarah.training.learning_curves import LEARNED, CurveWriter
 from sarah.training.recommendation import Parameters, candidates, merit
 
 EPISODES_PER_RECOMMENDATION = 5
-"""Number of episodes after which it is noted what would be recommended."""
+"""Number of episodes after which the recommendation is recorded again."""
 
 
 class EpisodeRecorder(BaseCallback):
     """Writes every episode to ``episodes.csv`` and to the learning curves.
 
-    While a resumed training replays what it knows, nothing is written; once it goes on, all files are written anew, so
-    that they hold what they would without the interruption.
+    While a resumed training replays the episodes of its journal, nothing is written. When it goes on, all files are
+    written anew, so that they are the same as without the interruption.
 
-    :param run: where to
-    :param task: whose parameters they are
-    :param journal: of the training
-    :param progress: bar that every episode moves
-    :param picture_interval: number of episodes between pictures, for TensorBoard, of what would be recommended; 0 for
-        none
+    :param run: run folder of the training
+    :param task: task that owns the parameters
+    :param journal: journal of the training
+    :param progress: progress bar, which every episode moves on
+    :param picture_interval: number of episodes between pictures of the recommendation for TensorBoard; 0 for none
     """
 
     log: Logger
-    """Of the learning curves, which the agent writes to as well."""
+    """Logger of the learning curves, which the agent uses as well."""
     tried: list[tuple[Parameters, float]]
     """Parameters and merit of every episode so far."""
     diverged: int
-    """Number of episodes so far that ended because no number came back."""
+    """Number of episodes so far that diverged."""
     choose: Callable[[], Parameters] | None
-    """Tells what the algorithm would choose now; while there is such a thing, what a training would recommend is noted
-    in ``recommendations.csv``."""
+    """Function that returns the parameters that the algorithm itself would choose now. While it is set, the
+    recommendation is recorded in ``recommendations.csv``."""
 
     def __init__(
         self, run: RunFolder, task: Task, journal: Journal, progress: tqdm[NoReturn], picture_interval: int = 0
@@ -78,8 +77,8 @@ class EpisodeRecorder(BaseCallback):
     def record(self, spec: EpisodeSpec, result: EpisodeResult) -> None:
         """Write one episode.
 
-        :param spec: what was simulated
-        :param result: what came of it
+        :param spec: specification of the episode
+        :param result: result of the episode
         """
         self._write(partial(self._run.append_episode, len(self.tried), spec, result))
         self.tried.append((spec.parameters, merit(result)))
@@ -99,7 +98,7 @@ class EpisodeRecorder(BaseCallback):
         self._progress.update()
 
     def _record_recommendation(self, choose: Callable[[], Parameters], episodes: int) -> None:
-        """Note what would be recommended, and show it, whenever it is time."""
+        """Record the recommendation, and draw it, after the numbers of episodes that are set for each."""
         noted = episodes % EPISODES_PER_RECOMMENDATION == 0
         drawn = self._picture_interval and episodes % self._picture_interval == 0
         if not noted and not drawn:
@@ -109,12 +108,12 @@ class EpisodeRecorder(BaseCallback):
             named = dict(zip(self._task.parameter_names, recommended, strict=True))
             self._write(partial(self._run.append_recommendation, episodes, named))
             for name, value in named.items():
-                self.log.record(f"recommendation/{name}", value, exclude="csv")  # it has recommendations.csv
+                self.log.record(f"recommendation/{name}", value, exclude="csv")  # recommendations.csv has it
         if drawn:
             self._write(partial(self._draw, recommended, episodes))
 
     def _draw(self, recommended: Parameters, episodes: int) -> None:
-        from sarah.pictures.gait_snapshot import draw_gait  # matplotlib, for those who want pictures
+        from sarah.pictures.gait_snapshot import draw_gait  # slow to import because of matplotlib
 
         config = self._run.config()
         self._open_curves().show(draw_gait(recommended, config.task, config.episode), episodes)
@@ -122,16 +121,16 @@ class EpisodeRecorder(BaseCallback):
     def write_curves(self, values: dict[str, Any], excluded: dict[str, tuple[str, ...]], step: int) -> None:
         """Write a point of each learning curve.
 
-        :param values: by name
-        :param excluded: by name: where a value is not wanted
+        :param values: values by name of the curve
+        :param excluded: formats that leave a curve out, by name of the curve
         :param step: number of episodes so far
         """
         self._write(lambda: self._open_curves().write(values, excluded, step))
 
     def close(self, learned: Evaluation) -> None:
-        """Write what the training ends with and all that is held back, and close the learning curves.
+        """Write the final values of the training and all records that are held back, and close the learning curves.
 
-        :param learned: how the learned parameters do on unseen seeds
+        :param learned: evaluation of the learned parameters on unseen seeds
         """
         values = (
             learned.median("score"),
@@ -162,24 +161,24 @@ class EpisodeRecorder(BaseCallback):
 
 
 class _LoggerOutput(KVWriter):
-    """What a logger of stable-baselines3 writes to."""
+    """Output of a stable-baselines3 logger, which passes the values to the recorder."""
 
     def __init__(self, recorder: EpisodeRecorder) -> None:
         self._recorder = recorder
 
     def write(self, key_values: dict[str, Any], key_excluded: dict[str, tuple[str, ...]], step: int = 0) -> None:
-        # The logger empties both when this returns.
+        # The logger empties both dictionaries when this returns, so they are copied.
         self._recorder.write_curves(dict(key_values), dict(key_excluded), step)
 
 
 def check_weights(model: BaseAlgorithm) -> None:
-    """Stop a training that learns nothing any more.
+    """Stop a training whose agent cannot learn any more.
 
-    :param model: the agent
+    :param model: agent to check
     :raises LearningError: if one of its weights is not finite
     """
     norms = torch._foreach_norm(list(model.policy.parameters()))
     if not torch.isfinite(torch.stack(norms)).all():
         raise LearningError(
-            f"the agent's weights are no longer finite after {model.num_timesteps} episodes: it learns nothing more"
+            f"the agent's weights are no longer finite after {model.num_timesteps} episodes: it cannot learn any more"
         )

@@ -1,4 +1,4 @@
-"""Training: an algorithm by name, one episode after another, everything of it in a run folder."""
+"""Training: an algorithm learns a task's parameters over a budget of episodes, and a run folder records it."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from sarah.training.recommendation import Parameters, candidates, merit
 from sarah.training.recorder import EpisodeRecorder
 
 SUMMARY_EPISODES = 10
-"""Number of episodes on unseen seeds that the closing summary is of."""
+"""Number of episodes on unseen seeds in the final evaluation."""
 
 
 @dataclass(frozen=True)
 class Learned:
-    """What a training ends with.
+    """The result of a training.
 
-    :param parameters: the learned ones
-    :param evaluation: how they do on unseen seeds
-    :param baseline: how the task's neutral parameters do on the same seeds, if it has some
-    :param diverged: number of the training's episodes that no longer returned numbers
+    :param parameters: learned parameters, in the order of the task
+    :param evaluation: evaluation of the learned parameters on unseen seeds
+    :param baseline: evaluation of the task's neutral parameters on the same seeds; ``None`` if the task has none
+    :param diverged: number of the training's episodes that diverged
     """
 
     parameters: Parameters
@@ -50,18 +50,18 @@ def train(
     interrupted: Callable[[], bool] = lambda: False,
     picture_interval: int = 0,
 ) -> Learned:
-    """Train, and write the run folder. What the run folder's journal knows already is not simulated again.
+    """Train, and write the run folder. Episodes whose outcomes the run folder's journal has are not simulated again.
 
     :param config: settings of the training
-    :param run: a new run folder, or that of the same training, which was interrupted and goes on
-    :param workers: who simulates; by default this process does. What is learned does not depend on it
-    :param progress_bar: whether to show one
+    :param run: new run folder, or the run folder of this training, which was interrupted
+    :param workers: executor that simulates the episodes; by default this process does. It changes no result
+    :param progress_bar: whether to show a progress bar
     :param interrupted: function that says after every episode whether to stop
     :param picture_interval: number of episodes between pictures for TensorBoard; 0 for none. They change no result
-    :return: what was learned
-    :raises RunFolderError: if another training uses the run folder, or it cannot be resumed here
-    :raises LearningError: if what learns no longer returns numbers
-    :raises TrainingInterruptedError: if ``interrupted`` says so
+    :return: the learned parameters and their evaluation
+    :raises RunFolderError: if another training uses the run folder, or if it cannot be resumed here
+    :raises LearningError: if the learning algorithm does not return finite numbers
+    :raises TrainingInterruptedError: if ``interrupted`` asks to stop
     """
     with Journal(run.journal_path, workers or Workers(), interrupted) as journal:
         return _train(config, run, journal, progress_bar, picture_interval)
@@ -70,7 +70,7 @@ def train(
 def _train(
     config: TrainingConfig, run: RunFolder, journal: Journal, progress_bar: bool, picture_interval: int
 ) -> Learned:
-    # The networks are small: more threads only wait for each other.
+    # The networks are small, so more threads would only wait for each other.
     torch.set_num_threads(1)
     task = TASKS[config.task]
     seeds = range(SUMMARY_EPISODES)
@@ -109,7 +109,7 @@ def _compare(
     workers: Executor,
     baseline: Evaluation | None,
 ) -> Parameters:
-    """Simulate the candidates in turn, each round on one seed for all, and return the best."""
+    """Simulate the candidates in turn, all on the same seed in each round, and return the best candidate."""
     generator = random.Random(config.seed)
     specs: list[EpisodeSpec] = []
     while len(specs) < config.compared_episodes:
@@ -124,7 +124,7 @@ def _compare(
 
 
 def _rank(results: list[EpisodeResult], baseline: Evaluation | None) -> tuple[bool, float]:
-    """Valid gaits that do not chatter rank first, and among equals the best mean merit."""
+    """Key by which candidates rank: valid gaits that do not chatter first, and then by mean merit."""
     if not results:
         return (False, 0.0)
     evaluation = Evaluation(tuple(results))

@@ -1,1 +1,1 @@
-"""A page in the browser that shows the robot, and plays episodes (the extra ``view``)."""
+"""The page in the browser that shows the robot and plays episodes (the extra ``view``)."""

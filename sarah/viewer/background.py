@@ -1,4 +1,4 @@
-"""Episodes simulated beside the page, in a thread; the newest wish replaces the one before it."""
+"""Simulation beside the page, in a thread; a new request replaces the one before it."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from sarah.episode.tasks import TASKS
 from sarah.errors import SarahError
 
 TICKS_BETWEEN_LOOKS = 50
-"""Control ticks after which progress is told, and whether something newer is wished for is looked up."""
+"""Number of control ticks after which progress is reported, and a newer request is noticed."""
 
 
 class Wish(NamedTuple):
-    """An episode that someone waits for.
+    """A request to simulate an episode.
 
-    :param spec: to simulate
-    :param done: what to do with its result, which has a trace
+    :param spec: specification of the episode
+    :param done: function that is called with the result, which has a trace
     """
 
     spec: EpisodeSpec
@@ -30,8 +30,8 @@ class Wish(NamedTuple):
 class BackgroundSimulation:
     """Simulates one episode at a time, in a thread of its own.
 
-    :param progress: told the share of the episode that has been simulated, from 0 to 1
-    :param failed: told in one line why an episode cannot be simulated
+    :param progress: function that is called with the simulated share of the episode, from 0 to 1
+    :param failed: function that is called with one line that says why an episode cannot be simulated
     """
 
     def __init__(self, progress: Callable[[float], None], failed: Callable[[str], None]) -> None:
@@ -42,9 +42,9 @@ class BackgroundSimulation:
         threading.Thread(target=self._run, name="simulation", daemon=True).start()
 
     def request(self, wish: Wish) -> None:
-        """Simulate an episode; one that is being simulated is given up.
+        """Simulate an episode; an episode that is being simulated is abandoned.
 
-        :param wish: what is wanted
+        :param wish: request for the episode
         """
         with self._condition:
             self._wish = wish
@@ -65,7 +65,7 @@ class BackgroundSimulation:
                 wish.done(result)
 
     def _simulate(self, spec: EpisodeSpec) -> EpisodeResult | None:
-        """The result, or none if something newer is wished for."""
+        """Simulate an episode; return ``None`` if there is a newer request."""
         episode = Episode(spec.config, spec.seed, TASKS[spec.task], record_trace=True)
         try:
             episode.stand()

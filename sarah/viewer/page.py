@@ -1,4 +1,4 @@
-"""The page: choose an episode, play it, change what it depends on."""
+"""The page: choose an episode, play it, and change its parameters, seed and push."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ from sarah.viewer.scene import RobotScene, describe_tick
 
 SPEEDS = {"1/10": 0.1, "1/4": 0.25, "1/2": 0.5, "1": 1.0, "2": 2.0, "4": 4.0}
 SECONDS_BEFORE_PUSH = 0.5
-"""From where an episode is played on when a push is added to it."""
+"""Time before a push from which the page plays on when the push is added, in s."""
 LARGEST_PUSH = 200.0
-"""Of the slider, in N."""
+"""Upper end of the force's slider, in N."""
 
 
 class Shown(NamedTuple):
     """An episode on the page.
 
-    :param scenario: what it depends on
-    :param result: what came of it
-    :param trace: what happened in it
+    :param scenario: parameters, push, seed and settings of the episode
+    :param result: result of the episode
+    :param trace: record of its control ticks
     """
 
     scenario: Scenario
@@ -45,13 +45,13 @@ class Shown(NamedTuple):
 
 
 class Page:
-    """The page of one set of episodes. Everyone who opens it sees, and steers, the same.
+    """The page of a set of episodes. Everyone who opens it sees, and steers, the same page.
 
-    :attr:`frames` counts what has been shown since the beginning.
+    :attr:`frames` counts the frames since the beginning.
 
-    :param server: that serves it
-    :param choices: episodes to choose from, all of them with the same robot
-    :param chosen: what is shown first
+    :param server: server of the page
+    :param choices: episodes to choose from, all of the same robot
+    :param chosen: episode that is shown first
     """
 
     def __init__(self, server: viser.ViserServer, choices: Sequence[RunEpisode], chosen: RunEpisode) -> None:
@@ -74,10 +74,10 @@ class Page:
         self._play_choice(chosen)
 
     def close(self) -> None:
-        """Show no more frames."""
+        """Stop showing frames."""
         self._playback.close()
 
-    # -- what the page has, from top to bottom
+    # -- the elements of the page, from top to bottom
 
     def _build(self) -> None:
         gui = self._gui
@@ -88,8 +88,8 @@ class Page:
             self._speed = gui.add_dropdown("Speed", tuple(SPEEDS), initial_value="1", hint="1 is real time")
         with gui.add_folder("Episode"):
             self._choice = gui.add_dropdown("Episode", tuple(self._choices), initial_value=self._chosen.label)
-            self._seed = gui.add_number("Seed", 0, min=0, step=1, hint="of friction, masses, sensors and so on")
-            self._again = gui.add_button("Back to this episode", hint="undoes what the sliders changed", color="gray")
+            self._seed = gui.add_number("Seed", 0, min=0, step=1, hint="draws friction, masses, sensor noise and so on")
+            self._again = gui.add_button("Back to this episode", hint="undo the changes of the sliders", color="gray")
             self._table = gui.add_html("")
             self._news = gui.add_html("")
         with gui.add_folder("Pattern generator"):
@@ -101,7 +101,7 @@ class Page:
             self._degrees = gui.add_slider(
                 "Direction (°)", min=0.0, max=360.0, step=5.0, initial_value=0.0, hint="0 right, 90 forward, 180 left"
             )
-            self._push_button = gui.add_button("Push now", hint="at the time that is shown")
+            self._push_button = gui.add_button("Push now", hint="at the shown time")
             self._no_push_button = gui.add_button("No push", color="gray")
         self._connect()
 
@@ -114,7 +114,7 @@ class Page:
         ]
 
     def _connect(self) -> None:
-        """Say what happens when a user touches something."""
+        """Connect the inputs with their actions."""
         _on_user(self._time, self._playback.seek)
         _on_user(self._choice, lambda label: self._play_choice(self._choices[label]))
         _on_user(self._seed, lambda seed: self._change({"seed": int(seed)}))
@@ -130,7 +130,7 @@ class Page:
         self._push_button.on_click(lambda _: self._push_now())
         self._no_push_button.on_click(lambda _: self._change({"push": NO_PUSH}))
 
-    # -- what a user does
+    # -- actions of a user
 
     def _toggle(self) -> None:
         if self._playback.is_playing:
@@ -151,7 +151,7 @@ class Page:
             self._change({name: tuple(values)})
 
     def _change_push(self, **changes: float) -> None:
-        """Change a push that there is; without one, the sliders say how strong the next one will be."""
+        """Change the present push; without one, the sliders set the next push."""
         with self._lock:
             if self._wanted.push.newtons > 0.0:
                 self._change({"push": replace(self._wanted.push, **changes)})
@@ -179,7 +179,7 @@ class Page:
             _set(self._newtons, min(scenario.push.newtons, LARGEST_PUSH))
             _set(self._degrees, scenario.push.degrees)
 
-    # -- what the page shows
+    # -- the content of the page
 
     def _take(self, scenario: Scenario, result: EpisodeResult, play_from: float | None) -> None:
         """Play an episode that has just been simulated."""
@@ -196,7 +196,7 @@ class Page:
         self._playback.play()
 
     def _noted_score(self, scenario: Scenario) -> float | None:
-        """The score that the run noted of the chosen episode, if nothing has been changed."""
+        """Score of the chosen episode in the run folder, if nothing has been changed."""
         return self._chosen.score if scenario == Scenario.of(self._chosen.spec) else None
 
     def _show(self, time: float) -> None:
@@ -212,14 +212,14 @@ class Page:
             if self.frames % 3 == 0 or not is_playing:
                 _set(self._time, round(time, 2))
                 self._status.content = _paragraph(*describe_tick(self._shown.trace, tick))
-            # Last, so that nothing overwrites the time that is typed in once "Play" stands there.
+            # The label comes last, so that nothing overwrites a time that is typed in when the label is "Play".
             self._play_button.label = "Pause" if is_playing else "Play"
 
     def _show_progress(self, share: float) -> None:
         self._news.content = _paragraph(f"simulating: {share:.0%}")
 
     def _show_failure(self, message: str) -> None:
-        self._news.content = _paragraph(f"cannot be simulated: {message}")
+        self._news.content = _paragraph(f"this episode cannot be simulated: {message}")
 
 
 def _paragraph(*lines: str) -> str:
@@ -228,12 +228,12 @@ def _paragraph(*lines: str) -> str:
 
 
 def _set(handle: Any, value: Any) -> None:
-    """Change what an input holds, which the types of viser hold to be read-only."""
+    """Change the value of an input, which viser's types declare read-only."""
     handle.value = value
 
 
 def _on_user(handle: Any, do: Callable[[Any], None]) -> None:
-    """Call with the new value when a user changes it, but not when the page does."""
+    """Call a function with the new value when a user changes it, but not when the page does."""
 
     @handle.on_update
     def _(event: Any) -> None:
@@ -242,12 +242,12 @@ def _on_user(handle: Any, do: Callable[[Any], None]) -> None:
 
 
 def _ending(result: EpisodeResult) -> str:
-    """How an episode ended, and when if that was early."""
+    """Way in which an episode ended, and the time if it ended early."""
     return TERMINATIONS[result.termination] + ("" if result.survived else f" at {result.duration:.1f} s")
 
 
 def _comparison(shown: Shown, before: Shown | None, noted_score: float | None) -> str:
-    """The table of results, beside those of the episode that was shown before."""
+    """Table of the results, beside those of the episode that was shown before."""
     rows = [("", "now", "before"), ("", _ending(shown.result), _ending(before.result) if before is not None else "")]
     for name, metric in METRICS.items():
         if metric.statistics:
@@ -256,7 +256,7 @@ def _comparison(shown: Shown, before: Shown | None, noted_score: float | None) -
     lines = [f"<tr><td>{name}</td><td><b>{now}</b></td><td>{old}</td></tr>" for name, now, old in rows]
     note = ""
     if noted_score is not None and abs(noted_score - shown.result.score) > 1e-9:
-        note = f"<p>The run noted a score of {noted_score:.3f}: it was simulated by another version.</p>"
+        note = f"<p>The run folder has a score of {noted_score:.3f}: another version simulated this episode.</p>"
     return (
         "<div style='padding: 0 0.8em; font-size: 0.8em'><table id='results' style='width: 100%; line-height: 1.35'>"
         f"{''.join(lines)}</table>{note}</div>"

@@ -1,4 +1,4 @@
-"""The clock that episodes are played by."""
+"""The clock that plays episodes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ FRAMES_PER_SECOND = 30
 class Playback:
     """Plays a span of simulated time, in a thread of its own.
 
-    :param show: what to do for each frame with its simulated time in s
+    :param show: function that is called for each frame with its simulated time, in s
     """
 
     def __init__(self, show: Callable[[float], None]) -> None:
@@ -31,15 +31,15 @@ class Playback:
         self._thread.start()
 
     def close(self) -> None:
-        """Show no more frames."""
+        """Stop showing frames."""
         self._stop.set()
 
     def load(self, begin: float, end: float, time: float) -> None:
-        """Play something else.
+        """Play another span of time.
 
         :param begin: simulated time at which it begins, in s
-        :param end: and at which it ends
-        :param time: to go on from
+        :param end: simulated time at which it ends, in s
+        :param time: simulated time to go on from, in s
         """
         with self._lock:
             self._begin, self._end = begin, end
@@ -48,21 +48,21 @@ class Playback:
     def seek(self, time: float) -> None:
         """Go to a time.
 
-        :param time: in s; beyond the ends, those
+        :param time: simulated time, in s; a time outside the span becomes its nearer end
         """
         with self._lock:
             self.time = min(max(time, self._begin), self._end)
             self._needs_frame = True
 
     def play(self) -> None:
-        """Play on, or from the beginning if all has been played."""
+        """Play on, or from the beginning if the end has been reached."""
         with self._lock:
             if self.time >= self._end:
                 self.seek(self._begin)
             self.is_playing = self._needs_frame = True
 
     def pause(self) -> None:
-        """Stand still."""
+        """Stop the clock."""
         with self._lock:
             self.is_playing, self._needs_frame = False, True
 

@@ -1,4 +1,4 @@
-"""Plots of an episode's signals over the same time, with a line at the time that is shown."""
+"""Plots of an episode's signals over the same time, with a line at the shown time."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from sarah.viewer.scene import PAD_COLOURS
 
 DARK, GREY, UPPER, LOWER = "#282C34", "#999999", "#7A4FA3", "#B8860B"
 SHADE = "60"
-"""Opacity of what is behind the signals, as the last two digits of a colour."""
+"""Opacity of the shades behind the signals, as the last two digits of a colour."""
 CHART_HEIGHT = 96
 LOWEST_SHARE, HIGHEST_SHARE = 0.3, 99.7
-"""Percentiles of a signal between which its axis reaches: the last moments of a fall would flatten all the rest."""
+"""Percentiles of a signal that its axis reaches to: the last moments of a fall would flatten everything else."""
 WINDOWS = {"2 s": 2.0, "5 s": 5.0, "10 s": 10.0, "whole episode": np.inf}
-"""Simulated time that the plots show at once."""
+"""Simulated time that the plots show at once, in s, by its label."""
 
 Values = Callable[[Trace, Scenario], "np.ndarray | float"]
 
@@ -30,10 +30,10 @@ Values = Callable[[Trace, Scenario], "np.ndarray | float"]
 class Line:
     """A line of a chart.
 
-    :param label: of the legend
-    :param colour: of the line
-    :param values: one for each tick, or one for all
-    :param dashed: for what a signal is compared with
+    :param label: label in the legend
+    :param colour: colour of the line
+    :param values: function that returns one value for each tick, or one value for all
+    :param dashed: whether to draw it dashed, as a value that a signal is compared with
     """
 
     label: str
@@ -44,11 +44,11 @@ class Line:
 
 @dataclass(frozen=True)
 class Chart:
-    """A chart.
+    """A chart of one or more signals.
 
-    :param axis: name and unit
-    :param lines: in it
-    :param smallest_span: of the axis, so that noise does not look like motion
+    :param axis: label of the axis, with the unit
+    :param lines: lines of the chart
+    :param smallest_span: smallest span of the axis, in its unit, so that noise does not look like motion
     """
 
     axis: str
@@ -74,23 +74,23 @@ CHARTS = (
         (
             Line("tilt", DARK, lambda trace, _: trace.tilt),
             Line("stable_x", GREY, lambda trace, _: trace.stable_x),
-            Line("P2: may lift above", UPPER, lambda _, scenario: scenario.stepping[1], dashed=True),
+            Line("P2: SHIFT ends above", UPPER, lambda _, scenario: scenario.stepping[1], dashed=True),
         ),
     ),
     Chart(
         "rate (rad/s)",
         (
             Line("rate", DARK, lambda trace, _: trace.rate),
-            Line("0.2 P3: may lift above", UPPER, _least_rate, dashed=True),
-            Line("-P1: lands below", LOWER, lambda _, scenario: -scenario.stepping[0], dashed=True),
+            Line("0.2 P3: SHIFT ends above", UPPER, _least_rate, dashed=True),
+            Line("-P1: LIFT ends below", LOWER, lambda _, scenario: -scenario.stepping[0], dashed=True),
         ),
     ),
     Chart("pads (N)", _pads()),
     Chart(
         "leg (mm)",
         (
-            Line("left leg, retracted", LEFT, lambda trace, _: 1000.0 * trace.joints[:, 4]),
-            Line("right leg", RIGHT, lambda trace, _: 1000.0 * trace.joints[:, 5]),
+            Line("left leg retraction", LEFT, lambda trace, _: 1000.0 * trace.joints[:, 4]),
+            Line("right leg retraction", RIGHT, lambda trace, _: 1000.0 * trace.joints[:, 5]),
         ),
     ),
     Chart(
@@ -105,18 +105,18 @@ CHARTS = (
     Chart(
         "steps/s",
         (
-            Line("steps of the last 2 s, per second", DARK, lambda trace, _: trace.steps_per_second),
-            Line("the reward's best", GREY, lambda *_: 3.0, dashed=True),
+            Line("steps per second, last 2 s", DARK, lambda trace, _: trace.steps_per_second),
+            Line("best for the reward", GREY, lambda *_: 3.0, dashed=True),
         ),
         smallest_span=4.0,
     ),
 )
-"""From top to bottom."""
+"""Charts of the panel, from top to bottom."""
 
 SHADES = {"lift": PHASE_COLOURS["lift"], "land": PHASE_COLOURS["land"], "push": PUSH}
-"""Of the background: while the pattern generator is in a phase, and while the robot is pushed. SHIFT is white."""
-# What uPlot draws of a chart lies in an element of this class: one rule moves the line in all charts, where new data
-# for each of them, thirty times a second, would be much.
+"""Colours of the background during a phase of the pattern generator, and during a push. SHIFT is white."""
+# uPlot draws each chart in an element of this class. So one rule moves the line in all charts, which is much faster
+# than new data for each chart thirty times a second.
 CURSOR_RULE = ".u-over::after {{left: {:.3f}%}}"
 STYLE = f"""
 .u-legend .u-series:nth-child(-n + {1 + len(SHADES)}) {{display: none}}
@@ -129,7 +129,7 @@ STYLE = f"""
 class Plots:
     """The charts, in a panel of their own.
 
-    :param gui: of the page
+    :param gui: user interface of the page
     """
 
     def __init__(self, gui: viser.GuiApi) -> None:
@@ -152,8 +152,8 @@ class Plots:
     def load(self, trace: Trace, scenario: Scenario) -> None:
         """Draw another episode.
 
-        :param trace: of the episode
-        :param scenario: with the parameters that are drawn in
+        :param trace: trace of the episode
+        :param scenario: scenario of the episode, whose parameters are drawn too
         """
         self._time = trace.time
         is_pushed = trace.push.any(axis=1)
@@ -166,9 +166,9 @@ class Plots:
         self._page = None
 
     def show(self, time: float) -> None:
-        """Move the line to a time, and turn to the page that it is on.
+        """Move the line to a time, and show the window of time that contains it.
 
-        :param time: simulated time in s
+        :param time: simulated time, in s
         """
         begin, end = self._page_of(time)
         page = slice(int(np.searchsorted(self._time, begin - 1e-9)), int(np.searchsorted(self._time, end + 1e-9)))
@@ -176,14 +176,14 @@ class Plots:
         if page != self._page:
             self._page = page
             for handle, data, span in zip(self._charts, self._data, self._ranges, strict=True):
-                # Left to itself, the page carries a chart's range of time over from other data.
+                # Without these scales, the page would keep a chart's range of time from the data before.
                 handle.scales = _scales((first, last), span)
                 handle.data = tuple(values[page] for values in data)
         share = (time - first) / max(last - first, 1e-9)
         self._cursor.content = f"<style>{CURSOR_RULE.format(100.0 * min(max(share, 0.0), 1.0))}</style>"
 
     def _page_of(self, time: float) -> tuple[float, float]:
-        """The window of time that a time is in; the last one ends with the episode, and may overlap the one before."""
+        """Window of time that contains a time; the last one ends with the episode, and may overlap the one before."""
         begin, end = float(self._time[0]), float(self._time[-1])
         window = WINDOWS[self.window.value]
         if end - begin <= window:
@@ -215,7 +215,7 @@ def _add_chart(gui: viser.GuiApi, chart: Chart, has_time_axis: bool) -> viser.Gu
         tuple(np.array([0.0, 1.0]) for _ in series),
         series,
         scales=_scales((0.0, 1.0), (0.0, 1.0)),
-        axes=(time_axis, uplot.Axis(label=chart.axis, labelSize=16, size=44, space=18)),  # two values at least
+        axes=(time_axis, uplot.Axis(label=chart.axis, labelSize=16, size=44, space=18)),  # shows two values at least
         cursor={"sync": {"key": "time"}, "drag": {"x": False, "y": False}},
         height=CHART_HEIGHT + (36 if has_time_axis else 0),
         padding=(6, 12, 2, 0),

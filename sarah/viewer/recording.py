@@ -21,10 +21,10 @@ def record(
 ) -> None:
     """Write an episode as one HTML file.
 
-    :param server: with an empty scene, which is filled
-    :param spec: of the episode
-    :param path: of the file
-    :param progress: told the share that is done, from 0 to 1
+    :param server: server with an empty scene, which is filled
+    :param spec: specification of the episode
+    :param path: path of the file
+    :param progress: function that is called with the finished share, from 0 to 1
     :raises ConfigurationError: if the file cannot be written
     """
     trace = simulate(spec, record_trace=True).trace

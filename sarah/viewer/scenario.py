@@ -1,4 +1,4 @@
-"""One episode as the page's sliders describe it, and back."""
+"""An episode as the values of the page's sliders, and back."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from sarah.episode.tasks import BALANCE, TASKS, BalanceConfig
 
 @dataclass(frozen=True)
 class KnownPush:
-    """A push that is not drawn, but given.
+    """A push with a given force, direction and time.
 
-    :param newtons: of the force; 0 for no push
-    :param degrees: of its direction: 0 pushes to the robot's right, 90 forward
+    :param newtons: force, in N; 0 for no push
+    :param degrees: direction, in degrees: 0 pushes to the robot's right, 90 forward
     :param begin: simulated time at which it begins, in s
     """
 
@@ -29,13 +29,13 @@ NO_PUSH = KnownPush(0.0, 0.0, 1.0)
 
 @dataclass(frozen=True)
 class Scenario:
-    """What an episode depends on, one value for every slider.
+    """An episode as one value for every slider.
 
-    :param stepping: P1 to P5
-    :param balance: V1 to V4; zeros lock the hips, as the First Training has them
-    :param push: the push
-    :param seed: of the conditions and the sensor noise
-    :param config: what the sliders leave alone
+    :param stepping: values of P1 to P5
+    :param balance: values of V1 to V4; zeros lock the hips, as in the First Training
+    :param push: push of the episode
+    :param seed: seed of the conditions and the sensor noise
+    :param config: settings that the sliders do not change
     """
 
     stepping: tuple[float, ...]
@@ -46,9 +46,9 @@ class Scenario:
 
     @classmethod
     def of(cls, spec: EpisodeSpec) -> Scenario:
-        """Read what an episode's specification amounts to.
+        """Make the scenario of an episode.
 
-        :param spec: specification of any task's; a push that it draws from its seed becomes a given one
+        :param spec: specification of any task; a push that its seed draws becomes a given push
         """
         task = TASKS[spec.task]
         stepping, balance = task.controller_parameters(spec.parameters, spec.config)
@@ -60,7 +60,7 @@ class Scenario:
         return cls(astuple(stepping), hips, push, spec.seed, BALANCE.config_of(spec.config))
 
     def spec(self) -> EpisodeSpec:
-        """The episode, as one of the balance task, which has all that the sliders can set."""
+        """Specification of the episode, in the task balance, which has everything that the sliders can set."""
         given = Push(
             newtons=(self.push.newtons, self.push.newtons),
             degrees=(self.push.degrees, self.push.degrees),

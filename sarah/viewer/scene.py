@@ -1,4 +1,4 @@
-"""The robot in the page's scene, with the load of its pads, its stance leg and the push."""
+"""The robot in the page's scene, with the loads on its pads, its stance leg and the push."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ Colour = tuple[int, int, int]
 def channels(colour: str) -> Colour:
     """Red, green and blue from 0 to 255.
 
-    :param colour: such as ``#0072B2``
+    :param colour: colour such as ``#0072B2``
     """
     return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
 
 
 PAD_COLOURS = (LEFT, "#7CBBE6", RIGHT, "#F5B183")
-"""Of left fore, left hind, right fore and right hind, in the scene and in the plots."""
+"""Colours of left fore, left hind, right fore and right hind, in the scene and in the plots."""
 METRES_PER_NEWTON_OF_LOAD = 0.0008
 METRES_PER_NEWTON_OF_PUSH = 0.005
 PUSH_SHOWN_SECONDS = 0.6
-"""How long the arrow of a push stays, which itself is over before the eye has found it."""
+"""Time for which a push's arrow is shown, in s: the push itself is over before a viewer has noticed it."""
 
 
 class RobotScene:
-    """The robot of an episode's trace, as it was at one of its ticks.
+    """The robot of an episode's trace, in its state at one of the ticks.
 
-    :param server: whose scene to fill
-    :param robot: to show
+    :param server: server whose scene is filled
+    :param robot: robot to show
     """
 
     def __init__(self, server: viser.ViserServer, robot: RobotDescription) -> None:
@@ -61,7 +61,7 @@ class RobotScene:
     def load(self, trace: Trace) -> None:
         """Show another episode.
 
-        :param trace: of the episode
+        :param trace: trace of the episode
         """
         self._trace = trace
         if self._arrow is not None:
@@ -71,7 +71,7 @@ class RobotScene:
         if len(self._pushed):
             force = trace.push[self._pushed[0]]
             direction = force / np.linalg.norm(force)
-            tip = -0.2 * direction  # on the torso, and not in it
+            tip = -0.2 * direction  # at the surface of the torso, not inside it
             tail = tip - METRES_PER_NEWTON_OF_PUSH * force
             self._arrow = self._scene.add_arrows(
                 "/push", np.array([[tail, tip]]), channels(PUSH), shaft_radius=0.015, head_radius=0.04, visible=False
@@ -79,9 +79,9 @@ class RobotScene:
         self._support.visible = True
 
     def show(self, tick: int) -> None:
-        """Show the loaded episode as it was when a tick began.
+        """Show the loaded episode in its state at the beginning of a tick.
 
-        :param tick: of the trace
+        :param tick: row of the trace
         """
         trace = self._trace
         assert trace is not None
@@ -111,7 +111,7 @@ class RobotScene:
         self._arrow.position = trace.position[tick]
 
     def _add_load(self, robot: RobotDescription, plate: str, colour: str) -> viser.MeshHandle:
-        """A bar that stands over a plate's soles, as high as the load of its pad."""
+        """Add a bar over a plate's soles, whose height shows the load on its pad."""
         side, end = plate.split("_")
         hinge = self._model.joint_map[plate].origin[:3, 3]
         bar = trimesh.creation.cylinder(radius=0.013, segment=((0.0, 0.0, 0.0), (0.0, 0.0, 1.0)))
@@ -136,7 +136,7 @@ class RobotScene:
             plane_color=(243, 245, 248),
             plane_opacity=1.0,
         )
-        scene.configure_environment_map(None)  # one would wash the colours out, and take seconds without a GPU
+        scene.configure_environment_map(None)  # a map would wash the colours out, and take seconds without a GPU
         scene.add_light_ambient("/daylight", intensity=1.5)
         scene.add_light_directional("/sun", position=(2.0, 3.0, 4.0), intensity=2.5, cast_shadow=False)
         camera = self._server.initial_camera
@@ -144,13 +144,13 @@ class RobotScene:
 
 
 def describe_tick(trace: Trace, tick: int) -> tuple[str, str]:
-    """Time and phase, and steps per second and score, at a tick.
+    """Two lines of text for a tick: time, phase and stance leg; steps per second and score.
 
-    :param trace: of the episode
-    :param tick: of the trace
+    :param trace: trace of the episode
+    :param tick: row of the trace
     """
     side = "right" if trace.stance[tick] > 0 else "left"
     return (
-        f"{trace.time[tick]:.1f} s · {trace.phase[tick].upper()}, {side} leg supports",
+        f"{trace.time[tick]:.1f} s · {trace.phase[tick].upper()}, {side} stance leg",
         f"{trace.steps_per_second[tick]:.1f} steps/s · score so far {trace.score[tick]:.2f}",
     )

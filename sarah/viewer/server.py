@@ -16,13 +16,13 @@ from sarah.errors import ConfigurationError
 def serving(host: str, port: int) -> Iterator[viser.ViserServer]:
     """Serve an empty page while the context lasts.
 
-    :param host: address to listen at
-    :param port: to listen at; the next free one, if it is taken
+    :param host: address to serve the page at
+    :param port: port to serve the page at; the next free one if it is taken
     :return: the server
     :raises ConfigurationError: if this machine cannot listen at the address
     """
     try:
-        socket.create_server((host, 0)).close()  # viser would try for ever
+        socket.create_server((host, 0)).close()  # viser itself would try for ever
     except OSError as error:
         raise ConfigurationError(f"cannot serve a page at {host!r}: {error.strerror or error}") from error
     with _silence():
@@ -36,5 +36,5 @@ def serving(host: str, port: int) -> Iterator[viser.ViserServer]:
 
 
 def _silence() -> contextlib.AbstractContextManager[object]:
-    """Without viser's banners; the command says where the page is."""
+    """Hide viser's banners; the command prints the address of the page."""
     return contextlib.redirect_stdout(io.StringIO())

@@ -4,11 +4,12 @@ import gymnasium as gym
 import numpy as np
 import pytest
 from gymnasium import spaces
+from stable_baselines3.common.buffers import ReplayBuffer
 from stable_baselines3.common.noise import NormalActionNoise
 from stable_baselines3.common.utils import LinearSchedule
 from stable_baselines3.common.vec_env import DummyVecEnv
 
-from sarah.agents import NAF, RankReplayBuffer
+from sarah.agents import NAF, LocalNAF
 
 SMALL = {"policy_kwargs": {"net_arch": [8]}}
 """Networks that nothing is learned with: quick ones."""
@@ -32,15 +33,16 @@ class Recorder(gym.Env):
         return np.zeros(2, np.float32), 0.0, True, False, {}
 
 
-def explore(steps: int, n_envs: int = 1, **kwargs) -> np.ndarray:
+def explore(steps: int, n_envs: int = 1, algorithm: type[NAF] = NAF, **kwargs) -> np.ndarray:
     """Scaled actions of a model that is never trained, so that mu stays 0; (steps, n_envs, 2)."""
     envs = [Recorder() for _ in range(n_envs)]
     kwargs = {"learning_starts": 0, "gradient_steps": 0, "buffer_size": 10_000, "seed": 0, **SMALL, **kwargs}
-    model = NAF("MlpPolicy", DummyVecEnv([lambda e=e: e for e in envs]), **kwargs)
+    model = algorithm("MlpPolicy", DummyVecEnv([lambda e=e: e for e in envs]), **kwargs)
     model.learn(steps * n_envs)
     actions = (np.stack([e.actions for e in envs], axis=1) - [1.0, -1.0]) / [1.0, 2.0]
     # What the buffer keeps is what was done
-    np.testing.assert_allclose(model.replay_buffer.actions[:steps], actions, atol=1e-6)
+    kept = model.replay_buffer.actions.reshape(-1, n_envs, 2)[:steps]
+    np.testing.assert_allclose(kept, actions, atol=1e-6)
     return actions
 
 
@@ -88,15 +90,16 @@ class Target(Recorder):
 def elite_actions(steps: int, environment: type[Recorder] = Target, **kwargs) -> tuple[np.ndarray, np.ndarray]:
     """Scaled actions of the warm-up and after it, by a model that is never trained; (steps, 2)."""
     env = environment()
-    kwargs = dict(gradient_steps=0, seed=0, replay_buffer_class=RankReplayBuffer, exploration_std=0.0) | SMALL | kwargs
-    NAF("MlpPolicy", env, learning_starts=30, **kwargs).learn(30 + steps)
+    kwargs = dict(gradient_steps=0, seed=0, exploration_std=0.0, elite_draws=1) | SMALL | kwargs
+    LocalNAF("MlpPolicy", env, learning_starts=30, **kwargs).learn(30 + steps)
     actions = (np.array(env.actions) - [1.0, -1.0]) / [1.0, 2.0]
     return actions[:30], actions[30:]
 
 
 @pytest.mark.parametrize("on_request", [False, True])
 def test_only_the_first_environment_begins_at_the_centre_on_request(on_request: bool):
-    actions = explore(4, n_envs=2, learning_starts=30, first_action_centre=on_request)
+    kwargs = dict(learning_starts=30, elite_share=0.0, first_action_centre=on_request)
+    actions = explore(4, n_envs=2, algorithm=LocalNAF, **kwargs)
     assert (actions[0, 0] == 0.0).all() == on_request
     assert (actions[0, 1] != 0.0).all() and (actions[1:] != 0.0).all()
 
@@ -138,5 +141,5 @@ def test_the_other_actions_keep_to_mu():
 
 
 def test_elite_actions_need_a_buffer_that_knows_the_best():
-    with pytest.raises(ValueError, match="elite_share needs a RankReplayBuffer, not a ReplayBuffer"):
-        NAF("MlpPolicy", Recorder(), elite_share=0.5)
+    with pytest.raises(ValueError, match="LocalNAF needs a RankReplayBuffer, not a ReplayBuffer"):
+        LocalNAF("MlpPolicy", Recorder(), replay_buffer_class=ReplayBuffer)

@@ -6,10 +6,15 @@ import torch as th
 from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.utils import LinearSchedule
 
-from sarah.agents import NAF, PRESETS, MlpPolicy, RankReplayBuffer
+from sarah.agents import NAF, PRESETS, LocalNAF, MlpPolicy, RankReplayBuffer
 
 SMALL = dict(learning_starts=20, batch_size=8, buffer_size=300, seed=0)
 OBS = np.random.default_rng(0).normal(size=(10, 3)).astype(np.float32)
+
+
+def updates(model):
+    """Steps that the optimizer has made."""
+    return int(next(iter(model.policy.optimizer.state.values()))["step"])
 
 
 def assert_same_state(first, second):
@@ -18,13 +23,13 @@ def assert_same_state(first, second):
         th.testing.assert_close(value, second[key], rtol=0, atol=0, msg=key)
 
 
-def make_model(**kwargs):
+def make_model(algorithm=NAF, **kwargs):
     arguments = {"policy_kwargs": dict(net_arch=dict(V=[16], mu=[8], L=[4])), **SMALL, **kwargs}
-    return NAF("MlpPolicy", "Pendulum-v1", **arguments)
+    return algorithm("MlpPolicy", "Pendulum-v1", **arguments)
 
 
 def test_save_load(tmp_path):
-    model = make_model(max_grad_norm=0.3, elite_draws=4, exploration_std=LinearSchedule(0.3, 0.1, 0.5)).learn(100)
+    model = make_model(max_grad_norm=0.3, exploration_std=LinearSchedule(0.3, 0.1, 0.5)).learn(100)
     model.save(tmp_path / "model")
     loaded = NAF.load(tmp_path / "model", env=make_vec_env("Pendulum-v1"))
     np.testing.assert_array_equal(model.predict(OBS)[0], loaded.predict(OBS)[0])
@@ -32,11 +37,21 @@ def test_save_load(tmp_path):
     first, second = model.policy.optimizer.state_dict(), loaded.policy.optimizer.state_dict()
     for key, state in first["state"].items():
         assert_same_state(state, second["state"][key])
-    assert (loaded.max_grad_norm, loaded.elite_draws, loaded.num_timesteps) == (0.3, 4, 100)
+    assert (loaded.max_grad_norm, loaded.num_timesteps) == (0.3, 100)
     assert loaded.exploration_schedule(0.75) == pytest.approx(0.2)
     assert loaded.policy.q_net is loaded.q_net and loaded.policy.q_net_target is loaded.q_net_target
     loaded.learn(50, reset_num_timesteps=False)
-    assert loaded.num_timesteps == 150 and loaded._n_updates == model._n_updates + 50
+    assert loaded.num_timesteps == 150 and updates(loaded) == updates(model) + 50
+
+
+def test_save_load_of_local_naf(tmp_path):
+    std = LinearSchedule(0.4, 0.2, 0.5)
+    model = make_model(LocalNAF, elite_share=0.3, elite_std=std, elite_draws=4, first_action_centre=True).learn(30)
+    model.save(tmp_path / "model")
+    loaded = LocalNAF.load(tmp_path / "model", env=make_vec_env("Pendulum-v1"))
+    assert (loaded.elite_draws, loaded.first_action_centre) == (4, True)
+    assert loaded.elite_share_schedule(0.5) == 0.3 and loaded.elite_std_schedule(0.75) == pytest.approx(0.3)
+    assert loaded.learn(30, reset_num_timesteps=False).num_timesteps == 60
 
 
 def test_arguments_can_change_at_load(tmp_path):
@@ -51,22 +66,22 @@ def test_number_of_environments_can_change_at_load(tmp_path):
     assert loaded.learn(60).num_timesteps == 60
 
 
-@pytest.mark.parametrize("preset", [None, "one-step"])
-def test_replay_buffer(tmp_path, preset):
-    model = make_model(**{**PRESETS.get(preset, {}), **SMALL}).learn(100)
+@pytest.mark.parametrize(("algorithm", "kwargs"), [(NAF, {}), (LocalNAF, PRESETS["one-step"])])
+def test_replay_buffer(tmp_path, algorithm, kwargs):
+    model = make_model(algorithm, **{**kwargs, **SMALL}).learn(100)
     model.save(tmp_path / "model")
     model.save_replay_buffer(tmp_path / "buffer")
-    loaded = NAF.load(tmp_path / "model", env=make_vec_env("Pendulum-v1"))
+    loaded = algorithm.load(tmp_path / "model", env=make_vec_env("Pendulum-v1"))
     assert loaded.replay_buffer.size() == 0
     loaded.load_replay_buffer(tmp_path / "buffer")
     assert type(loaded.replay_buffer) is type(model.replay_buffer)
-    assert isinstance(loaded.replay_buffer, RankReplayBuffer) == (preset == "one-step")
+    assert isinstance(loaded.replay_buffer, RankReplayBuffer) == (algorithm is LocalNAF)
     for name in ("observations", "next_observations", "actions", "rewards", "dones", "timeouts"):
         np.testing.assert_array_equal(getattr(loaded.replay_buffer, name), getattr(model.replay_buffer, name))
     # The same draws, and so the same updates
     for each in (model, loaded):
         each.set_random_seed(5)
-        each._logger = model.logger
+        each.set_logger(model.logger)
         each.train(10, 16)
     assert_same_state(model.policy.state_dict(), loaded.policy.state_dict())
 

@@ -47,7 +47,6 @@ def test_statistics_change_in_training_only(model):
 
 def test_one_pass_in_training_mode_an_update_and_none_in_the_target(model):
     model.learn(50)
-    assert model._n_updates == 30
     assert model.q_net.features_extractor.training_calls == 30
     assert model.q_net_target.features_extractor.training_calls == 0
 

@@ -7,11 +7,12 @@ import sys
 from pathlib import Path
 
 import pytest
-from laboratory import need
+from laboratory import NEEDS_PYBULLET, need
 
 from sarah.cli.eval import EvalOptions, _changed
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import STEPPING
+from sarah.simulation.engines import default_engine, is_installed
 from sarah.simulation.physics import Physics
 
 BIN = Path(sys.executable).parent
@@ -77,6 +78,7 @@ def test_eval_summarises_a_run(trained: tuple[Path, subprocess.CompletedProcess[
         assert text in process.stdout
 
 
+@NEEDS_PYBULLET
 def test_transfer_compares_the_engines_on_the_same_seeds(
     trained: tuple[Path, subprocess.CompletedProcess[str]], tmp_path: Path
 ) -> None:
@@ -96,6 +98,7 @@ def test_transfer_compares_the_engines_on_the_same_seeds(
         assert cells[column + 2] == f"{alone['steps_per_second_mean']:.2f}"
 
 
+@NEEDS_PYBULLET
 def test_mujoco_trains_and_its_run_is_evaluated_in_it(tmp_path: Path) -> None:
     need("mujoco")
     arguments = ("--algo", "random", "--episodes", "2", "--engine", "mujoco", "--run-dir", "mine")
@@ -129,7 +132,7 @@ def balanced(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> Path:
     arguments = ("--task", "balance", "--from", "mine", "--episodes", "4", "--run-dir", "second", *SHORT)
     process = run("sarah-train", *arguments, cwd=first.parent)
     assert process.returncode == 0, process.stderr
-    assert "V4 = " in process.stdout and "with V = 0" in process.stdout
+    assert "V4 = " in process.stdout and "baseline (V = 0)" in process.stdout
     return first.parent / "second"
 
 
@@ -143,7 +146,7 @@ def test_second_training_keeps_what_the_first_learned(balanced: Path) -> None:
 def test_only_a_balance_training_continues_a_first_one(balanced: Path) -> None:
     for arguments, message in (
         (("--from", "mine"), "--from is for --task balance, not 'stepping'"),
-        (("--task", "balance", "--from", "second"), "--from needs a run that learned 'stepping'"),
+        (("--task", "balance", "--from", "second"), "--from needs the run folder of a training of 'stepping'"),
     ):
         process = run("sarah-train", *arguments, cwd=balanced.parent)
         assert process.returncode == 2 and message in process.stderr and len(process.stderr.splitlines()) == 1
@@ -155,7 +158,7 @@ def test_eval_of_a_second_training_compares_with_v_at_zero(balanced: Path) -> No
     assert content["task"] == "balance" and list(content["parameters"]) == ["V1", "V2", "V3", "V4"]
     assert content["chatters"] is False and content["without"]["episodes"] == 2
     text = run("sarah-eval", *arguments, cwd=balanced.parent).stdout
-    for label in ("with V = 0", "vibration", "no chatter", "actuators"):
+    for label in ("baseline (V = 0)", "vibration", "no chatter", "actuators"):
         assert label in text
 
 
@@ -172,8 +175,9 @@ def test_figures_of_both_trainings(balanced: Path) -> None:
     assert process.returncode == 0, process.stderr
     files = process.stdout.split()
     names = {Path(file).stem for file in files}
-    assert {"figure_2_robot", "figure_3_pattern_generator", "figure_4_reward_and_frequency"} <= names
-    assert len(files) == 12 and all((balanced.parent / file).stat().st_size > 5000 for file in files)
+    assert {"figure_3_pattern_generator", "figure_4_reward_and_frequency"} <= names
+    assert ("figure_2_robot" in names) == is_installed("pybullet")
+    assert len(files) == 2 * len(names) >= 10 and all((balanced.parent / file).stat().st_size > 5000 for file in files)
     assert "no gait cycle of mine" in process.stderr  # in half a second there is none
     alone = run("sarah-figures", "second", cwd=balanced.parent)
     assert sorted(path.name for path in (balanced / "figures").iterdir()) == sorted(
@@ -231,7 +235,7 @@ def test_mistakes_get_one_line_on_a_plain_terminal_too(tmp_path: Path) -> None:
 
 
 def test_a_reader_who_has_had_enough_is_no_error(tmp_path: Path) -> None:
-    command = f"{BIN / 'sarah-eval'} --parameters 1,1,1,1,1 --episodes 1 | true"
+    command = f"{BIN / 'sarah-eval'} --parameters 1,1,1,1,1 --episodes 1 --engine {default_engine()} | true"
     process = subprocess.run(["bash", "-c", command], capture_output=True, text=True, cwd=tmp_path)
     assert process.stderr == ""
 

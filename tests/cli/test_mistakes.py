@@ -10,7 +10,7 @@ import pytest
 import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from laboratory import need
+from laboratory import NEEDS_PYBULLET, need
 
 from sarah.errors import ConfigurationError
 from sarah.runs.config import TrainingConfig
@@ -170,6 +170,7 @@ def test_command_lines(line: str, message: str, answer: Callable[[str], str], tm
     assert message in answer(line)
 
 
+@NEEDS_PYBULLET
 def test_transfer_of_no_training(answer: Callable[[str], str], tmp_path: Path) -> None:
     need("mujoco")
     (tmp_path / "full").mkdir()
@@ -179,8 +180,8 @@ def test_transfer_of_no_training(answer: Callable[[str], str], tmp_path: Path) -
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("simulations: 10\nsimulations: 20\n", "key 'simulations' stands there twice"),
-        ("episode:\n  time_limit: 3\n  time_limit: 4\n", "key 'time_limit' stands there twice"),
+        ("simulations: 10\nsimulations: 20\n", "key 'simulations' is given twice"),
+        ("episode:\n  time_limit: 3\n  time_limit: 4\n", "key 'time_limit' is given twice"),
         ("episode: {push: {newton: [1, 2]}}", "did you mean 'episode.push.newtons'?"),
         ("Algo: naf", "unknown key 'Algo', did you mean 'algo'?"),
         ("1: 2", "unknown key '1'"),
@@ -234,10 +235,10 @@ def test_a_file_that_is_no_text(answer: Callable[[str], str], tmp_path: Path) ->
         ("episodes.csv", EPISODE.replace("0,1,1", "0,x,1"), "sarah-figures", "cannot be read"),
         ("episodes.csv", EPISODE.replace("0,1,1", "0,nan,1"), "sarah-figures", "nan where a number must be"),
         ("episodes.csv", EPISODE + "1,1\n", "sarah-figures", "cannot be read"),
-        ("episodes.csv", "", "sarah-figures", "no simulations to draw"),
+        ("episodes.csv", "", "sarah-figures", "no episodes to draw"),
         ("episodes.csv", "a,b\n\udcff\n", "sarah-figures", "cannot be read"),
         ("journal.jsonl", None, "sarah-train --resume", "cannot be resumed: it has no journal.jsonl"),
-        ("config.yaml", "slots: 9", "sarah-train --slots 4 --resume", "slots is 9 in this run, not 4"),
+        ("config.yaml", "slots: 9", "sarah-train --slots 4 --resume", "slots is 9 in this training, not 4"),
         ("config.yaml", "slots: 4", "sarah-train --run-dir x --resume", "leave --run-dir, --config and --from out"),
         ("config.yaml", "seed: 1", "sarah-train --episode.time-limit 9 --resume", "episode.time_limit is 30.0 in this"),
     ],

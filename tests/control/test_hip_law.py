@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sarah.control.hip_law import HIP_SPEED, LARGEST_ANGLE, PITCH_TIME_CONSTANT, BalanceParameters, HipLaw
+from sarah.control.constants import STANDARD_CONSTANTS as CONSTANTS
+from sarah.control.hip_law import BalanceParameters, HipLaw
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
 from sarah.episode.episode import simulate
@@ -41,10 +42,8 @@ def test_abduction_settles_where_the_law_says() -> None:
 
 
 def test_pitch_is_the_rate_integrated_and_forgets() -> None:
-    turned = after(law(), reading(rate_x=0.5), ticks=20)
-    assert turned.pitch == pytest.approx(
-        0.5 * PITCH_TIME_CONSTANT * (1 - math.exp(-0.2 / PITCH_TIME_CONSTANT)), rel=0.01
-    )
+    turned, memory = after(law(), reading(rate_x=0.5), ticks=20), CONSTANTS.pitch_time_constant
+    assert turned.pitch == pytest.approx(0.5 * memory * (1 - math.exp(-0.2 / memory)), rel=0.01)
     assert after(turned, reading(), ticks=100).pitch < 0.04
 
 
@@ -87,8 +86,8 @@ def test_any_readings_keep_hips_bounded_and_slow(
         before = (moved.abduction, *moved.flexion.values())
         after(moved, reading(lateral, rate), 1, swing)
         now = (moved.abduction, *moved.flexion.values())
-        assert all(abs(value) <= LARGEST_ANGLE for value in now)
-        assert all(abs(a - b) <= HIP_SPEED * DT + 1e-12 for a, b in zip(now, before, strict=True))
+        assert all(abs(value) <= CONSTANTS.largest_hip_angle for value in now)
+        assert all(abs(a - b) <= CONSTANTS.hip_speed * DT + 1e-12 for a, b in zip(now, before, strict=True))
 
 
 def test_papers_p1_to_p5_go_on_stepping_with_the_hip_law() -> None:

@@ -6,21 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sarah.control.hip_law import LARGEST_ACCELERATION, BalanceParameters, HipLaw
-from sarah.control.pattern_generator import (
-    ABDUCTION_RATE_SHARE,
-    ABDUCTION_TILT,
-    LEG_SPEED,
-    LIFT_LENGTH,
-    MINIMUM_PHASE_SECONDS,
-    PAPER_STEPPING,
-    PUSH_LENGTH,
-    TILT_TIME_CONSTANT,
-    PatternGenerator,
-    Phase,
-    PhaseChange,
-    SteppingParameters,
-)
+from sarah.control.constants import STANDARD_CONSTANTS as CONSTANTS
+from sarah.control.hip_law import BalanceParameters, HipLaw
+from sarah.control.parameters import PAPER_STEPPING
+from sarah.control.pattern_generator import PatternGenerator, Phase, PhaseChange, SteppingParameters
 from sarah.episode.tasks import STEPPING
 from sarah.errors import ConfigurationError
 from sarah.robot.filters import LowPass
@@ -57,19 +46,19 @@ OVER_RIGHT = reading(lateral=-3.0, rate=0.3, left=UNLOADED, right=2 * LOADED)
 ROCKING_BACK = reading(rate=-0.6, left=UNLOADED, right=2 * LOADED)
 
 
-def test_right_leg_supports_first() -> None:
+def test_right_leg_is_the_first_stance_leg() -> None:
     generator = started()
     assert generator.stance is Side.RIGHT and generator.swing is Side.LEFT
 
 
 def test_low_pass_follows_a_step_with_its_time_constant() -> None:
-    low_pass = LowPass(TILT_TIME_CONSTANT, DT)
+    low_pass = LowPass(CONSTANTS.tilt_time_constant, DT)
     for _ in range(10):  # one time constant
         low_pass(1.0)
     assert low_pass.value == pytest.approx(1.0 - math.exp(-1.0))
 
 
-def test_tilt_and_rate_are_positive_towards_the_support_leg() -> None:
+def test_tilt_and_rate_are_positive_towards_the_stance_leg() -> None:
     generator = started()
     generator.sense(OVER_RIGHT)
     assert generator.tilt > 0 and generator.rate > 0
@@ -77,7 +66,7 @@ def test_tilt_and_rate_are_positive_towards_the_support_leg() -> None:
     assert generator.tilt < 0 and generator.rate < 0
 
 
-def test_shift_ends_when_the_robot_leans_over_the_support_leg() -> None:
+def test_shift_ends_when_the_robot_leans_over_the_stance_leg() -> None:
     """stable_x reaches -3 (1 - exp(-t / 0.1)); it passes P2 = 1.3 after t = -0.1 ln(1 - 1.3 / 3) = 0.057 s."""
     change, ticks = tick_until_change(started(), OVER_RIGHT)
     assert change == PhaseChange(Phase.SHIFT, by_sensors=True)
@@ -157,19 +146,19 @@ def test_a_foot_that_never_left_the_floor_makes_no_step() -> None:
 def test_phases_last_at_least_their_minimum() -> None:
     generator = lifted((0.0, 0.0, 0.0, 0.0, 0.0))
     _, ticks = tick_until_change(generator, ROCKING_BACK)
-    assert ticks == round(MINIMUM_PHASE_SECONDS / DT)
+    assert ticks == round(CONSTANTS.minimum_phase_seconds / DT)
 
 
 def test_legs_push_lift_and_straighten_at_the_leg_speed() -> None:
     generator = started()
-    assert generator.targets == (0.0, 0.0, 0.0, 0.0, pytest.approx(-PUSH_LENGTH), 0.0)
+    assert generator.targets == (0.0, 0.0, 0.0, 0.0, pytest.approx(-CONSTANTS.shift_extension), 0.0)
     tick_until_change(generator, OVER_RIGHT)
     lengths = [generator.targets[4]]
     for _ in range(4):
         generator.tick(reading(left=UNLOADED))
         lengths.append(generator.targets[4])
-    ramp = [LEG_SPEED * DT * ticks - PUSH_LENGTH for ticks in (1, 2, 3)]
-    assert lengths == pytest.approx([*ramp, LIFT_LENGTH, LIFT_LENGTH])
+    ramp = [CONSTANTS.leg_speed * DT * ticks - CONSTANTS.shift_extension for ticks in (1, 2, 3)]
+    assert lengths == pytest.approx([*ramp, *[CONSTANTS.lift_retraction] * 2])
     assert generator.targets[5] == 0.0
 
 
@@ -199,13 +188,14 @@ def test_any_readings_keep_targets_bounded_and_slow(
 ) -> None:
     generator = PatternGenerator(SteppingParameters(*parameters), dt=DT)
     before = generator.targets
+    longest, shortest = -CONSTANTS.shift_extension, CONSTANTS.lift_retraction  # positive lengths retract
     for signal in signals:
         generator.tick(reading(*signal))
         targets = generator.targets
         assert targets[:4] == (0.0, 0.0, 0.0, 0.0)
-        assert all(-PUSH_LENGTH - 1e-12 <= length <= LIFT_LENGTH + 1e-12 for length in targets[4:])
-        assert all(abs(now - then) <= LEG_SPEED * DT + 1e-12 for now, then in zip(targets, before, strict=True))
-        assert abs(generator.stable_x) <= LARGEST_ACCELERATION
+        assert all(longest - 1e-12 <= length <= shortest + 1e-12 for length in targets[4:])
+        assert all(abs(a - b) <= CONSTANTS.leg_speed * DT + 1e-12 for a, b in zip(targets, before, strict=True))
+        assert abs(generator.stable_x) <= CONSTANTS.largest_acceleration
         before = targets
 
 
@@ -225,7 +215,8 @@ def test_abduction_by_the_hip_law_counts_as_tilt_and_rate_to_its_side() -> None:
         generator.tick(reading(lateral=-3.0))
     # Both feet to the left: the legs lean over the right one more than the torso does.
     assert hips.abduction > 0.0 and hips.abduction_rate > 0.0 and generator.stance is Side.RIGHT
-    tilt, rate = ABDUCTION_TILT * hips.abduction - generator.stable_x, ABDUCTION_RATE_SHARE * hips.abduction_rate
+    tilt = CONSTANTS.abduction_tilt * hips.abduction - generator.stable_x
+    rate = CONSTANTS.abduction_rate_share * hips.abduction_rate
     assert generator.tilt == pytest.approx(tilt) and generator.rate == pytest.approx(rate)
     generator.stance = Side.LEFT
     assert generator.tilt == pytest.approx(-tilt) and generator.rate == pytest.approx(-rate)

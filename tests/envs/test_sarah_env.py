@@ -9,6 +9,7 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
+from laboratory import NEEDS_PYBULLET
 from stable_baselines3.common.env_checker import check_env as sb3_check_env
 
 import sarah
@@ -20,6 +21,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS
 from sarah.errors import ConfigurationError
+from sarah.simulation.engines import is_installed
 
 SHORT = EpisodeConfig(time_limit=4.0)
 PAPER_ACTION = np.array(PAPER_STEPPING, dtype=np.float32) - 1.0
@@ -55,7 +57,7 @@ def test_checkers_pass_without_a_warning(name: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         env = gymnasium.make(name, config=SHORT, render_mode="rgb_array")
-        check_env(env.unwrapped)
+        check_env(env.unwrapped, skip_render_check=not is_installed("pybullet"))
         sb3_check_env(env.unwrapped)
         env.close()
 
@@ -143,6 +145,7 @@ def test_an_episode_has_one_step() -> None:
     env.close()
 
 
+@NEEDS_PYBULLET
 def test_render_gives_a_picture() -> None:
     env = SarahEnv(config=SHORT, render_mode="rgb_array")
     env.reset(seed=0)

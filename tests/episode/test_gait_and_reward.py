@@ -54,9 +54,9 @@ def test_shares_of_phases_that_sensors_ended() -> None:
         gait.phase_change(0, PhaseChange(Phase.SHIFT, by_sensors))
     gait.phase_change(0, PhaseChange(Phase.LIFT, by_sensors=False))
     gait.phase_change(0, PhaseChange(Phase.STAND, by_sensors=False))
-    assert gait.event_driven(Phase.SHIFT) == 0.75
-    assert gait.event_driven(Phase.LIFT) == 0.0
-    assert gait.event_driven(Phase.LAND) == 0.0
+    assert gait.by_sensors(Phase.SHIFT) == 0.75
+    assert gait.by_sensors(Phase.LIFT) == 0.0
+    assert gait.by_sensors(Phase.LAND) == 0.0
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import pytest
 
 from sarah.control.parameters import PAPER_STEPPING
-from sarah.episode.evaluation import SMALLEST_SENSOR_SHARE
+from sarah.episode.evaluation import SMALLEST_SENSOR_SHARE, evaluate
 from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
@@ -30,21 +30,16 @@ def workers() -> Iterator[Workers]:
 def test_papers_parameters_step_on_20_seeds(workers: Workers, randomised: bool, survivors: int) -> None:
     """Without randomisation one of them drifts by 6.9 cm, at the standard and at the reference physics."""
     config = EpisodeConfig(randomisation=Randomisation(enabled=randomised))
-    results = list(workers.simulate_all([EpisodeSpec(PAPER_STEPPING, seed, config=config) for seed in range(20)]))
-    evaluation = Evaluation(results)
-    assert sum(result.survived for result in results) >= survivors
-    assert all(2.3 <= result.steps_per_second <= 3.5 for result in results if result.survived)
-    assert evaluation.drift_max < 0.08
+    evaluation = evaluate("stepping", PAPER_STEPPING, config, range(20), workers)
+    assert evaluation.survivors >= survivors
+    assert all(2.3 <= result.steps_per_second <= 3.5 for result in evaluation.results if result.survived)
+    assert evaluation.statistic("drift", "max") < 0.08
     assert evaluation.median("score") >= 0.78
 
 
 def test_papers_parameters_keep_their_score_at_the_reference_physics(workers: Workers) -> None:
     standard, reference = (
-        Evaluation(
-            workers.simulate_all(
-                [EpisodeSpec(PAPER_STEPPING, seed, config=EpisodeConfig(physics=physics)) for seed in range(5)]
-            )
-        )
+        evaluate("stepping", PAPER_STEPPING, EpisodeConfig(physics=physics), range(5), workers)
         for physics in PHYSICS.values()
     )
     assert reference.median("score") >= 0.95 * standard.median("score")
@@ -56,9 +51,7 @@ def test_inertia_added_to_standing_plates_keeps_good_scores_and_clearance_at_the
 ) -> None:
     """With V1 the soles rise least, and would least of all if swinging plates had it."""
     added, reference = (
-        Evaluation(
-            workers.simulate_all([EpisodeSpec((v1, 0.0, 0.0, 0.0), seed, "balance", config) for seed in range(8)])
-        )
+        evaluate("balance", (v1, 0.0, 0.0, 0.0), config, range(8), workers)
         for config in (
             BalanceConfig(physics=physics, push=Push(newtons=(0.0, 0.0)), time_limit=12.0)
             for physics in (

@@ -16,16 +16,18 @@ import dask
 import distributed  # noqa: F401  # its settings are there before a test changes one, and stay when that ends
 import psutil
 import pytest
+from laboratory import NEEDS_PYBULLET
 
 from sarah.episode import workers as workers_module
-from sarah.episode.episode import simulate
+from sarah.episode.episode import Episode, simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.workers import Workers, run, stand
+from sarah.episode.workers import Workers, begin_episode, finish_episode
 from sarah.errors import ConfigurationError, DescriptionError, WorkersError
+from sarah.robot.reading import SensorReading
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
-from sarah.simulation import pybullet_client as bullet
+from sarah.simulation.pybullet_client import pybullet
 from sarah.training.train import train
 
 # Longer than the 8 simulations of warm-up; some episodes fall, most last a second of stepping.
@@ -46,10 +48,32 @@ def learned_bytes(run_folder: RunFolder) -> dict[str, bytes]:
     return {**texts, "weights": weights}
 
 
-@pytest.fixture(autouse=True)
-def _nobody_stands() -> None:
-    """Whatever other tests have left standing in this process."""
+class Stood:
+    """Episodes of this process that stood, and those of them that are still open."""
+
+    def __init__(self) -> None:
+        self.all: list[Episode] = []
+        self.open: list[Episode] = []
+
+
+@pytest.fixture
+def stood(monkeypatch: pytest.MonkeyPatch) -> Stood:
+    """Those of a test; whatever other tests have left standing is gone."""
     workers_module.close_waiting_episodes()
+    seen = Stood()
+
+    class Seen(Episode):
+        def stand(self) -> SensorReading:
+            seen.all.append(self)
+            seen.open.append(self)
+            return super().stand()
+
+        def close(self) -> None:
+            seen.open.remove(self)
+            super().close()
+
+    monkeypatch.setattr(workers_module, "Episode", Seen)
+    return seen
 
 
 @pytest.fixture(scope="module")
@@ -70,10 +94,10 @@ def test_training_survives_the_death_of_workers(alone: dict[str, bytes], tmp_pat
         for count in counts:
             while not (tmp_path / "episodes.csv").exists() or len(list(RunFolder(tmp_path).episodes())) < count:
                 time.sleep(0.01)
-            assert workers._client is not None
+            assert workers.client is not None
             pids: list[int] = []
             while not pids:  # while they all restart
-                pids = list(workers._client.run(os.getpid, on_error="ignore").values())
+                pids = list(workers.client.run(os.getpid, on_error="ignore").values())
             pid = pids[0]
             os.kill(pid, signal.SIGKILL)
             killed.append(pid)
@@ -120,35 +144,37 @@ def test_results_come_in_the_order_of_the_specifications() -> None:
         assert list(workers.simulate_all(specs)) == [simulate(spec) for spec in specs]
 
 
-def test_an_episode_continues_where_it_stands_or_begins_anew() -> None:
+def test_an_episode_continues_where_it_stands_or_begins_anew(stood: Stood) -> None:
     expected = simulate(SPEC)
-    stand(SPEC)
-    assert len(workers_module._standing) == 1
-    assert run(SPEC).result == expected
-    assert not workers_module._standing
-    assert run(SPEC).result == expected  # that stands nowhere
+    begin_episode(SPEC)
+    assert len(stood.open) == 1
+    assert finish_episode(SPEC).result == expected
+    assert len(stood.all) == 1 and not stood.open
+    assert finish_episode(SPEC).result == expected  # that stands nowhere
+    assert len(stood.all) == 2 and not stood.open
 
 
-def test_who_ran_an_episode_lets_the_following_one_stand() -> None:
+def test_who_ran_an_episode_lets_the_following_one_stand(stood: Stood) -> None:
     following = EpisodeSpec(SPEC.parameters, 2, config=SPEC.config)
-    outcome = run(SPEC, following)
+    outcome = finish_episode(SPEC, following)
     assert outcome.result == simulate(SPEC)
-    assert len(workers_module._standing) == 1
-    assert run(following).result == simulate(following)
-    assert not workers_module._standing
-    assert outcome.following == stand(following)
+    assert len(stood.open) == 1
+    assert finish_episode(following).result == simulate(following)
+    assert len(stood.all) == 2 and not stood.open
+    assert outcome.following == begin_episode(following)
 
 
-def test_whoever_stands_twice_keeps_one_world() -> None:
+@NEEDS_PYBULLET
+def test_whoever_stands_twice_keeps_one_world(stood: Stood) -> None:
     def worlds() -> int:
-        return sum(bullet.pybullet.isConnected(client) for client in range(200))
+        return sum(pybullet.isConnected(client) for client in range(200))
 
     with Workers():
-        stand(SPEC)
+        begin_episode(SPEC)
         before = worlds()
         for _ in range(4):
-            stand(SPEC)
-        assert len(workers_module._standing) == 1
+            begin_episode(SPEC)
+        assert len(stood.open) == 1
         assert worlds() <= before + 1  # two at a time, while one takes the other's place
 
 
@@ -174,20 +200,20 @@ def test_what_a_scheduler_gives_up_is_handed_in_again(tmp_path: Path) -> None:
 
 def test_workers_are_left_alone_by_an_interrupt() -> None:
     with Workers(1) as workers:
-        assert workers._client is not None
-        (pid,) = workers._client.run(os.getpid).values()
+        assert workers.client is not None
+        (pid,) = workers.client.run(os.getpid).values()
         os.kill(pid, signal.SIGINT)
         assert list(workers.simulate_all([SPEC])) == [simulate(SPEC)]
-        assert list(workers._client.run(os.getpid).values()) == [pid]
+        assert list(workers.client.run(os.getpid).values()) == [pid]
 
 
-def test_standing_episodes_are_bounded_and_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_waiting_episodes_are_bounded_and_forgotten(stood: Stood, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(workers_module, "MOST_WAITING", 2)
     with Workers():
         for seed in range(4):
-            stand(EpisodeSpec(SPEC.parameters, seed, config=SPEC.config))
-        assert len(workers_module._standing) == 2
-    assert not workers_module._standing
+            begin_episode(EpisodeSpec(SPEC.parameters, seed, config=SPEC.config))
+        assert len(stood.open) == 2
+    assert not stood.open
 
 
 def test_workers_listen_to_this_machine_only() -> None:
@@ -219,5 +245,5 @@ def test_a_port_that_says_nothing_is_reported(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(workers_module, "SCHEDULER_SECONDS", 1)
     with socket.create_server(("127.0.0.1", 0)) as server:
         address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
-        with pytest.raises(WorkersError, match=f"{address}': whoever listens there says nothing"):
+        with pytest.raises(WorkersError, match=f"{address}': the port is open, but silent"):
             Workers(scheduler=address).__enter__()

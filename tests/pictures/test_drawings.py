@@ -4,6 +4,7 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pytest
+from laboratory import need
 
 from sarah.robot.description import GROUPS, RobotDescription, describe_robot
 from sarah.simulation.renderer import Renderer
@@ -20,6 +21,7 @@ def robot() -> RobotDescription:
 
 @pytest.fixture(scope="module")
 def renderer(robot: RobotDescription) -> Renderer:
+    need("pybullet")
     return Renderer(robot)
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from imageio_ffmpeg import count_frames_and_secs
+from laboratory import need
 from PIL import Image
 
 from sarah.episode.episode import simulate
@@ -30,6 +31,7 @@ def trace() -> Trace:
 
 
 def film(trace: Trace, *times: float, caption: str = "") -> list[np.ndarray]:
+    need("pybullet")
     return [np.asarray(frame) for frame in frames(trace, describe_robot(), times, caption)]
 
 
@@ -79,6 +81,7 @@ def test_mp4_without_the_extra_is_refused_by_its_name(monkeypatch: pytest.Monkey
 
 
 def run(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    need("pybullet")
     return subprocess.run([BIN / "sarah-video", *arguments], capture_output=True, text=True, cwd=cwd, timeout=300)
 
 

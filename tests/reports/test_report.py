@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from laboratory import NEEDS_PYBULLET
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 from tensorboard.plugins.hparams.plugin_data_pb2 import HParamsPluginData
 
@@ -15,6 +16,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
+from sarah.simulation.engines import is_installed
 from sarah.simulation.physics import Physics
 from sarah.training import train as training
 from sarah.training.train import train
@@ -33,10 +35,11 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, RunFolder]:
         for task in TASKS:
             config = TrainingConfig(task, episodes=10, seed=3, slots=1, episode=EPISODE)
             made[task] = RunFolder.create(folder / task, config)
-            train(config, made[task], picture_interval=5 if task == "stepping" else 0)
+            train(config, made[task], picture_interval=5 if task == "stepping" and is_installed("pybullet") else 0)
     return made
 
 
+@NEEDS_PYBULLET
 @pytest.mark.parametrize("task", TASKS)
 def test_report_is_a_page_that_needs_nothing_else(task: str, runs: dict[str, RunFolder], tmp_path: Path) -> None:
     run, page = runs[task], tmp_path / "page.html"
@@ -78,6 +81,7 @@ def events(run: RunFolder) -> EventAccumulator:
     return accumulator
 
 
+@NEEDS_PYBULLET
 def test_tensorboard_shows_curves_in_groups_and_pictures_at_intervals(runs: dict[str, RunFolder]) -> None:
     shown = events(runs["stepping"])
     groups = {tag.split("/")[0] for tag in shown.Tags()["scalars"]}
@@ -96,6 +100,7 @@ def test_tensorboard_has_a_line_of_hyper_parameters_for_each_run(runs: dict[str,
         assert known["task"].string_value == task and known["seed"].number_value == 3
 
 
+@NEEDS_PYBULLET
 def test_pictures_change_nothing_of_a_training(
     runs: dict[str, RunFolder], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from laboratory import NEEDS_PYBULLET
 from matplotlib.image import imread
 
 from sarah.control import hip_law as hips
@@ -66,7 +67,7 @@ def test_runs_of_different_length_and_algorithm_share_a_figure(tmp_path: Path) -
 
 def test_run_without_simulations_is_named(tmp_path: Path) -> None:
     run = run_with_episodes(tmp_path / "run", "stepping", 0)
-    with pytest.raises(RunFolderError, match="has no simulations"):
+    with pytest.raises(RunFolderError, match="has no episodes"):
         draw_figures([run], tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
@@ -97,6 +98,7 @@ def test_hip_law_is_read_from_the_code_that_runs(monkeypatch: pytest.MonkeyPatch
     assert read_hip_law()["flexion of the swing leg"] == f"9.5 V3 pitch + {hips.FLEXION_SCALE:g} V4"
 
 
+@NEEDS_PYBULLET
 def test_robot_and_state_machine_are_drawn(tmp_path: Path) -> None:
     files = draw_robot(describe_robot(), tmp_path / "robot") + draw_state_machine(tmp_path / "machine")
     assert {file.name for file in files} == {"robot.png", "robot.pdf", "machine.png", "machine.pdf"}
@@ -133,7 +135,7 @@ def test_robot_that_makes_no_cycle_has_none_to_draw() -> None:
     spec = EpisodeSpec(TRAINED_STEPPING, 0, config=EpisodeConfig(time_limit=1.3))
     trace = simulate(spec, record_trace=True).trace
     assert trace is not None
-    with pytest.raises(ConfigurationError, match="no whole one"):
+    with pytest.raises(ConfigurationError, match="completes no cycle"):
         gait_cycle(trace)
 
 

@@ -9,6 +9,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import read_config, write_config
+from sarah.simulation.engines import default_engine
 from sarah.simulation.physics import Physics
 from sarah.simulation.randomisation import Randomisation
 
@@ -34,7 +35,7 @@ def test_what_a_file_does_not_name_keeps_its_default(tmp_path: Path) -> None:
     path.write_text("algo: sac\nepisode:\n  time_limit: 10\n")
     config = read_config(TrainingConfig, path)
     assert config == TrainingConfig(algo="sac", episode=EpisodeConfig(time_limit=10.0))
-    assert config.episode.engine == "pybullet"
+    assert config.episode.engine == default_engine()
     path.write_text("")
     assert read_config(TrainingConfig, path) == TrainingConfig()
 

@@ -17,11 +17,12 @@ from typing import get_args, get_type_hints
 import pytest
 import torch
 
-from sarah.agents.naf import NAF
+from sarah.agents import LocalNAF
 from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.errors import DescriptionError
 from sarah.robot.description import describe_robot
+from sarah.runs.agent_settings import AGENT_SETTINGS
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
@@ -139,7 +140,7 @@ def test_the_model_is_left_alone_by_commands_and_would_go_off(
     assert not sprung.exists()
     shutil.copy(tmp_path / "run-True" / "model.zip", tmp_path / "loaded.zip")
     with pytest.raises(Exception):  # noqa: B017  # whatever stable-baselines3 makes of it afterwards
-        NAF.load(tmp_path / "loaded.zip")
+        LocalNAF.load(tmp_path / "loaded.zip")
     assert sprung.exists()
 
 
@@ -189,11 +190,11 @@ def test_dimensions_are_numbers_and_nothing_else(
 
 
 def test_no_setting_is_a_path() -> None:
-    """So none leads out of the run folder."""
+    """So none leads out of the run folder. A device is one of a few names."""
     texts = set()
-    for config_type in (TrainingConfig, EpisodeConfig, Physics, Randomisation, Push):
+    for config_type in (TrainingConfig, EpisodeConfig, Physics, Randomisation, Push, *AGENT_SETTINGS.values()):
         for name, kind in get_type_hints(config_type).items():
             assert kind is not Path
             if kind is str or (str in get_args(kind)[:1] and not hasattr(kind, "__origin__")):
                 texts.add(name)
-    assert texts == {"task", "algo"}
+    assert texts == {"task", "algo", "device"}

@@ -9,10 +9,11 @@ from importlib.machinery import ModuleSpec
 from pathlib import Path
 
 import pytest
-from laboratory import need
+from laboratory import NEEDS_PYBULLET, need
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import Episode, simulate
+from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks.balance import TRAINED_STEPPING
@@ -24,6 +25,7 @@ from sarah.simulation.physics import Physics
 
 SHORT = EpisodeConfig(engine="mujoco", time_limit=6.0)
 MUJOCO_IS_MISSING = "import sys\nsys.modules['mujoco'] = None\n"
+PYBULLET_IS_MISSING = "import sys\nsys.modules['pybullet'] = None\n"
 
 
 @pytest.fixture
@@ -32,12 +34,12 @@ def mujoco_engine() -> None:
     need("mujoco")
 
 
+@NEEDS_PYBULLET
 @pytest.mark.parametrize("parameters", [PAPER_STEPPING, TRAINED_STEPPING])
 def test_robot_steps_as_well_in_mujoco_as_in_pybullet(mujoco_engine: None, parameters: tuple[float, ...]) -> None:
     """Measured over 20 seeds: mean scores within 2 % of each other, and all survive."""
     pybullet, mujoco = (
-        Evaluation(simulate(EpisodeSpec(parameters, seed, config=EpisodeConfig(engine=engine))) for seed in range(2))
-        for engine in ("pybullet", "mujoco")
+        evaluate("stepping", parameters, EpisodeConfig(engine=engine), range(2)) for engine in ("pybullet", "mujoco")
     )
     for evaluation in (pybullet, mujoco):
         assert evaluation.survival_rate == 1.0 and evaluation.is_gait
@@ -51,7 +53,7 @@ def test_same_spec_gives_identical_results_in_fresh_processes_whatever_they_simu
 ) -> None:
     program = (
         "import dataclasses, json, sarah\n"
-        "config = sarah.EpisodeConfig(engine='mujoco', time_limit=5.0)\n"
+        "config = sarah.BalanceConfig(engine='mujoco', time_limit=5.0)\n"
         "for seed in {seeds}:\n"
         "    result = sarah.simulate(sarah.EpisodeSpec((1.0, 0.1, 0.5, -0.2), seed, 'balance', config))\n"
         "print(json.dumps(dataclasses.asdict(result)))"
@@ -105,7 +107,7 @@ def test_physics_that_diverges_ends_the_episode_and_writes_no_file(
         ("train", ["--engine", "mujoco"]),
         ("eval", ["--parameters", "0.4,1.3,0.1,1,1", "--engine", "mujoco"]),
         ("compare", ["race", "--engine", "mujoco"]),
-        ("transfer", ["run"]),
+        pytest.param("transfer", ["run"], marks=NEEDS_PYBULLET),
     ],
 )
 def test_without_the_extra_a_command_says_how_to_get_it_and_writes_nothing(
@@ -125,6 +127,7 @@ def test_what_pip_leaves_of_mujoco_is_no_engine(monkeypatch: pytest.MonkeyPatch)
         simulator_of("mujoco")
 
 
+@NEEDS_PYBULLET
 def test_without_the_extra_pybullet_works() -> None:
     program = (
         f"{MUJOCO_IS_MISSING}import sarah\n"
@@ -135,10 +138,45 @@ def test_without_the_extra_pybullet_works() -> None:
     assert process.stdout == "time_limit\n"
 
 
+def command_without_pybullet(command: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    program = f"{PYBULLET_IS_MISSING}from sarah.cli.{command} import main\nsys.argv[1:] = {arguments}\nmain()"
+    return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=cwd)
+
+
+def test_without_pybullet_mujoco_is_the_default_and_a_training_says_so(mujoco_engine: None, tmp_path: Path) -> None:
+    arguments = ("--algo", "random", "--episodes", "2", "--episode.time-limit", "1.5", "--run-dir", "run")
+    process = command_without_pybullet("train", *arguments, cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    assert process.stderr.startswith("PyBullet is not installed: MuJoCo simulates\n")
+    assert "engine: mujoco" in (tmp_path / "run" / "config.yaml").read_text()
+    process = command_without_pybullet("report", "run", "--episodes", "2", cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    page = (tmp_path / "run" / "report.html").read_text()
+    assert "No video: pictures of the robot need the package pybullet" in page and "<video" not in page
+
+
+@pytest.mark.parametrize(
+    ("command", "arguments", "needs"),
+    [
+        ("train", ["--engine", "pybullet"], "engine 'pybullet' needs"),
+        ("train", ["--pictures", "1"], "pictures of the robot need"),
+        ("video", ["0.4,1.3,0.1,1,1", "a.gif"], "pictures of the robot need"),
+        ("transfer", ["run"], "engine 'pybullet' needs"),
+    ],
+)
+def test_without_pybullet_what_needs_it_is_one_line_that_says_how_to_get_it(
+    mujoco_engine: None, command: str, arguments: list[str], needs: str, tmp_path: Path
+) -> None:
+    process = command_without_pybullet(command, *arguments, cwd=tmp_path)
+    said = f"sarah-{command}: error: {needs} the package pybullet: pip install pybullet ("
+    assert process.returncode == 2 and process.stderr.startswith(said) and process.stderr.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
 def test_kept_is_the_share_of_the_score_that_the_other_engine_gives() -> None:
-    at_home = Evaluation([simulate(EpisodeSpec(PAPER_STEPPING, 0, config=EpisodeConfig(time_limit=1.5)))])
-    worse = dataclasses.replace(at_home, score_mean=0.5 * at_home.mean("score"))
+    result = simulate(EpisodeSpec(PAPER_STEPPING, 0, config=EpisodeConfig(time_limit=1.5)))
+    at_home, worse = Evaluation((result,)), Evaluation((dataclasses.replace(result, score=0.5 * result.score),))
     evaluations = {"pybullet": at_home, "mujoco": worse}
     for engine, kept in (("pybullet", 0.5), ("mujoco", 2.0)):
-        subject = LearnedParameters("run", "stepping", PAPER_STEPPING, EpisodeConfig(engine=engine))
-        assert Transfer(subject, evaluations).kept == pytest.approx(kept)
+        learned = LearnedParameters("run", "stepping", PAPER_STEPPING, EpisodeConfig(engine=engine))
+        assert Transfer(learned, evaluations).kept == pytest.approx(kept)

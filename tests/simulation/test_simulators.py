@@ -33,7 +33,7 @@ def build(lab: Laboratory) -> Iterator[BuildSimulation]:
     """Simulations that are closed after the test."""
     built: list[Simulator] = []
 
-    def build_one(conditions: Conditions = NOMINAL, physics: Physics = Physics()) -> Simulator:  # noqa: B008
+    def build_one(conditions: Conditions = NOMINAL, physics: Physics = PHYSICS["standard"]) -> Simulator:
         built.append(simulator_of(lab.engine)(describe_robot(), physics, conditions))
         return built[-1]
 
@@ -214,7 +214,7 @@ def test_mirrored_push_gives_mirrored_motion(
     """Within a millionth in the air. On the floor the solver treats the contacts in turn: measured within 7 % of the
     motion, 0.3 mm of 4.4 mm, with steps and iterations as fine as here.
     """
-    physics = Physics(rate=2000, solver_iterations=200)
+    physics = PyBulletPhysics(rate=2000, solver_iterations=200)
     right, left = build(physics=physics), build(physics=physics)
     deviation, largest = 0.0, 0.0
     for simulation in (right, left):
@@ -266,8 +266,8 @@ def test_plates_have_the_added_inertia_unless_their_leg_is_retracted() -> None:
     )
 
     def inertias(simulation: PyBulletSimulator, side: str) -> np.ndarray:
-        links = [simulation._links[f"{side}_{plate}"] for plate in PLATES]
-        return np.array([pybullet.getDynamicsInfo(simulation._body, link, simulation._client)[2] for link in links])
+        links = [simulation.links[f"{side}_{plate}"] for plate in PLATES]
+        return np.array([pybullet.getDynamicsInfo(simulation.body, link, simulation.client)[2] for link in links])
 
     added = np.array((0.005, 0.0, 0.0))
     for left_length, left_added in ((0.0, added), (0.001, 0.0 * added), (-0.008, added)):
@@ -325,7 +325,7 @@ def test_positive_abduction_turns_feet_left_and_positive_flexion_forward(
 @pytest.mark.parametrize("rate", [1000, 2000])
 def test_standing_legs_push_with_the_weight_that_they_carry(build: BuildSimulation, rate: int) -> None:
     """Each leg's actuator carries half of torso, hips and thighs, 20 kg, whatever the substeps: measured 96 of 98 N."""
-    simulation = build(physics=Physics(rate=rate, solver_iterations=50))
+    simulation = build(physics=PyBulletPhysics(rate=rate, solver_iterations=50))
     for _ in range(2 * SECOND):
         simulation.advance()
     speeds, efforts = simulation.actuator_motion()
@@ -337,7 +337,7 @@ def test_standing_legs_push_with_the_weight_that_they_carry(build: BuildSimulati
 def test_actuators_push_no_harder_than_they_can(lab: Laboratory, rate: int) -> None:
     """Legs of 100 N, which hardly carry the torso, stretch with all their force, whatever the substeps."""
     weak = describe_robot({"leg_effort": 100.0})
-    simulation = simulator_of(lab.engine)(weak, Physics(rate=rate, solver_iterations=50), NOMINAL)
+    simulation = simulator_of(lab.engine)(weak, PyBulletPhysics(rate=rate, solver_iterations=50), NOMINAL)
     simulation.set_targets((0.0, 0.0, 0.0, 0.0, -0.05, -0.05))
     efforts = []
     for _ in range(SECOND // 5):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from sarah.training import optimisers as search
-from sarah.training.optimisers import make_searcher
+from sarah.runs.agent_settings import EvolutionSettings, settings_of
+from sarah.training.optimisers import make_optimiser
 
 OPTIMISERS = ("cma-es", "gp", "tpe", "random")
 BEST = np.array([0.3, -0.4])
@@ -16,16 +16,16 @@ def trial(action: np.ndarray) -> float:
 
 def tried(algo: str, seed: int, trials: int = 40, in_flight: int = 3) -> tuple[list[np.ndarray], np.ndarray]:
     """Actions tried, and the choice in the end."""
-    searcher = make_searcher(algo, 2, seed)
+    optimiser = make_optimiser(algo, settings_of(algo)(), 2, seed)
     actions: list[np.ndarray] = []
     told = 0
     while told < trials:
-        if len(actions) < trials and len(actions) - told < in_flight and searcher.ready():
-            actions.append(searcher.ask())
+        if len(actions) < trials and len(actions) - told < in_flight and optimiser.ready():
+            actions.append(optimiser.ask())
         else:
-            searcher.tell(actions[told], trial(actions[told]))
+            optimiser.tell(actions[told], trial(actions[told]))
             told += 1
-    return actions, searcher.choice()
+    return actions, optimiser.choice()
 
 
 @pytest.mark.parametrize("algo", OPTIMISERS)
@@ -44,13 +44,21 @@ def test_optimisers_repeat_with_their_seed(algo: str) -> None:
     assert np.array_equal(first, second) and not np.array_equal(first, other)
 
 
-def test_a_generation_is_told_before_the_next_is_asked_for() -> None:
-    searcher = make_searcher("cma-es", 2, 0)
+@pytest.mark.parametrize("population", [2, 8, 13])
+def test_a_generation_is_told_before_the_next_is_asked_for(population: int) -> None:
+    optimiser = make_optimiser("cma-es", EvolutionSettings(population=population), 2, 0)
     generation = []
-    while searcher.ready():
-        generation.append(searcher.ask())
-    assert len(generation) == search.CMA_POPULATION
+    while optimiser.ready():
+        generation.append(optimiser.ask())
+    assert len(generation) == population
     for action in generation:
-        assert not searcher.ready()
-        searcher.tell(action, trial(action))
-    assert searcher.ready()
+        assert not optimiser.ready()
+        optimiser.tell(action, trial(action))
+    assert optimiser.ready()
+
+
+def test_the_first_generation_of_cma_es_has_the_deviation_that_is_set() -> None:
+    for deviation in (0.05, 0.2):
+        optimiser = make_optimiser("cma-es", EvolutionSettings(deviation=deviation, population=500), 4, 0)
+        actions = np.array([optimiser.ask() for _ in range(500)])
+        assert actions.std() == pytest.approx(deviation, rel=0.05)

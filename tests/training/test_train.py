@@ -12,16 +12,16 @@ from stable_baselines3 import DDPG, SAC, TD3
 from stable_baselines3.common.base_class import BaseAlgorithm
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
-from sarah.agents.naf import NAF
+from sarah.agents import LocalNAF
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
 from sarah.errors import RunFolderError
-from sarah.runs.config import SEARCHERS, TrainingConfig
+from sarah.runs.agent_settings import settings_of
+from sarah.runs.config import OPTIMISERS, TrainingConfig
 from sarah.runs.run_folder import RunFolder, new_run_path
-from sarah.training import learners as learning
 from sarah.training import train as training
 from sarah.training.recommendation import candidates, merit
 from sarah.training.train import SUMMARY_EPISODES, evaluate, train
@@ -106,7 +106,7 @@ def test_parameters_are_read_without_the_agent(run: RunFolder) -> None:
 
 
 def test_model_loads_and_predicts(run: RunFolder) -> None:
-    action, _ = NAF.load(run.model_path).predict(np.zeros(16, dtype=np.float32), deterministic=True)
+    action, _ = LocalNAF.load(run.model_path).predict(np.zeros(16, dtype=np.float32), deterministic=True)
     assert action.shape == (5,)
 
 
@@ -133,15 +133,13 @@ def test_second_training_learns_v_with_the_legs_of_the_first(tmp_path: Path) -> 
     content = json.loads((run.path / "parameters.json").read_text())
     assert content["stepping"] == list(stepping) and content["without"]["survival_rate"] == 1.0
     assert content["without"] == dataclasses.asdict(evaluate(BALANCE.neutral, config, range(SUMMARY_EPISODES)))
-    assert NAF.load(run.model_path).action_space.shape == (4,)
+    assert LocalNAF.load(run.model_path).action_space.shape == (4,)
 
 
 @pytest.mark.parametrize(("algo", "algorithm"), [("td3", TD3), ("sac", SAC), ("ddpg", DDPG)])
-def test_other_algorithms_run_the_same_path(
-    algo: str, algorithm: type[BaseAlgorithm], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(learning, "WARM_UP", 6)
-    config = TrainingConfig(algo=algo, episodes=12, slots=1, episode=EpisodeConfig(time_limit=1.5))
+def test_other_algorithms_run_the_same_path(algo: str, algorithm: type[BaseAlgorithm], tmp_path: Path) -> None:
+    agent = settings_of(algo)(learning_starts=6)  # type: ignore[call-arg]  # of a learner
+    config = TrainingConfig(algo=algo, episodes=12, slots=1, agent=agent, episode=EpisodeConfig(time_limit=1.5))
     run = RunFolder.create(tmp_path / algo, config)
     learned = train(config, run)
     assert isinstance(algorithm.load(run.model_path), algorithm)
@@ -149,7 +147,7 @@ def test_other_algorithms_run_the_same_path(
     assert math.isfinite(learned.evaluation.mean("score"))
 
 
-@pytest.mark.parametrize("algo", SEARCHERS)
+@pytest.mark.parametrize("algo", OPTIMISERS)
 def test_optimisers_write_the_same_run_folder(algo: str, tmp_path: Path) -> None:
     config = TrainingConfig(algo=algo, episodes=20, slots=3, episode=EpisodeConfig(time_limit=1.2))
     run = RunFolder.create(tmp_path / algo, config)

@@ -31,6 +31,7 @@ from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_episodes import choose_episode, episodes_of_run
 from sarah.runs.run_folder import RunFolder
+from sarah.simulation.engines import default_engine
 from sarah.viewer.background import BackgroundSimulation, Wish
 from sarah.viewer.playback import Playback
 from sarah.viewer.scenario import KnownPush, Scenario
@@ -87,9 +88,11 @@ def test_an_unknown_episode_is_told_which_there_are(run: RunFolder) -> None:
 
 def test_an_episode_in_the_other_engine_has_no_noted_score(run: RunFolder) -> None:
     choice = episodes_of_run(run)[2]
-    other = view._in_engine(choice, "mujoco")
-    assert other.spec.config.engine == "mujoco" and other.spec.seed == choice.spec.seed and other.score is None
-    assert view._in_engine(choice, "pybullet") == choice
+    own = default_engine()
+    (another,) = {"pybullet", "mujoco"} - {own}
+    other = view._in_engine(choice, another)
+    assert other.spec.config.engine == another and other.spec.seed == choice.spec.seed and other.score is None
+    assert view._in_engine(choice, own) == choice
 
 
 def test_an_unfinished_run_can_be_played_and_a_damaged_one_is_named(run: RunFolder, tmp_path: Path) -> None:
@@ -103,7 +106,7 @@ def test_an_unfinished_run_can_be_played_and_a_damaged_one_is_named(run: RunFold
     with pytest.raises(RunFolderError, match="copy cannot be read"):
         episodes_of_run(unfinished)
     (copy / "episodes.csv").unlink()
-    with pytest.raises(RunFolderError, match="has no simulations to show yet"):
+    with pytest.raises(RunFolderError, match="has no episodes to show yet"):
         episodes_of_run(unfinished)
 
 
@@ -345,7 +348,7 @@ def test_scrubbing_shows_that_moment_in_scene_and_plots(page: Any, run: RunFolde
 
 
 def test_a_slider_changes_the_episode_and_the_old_score_stands_beside_the_new(page: Any, run: RunFolder) -> None:
-    choose_on_page(page, "simulation 1")
+    choose_on_page(page, "episode 1")
     spec = episodes_of_run(run)[3].spec
     old = f"{simulate(spec).score:.3f}"
     eventually(lambda: scores(page)[0] == old)
@@ -360,7 +363,7 @@ def test_a_slider_changes_the_episode_and_the_old_score_stands_beside_the_new(pa
 
 
 def test_a_push_is_simulated_and_drawn_as_an_arrow(page: Any, run: RunFolder) -> None:
-    choose_on_page(page, "simulation 0")
+    choose_on_page(page, "episode 0")
     spec = episodes_of_run(run)[2].spec
     old = f"{simulate(spec).score:.3f}"
     eventually(lambda: scores(page)[0] == old)

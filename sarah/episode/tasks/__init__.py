@@ -1,6 +1,6 @@
 """The tasks: one file each, and an entry here.
 
-A task may import errors, robot, control, and what of the episode comes before it: settings, push and reward.
+A task may import errors, robot, control, and from the episode its settings, push and reward.
 """
 
 from typing import Any
@@ -11,14 +11,14 @@ from sarah.episode.tasks.task import Task
 from sarah.errors import ConfigurationError, unknown_name
 
 TASKS: dict[str, Task[Any]] = {task.name: task for task in (STEPPING, BALANCE)}
-"""Every task by its name."""
+"""Tasks by name."""
 
 
 def task_named(name: str) -> Task[Any]:
     """Find a task.
 
     :param name: name of the task
-    :raises ConfigurationError: naming the tasks that there are
+    :raises ConfigurationError: if there is no such task; the message names all tasks
     """
     if name not in TASKS:
         raise ConfigurationError(unknown_name("task", name, TASKS))

@@ -1,4 +1,4 @@
-"""The Second Training: come back after a push. V1 to V4 are learned, on given P1 to P5."""
+"""The Second Training: recover from a push. V1 to V4 are learned, on given P1 to P5."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from sarah.episode.tasks.task import ControllerParameters, Task
 from sarah.errors import ConfigurationError
 
 TRAINED_STEPPING = (0.41, 0.52, 0.62, 1.17, 1.37)
-"""P1 to P5 that are kept unless others are given: what NAF learned once, to two digits."""
+"""Default values of P1 to P5: those that NAF learned in one training, to two digits."""
 
 
 @dataclass(frozen=True)
 class BalanceConfig(EpisodeConfig):
-    """What all episodes of an experiment share when the robot is pushed.
+    """Settings that all episodes of an experiment share when the robot is pushed.
 
-    :param stepping: P1 to P5, which the agent does not choose
+    :param stepping: values of P1 to P5, which the agent does not choose
     :param push: ranges that each episode's push is drawn from
     """
 
@@ -29,7 +29,7 @@ class BalanceConfig(EpisodeConfig):
     push: Push = Push()
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be simulated, and a push that no tick sees."""
+        """Refuse settings that cannot be simulated, and a push shorter than a control tick."""
         super().__post_init__()
         STEPPING.checked(self.stepping, "stepping")
         if self.push.duration < self.physics.control_dt:
@@ -37,7 +37,7 @@ class BalanceConfig(EpisodeConfig):
             raise ConfigurationError(f"push.duration must be at least {tick}, not {self.push.duration!r}")
 
     def check_for_training(self) -> None:
-        """Refuse a push that comes after the end of every episode."""
+        """Refuse a push that begins after the end of every episode."""
         begin, limit = self.push.at_seconds, self.time_limit
         if begin[0] >= limit:
             raise ConfigurationError(
@@ -60,8 +60,8 @@ BALANCE: Task[BalanceConfig] = Task(
     episode=BalanceConfig(),
     controller_parameters=_controller_parameters,
     baseline=(0.0, 0.0, 0.0, 0.0),
-    baseline_label="without the hip law (V = 0)",
+    baseline_label="baseline: V = 0, hips locked",
     neutral=(0.0, 0.0, 0.0, 0.0),
     draw_push=_draw_push,
 )
-"""The paper's second training. The box of V1 to V4 is ours."""
+"""The paper's Second Training. The box of V1 to V4 is this project's."""

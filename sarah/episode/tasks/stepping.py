@@ -1,4 +1,4 @@
-"""The First Training: step fast, stay put. P1 to P5 are learned, with the hips locked."""
+"""The First Training: step fast and stay in place. P1 to P5 are learned, with the hips locked."""
 
 from __future__ import annotations
 
@@ -19,6 +19,6 @@ STEPPING = Task(
     episode=EpisodeConfig(),
     controller_parameters=_controller_parameters,
     baseline=PAPER_STEPPING,
-    baseline_label="the paper's parameters, simulated here",
+    baseline_label="baseline: the paper's parameters, simulated here",
 )
-"""The paper's first training."""
+"""The paper's First Training."""

@@ -1,4 +1,4 @@
-"""What a task is: the parameters that are learned, and all that its episodes have of their own."""
+"""A task: the parameters that are learned, and everything that only its episodes have."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from sarah.errors import ConfigurationError
 
 ConfigType = TypeVar("ConfigType", bound=EpisodeConfig)
 ControllerParameters = tuple[SteppingParameters, BalanceParameters | None]
-"""What the controller is made of: P1 to P5, and V1 to V4 unless the hips are locked."""
+"""P1 to P5, and V1 to V4 unless the hips are locked."""
 
 
 def no_push(config: Any, seed: int) -> DrawnPush | None:
@@ -30,17 +30,17 @@ def no_push(config: Any, seed: int) -> DrawnPush | None:
 
 @dataclass(frozen=True, eq=False)
 class Task(Generic[ConfigType]):
-    """What is learned.
+    """A task: what is learned.
 
-    :param name: name, as ``--task`` takes it
+    :param name: name on the command line, for ``--task``
     :param title: title of its training
-    :param parameters: what the agent chooses, in order
-    :param episode: default settings of its episodes; their class has the settings that only this task has
-    :param controller_parameters: function that makes the controller's parameters of those that were chosen and of the
-        episode's settings
-    :param baseline: parameters that learned ones are compared with
-    :param baseline_label: what pages call the baseline
-    :param neutral: parameters that do nothing, if there are any; chatter is judged against them
+    :param parameters: parameters that the agent chooses, in order
+    :param episode: default settings of its episodes; their class adds the settings that only this task has
+    :param controller_parameters: function that makes the controller's parameters from the chosen ones and the
+        settings of the episode
+    :param baseline: values of the parameters that learned ones are compared with
+    :param baseline_label: name of the baseline on pages
+    :param neutral: values of the parameters that do nothing, if there are any; chatter is judged against them
     :param draw_push: function that draws an episode's push from its settings and its seed
     """
 
@@ -61,15 +61,15 @@ class Task(Generic[ConfigType]):
 
     @property
     def has_push(self) -> bool:
-        """Whether its episodes have a push."""
+        """Whether the episodes have a push."""
         return self.draw_push is not no_push
 
     def checked(self, values: Sequence[float], name: str = "parameters") -> tuple[float, ...]:
-        """Take a value for every parameter as floats.
+        """Check one value for every parameter, and convert them to floats.
 
         :param values: values in the order of :attr:`parameters`
-        :param name: what the message calls them
-        :raises ConfigurationError: naming the first one that is not a number within the box
+        :param name: name of the values in messages
+        :raises ConfigurationError: naming the first value that is not a number within its range
         """
         names = self.parameter_names
         if len(values) != len(names):
@@ -85,10 +85,10 @@ class Task(Generic[ConfigType]):
         return tuple(map(float, values))
 
     def checked_config(self, config: EpisodeConfig) -> EpisodeConfig:
-        """Take settings that are this task's.
+        """Check that settings are of this task's type, and return them.
 
         :param config: settings of episodes
-        :raises ConfigurationError: if they are another task's
+        :raises ConfigurationError: if they are another task's settings
         """
         if type(config) is not type(self.episode):
             raise ConfigurationError(
@@ -97,10 +97,10 @@ class Task(Generic[ConfigType]):
         return config
 
     def config_of(self, config: EpisodeConfig, **changes: Any) -> ConfigType:
-        """Settings of another task's episodes as this task takes them, with its own ones at their defaults.
+        """Settings of another task's episodes as this task's; fields that only this task has are defaults.
 
         :param config: settings of any task's episodes
-        :param changes: values of some fields
+        :param changes: new values of some fields, by name
         """
         shared = {name: getattr(config, name) for name in vars(self.episode) if hasattr(config, name)}
         return type(self.episode)(**{**vars(self.episode), **shared, **changes})

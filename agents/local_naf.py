@@ -1,0 +1,102 @@
+"""NAF for tasks of one step, which explores around the best action so far."""
+
+from typing import Any
+
+import numpy as np
+from stable_baselines3.common.noise import ActionNoise
+from stable_baselines3.common.type_aliases import GymEnv, Schedule
+from stable_baselines3.common.utils import FloatSchedule
+
+from sarah.agents.buffers import RankReplayBuffer
+from sarah.agents.naf import NAF
+from sarah.agents.policies import NAFPolicy
+
+
+class LocalNAF(NAF):
+    """
+    NAF for tasks of one step and a few hundred of them to spend
+
+    A parabola cannot fit a landscape with cliffs and decoys, and then ``mu`` is wrong. So good transitions are replayed
+    more often than bad ones, and part of the exploring actions are drawn around the best action so far, not around
+    ``mu``. ``PRESETS["one-step"]`` holds the other arguments that suit such tasks.
+
+    :param policy: The policy model to use (MlpPolicy, CnnPolicy, ...)
+    :param env: The environment to learn from (if registered in Gym, can be str)
+    :param elite_share: Share of the exploring actions that are drawn around the best action of the replay buffer;
+        it can be a function of the current progress remaining (from 1 to 0)
+    :param elite_std: Standard deviation of these draws, in actions scaled to [-1, 1]; it can be a function of the
+        current progress remaining (from 1 to 0)
+    :param elite_draws: Number of draws for each such action, of which that is done whose neighbourhood in the replay
+        buffer had the highest rewards: wide draws find their way by what is known
+    :param first_action_centre: Whether the first environment's first action is the centre of the action space, often
+        a neutral one. Then actions around the best one are drawn as soon as its outcome is known, and not only after
+        ``learning_starts`` uniform ones
+    :param replay_buffer_class: Replay buffer class to use, which must know the best action
+    :param _init_setup_model: Whether or not to build the network at the creation of the instance
+    :param kwargs: Other arguments of :class:`~sarah.agents.naf.NAF`
+    """
+
+    def __init__(
+        self,
+        policy: str | type[NAFPolicy],
+        env: GymEnv | str,
+        *,
+        elite_share: float | Schedule = 0.5,
+        elite_std: float | Schedule = 0.2,
+        elite_draws: int = 16,
+        first_action_centre: bool = False,
+        replay_buffer_class: type[RankReplayBuffer] = RankReplayBuffer,
+        _init_setup_model: bool = True,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(policy, env, replay_buffer_class=replay_buffer_class, _init_setup_model=False, **kwargs)
+
+        self.elite_share = elite_share
+        self.elite_std = elite_std
+        self.elite_draws = elite_draws
+        self.first_action_centre = first_action_centre
+
+        if _init_setup_model:
+            self._setup_model()
+
+    def _setup_model(self) -> None:
+        super()._setup_model()
+        self.elite_share_schedule = FloatSchedule(self.elite_share)
+        self.elite_std_schedule = FloatSchedule(self.elite_std)
+        if not isinstance(self.replay_buffer, RankReplayBuffer):
+            raise ValueError(f"LocalNAF needs a RankReplayBuffer, not a {type(self.replay_buffer).__name__}")
+
+    def _sample_action(
+        self,
+        learning_starts: int,
+        action_noise: ActionNoise | None = None,
+        n_envs: int = 1,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        action, scaled_action = super()._sample_action(learning_starts, action_noise, n_envs)
+        elite_share = self.elite_share_schedule(self._current_progress_remaining)
+        if elite_share > 0 and self._knows_a_best_action(learning_starts):
+            self._draw_near_best(scaled_action, elite_share)
+            action = self.policy.unscale_action(scaled_action)
+        if self.first_action_centre and self.num_timesteps == 0:
+            scaled_action[0] = 0.0  # Of the first environment: the others warm up as ever
+            action = self.policy.unscale_action(scaled_action)
+        return action, scaled_action
+
+    def _knows_a_best_action(self, learning_starts: int) -> bool:
+        """Whether the draws around it may begin: after the warm-up, or with the outcome of the centre."""
+        assert self.replay_buffer is not None
+        return self.replay_buffer.size() > 0 and (self.first_action_centre or self.num_timesteps >= learning_starts)
+
+    def _draw_near_best(self, scaled_actions: np.ndarray, share: float) -> None:
+        """
+        Replace a share of some exploring actions by draws around the best action.
+
+        :param scaled_actions: One of each environment; changed in place
+        :param share: Share of them
+        """
+        assert isinstance(self.replay_buffer, RankReplayBuffer)
+        std = self.elite_std_schedule(self._current_progress_remaining)
+        near_best = np.random.random(len(scaled_actions)) < share
+        for i in np.flatnonzero(near_best):
+            elite = self.replay_buffer.draw_near_best(std, self.elite_draws)
+            scaled_actions[i] = elite.reshape(scaled_actions[i].shape)

@@ -1,0 +1,63 @@
+"""How an episode ends."""
+
+import numpy as np
+import pytest
+from laboratory import CONTROL_DT
+
+from sarah.control.parameters import PAPER_STEPPING
+from sarah.episode.ending import TERMINATIONS, termination
+from sarah.episode.episode import Episode, simulate
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.simulation.simulator import TorsoState
+
+SHORT = EpisodeConfig(time_limit=6.0)
+
+
+def test_robot_that_does_not_step_is_stopped_after_5_seconds() -> None:
+    """With conditions that no rocking meets and the slowest time-outs it makes no two steps in time."""
+    result = simulate(EpisodeSpec((2.0, 2.0, 2.0, 2.0, 2.0), seed=0))
+    assert result.termination == "no_oscillation"
+    assert result.duration == 5.0
+    assert result.score < 0.01
+
+
+@pytest.mark.parametrize(
+    ("state", "steps", "time", "expected"),
+    [
+        (TorsoState((0.0, 0.0, 0.84), (0, 0, 0, 1), (0, 0, 0), (0, 0, 0)), 9, 10.0, None),
+        (TorsoState((0.251, 0.0, 0.84), (0, 0, 0, 1), (0, 0, 0), (0, 0, 0)), 9, 10.0, "left_box"),
+        (TorsoState((0.0, -0.251, 0.84), (0, 0, 0, 1), (0, 0, 0), (0, 0, 0)), 9, 10.0, "left_box"),
+        (TorsoState((0.0, 0.0, 0.58), (0, 0, 0, 1), (0, 0, 0), (0, 0, 0)), 9, 10.0, "left_box"),
+        (TorsoState((0.0, 0.0, 0.84), (0.4, 0, 0, 0.917), (0, 0, 0), (0, 0, 0)), 9, 10.0, "fell"),  # 47 degrees
+        (TorsoState((0.0, 0.0, 0.84), (0.37, 0, 0, 0.929), (0, 0, 0), (0, 0, 0)), 9, 10.0, None),  # 43 degrees
+        (TorsoState((float("nan"), 0.0, 0.84), (0, 0, 0, 1), (0, 0, 0), (0, 0, 0)), 9, 10.0, "diverged"),
+        (TorsoState((0.0, 0.0, 0.84), (0, 0, 0, 1), (0, 0, float("inf")), (0, 0, 0)), 9, 10.0, "diverged"),
+        (TorsoState((0.0, 0.0, 0.84), (0, 0, 0, 1), (0, 0, 0), (0, 0, 0)), 1, 4.99, None),
+        (TorsoState((0.0, 0.0, 0.84), (0, 0, 0, 1), (0, 0, 0), (0, 0, 0)), 1, 5.0, "no_oscillation"),
+        (TorsoState((0.0, 0.0, 0.84), (0, 0, 0, 1), (0, 0, 0), (0, 0, 0)), 9, 30.0, "time_limit"),
+    ],
+)
+def test_stop_criteria(state: TorsoState, steps: int, time: float, expected: str | None) -> None:
+    start = (0.0, 0.0, 0.84)
+    assert termination(state, start, steps, time, time_limit=30.0, control_dt=CONTROL_DT) == expected
+    assert expected is None or expected in TERMINATIONS
+
+
+def test_diverging_physics_ends_with_a_finite_return(monkeypatch: pytest.MonkeyPatch) -> None:
+    episode = Episode(SHORT, seed=0)
+    episode.stand()
+    healthy = episode.simulation.torso_state
+    calls = 0
+
+    def diverging() -> TorsoState:
+        nonlocal calls
+        calls += 1
+        state = healthy()
+        return state._replace(position=(float("nan"),) * 3) if calls > 100 else state
+
+    monkeypatch.setattr(episode.simulation, "torso_state", diverging)
+    result = episode.run(PAPER_STEPPING)
+    episode.close()
+    assert result.termination == "diverged" and not result.survived
+    assert np.isfinite([result.score, result.episode_return, *result.final_position]).all()

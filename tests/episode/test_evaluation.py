@@ -1,0 +1,35 @@
+"""What many episodes have in common."""
+
+from laboratory import CONTROL_DT
+
+from sarah.control.parameters import PAPER_STEPPING
+from sarah.episode.episode import Episode
+from sarah.episode.evaluation import Evaluation
+from sarah.episode.settings import EpisodeConfig
+
+SHORT = EpisodeConfig(time_limit=6.0)
+
+
+def shaken_by(amplitude: float) -> Evaluation:
+    """The same episode, with flexions that a controller shakes at half the control rate."""
+    episode = Episode(SHORT, 0)
+    episode.stand()
+    episode.start(PAPER_STEPPING)
+    send = episode.simulation.set_targets
+
+    def shaken(targets: tuple[float, ...]) -> None:
+        flexion = amplitude if round(episode.simulation.time / CONTROL_DT) % 2 else -amplitude
+        send((*targets[:2], flexion, flexion, *targets[4:]))
+
+    episode.simulation.set_targets = shaken  # type: ignore[method-assign]
+    while episode.termination is None:
+        episode.tick()
+    episode.close()
+    return Evaluation((episode.result(),))
+
+
+def test_chattering_hips_show_as_vibration() -> None:
+    calm, chattering = shaken_by(0.0), shaken_by(0.02)
+    assert chattering.chatters(calm) and not calm.chatters(calm)
+    assert chattering.mean("actuator_power") > calm.mean("actuator_power")
+    assert chattering.statistic("peak_hip_rate", "max") > 10 * calm.statistic("peak_hip_rate", "max")

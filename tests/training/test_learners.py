@@ -1,0 +1,166 @@
+"""Agents are built from their settings: by default as the presets say, and every setting reaches them."""
+
+import dataclasses
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
+from stable_baselines3.common.utils import get_device
+from torch import nn
+
+from sarah.agents import NAF, PRESETS, LocalNAF, RankReplayBuffer
+from sarah.envs.episode_vec_env import EpisodeVecEnv
+from sarah.episode.workers import Workers
+from sarah.errors import ConfigurationError
+from sarah.runs.agent_settings import AgentSettings, LearnerSettings, NAFSettings, settings_of
+from sarah.runs.config import AGENTS, TrainingConfig
+from sarah.training.learners import check_device, make_agent
+
+
+def built(algo: str = "naf", slots: int = 1, task: str = "stepping", **settings: Any) -> OffPolicyAlgorithm:
+    """The agent of some settings."""
+    config = TrainingConfig(task=task, algo=algo, slots=slots, agent=settings_of(algo)(**settings))
+    return make_agent(config, EpisodeVecEnv(task, config.episode, 1, slots, Workers()))
+
+
+def widths(net: nn.Module, outputs: int = 1) -> tuple[int, ...]:
+    """Of its layers, but for the last ones, which are outputs."""
+    layers = [layer.out_features for layer in net.modules() if isinstance(layer, nn.Linear)]
+    return tuple(layers[: len(layers) - outputs])
+
+
+def pair(schedule: Callable[[float], float]) -> tuple[float, float]:
+    """What a schedule begins with and ends with; the end is reached after 80 % of the training."""
+    assert schedule(0.21) != schedule(0.19) == schedule(0.0)
+    assert schedule(0.6) == pytest.approx((schedule(1.0) + schedule(0.0)) / 2)
+    return schedule(1.0), schedule(0.0)
+
+
+def noise_std(model: OffPolicyAlgorithm) -> float:
+    return round(float(np.std([model.action_noise() for _ in range(5000)])), 1)
+
+
+COMMON: dict[str, tuple[Any, Callable[[Any], Any]]] = {
+    "learning_rate": (3e-4, lambda model: model.policy.optimizer.param_groups[0]["lr"]),
+    "buffer_size": (77, lambda model: model.replay_buffer.buffer_size),
+    "learning_starts": (9, lambda model: model.learning_starts),
+    "batch_size": (13, lambda model: model.batch_size),
+    "tau": (0.5, lambda model: model.tau),
+    "gamma": (0.9, lambda model: model.gamma),
+    "gradient_steps": (3, lambda model: model.gradient_steps),
+    "device": ("auto", lambda model: "auto" if model.device == get_device("auto") else model.device),
+}
+CRITICS = {
+    **COMMON,
+    "learning_rate": (5e-4, lambda model: model.critic.optimizer.param_groups[0]["lr"]),
+    "layers": ((7, 6), lambda model: widths(model.critic.qf0)),
+}
+NOISY = {**CRITICS, "action_noise_std": (0.7, noise_std)}
+SETTINGS: dict[str, dict[str, tuple[Any, Callable[[Any], Any]]]] = {
+    "naf": {
+        **COMMON,
+        "preset": ("paper", lambda model: "paper" if widths(model.q_net.value_net) == (256, 256, 256) else "one-step"),
+        "max_grad_norm": (2.5, lambda model: model.max_grad_norm),
+        "exploration_std": ((0.5, 0.2), lambda model: pair(model.exploration_schedule)),
+        "temperature": (1.5, lambda model: model.replay_buffer.temperature),
+        "elite_share": (0.25, lambda model: model.elite_share_schedule(0.5)),
+        "elite_std": ((0.1, 0.6), lambda model: pair(model.elite_std_schedule)),
+        "elite_draws": (5, lambda model: model.elite_draws),
+        "v_layers": ((7, 6), lambda model: widths(model.q_net.value_net)),
+        "mu_layers": ((7, 6), lambda model: widths(model.q_net.mu_net)),
+        "l_layers": ((7, 6), lambda model: widths(model.q_net.lower_net)),
+        "shared_layers": ((7,), lambda model: widths(model.q_net.shared_net, outputs=0)),
+        "activation": ("relu", lambda model: {nn.ReLU: "relu", nn.Tanh: "tanh"}[type(model.q_net.mu_net[1])]),
+        "squash_mu": (False, lambda model: isinstance(model.q_net.mu_net[-1], nn.Tanh)),
+        "min_curvature": (0.5, lambda model: model.q_net.min_curvature),
+    },
+    "td3": {
+        **NOISY,
+        "policy_delay": (4, lambda model: model.policy_delay),
+        "target_policy_noise": (0.1, lambda model: model.target_policy_noise),
+        "target_noise_clip": (0.3, lambda model: model.target_noise_clip),
+    },
+    "sac": {**CRITICS, "ent_coef": (0.1, lambda model: model.ent_coef)},
+    "ddpg": NOISY,
+}
+"""Of every setting another value than the default, and where the agent has it."""
+
+
+@pytest.mark.parametrize(("algo", "name"), [(algo, name) for algo, names in SETTINGS.items() for name in names])
+def test_every_setting_reaches_the_agent(algo: str, name: str) -> None:
+    value, found = SETTINGS[algo][name]
+    default = getattr(settings_of(algo)(), name)
+    assert value != default and found(built(algo, **{name: value})) == value
+    if name != "device":
+        assert found(built(algo)) == default
+
+
+def test_no_setting_is_left_out() -> None:
+    assert set(SETTINGS) == set(AGENTS)
+    for algo, names in SETTINGS.items():
+        assert set(names) == {item.name for item in dataclasses.fields(settings_of(algo))}
+
+
+def arguments(model: LocalNAF) -> dict[str, Any]:
+    """What the model was made with, in a form that can be compared."""
+    networks = model.policy_kwargs
+    return {
+        **{name: getattr(model, name) for name in COMMON if name != "device"},
+        "max_grad_norm": model.max_grad_norm,
+        "exploration_std": pair(model.exploration_schedule),
+        "elite": (model.elite_share, pair(model.elite_std_schedule), model.elite_draws),
+        "temperature": model.replay_buffer.temperature,
+        "networks": {
+            "squash_mu": True,
+            "min_curvature": 0.0,
+            **networks,
+            "net_arch": model.policy.net_args["net_arch"],
+        },
+    }
+
+
+def test_defaults_are_the_preset() -> None:
+    env = EpisodeVecEnv("stepping", TrainingConfig().episode, 1, 1, Workers())
+    preset = LocalNAF("MlpPolicy", env, **PRESETS["one-step"])
+    model = built()
+    assert type(model) is LocalNAF and isinstance(model.replay_buffer, RankReplayBuffer)
+    assert arguments(model) == arguments(preset)
+
+
+def test_the_preset_paper_is_plain_naf_with_the_networks_of_the_paper() -> None:
+    env = EpisodeVecEnv("stepping", TrainingConfig().episode, 1, 1, Workers())
+    plain = NAF("MlpPolicy", env, **PRESETS["paper"])
+    model = built(preset="paper")
+    for name in ("value_net", "shared_net", "mu_net", "lower_net"):
+        assert str(getattr(model.q_net, name)) == str(getattr(plain.q_net, name))
+    assert model.q_net.min_curvature == plain.q_net.min_curvature == 0.0
+    assert (model.elite_share, model.replay_buffer.temperature) == (0.0, 0.0)  # nothing that plain NAF has not
+    changed = {"networks", "temperature", "elite"}
+    ours, theirs = arguments(model), arguments(built())
+    assert {name for name in ours if ours[name] != theirs[name]} == changed
+
+
+def test_the_warm_up_knows_as_many_outcomes_as_are_in_flight() -> None:
+    assert [built(slots=slots).learning_starts for slots in (1, 2, 3, 8)] == [5, 5, 6, 16]
+    assert built("sac", slots=20).learning_starts == 40
+
+
+def test_the_first_action_is_neutral_where_the_task_has_one() -> None:
+    assert [built(task=task).first_action_centre for task in ("stepping", "balance")] == [False, True]
+
+
+@pytest.mark.parametrize("device", ["cuda", "cuda:1"])
+def test_a_device_that_is_not_there_is_refused(device: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(torch.cuda, "device_count", lambda: 0)
+    with pytest.raises(ConfigurationError, match=f"agent.device '{device}' is not here: torch finds 0 CUDA devices"):
+        built(device=device)
+    monkeypatch.setattr(torch.cuda, "device_count", lambda: 2)
+    check_device(NAFSettings(device=device))
+    check_device(AgentSettings())
+
+
+def test_agents_are_those_with_networks() -> None:
+    assert all(issubclass(settings_of(algo), LearnerSettings) for algo in AGENTS)
