@@ -1,4 +1,4 @@
-"""Runs stable-baselines3's own tests with NAF in the place of TD3.
+"""stable-baselines3's own tests with NAF in the place of TD3: ``python -m tests.endurance.stable_baselines3_tests``.
 
 Takes the source of the installed version with pip, and runs every test of its that TD3 is a parameter of. The tests
 that are about TD3's inner parts are listed below, with the reason, and left out; one trains longer.
@@ -6,7 +6,6 @@ that are about TD3's inner parts are listed below, with the reason, and left out
 
 from __future__ import annotations
 
-import argparse
 import subprocess
 import sys
 import tarfile
@@ -32,8 +31,7 @@ PLUGIN = "import stable_baselines3\nfrom sarah.agents import NAF\nstable_baselin
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.parse_args()
+    """Run them, and say what is left out."""
     with tempfile.TemporaryDirectory() as folder:
         name = "stable_baselines3"
         arguments = ("--quiet", "--no-deps", "--no-binary", name, "--dest", folder, f"{name}=={version(name)}")

@@ -2,14 +2,14 @@
 
 The task is a stand-in that costs nothing: five numbers, a reward with noise, a hill with its top beside a cliff, and a
 lower, wider hill elsewhere, both in other places for every seed. Judged is the agent's own best action, ``mu``, without
-noise; and in the last column the best action of its replay buffer, if that knows one.
+noise; and the best action of its replay buffer, if that knows one.
 """
 
 from __future__ import annotations
 
-import argparse
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
 from statistics import median
 from typing import Any
 
@@ -19,7 +19,10 @@ import torch
 from gymnasium import spaces
 from stable_baselines3.common.callbacks import BaseCallback
 
+from experiments.experiment import OnWorkers
+from experiments.record import Row
 from sarah.agents import NAF, PRESETS, LocalNAF, RankReplayBuffer
+from sarah.episode.workers import Workers
 
 NOISE = 0.03
 """Standard deviation of the reward; the top of the hill is 1."""
@@ -100,8 +103,43 @@ class Watch(BaseCallback):
         return True
 
 
-def learned(name: str, seed: int, episodes: int) -> tuple[list[float], float]:
-    """Scores of mu along one training, and of the best action in the end."""
+@dataclass(frozen=True)
+class NafPreset(OnWorkers):
+    """Variants of NAF's preset on a stand-in for the robot, a training for each worker at a time.
+
+    :param seeds: number of trainings of each variant
+    :param episodes: number of episodes of a training
+    """
+
+    seeds: int = 8
+    episodes: int = 200
+
+    def rows(self) -> Iterator[Row]:
+        """A row for each variant."""
+        with Workers(self.workers) as workers:
+            jobs = {
+                name: [workers.submit(trained_scores, name, seed, self.episodes) for seed in range(self.seeds)]
+                for name in (*VARIANTS, *PLAIN)
+            }
+            for name, running in jobs.items():
+                curves, best = zip(*(job.result() for job in running), strict=True)
+                row: dict[str, object] = {"variant": name, "seeds": self.seeds}
+                for share in (0.8, 0.9):
+                    counts = [episodes_until(curve, share) for curve in curves]
+                    row[f"episodes_to_{100 * share:.0f}"] = median(counts)
+                    row[f"reached_{100 * share:.0f}"] = sum(map(math.isfinite, counts))
+                ends = [curve[-1] for curve in curves]
+                row |= {"mu_median_score": median(ends), "mu_lowest_score": min(ends)}
+                yield {**row, "best_action_median_score": None if None in best else median(best)}
+
+
+def trained_scores(name: str, seed: int, episodes: int) -> tuple[list[float], float | None]:
+    """Scores of mu along one training, and of the best action in the end, if the agent knows one.
+
+    :param name: name of a variant
+    :param seed: seed of the training
+    :param episodes: number of its episodes
+    """
     torch.set_num_threads(1)
     env = Hills(seed)
     settings = {**ONE_STEP, **VARIANTS[name]} if name in VARIANTS else {"gamma": 0.0, **UPDATES, **PLAIN[name]}
@@ -109,43 +147,18 @@ def learned(name: str, seed: int, episodes: int) -> tuple[list[float], float]:
     algorithm = LocalNAF if "elite_share" in settings else NAF
     model = algorithm("MlpPolicy", env, seed=seed, **settings).learn(episodes, callback=watch)
     if not isinstance(model.replay_buffer, RankReplayBuffer):
-        return watch.scores, float("nan")
+        return watch.scores, None
     return watch.scores, env.score(model.replay_buffer.best_action().astype(float))
 
 
 def episodes_until(scores: list[float], score: float) -> float:
-    """Episodes until a score is reached and held."""
+    """Episodes until a score is reached and held; infinite if it never is.
+
+    :param scores: scores along a training
+    :param score: score to reach
+    """
     reached = [value >= score for value in scores]
     for index in range(len(reached) - HELD + 1):
         if all(reached[index : index + HELD]):
-            return CHECK_EVERY * (index + 1)
+            return float(CHECK_EVERY * (index + 1))
     return float("inf")
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seeds", type=int, default=20)
-    parser.add_argument("--episodes", type=int, default=200)
-    parser.add_argument("--processes", type=int, default=2)
-    parser.add_argument("--only", nargs="+", choices=[*VARIANTS, *PLAIN], default=[*VARIANTS, *PLAIN], metavar="NAME")
-    options = parser.parse_args()
-    print("| | 80 % after | reached by | 90 % after | reached by | mu's median | lowest | best action's median |")
-    print("|---" * 8 + "|")
-    with ProcessPoolExecutor(options.processes, get_context("spawn")) as pool:
-        jobs = {
-            name: [pool.submit(learned, name, seed, options.episodes) for seed in range(options.seeds)]
-            for name in options.only
-        }
-        for name, running in jobs.items():
-            curves, best = zip(*(job.result() for job in running), strict=True)
-            cells = []
-            for share in (0.8, 0.9):
-                counts = [episodes_until(curve, share) for curve in curves]
-                cells.append(f"{median(counts):.0f} | {sum(np.isfinite(counts))} of {len(counts)}")
-            ends = [curve[-1] for curve in curves]
-            best_cell = "-" if np.isnan(best).any() else f"{median(best):.2f}"
-            print(f"| {name} | {' | '.join(cells)} | {median(ends):.2f} | {min(ends):.2f} | {best_cell} |", flush=True)
-
-
-if __name__ == "__main__":
-    main()
