@@ -160,8 +160,9 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
     if "resume" in given:
         from sarah.runs.run_folder import RunFolder
 
-        return TrainOptions(RunFolder.resumable(Path(given["resume"])).config())
-    training = read_config(TrainingConfig, Path(given["config"])) if "config" in given else TrainingConfig()
+        training = RunFolder.resumable(Path(given["resume"])).config()
+    else:
+        training = read_config(TrainingConfig, Path(given["config"])) if "config" in given else TrainingConfig()
     training = _with_agent(training, given.get("algo"), given.get("agent.preset"))
     task = given.get("task", training.task)
     if task not in TASKS:  # the real parser reports it

@@ -33,7 +33,7 @@ def trained(command: Callable[..., None]) -> Callable[..., RunFolder]:
     """Trains on ten short episodes."""
 
     def run(name: str, *arguments: str) -> RunFolder:
-        command("--simulations", "10", *SHORT, "--run-dir", name, *arguments)
+        command("--episodes", "10", *SHORT, "--run-dir", name, *arguments)
         return RunFolder.open(Path(name))
 
     return run
@@ -124,8 +124,9 @@ def test_a_run_is_not_resumed_with_other_settings(
 ) -> None:
     trained("mine", "--algo", "random")
     for arguments, message in (
-        (("--algo", "naf"), "algo is 'random' in this run, not 'naf': leave it out"),
-        (("--algo", "random", "--slots", "2"), "slots is 4 in this run, not 2: leave it out"),
+        (("--algo", "naf"), "algo is 'random' in this training, not 'naf': leave it out"),
+        (("--task", "balance"), "task is 'stepping' in this training, not 'balance': leave it out"),
+        (("--algo", "random", "--slots", "2"), "slots is 4 in this training, not 2: leave it out"),
     ):
         with pytest.raises(SystemExit):
             command("--resume", "mine", *arguments)
