@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 
 LONGEST_NAME = 100
-"""Length in characters up to which a nearest valid name is looked for."""
+"""Length in characters up to which a name is shown whole, and the nearest valid one is looked for."""
 
 
 class SarahError(Exception):
@@ -89,6 +89,8 @@ def unknown_name(kind: str, name: str, allowed: Iterable[str]) -> str:
     :return: one line for an exception's message
     """
     names = sorted(allowed)
-    nearest = get_close_matches(name, names, n=1, cutoff=0.5) if len(name) < LONGEST_NAME else []
+    if len(name) > LONGEST_NAME:
+        return f"unknown {kind} {shortened(name)} (allowed: {', '.join(names) or 'none'})"
+    nearest = get_close_matches(name, names, n=1, cutoff=0.5)
     guess = f", did you mean {nearest[0]!r}?" if nearest else ""
-    return f"unknown {kind} {shortened(name)}{guess} (allowed: {', '.join(names) or 'none'})"
+    return f"unknown {kind} {name!r}{guess} (allowed: {', '.join(names) or 'none'})"

@@ -1,4 +1,7 @@
-"""What tests do to a simulated robot that no episode does, in each physics engine: place it, turn it, weigh it."""
+"""What several tests share.
+
+The laboratories do to a simulated robot what no episode does, in each physics engine: place it, turn it, weigh it.
+"""
 
 import math
 from collections.abc import Sequence
@@ -8,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from sarah.episode.result import EpisodeResult
 from sarah.robot.description import PLATES
 from sarah.robot.reading import SensorReading, Side, Vector
 from sarah.simulation.engines import is_installed
@@ -16,6 +20,23 @@ from sarah.simulation.pybullet_client import pybullet
 from sarah.simulation.simulator import TorsoState
 
 CONTROL_DT = PHYSICS["standard"].control_dt
+RESULT = EpisodeResult(
+    termination="time_limit",
+    final_position=(0.03, 0.04, 0.84),
+    score=0.8,
+    episode_return=4.0,
+    steps_per_second=3.0,
+    steps=30,
+    duration=14.15,
+    shifts_by_sensors=1.0,
+    lifts_by_sensors=1.0,
+    sole_clearance=0.02,
+    vibration=9.0,
+    actuator_power=15.0,
+    peak_hip_rate=0.5,
+    peak_leg_speed=0.6,
+)
+"""Result of an episode that nobody simulated."""
 NEEDS_PYBULLET = pytest.mark.skipif(not is_installed("pybullet"), reason="needs pybullet")
 
 

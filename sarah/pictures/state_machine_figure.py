@@ -14,7 +14,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 
-from sarah.control.constants import STANDARD_CONSTANTS as CONSTANTS
+from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.hip_law import BalanceParameters, HipLaw
 from sarah.control.pattern_generator import (
     STAND_SECONDS,
@@ -30,12 +30,11 @@ SILENCE = SensorReading((0.0, 0.0, 9.81), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0),
 """Reading with which no sensor condition ends a phase."""
 DT = 0.001
 MINUS = "\u2212"
-TILT, RATE = CONSTANTS.abduction_tilt, CONSTANTS.abduction_rate_share
-NOTE = f"""tilt (m/s²), rate (rad/s): low-passed lateral acceleration and angular rate
-about y, towards the stance leg, plus {TILT:g} and {RATE:g} times the abduction
+NOTE = """tilt (m/s²), rate (rad/s): low-passed lateral acceleration and angular rate
+about y, towards the stance leg, plus {tilt:g} and {rate:g} times the abduction
 (without V2) and its rate. stable_x (m/s²): slower low-pass of the lateral
 acceleration. pitch (rad): leaky integral of the angular rate about x.
-"""
+Every phase lasts at least {shortest:g} s."""
 
 
 class Name:
@@ -104,13 +103,14 @@ class PhaseFacts:
     stance_length: float
 
 
-def read_state_machine() -> list[PhaseFacts]:
+def read_state_machine(constants: ControllerConstants = STANDARD_CONSTANTS) -> list[PhaseFacts]:
     """Extract the phases from the pattern generator.
 
+    :param constants: constants of the controller
     :return: all phases but STAND, in their order
     """
-    observed = _observe(0.0, 0.0)
-    stretched = {"P4": _observe(1.0, 0.0), "P5": _observe(0.0, 1.0)}
+    observed = _observe(0.0, 0.0, constants)
+    stretched = {"P4": _observe(1.0, 0.0, constants), "P5": _observe(0.0, 1.0, constants)}
     facts = []
     for index, (phase, duration, lengths, swing) in enumerate(observed[:-1]):
         time_out = f"{duration:g}"
@@ -124,7 +124,7 @@ def read_state_machine() -> list[PhaseFacts]:
                 phase,
                 following,
                 next_swing is not swing,
-                _conditions(phase),
+                _conditions(phase, constants),
                 time_out,
                 lengths[swing],
                 lengths[swing.other],
@@ -133,9 +133,11 @@ def read_state_machine() -> list[PhaseFacts]:
     return facts
 
 
-def _observe(p4: float, p5: float) -> list[tuple[Phase, float, dict[Side, float], Side]]:
+def _observe(
+    p4: float, p5: float, constants: ControllerConstants
+) -> list[tuple[Phase, float, dict[Side, float], Side]]:
     """Phase, duration in s, final leg lengths in m, swing leg: for one step without sensors and the phase after it."""
-    generator = PatternGenerator(SteppingParameters(1.0, 1.0, 1.0, p4, p5), dt=DT)
+    generator = PatternGenerator(SteppingParameters(1.0, 1.0, 1.0, p4, p5), dt=DT, constants=constants)
     generator.tick(SILENCE)
     seen: list[tuple[Phase, float, dict[Side, float], Side]] = []
     while len(seen) < 4:
@@ -149,7 +151,7 @@ def _observe(p4: float, p5: float) -> list[tuple[Phase, float, dict[Side, float]
     return seen
 
 
-def _conditions(phase: Phase) -> tuple[str, ...]:
+def _conditions(phase: Phase, constants: ControllerConstants) -> tuple[str, ...]:
     """Sensor conditions that end a phase."""
     noted: list[str] = []
     parameters = SteppingParameters(*(Name(name, noted) for name in SteppingParameters.__dataclass_fields__))  # type: ignore[arg-type]
@@ -161,7 +163,7 @@ def _conditions(phase: Phase) -> tuple[str, ...]:
     stand_in: Any = SimpleNamespace(
         phase=phase,
         parameters=parameters,
-        constants=CONSTANTS,
+        constants=constants,
         tilt=Name("tilt", noted),
         rate=Name("rate", noted),
         stance="stance",
@@ -172,16 +174,17 @@ def _conditions(phase: Phase) -> tuple[str, ...]:
     return tuple(noted)
 
 
-def read_hip_law() -> dict[str, str]:
+def read_hip_law(constants: ControllerConstants = STANDARD_CONSTANTS) -> dict[str, str]:
     """Extract the formulas from the hip law.
 
+    :param constants: constants of the controller
     :return: formulas of the hip targets, by name of the target
     """
     noted: list[str] = []
     parameters = BalanceParameters(*(Name(name, noted) for name in BalanceParameters.__dataclass_fields__))  # type: ignore[arg-type]
     stand_in: Any = SimpleNamespace(
         _parameters=parameters,
-        _constants=CONSTANTS,
+        _constants=constants,
         stable_x=Name("stable_x", noted),
         pitch=Name("pitch", noted),
         abduction=0.0,
@@ -196,10 +199,11 @@ def read_hip_law() -> dict[str, str]:
     }
 
 
-def draw_state_machine(path: Path) -> list[Path]:
+def draw_state_machine(path: Path, constants: ControllerConstants = STANDARD_CONSTANTS) -> list[Path]:
     """Draw the state machine: actions in white boxes, and the conditions that end a phase in coloured ones.
 
     :param path: path of the picture, without suffix
+    :param constants: constants of the controller
     :return: the files, PNG and PDF
     """
     with plt.rc_context(STYLE):
@@ -208,7 +212,7 @@ def draw_state_machine(path: Path) -> list[Path]:
         axis.axis("off")
         axis.set(xlim=(0.0, 10.0), ylim=(0.8, 18.1))
         y = _box(axis, 17.9, f"STAND\nfor {STAND_SECONDS:g} s", "white")
-        machine = read_state_machine()
+        machine = read_state_machine(constants)
         top = 0.0
         for facts in machine:
             _arrow(axis, y, y - 0.5)
@@ -226,10 +230,11 @@ def draw_state_machine(path: Path) -> list[Path]:
         )
         if machine[-1].swaps_legs:
             axis.text(9.4, (middle + top) / 2, "legs swap", rotation=90, va="center", fontsize=7)
-        laws = [f"{name}: {formula}" for name, formula in read_hip_law().items()]
-        limits = f"within ±{CONSTANTS.largest_hip_angle:g} rad, at {CONSTANTS.hip_speed:g} rad/s"
+        laws = [f"{name}: {formula}" for name, formula in read_hip_law(constants).items()]
+        limits = f"within ±{constants.largest_hip_angle:g} rad, at {constants.hip_speed:g} rad/s"
         _box(axis, y - 0.5, "\n".join(["Second Training, at every tick", *laws, limits]), "white", height=2.5)
-        note = NOTE + f"Every phase lasts at least {CONSTANTS.minimum_phase_seconds:g} s."
+        tilt, rate = constants.abduction_tilt, constants.abduction_rate_share
+        note = NOTE.format(tilt=tilt, rate=rate, shortest=constants.minimum_phase_seconds)
         axis.text(0.2, y - 3.2, note, va="top", fontsize=6)
         return save(figure, path)
 

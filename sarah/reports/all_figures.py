@@ -21,7 +21,7 @@ _log = logging.getLogger(__name__)
 
 
 def draw_all_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
-    """Draw Figures 4 to 7 of all runs, the robot of the first run, the state machine, and a gait cycle of each task.
+    """Draw Figures 4 to 7 of all runs, robot and state machine of the first run, and a gait cycle of each task.
 
     :param runs: run folders of finished trainings
     :param folder: folder for the figures, which is made if it does not exist
@@ -30,7 +30,7 @@ def draw_all_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
     """
     files = draw_figures(runs, folder)
     files += _draw_robot(runs[0], folder / "figure_2_robot")
-    files += draw_state_machine(folder / "figure_3_pattern_generator")
+    files += draw_state_machine(folder / "figure_3_pattern_generator", runs[0].config().episode.controller)
     first_of_task = {run.config().task: run for run in reversed(runs)}
     for task, run in first_of_task.items():
         files += _draw_cycle(run, folder / f"gait_cycle_{task}")

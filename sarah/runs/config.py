@@ -78,7 +78,12 @@ class TrainingConfig:
         :raises ConfigurationError: if they name no task or no algorithm
         """
         task, algo = content.get("task", cls.task), content.get("algo", cls.algo)
-        return {"agent": settings_of(str(algo)), "episode": type(task_named(str(task)).episode)}
+        types: dict[str, type] = {}
+        if isinstance(task, str):  # otherwise its own type is refused
+            types["episode"] = type(task_named(task).episode)
+        if isinstance(algo, str):
+            types["agent"] = settings_of(algo)
+        return types
 
     @property
     def candidate_count(self) -> int:

@@ -185,7 +185,7 @@ class MujocoSimulator:
         return self._torso
 
     def look(self) -> None:
-        """Take where the torso is, and how it moves, from MuJoCo; needed when others have moved it."""
+        """Query the motion of the torso from MuJoCo, after whatever changed it."""
         x, y, z, orientation_w, orientation_x, orientation_y, orientation_z = self._qpos[:7].tolist()
         orientation = (orientation_x, orientation_y, orientation_z, orientation_w)
         velocity_x, velocity_y, velocity_z, *rate = self._qvel[:6].tolist()

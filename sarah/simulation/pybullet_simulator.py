@@ -225,9 +225,11 @@ class PyBulletSimulator:
         # PyBullet divides the impulse of the last substep by the whole tick.
         return self._speeds, tuple([effort * self._substeps for effort in self._joint_efforts])
 
-    def _look(self) -> None:
-        """Query the motion of the torso and of the actuators from PyBullet."""
-        self._torso = self._torso_state()
+    def look(self) -> None:
+        """Query the motion of the torso and of the actuators from PyBullet, after whatever changed it."""
+        position, orientation = pybullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client)
+        velocities = pybullet.getBaseVelocity(self.body, physicsClientId=self.client)
+        self._torso = TorsoState(position, orientation, *velocities)
         self._positions, self._speeds, _, self._joint_efforts = zip(
             *pybullet.getJointStates(self.body, self._joints, self.client), strict=True
         )

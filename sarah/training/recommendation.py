@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from statistics import mean
 
 import numpy as np
 
 from sarah.agents.buffers import neighbourhood_means
-from sarah.episode.evaluation import SMALLEST_CLEARANCE, SMALLEST_SENSOR_SHARE
+from sarah.episode.evaluation import SMALLEST_CLEARANCE, SMALLEST_SENSOR_SHARE, Evaluation
 from sarah.episode.result import EpisodeResult
 from sarah.episode.tasks import Task
 
@@ -60,3 +61,17 @@ def candidates(
         if all(math.dist(places[index], places[other]) >= DISTINCT for other in chosen):
             chosen.append(index)
     return [parameters[index] for index in chosen]
+
+
+def rank(results: Sequence[EpisodeResult], baseline: Evaluation | None) -> tuple[bool, float]:
+    """Rank a candidate: valid gaits that do not chatter rank first, and among equals the best mean merit.
+
+    :param results: results of the candidate's episodes
+    :param baseline: evaluation that chatter is judged against; without one nothing chatters
+    :return: what is larger for the better candidate
+    """
+    if not results:
+        return (False, 0.0)
+    evaluation = Evaluation(tuple(results))
+    chatters = baseline is not None and evaluation.chatters(baseline)
+    return (evaluation.is_gait and not chatters, mean(merit(result) for result in results))

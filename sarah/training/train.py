@@ -5,7 +5,6 @@ from __future__ import annotations
 import random
 from collections.abc import Callable
 from dataclasses import dataclass
-from statistics import mean
 
 import torch
 from tqdm import tqdm
@@ -19,7 +18,7 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 from sarah.training.learners import learn
-from sarah.training.recommendation import Parameters, candidates, merit
+from sarah.training.recommendation import Parameters, candidates, rank
 from sarah.training.recorder import EpisodeRecorder
 
 SUMMARY_EPISODES = 10
@@ -120,13 +119,4 @@ def _compare(
     for spec, result in zip(specs, workers.simulate_all(specs), strict=True):
         recorder.record(spec, result)
         results[spec.parameters].append(result)
-    return max(best, key=lambda candidate: _rank(results[candidate], baseline))
-
-
-def _rank(results: list[EpisodeResult], baseline: Evaluation | None) -> tuple[bool, float]:
-    """Key by which candidates rank: valid gaits that do not chatter first, and then by mean merit."""
-    if not results:
-        return (False, 0.0)
-    evaluation = Evaluation(tuple(results))
-    chatters = baseline is not None and evaluation.chatters(baseline)
-    return (evaluation.is_gait and not chatters, mean(merit(result) for result in results))
+    return max(best, key=lambda candidate: rank(results[candidate], baseline))

@@ -41,11 +41,11 @@ def test_outcomes_come_in_order_after_the_slots_are_full(slots: int) -> None:
         observation, action, _ = info["transition"]
         assert np.array_equal(action, ACTIONS[index])
         assert np.array_equal(observation, observations[index][0])
-        assert info["parameters"] == parameters_from(ACTIONS[index], STEPPING)
-        assert info["seed"] >= FIRST_TRAINING_SEED
-        result = simulate(EpisodeSpec(info["parameters"], info["seed"], config=SHORT))
-        assert info["result"].score == result.score
-        assert reward == pytest.approx(result.episode_return)
+        spec = info["spec"]
+        assert spec == EpisodeSpec(parameters_from(ACTIONS[index], STEPPING), spec.seed, config=SHORT)
+        assert spec.seed >= FIRST_TRAINING_SEED
+        assert info["result"] == simulate(spec)
+        assert reward == pytest.approx(info["result"].episode_return)
 
 
 def test_slots_change_no_episode() -> None:
@@ -80,7 +80,7 @@ def test_seed_decides_and_a_second_reset_goes_on() -> None:
         seeds = []
         for _ in range(2):
             env.reset()
-            seeds += [env.step(ACTIONS[step][None])[3][0]["seed"] for step in range(2)]
+            seeds += [env.step(ACTIONS[step][None])[3][0]["spec"].seed for step in range(2)]
         return seeds
 
     first = seeds_of_two_resets(1)
@@ -101,7 +101,7 @@ def test_buffers_store_each_outcome_with_its_own_action(buffer_class: type[LateR
         observation = after
     assert buffer.size() == 4
     assert np.array_equal(buffer.actions[:4, 0], ACTIONS[:4])
-    expected = [info["episode_return"] for info in played(1)[2]]
+    expected = [info["result"].episode_return for info in played(1)[2]]
     assert buffer.rewards[:4, 0] == pytest.approx(expected)
     assert (buffer.dones[:4] == 1.0).all()
 

@@ -1,6 +1,5 @@
 """The gymnasium environments: what checkers, libraries and users expect of it."""
 
-import dataclasses
 import subprocess
 import sys
 import warnings
@@ -16,14 +15,13 @@ import sarah
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.envs.registration import ENVIRONMENTS
 from sarah.envs.sarah_env import SarahEnv, parameters_from
-from sarah.episode.result import EpisodeResult
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED
-from sarah.episode.tasks import BALANCE, STEPPING, TASKS
+from sarah.episode.tasks import BALANCE, STEPPING, TASKS, BalanceConfig
 from sarah.errors import ConfigurationError
 from sarah.simulation.engines import is_installed
 
-SHORT = EpisodeConfig(time_limit=4.0)
+SHORT, SHORT_BALANCE = EpisodeConfig(time_limit=4.0), BalanceConfig(time_limit=4.0)
 PAPER_ACTION = np.array(PAPER_STEPPING, dtype=np.float32) - 1.0
 
 
@@ -46,17 +44,18 @@ def test_environments_do_not_share_their_spaces() -> None:
 
 @pytest.mark.parametrize(("name", "task"), ENVIRONMENTS.items())
 def test_gymnasium_knows_them_by_name(name: str, task: str) -> None:
-    env = gymnasium.make(name, config=SHORT)
+    env = gymnasium.make(name)
     assert isinstance(env.unwrapped, SarahEnv) and env.unwrapped.task is TASKS[task]
+    assert env.unwrapped.config == TASKS[task].episode
     assert env.action_space.shape == (len(TASKS[task].parameter_names),)
     env.close()
 
 
-@pytest.mark.parametrize("name", ENVIRONMENTS)
-def test_checkers_pass_without_a_warning(name: str) -> None:
+@pytest.mark.parametrize(("name", "config"), [("SarahStepping-v0", SHORT), ("SarahBalance-v0", SHORT_BALANCE)])
+def test_checkers_pass_without_a_warning(name: str, config: EpisodeConfig) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        env = gymnasium.make(name, config=SHORT, render_mode="rgb_array")
+        env = gymnasium.make(name, config=config, render_mode="rgb_array")
         check_env(env.unwrapped, skip_render_check=not is_installed("pybullet"))
         sb3_check_env(env.unwrapped)
         env.close()
@@ -69,12 +68,9 @@ def test_reset_stands_and_step_simulates_to_the_end() -> None:
     assert info["seed"] >= FIRST_TRAINING_SEED
     _, reward, terminated, truncated, info = env.step(PAPER_ACTION)
     assert terminated and not truncated
-    assert reward == info["episode_return"]
-    for field in dataclasses.fields(EpisodeResult):
-        assert field.name in info or field.name == "trace"
+    assert reward == info["result"].episode_return
     spec = sarah.EpisodeSpec(info["parameters"], info["seed"], config=SHORT)
-    repeated = sarah.simulate(spec)
-    assert all(info[field.name] == getattr(repeated, field.name) for field in dataclasses.fields(repeated)[:-1])
+    assert info["result"] == sarah.simulate(spec)
     env.close()
 
 
@@ -103,12 +99,12 @@ def test_same_seed_gives_the_same_series_of_episodes() -> None:
 
 
 def test_balance_episode_repeats_with_its_push() -> None:
-    env = SarahEnv("balance", SHORT)
+    env = SarahEnv("balance", SHORT_BALANCE)
     env.reset(seed=3)
     _, reward, terminated, _, info = env.step(np.array([0.5, 0.0, 0.5, -0.1], dtype=np.float32))
     assert terminated and info["parameters"] == pytest.approx((1.0, 0.0, 1.0, -0.2))
-    repeated = sarah.simulate(sarah.EpisodeSpec(info["parameters"], info["seed"], "balance", SHORT))
-    assert repeated.episode_return == reward
+    repeated = sarah.simulate(sarah.EpisodeSpec(info["parameters"], info["seed"], "balance", SHORT_BALANCE))
+    assert repeated == info["result"] and repeated.episode_return == reward
     env.close()
 
 

@@ -1,6 +1,7 @@
 """A run as one page, and what TensorBoard shows of it."""
 
 import base64
+import dataclasses
 import json
 import re
 import subprocess
@@ -12,7 +13,6 @@ from laboratory import NEEDS_PYBULLET
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 from tensorboard.plugins.hparams.plugin_data_pb2 import HParamsPluginData
 
-from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
@@ -22,7 +22,7 @@ from sarah.training import train as training
 from sarah.training.train import train
 
 COMMAND = Path(sys.executable).with_name("sarah-report")
-EPISODE = EpisodeConfig(time_limit=1.5, physics=Physics(rate=100, solver_iterations=10, control_rate=100))
+PHYSICS = Physics(rate=100, solver_iterations=10, control_rate=100)
 
 
 @pytest.fixture(scope="module")
@@ -32,10 +32,11 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, RunFolder]:
     made = {}
     with pytest.MonkeyPatch.context() as monkeypatch:
         monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
-        for task in TASKS:
-            config = TrainingConfig(task, episodes=10, seed=3, slots=1, episode=EPISODE)
-            made[task] = RunFolder.create(folder / task, config)
-            train(config, made[task], picture_interval=5 if task == "stepping" and is_installed("pybullet") else 0)
+        for name, task in TASKS.items():
+            episode = dataclasses.replace(task.episode, time_limit=1.5, physics=PHYSICS)
+            config = TrainingConfig(name, episodes=10, seed=3, slots=1, episode=episode)
+            made[name] = RunFolder.create(folder / name, config)
+            train(config, made[name], picture_interval=5 if name == "stepping" and is_installed("pybullet") else 0)
     return made
 
 
@@ -47,7 +48,7 @@ def test_report_is_a_page_that_needs_nothing_else(task: str, runs: dict[str, Run
     process = subprocess.run([COMMAND, *arguments], capture_output=True, text=True, cwd=tmp_path, timeout=300)
     assert process.returncode == 0, process.stderr
     assert process.stdout == f"{page}\n" and [path.name for path in tmp_path.iterdir()] == ["page.html"]
-    text = page.read_text()
+    text = page.read_text(encoding="utf-8")
     addresses = re.findall(r'(?:src|href)="([^"]{0,40})', text)
     assert addresses and all(address.startswith("data:") for address in addresses) and "url(" not in text
     pictures = re.findall(r'data:image/png;base64,([^"]+)', text)
@@ -60,7 +61,7 @@ def test_report_is_a_page_that_needs_nothing_else(task: str, runs: dict[str, Run
     for name, value in zip(TASKS[task].parameter_names, run.parameters(), strict=True):
         assert re.search(rf"<td>{name}[^<]*</td><td>{value:.2f}</td>", text)
     noted = json.loads((run.path / "parameters.json").read_text())["evaluation"]  # of the same seeds
-    assert f"<td>{noted['score_median']:.3f}</td>" in text and f"<td>{noted['vibration_median']:.1f}</td>" in text
+    assert f"<td>{noted['score_median']:.3f}</td>" in text and f"<td>{noted['vibration_median']:.1f} m²/s⁴</td>" in text
     assert ("about 0.4" in text) == (task == "stepping")
 
 
@@ -85,11 +86,11 @@ def events(run: RunFolder) -> EventAccumulator:
 def test_tensorboard_shows_curves_in_groups_and_pictures_at_intervals(runs: dict[str, RunFolder]) -> None:
     shown = events(runs["stepping"])
     groups = {tag.split("/")[0] for tag in shown.Tags()["scalars"]}
-    assert {"episode", "gait", "actuators", "parameters", "choice", "learned"} <= groups
-    choices = [(int(row["simulations"]), float(row["P1"])) for row in runs["stepping"].recommendations()]
-    assert [(event.step, pytest.approx(event.value)) for event in shown.Scalars("choice/P1")] == choices
+    assert {"episode", "gait", "actuators", "parameters", "recommendation", "learned"} <= groups
+    rows = [(int(row["episodes"]), float(row["P1"])) for row in runs["stepping"].recommendations()]
+    assert [(event.step, pytest.approx(event.value)) for event in shown.Scalars("recommendation/P1")] == rows
     films = shown.Images("gait/video")
-    assert [film.step for film in films] == [simulations for simulations, _ in choices]
+    assert [film.step for film in films] == [episodes for episodes, _ in rows]
     assert all(film.encoded_image_string.startswith(b"GIF89a") and film.width == 640 for film in films)
 
 

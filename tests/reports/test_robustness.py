@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from laboratory import RESULT
 
 from sarah.cli import eval as eval_command
 from sarah.episode.episode import simulate
 from sarah.episode.result import EpisodeResult
-from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BalanceConfig
 from sarah.episode.workers import Workers
@@ -25,7 +25,6 @@ from sarah.reports.robustness import (
     wilson_interval,
 )
 
-RESULT = EpisodeResult(0.8, 4.0, 3.0, 30, 14.15, "time_limit", (0.03, 0.04, 0.84), 0.02, 1.0, 1.0, 9.0, 15.0, 0.5, 0.6)
 FALL = dataclasses.replace(RESULT, score=0.1, termination="left_box", final_position=(0.3, 0.0, 0.8))
 
 
@@ -36,14 +35,14 @@ def pushed(degrees: float, result: EpisodeResult = RESULT, newtons: float = 100.
 def test_controllers_meet_the_same_pushes_and_can_be_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(robustness, "SECONDS_AFTER", 0.1)
     still, moving = push_many(
-        [(0.0,) * 4, (1.0, 0.0, 1.0, 0.0)], EpisodeConfig(), Workers(), forces=(40.0, 80.0), episodes=2
+        [(0.0,) * 4, (1.0, 0.0, 1.0, 0.0)], BalanceConfig(), Workers(), forces=(40.0, 80.0), episodes=2
     )
     assert [e.newtons for e in still] == [40.0, 40.0, 80.0, 80.0]
     assert [e.radians for e in still] == [e.radians for e in moving]
     assert still[0].radians == pytest.approx(still[2].radians) != still[1].radians
     assert [e.result for e in still] != [e.result for e in moving]
     assert {e.result.duration for e in still} == {4.25}
-    push = dataclasses.replace(EpisodeConfig().push, newtons=(80.0, 80.0), at_seconds=robustness.PUSHED_BETWEEN)
+    push = dataclasses.replace(BalanceConfig().push, newtons=(80.0, 80.0), at_seconds=robustness.PUSHED_BETWEEN)
     config = BalanceConfig(push=push, time_limit=4.25)
     assert simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.0), 1, "balance", config)) == moving[3].result
 
@@ -64,7 +63,7 @@ def test_table_counts_by_direction() -> None:
         (100.0, "sagittal"): (2, 1.0),
     }
     everything = rows[2]
-    assert everything.median("score") == 0.8 and everything.median("drift") == pytest.approx(0.05)
+    assert everything.score_median == 0.8 and everything.drift_median == pytest.approx(0.05)
 
 
 def test_wilsons_interval_is_the_published_one() -> None:
@@ -72,11 +71,12 @@ def test_wilsons_interval_is_the_published_one() -> None:
     assert wilson_interval(81, 263) == pytest.approx((0.2553, 0.3662), abs=1e-4)
 
 
-@given(trials=st.integers(1, 1000), data=st.data())
-def test_interval_holds_the_share_and_is_never_empty(trials: int, data: st.DataObject) -> None:
-    successes = data.draw(st.integers(0, trials))
-    low, high = wilson_interval(successes, trials)
-    assert 0.0 <= low <= successes / trials + 1e-12 and successes / trials - 1e-12 <= high <= 1.0 and high - low > 0.0
+@given(episodes=st.integers(1, 1000), data=st.data())
+def test_interval_holds_the_share_and_is_never_empty(episodes: int, data: st.DataObject) -> None:
+    survivors = data.draw(st.integers(0, episodes))
+    low, high = wilson_interval(survivors, episodes)
+    share = survivors / episodes
+    assert 0.0 <= low <= share + 1e-12 and share - 1e-12 <= high <= 1.0 and high - low > 0.0
 
 
 def test_sectors_are_centred_on_right_forward_left_and_back() -> None:

@@ -43,7 +43,7 @@ COMMANDS = (
     "sarah-transfer {run} --episodes 1 --out transfer",
     "sarah-train --resume {run}",
     f"sarah-train --task balance --episodes 1 --slots 1 --run-dir {{run}}-mine --from {{run}} {COARSE}",
-    "sarah-compare {run}-race --algorithms random --seeds 1 --episodes 1 --episodes 1",
+    "sarah-compare {run}-race --algorithms random --seeds 1 --episodes 1 --evaluations 1",
 )
 """Of the last, the run is a part of the race that is complete."""
 

@@ -147,7 +147,7 @@ def test_without_pybullet_mujoco_is_the_default_and_a_training_says_so(mujoco_en
     arguments = ("--algo", "random", "--episodes", "2", "--episode.time-limit", "1.5", "--run-dir", "run")
     process = command_without_pybullet("train", *arguments, cwd=tmp_path)
     assert process.returncode == 0, process.stderr
-    assert process.stderr.startswith("PyBullet is not installed: MuJoCo simulates\n")
+    assert process.stderr.startswith("PyBullet is not installed, so MuJoCo simulates\n")
     assert "engine: mujoco" in (tmp_path / "run" / "config.yaml").read_text()
     process = command_without_pybullet("report", "run", "--episodes", "2", cwd=tmp_path)
     assert process.returncode == 0, process.stderr

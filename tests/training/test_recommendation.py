@@ -1,11 +1,16 @@
 """Candidates for the comparison that ends a training."""
 
+import dataclasses
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from laboratory import RESULT
 
+from sarah.episode.evaluation import Evaluation
+from sarah.episode.tasks import STEPPING
 from sarah.runs.config import TrainingConfig
-from sarah.training.recommendation import DISTINCT, candidates, merit
+from sarah.training.recommendation import DISTINCT, candidates, merit, rank
 
 CHOICE = (1.0, 1.0, 1.0, 1.0, 1.0)
 WIDTH = 2.0
@@ -16,39 +21,41 @@ def around(*centre: float, offset: float = 0.0) -> tuple[float, ...]:
 
 
 def test_the_choice_is_judged_by_the_episodes_around_it() -> None:
-    assert candidates(CHOICE, [], 3, WIDTH) == [CHOICE]
+    assert candidates(STEPPING, CHOICE, [], 3) == [CHOICE]
     elsewhere, beside = around(0.5, 0.5, 0.5, 0.5, 0.5), around(*CHOICE, offset=0.01)
-    assert candidates(CHOICE, [(elsewhere, 0.9)], 2, WIDTH) == [elsewhere, CHOICE]
+    assert candidates(STEPPING, CHOICE, [(elsewhere, 0.9)], 2) == [elsewhere, CHOICE]
     tried = [(elsewhere, 0.5), (beside, 0.9), (around(*CHOICE, offset=-0.01), 0.9)]
-    assert candidates(CHOICE, tried, 2, WIDTH) == [CHOICE, elsewhere]
+    assert candidates(STEPPING, CHOICE, tried, 2) == [CHOICE, elsewhere]
 
 
 def test_a_good_neighbourhood_beats_one_lucky_episode() -> None:
     lucky = (around(0.2, 0.2, 0.2, 0.2, 0.2), 0.92)
     good = [(around(1.6, 1.6, 1.6, 1.6, 1.6, offset=0.01 * step), 0.85) for step in range(5)]
     unlucky = (around(0.2, 0.2, 0.2, 0.2, 0.25), 0.1)
-    (best,) = candidates(CHOICE, [lucky, unlucky, *good], 1, WIDTH)
+    (best,) = candidates(STEPPING, CHOICE, [lucky, unlucky, *good], 1)
     assert best in [parameters for parameters, _ in good]
 
 
 def test_candidates_keep_their_distance() -> None:
     near = [(around(1.6, 1.6, 1.6, 1.6, 1.6, offset=0.001 * step), 0.9) for step in range(5)]
     far = (around(0.3, 0.3, 0.3, 0.3, 0.3), 0.5)
-    assert candidates(CHOICE, [*near, far], 2, WIDTH)[1] == far[0]
+    assert candidates(STEPPING, CHOICE, [*near, far], 2)[1] == far[0]
 
 
 def test_distances_are_shares_of_the_box() -> None:
     tried = [(around(0.2, 0.5, 1.1, 0.3, 1.6, offset=0.02 * step), 0.1 * step) for step in range(8)]
     wider = [(tuple(2.0 * value for value in parameters), merit) for parameters, merit in tried]
-    chosen = candidates(CHOICE, tried, 4, WIDTH)
-    assert candidates(tuple(2.0 * value for value in CHOICE), wider, 4, 2.0 * WIDTH) == [
+    chosen = candidates(STEPPING, CHOICE, tried, 4)
+    twice = tuple(dataclasses.replace(parameter, high=2.0 * parameter.high) for parameter in STEPPING.parameters)
+    task = dataclasses.replace(STEPPING, parameters=twice)
+    assert candidates(task, tuple(2.0 * value for value in CHOICE), wider, 4) == [
         tuple(2.0 * value for value in parameters) for parameters in chosen
     ]
 
 
 @given(st.lists(st.tuples(st.tuples(*[st.floats(0, 2)] * 5), st.floats(0, 1)), max_size=20), st.integers(1, 6))
 def test_there_are_never_more_than_asked_for(tried: list[tuple[tuple[float, ...], float]], count: int) -> None:
-    chosen = candidates(CHOICE, tried, count, WIDTH)
+    chosen = candidates(STEPPING, CHOICE, tried, count)
     assert 1 <= len(chosen) <= count
     assert all(
         sum((a - b) ** 2 for a, b in zip(first, second, strict=True)) >= (DISTINCT * WIDTH) ** 2 - 1e-9
@@ -58,14 +65,24 @@ def test_there_are_never_more_than_asked_for(tried: list[tuple[tuple[float, ...]
 
 
 def test_what_is_no_gait_has_less_merit() -> None:
-    stepping = {"score": 0.9, "shifts_by_sensors": 1.0, "lifts_by_sensors": 0.95, "sole_clearance": 0.02}
-    assert merit(stepping) == 0.9
-    assert merit(stepping | {"lifts_by_sensors": 0.45}) == pytest.approx(0.45)
-    assert merit(stepping | {"sole_clearance": 0.007}) == pytest.approx(0.63)
-    assert merit(stepping | {"shifts_by_sensors": 0.0}) == 0.0
+    good = dataclasses.replace(RESULT, score=0.9, lifts_by_sensors=0.95)
+    assert merit(good) == 0.9
+    assert merit(dataclasses.replace(good, lifts_by_sensors=0.45)) == pytest.approx(0.45)
+    assert merit(dataclasses.replace(good, sole_clearance=0.007)) == pytest.approx(0.63)
+    assert merit(dataclasses.replace(good, shifts_by_sensors=0.0)) == 0.0
 
 
 def test_a_small_budget_affords_no_comparison() -> None:
     budgets = {count: TrainingConfig(episodes=count) for count in (1, 99, 160)}
     assert {count: budget.candidate_count for count, budget in budgets.items()} == {1: 1, 99: 1, 160: 3}
     assert {count: budget.compared_episodes for count, budget in budgets.items()} == {1: 0, 99: 0, 160: 15}
+
+
+def test_what_chatters_or_is_no_gait_comes_last() -> None:
+    baseline = Evaluation((RESULT,))
+    dragging = dataclasses.replace(RESULT, score=0.95, sole_clearance=0.0099)
+    chattering = dataclasses.replace(RESULT, score=0.95, vibration=2.5 * RESULT.vibration)
+    ranks = [rank([result], baseline) for result in (RESULT, dragging, chattering)]
+    assert max(ranks) == ranks[0]
+    assert rank([chattering], None) > ranks[0]  # where there is nothing to chatter against
+    assert rank([], baseline) < ranks[1]

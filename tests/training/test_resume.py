@@ -17,7 +17,8 @@ import sarah.runs.config
 from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.workers import Executor, Job, Workers, run, stand
+from sarah.episode.tasks import TASKS
+from sarah.episode.workers import Executor, Job, Workers, begin_episode, finish_episode
 from sarah.errors import LearningError, RunFolderError, TrainingInterruptedError
 from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import AGENTS, ALGORITHMS, TrainingConfig
@@ -36,7 +37,7 @@ EPISODE = EpisodeConfig(time_limit=1.2, physics=Physics(rate=50, solver_iteratio
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
     """A training that compares two candidates, and evaluates on two seeds."""
     monkeypatch.setattr(TrainingConfig, "candidate_count", 2)
-    monkeypatch.setattr(sarah.runs.config, "SIMULATIONS_PER_CANDIDATE", 2)
+    monkeypatch.setattr(sarah.runs.config, "EPISODES_PER_CANDIDATE", 2)
     monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
 
 
@@ -51,11 +52,10 @@ class Counting(Executor):
 
     def __init__(self) -> None:
         self.run = 0
-        self._workers = Workers()
 
     def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
-        self.run += function is not stand
-        return self._workers.submit(function, *subjects)
+        self.run += function is not begin_episode
+        return Workers().submit(function, *subjects)
 
 
 def everything(folder: RunFolder) -> dict[str, Any]:
@@ -77,7 +77,8 @@ def everything(folder: RunFolder) -> dict[str, Any]:
 )
 def test_a_training_interrupted_twice_ends_as_without(algo: str, task: str, tmp_path: Path) -> None:
     agent = settings_of(algo)(**({"learning_starts": 6} if algo in AGENTS else {}))
-    config = TrainingConfig(task, algo, episodes=16, seed=7, slots=2, agent=agent, episode=EPISODE)
+    episode = TASKS[task].config_of(EPISODE)
+    config = TrainingConfig(task, algo, episodes=16, seed=7, slots=2, agent=agent, episode=episode)
     whole = RunFolder.create(tmp_path / "whole", config)
     learned = train(config, whole)
     expected = everything(whole)
@@ -124,7 +125,7 @@ def test_a_journal_cut_at_any_byte_is_enough(
 
 def test_what_is_finished_is_not_simulated_again(whole: RunFolder, tmp_path: Path) -> None:
     lines = whole.journal_path.read_bytes().splitlines(keepends=True)
-    finished = [line for line in lines if b'"kind":"stand"' not in line]
+    finished = [line for line in lines if b'"kind":"begin"' not in line]
     half = lines[: len(lines) // 2]
     counting = Counting()
     train(whole.config(), begun_with(tmp_path / "half", whole, b"".join(half)), counting)
@@ -138,7 +139,7 @@ def test_a_damaged_row_costs_its_simulation_only(
     whole: RunFolder, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     lines = whole.journal_path.read_bytes().splitlines(keepends=True)
-    row = next(number for number, line in enumerate(lines) if number > 10 and b'"kind":"run"' in line)
+    row = next(number for number, line in enumerate(lines) if number > 10 and b'"kind":"finish"' in line)
     lines[row] = lines[row].replace(b'"steps":0', b'"steps":9', 1)
     counting = Counting()
     begun = begun_with(tmp_path / "damaged", whole, b"".join(lines))
@@ -180,7 +181,9 @@ def test_two_trainings_do_not_share_a_run_folder(whole: RunFolder, tmp_path: Pat
         train(whole.config(), begun, interrupted=interrupted_after(1))
 
 
-@pytest.mark.parametrize(("function", "seeds"), [(stand, [3]), (run, [3]), (run, [3, 4]), (simulate, [3])])
+@pytest.mark.parametrize(
+    ("function", "seeds"), [(begin_episode, [3]), (finish_episode, [3]), (finish_episode, [3, 4]), (simulate, [3])]
+)
 def test_the_journal_gives_back_every_bit(function: Callable[..., Any], seeds: list[int], tmp_path: Path) -> None:
     specs = [EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), seed, config=EpisodeConfig(time_limit=3.0)) for seed in seeds]
     path = tmp_path / "journal.jsonl"
@@ -225,4 +228,4 @@ def test_columns_of_the_learning_curves_are_in_the_same_order_everywhere(whole: 
         columns = next(csv.reader(file))
     first = [name for name in columns if name.startswith(("episode/", "parameters/"))]
     assert first == sorted(first) and set(columns) > {"train/loss", "train/n_updates"}
-    assert json.loads((whole.path / "parameters.json").read_text())["simulations"] == 16
+    assert json.loads((whole.path / "parameters.json").read_text())["episodes"] == 16
