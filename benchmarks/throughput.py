@@ -27,11 +27,13 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.episode.workers import Executor, Job, Workers, finish_episode
+from sarah.robot.description import ACTUATED_JOINTS, PLATES
 from sarah.robot.reading import Side
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import PHYSICS, PyBulletPhysics
 from sarah.simulation.pybullet_client import pybullet
+from sarah.simulation.pybullet_simulator import PyBulletSimulator
 from sarah.training.train import train
 
 STANDARD, REFERENCE = PyBulletPhysics(), PHYSICS["reference"]
@@ -219,10 +221,11 @@ def bare_loop(physics: PyBulletPhysics, limit: float, ticks: list[Tick], read: b
     :param read: whether PyBullet is also asked for what the ticks need, of which nothing is made
     """
     with closing(started(physics, limit)) as episode:
-        # PyBullet is asked directly, as nobody else does.
-        simulation: Any = episode.simulation
-        client, body, joints = simulation._client, simulation._body, simulation._joints
-        foot, _ = simulation._feet[Side.LEFT]
+        simulation = episode.simulation
+        assert isinstance(simulation, PyBulletSimulator)
+        client, body = simulation.client, simulation.body
+        joints = [simulation.links[name] for name in ACTUATED_JOINTS]
+        foot = [simulation.links[f"{Side.LEFT}_{plate}"] for plate in PLATES]
         start = time.perf_counter()
         for targets, swings in ticks:
             simulation.set_targets(targets)

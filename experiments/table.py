@@ -232,7 +232,7 @@ TABLE: dict[str, Maker] = {
     "killed_workers": Maker(
         "What do killed workers cost a training?",
         KilledWorkers(),
-        {"budget": 10, "seconds_between_kills": 3.0},
+        {"budget": 8, "seconds_between_kills": 20.0},
         of_robot=False,
     ),
     "resume": Maker(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 import tempfile
 import threading
 import time
@@ -66,12 +65,15 @@ class Killer:
     killed: int = 0
     done: threading.Event = field(default_factory=threading.Event)
 
-    def run(self) -> None:
-        """Kill until all is done."""
+    def run(self, workers: Workers) -> None:
+        """Kill until all is done.
+
+        :param workers: whose processes are killed
+        """
         while not self.done.wait(self.seconds):
-            workers = worker_processes()
-            if workers:  # not all of them are restarting
-                workers[self.killed % len(workers)].send_signal(signal.SIGKILL)
+            processes = worker_processes(workers)
+            if processes:  # not all of them are restarting
+                processes[self.killed % len(processes)].kill()
                 self.killed += 1
 
 
@@ -85,7 +87,7 @@ def trained(config: TrainingConfig, folder: Path, killer: Killer | None) -> tupl
     """
     with Workers(WORKERS) as workers:
         list(workers.simulate_all([EpisodeSpec(PAPER_STEPPING, seed) for seed in range(2 * WORKERS)]))  # warm up
-        thread = threading.Thread(target=killer.run, daemon=True) if killer else None
+        thread = threading.Thread(target=killer.run, args=(workers,), daemon=True) if killer else None
         start = time.perf_counter()
         if thread:
             thread.start()

@@ -78,7 +78,7 @@ class LongTraining:
             run = RunFolder.create(Path(folder) / "run", config)
             rows: list[Row] = []
             done = threading.Event()
-            watcher = threading.Thread(target=watch, args=(run, self.budget // LOOKS, rows, done))
+            watcher = threading.Thread(target=watch, args=(run, workers, self.budget // LOOKS, rows, done))
             watcher.start()
             train(config, run, workers)
             done.set()
@@ -86,20 +86,19 @@ class LongTraining:
         yield from rows
 
 
-def watch(run: RunFolder, interval: int, rows: list[Row], done: threading.Event) -> None:
+def watch(run: RunFolder, workers: Workers, interval: int, rows: list[Row], done: threading.Event) -> None:
     """Add a row whenever a training has gone on for some episodes.
 
     :param run: run folder of the training
+    :param workers: its workers
     :param interval: number of episodes between rows
     :param rows: list of the rows
     :param done: set when the training is over
     """
     while not done.wait(LOOK_SECONDS):
-        count = sum(1 for _ in run.episodes())
-        workers = worker_processes()
-        if count < interval * len(rows) or len(workers) < 2:
+        if sum(1 for _ in run.episodes()) < interval * len(rows):
             continue
-        (memory, files), first, second = map(usage, (psutil.Process(), *workers[:2]))
+        (memory, files), first, second = map(usage, (psutil.Process(), *worker_processes(workers)))
         rows.append(
             {
                 "episodes": interval * len(rows),

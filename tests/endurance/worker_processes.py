@@ -1,20 +1,18 @@
-"""The processes that simulate for this one."""
+"""The processes that simulate for a training."""
 
 from __future__ import annotations
 
+import os
+
 import psutil
 
-LOADED = 2**26
-"""Resident memory in bytes that a worker has once it is there; those that only begin, or help, have less."""
+from sarah.episode.workers import Workers
 
 
-def worker_processes() -> list[psutil.Process]:
-    """Processes below this one that are ready to simulate, in the order of their ids."""
-    found = []
-    for process in psutil.Process().children(recursive=True):
-        try:
-            if process.memory_info().rss > LOADED:
-                found.append(process)
-        except psutil.NoSuchProcess:  # it has just died
-            continue
-    return sorted(found, key=lambda process: process.pid)
+def worker_processes(workers: Workers) -> list[psutil.Process]:
+    """Worker processes that are ready to simulate, in the order of their ids.
+
+    :param workers: workers that have been started on this machine
+    """
+    assert workers.client is not None
+    return [psutil.Process(pid) for pid in sorted(workers.client.run(os.getpid, on_error="ignore").values())]

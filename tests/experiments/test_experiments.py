@@ -66,14 +66,14 @@ def test_without_a_name_all_are_listed(capsys: pytest.CaptureFixture[str]) -> No
 
 
 def test_an_unknown_name_is_one_line_with_the_nearest() -> None:
-    with pytest.raises(ConfigurationError, match="unknown experiment 'clok', did you mean 'clock'?"):
+    with pytest.raises(ConfigurationError, match=r"unknown experiment 'clok', did you mean 'clock'\?"):
         main(["clok"])
 
 
 def test_a_result_is_stale_only_for_a_reason() -> None:
     with pytest.raises(ConfigurationError, match="WHY must be a sentence"):
         main(["stale"])
-    with pytest.raises(ConfigurationError, match="unknown result 'clok', did you mean 'clock'?"):
+    with pytest.raises(ConfigurationError, match=r"unknown result 'clok', did you mean 'clock'\?"):
         main(["stale", "The clock runs backwards.", "clok"])
 
 
