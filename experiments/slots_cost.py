@@ -6,12 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from statistics import mean, median
 
-from sarah.runs.agent_settings import NAFSettings
-
 from experiments.record import Row
 from experiments.trainings import OfTrainings
 from sarah.episode.evaluation import evaluate
 from sarah.episode.workers import Workers
+from sarah.runs.agent_settings import NAFSettings
 from sarah.runs.config import TrainingConfig
 
 WARM_UP = NAFSettings().learning_starts

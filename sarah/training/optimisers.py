@@ -25,7 +25,7 @@ class Optimiser(Protocol):
     def tell(self, action: np.ndarray, episode_return: float) -> None:
         """What came of the oldest action that it was asked for.
 
-        :param action: that action
+        :param action: the action that was asked for
         :param episode_return: return of its episode
         """
 
