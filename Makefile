@@ -2,16 +2,19 @@
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV ?= $(if $(filter file,$(origin PYTHON)),.venv,.venv-$(notdir $(PYTHON)))
 BIN := $(VENV)/bin
-SIMULATIONS ?= 100
-BALANCE_SIMULATIONS ?= 300
+EPISODES ?= 100
+BALANCE_EPISODES ?= 300
 BALANCE_SECONDS ?= 10
 BALANCE_NEWTONS ?= 75 125
 PUSHES ?= 8
 WORKERS ?= $(shell nproc)
 SEED ?= 1
 RUN ?= runs/$(shell date +%Y%m%d-%H%M%S)
+NAME = $(basename $(notdir $(wildcard results/*.csv)))
+TIMINGS := throughput engines_speed physics_speed updates viewer
+ENDURANCE := kills killed_workers resume long_process long_training protections
 
-.PHONY: help install train test test-slow lint format docs bench tables clean
+.PHONY: help install train test test-slow lint format docs results bench endurance clean
 
 help:  ## show what can be made
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
@@ -27,9 +30,9 @@ $(VENV)/installed: setup.cfg pyproject.toml constraints.txt
 
 train: RUN := $(RUN)
 train: install  ## both trainings with NAF, figures, reports and robustness table: a robot that steps in place and comes back from pushes
-	$(BIN)/sarah-train --task stepping --simulations $(SIMULATIONS) --seed $(SEED) \
+	$(BIN)/sarah-train --task stepping --episodes $(EPISODES) --seed $(SEED) \
 		--workers $(WORKERS) --run-dir $(RUN)/stepping
-	$(BIN)/sarah-train --task balance --from $(RUN)/stepping --simulations $(BALANCE_SIMULATIONS) --seed $(SEED) \
+	$(BIN)/sarah-train --task balance --from $(RUN)/stepping --episodes $(BALANCE_EPISODES) --seed $(SEED) \
 		--episode.time-limit $(BALANCE_SECONDS) --episode.push.newtons $(BALANCE_NEWTONS) \
 		--workers $(WORKERS) --run-dir $(RUN)/balance
 	$(BIN)/sarah-figures $(RUN)/stepping $(RUN)/balance --out $(RUN)/figures
@@ -57,23 +60,15 @@ docs: install  ## the documentation, into build/docs
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going docs build/docs
 	@echo build/docs/index.html
 
-bench: install  ## how fast it is: simulation, workers, learner; minutes
-	$(BIN)/python benchmarks/throughput.py
+results: install  ## make the results that docs show: all of them (hours), or NAME=clock
+	@for name in $(NAME); do $(BIN)/python -m experiments $$name || exit 1; done
 
-tables: install  ## the tables of the README and docs: hours of simulation
-	$(BIN)/python benchmarks/landscape.py --engines pybullet mujoco --episodes 3 --seconds 12
-	$(BIN)/python benchmarks/landscape.py --task balance --engines pybullet mujoco --episodes 12 --seconds 8
-	$(BIN)/python benchmarks/engines.py
-	$(BIN)/python benchmarks/clock.py
-	$(BIN)/python benchmarks/physics.py
-	$(BIN)/python benchmarks/physics.py --random 40 --seeds 4
-	$(BIN)/python benchmarks/physics.py 0.2,0,0,0 0.3,0,0,0 0.4,0,0,0 0.5,0,0,0 0.6,0,0,0 0.7,0,0,0 --newtons 100
-	$(BIN)/python benchmarks/first_training.py --algo naf --episodes 12 --reference-episodes 4
-	$(BIN)/python benchmarks/robot.py --pushes 20 --unpushed 2
-	$(BIN)/python benchmarks/hip_laws.py pitch:swing:1 acceleration:both:1 acceleration:held:1 acceleration:sampled:1 \
-		angle:swing:1 --newtons 105 --pushes 200 --unpushed 2
-	$(BIN)/python benchmarks/stepping_and_hips.py
-	$(BIN)/python benchmarks/second_training.py --algo naf
+bench: install  ## how fast it is: simulation, workers, learner, viewer; minutes
+	@for name in $(TIMINGS); do $(BIN)/python -m experiments $$name --out build/bench || exit 1; done
+
+endurance: install  ## kills, faults and long runs; half an hour
+	@for name in $(ENDURANCE); do $(BIN)/python -m experiments $$name --out build/endurance || exit 1; done
+	$(BIN)/python -m tests.endurance.stable_baselines3_tests
 
 clean:  ## remove what was built, but no runs
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

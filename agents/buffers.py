@@ -28,9 +28,9 @@ def neighbourhood_means(
     """
     Mean value around some places, by a Gaussian kernel, where little is known drawn towards 0.
 
-    :param at: Where to judge, of shape (m, dim)
-    :param places: Where values are known, of shape (n, dim)
-    :param values: The values there, of shape (n,)
+    :param at: Places to judge, of shape (m, dim)
+    :param places: Places of known values, of shape (n, dim)
+    :param values: Values there, of shape (n,)
     :param distance: Standard deviation of the kernel
     :param doubt: Values of 0 that every place is thought to have
     :return: Means of shape (m,)
@@ -63,7 +63,7 @@ class RankReplayBuffer(ReplayBuffer):
     favour transitions of high reward whatever they lead to. The probabilities are computed at the first
     draw after an addition, in O(n log n).
 
-    :param buffer_size: Max number of element in the buffer
+    :param buffer_size: Max number of elements in the buffer
     :param observation_space: Observation space
     :param action_space: Action space
     :param device: PyTorch device
@@ -128,7 +128,7 @@ class RankReplayBuffer(ReplayBuffer):
         """
         Sample transitions, with replacement.
 
-        :param batch_size: Number of element to sample
+        :param batch_size: Number of elements to sample
         :param env: associated gym VecEnv
             to normalize the observations/rewards when sampling
         :return: The transitions
@@ -156,7 +156,7 @@ class RankReplayBuffer(ReplayBuffer):
         An action to try near the best one: of some Gaussian draws around it that with the best neighbourhood.
 
         :param std: Standard deviation of the draws, in scaled actions
-        :param draws: How many
+        :param draws: Number of draws
         :return: A scaled action, of shape (action dim,)
         """
         best = self.best_action()

@@ -35,7 +35,7 @@ class QuadraticCritic(BaseModel):
     :param normalize_images: Whether to normalize images or not,
          dividing by 255.0 (True by default)
     :param squash_mu: Whether ``mu`` ends in a tanh; if not, it is linear and may leave [-1, 1]
-    :param min_curvature: What is added to the curvature ``L L^T``, see :class:`NAFPolicy`
+    :param min_curvature: Curvature that is added to that of ``L L^T``, see :class:`NAFPolicy`
     """
 
     action_space: spaces.Box

@@ -34,7 +34,7 @@ class NAF(OffPolicyAlgorithm):
     :param learning_rate: The learning rate, it can be a function
         of the current progress remaining (from 1 to 0)
     :param buffer_size: size of the replay buffer
-    :param learning_starts: how many steps of the model to collect transitions for before learning starts.
+    :param learning_starts: number of steps to collect transitions for before learning starts.
         More than TD3's 100: NAF has one critic, and what it believes of few transitions its policy follows at once
     :param batch_size: Minibatch size for each gradient update
     :param tau: the soft update coefficient ("Polyak update", between 0 and 1). TD3's 0.005 is

@@ -1,53 +1,194 @@
-"""How fast episodes are simulated, and where the time goes; figures of one run, as ratios.
+"""Times episodes and trainings, and says where the time goes.
 
 The closed loop (sensing, pattern generator, reward, result) against bare physics steps on the same trajectory, and
 these steps with PyBullet's answers, of which nothing is made, against the same; the standard physics against the
 reference and against 500 Hz with 30 iterations; a training with two workers against one, and against two processes
-that know nothing of each other; and the learner's share of a training's time.
+that know nothing of each other; and the learner's share of a training's time. Everything is measured twice.
 """
 
 from __future__ import annotations
 
-import argparse
-import json
 import pickle
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable, Iterator
 from contextlib import closing
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 from typing import Any
 
-from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
-
+from experiments.record import Row
 from sarah.control.pattern_generator import STAND_SECONDS, Phase
-from sarah.envs.episode_vec_env import EpisodeVecEnv
-from sarah.episode.episode import Episode
-from sarah.episode.spec import TRAINED_STEPPING, EpisodeConfig, EpisodeSpec
-from sarah.episode.tasks import STEPPING
-from sarah.episode.workers import Workers
+from sarah.episode.episode import Episode, simulate
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks.balance import TRAINED_STEPPING
+from sarah.episode.workers import Executor, Job, Workers, finish_episode
+from sarah.robot.description import ACTUATED_JOINTS, PLATES
+from sarah.robot.reading import Side
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
-from sarah.simulation.physics import PHYSICS, Physics
+from sarah.simulation.physics import PHYSICS, PyBulletPhysics
 from sarah.simulation.pybullet_client import pybullet
+from sarah.simulation.pybullet_simulator import PyBulletSimulator
 from sarah.training.train import train
 
-FORMER_START = Physics(500, 30, added_plate_inertia=0.0)
-"""What most prototypes of this robot ran at."""
+STANDARD, REFERENCE = PyBulletPhysics(), PHYSICS["reference"]
+FINER = PyBulletPhysics(500, 30, added_plate_inertia=0.0)
+"""A setting without added inertia, between standard and reference."""
 
 
-def started(physics: Physics, limit: float) -> Episode:
-    """An episode that has stood for its second; the caller closes it."""
-    episode = Episode(EpisodeConfig(physics, time_limit=limit), seed=0)
+@dataclass(frozen=True)
+class Throughput:
+    """Speeds of episodes and of trainings in PyBullet, and their ratios.
+
+    :param rounds: number of rounds, each of which measures every loop once; ratios are medians of the rounds'
+    :param loop_seconds: time limit of a loop's episode, in s
+    :param trainings: number of trainings, of different seeds, whose medians the figures are
+    :param budget: number of episodes of a training; below 100 there is no closing comparison
+    :param time_limit: time limit of a training's episode, in s
+    """
+
+    rounds: int = 5
+    loop_seconds: float = 11.0
+    trainings: int = 3
+    budget: int = 99
+    time_limit: float = 30.0
+
+    def rows(self) -> Iterator[Row]:
+        """A row for each quantity."""
+        first, second = self._figures(), self._figures()
+        for quantity, value in first.items():
+            yield {"quantity": quantity, "value": value, "another_run": second[quantity]}
+
+    def _figures(self) -> dict[str, float]:
+        with tempfile.TemporaryDirectory() as folder:
+            many = [self._trainings(seed, Path(folder, str(seed))) for seed in range(self.trainings)]
+        return {**self._loops(), **{name: median(one[name] for one in many) for name in many[0]}}
+
+    def _loops(self) -> dict[str, float]:
+        ticks = {physics: commands(physics, self.loop_seconds) for physics in (STANDARD, REFERENCE, FINER)}
+        rounds = []
+        for _ in range(self.rounds):
+            speeds = {("closed", physics): closed_loop(physics, self.loop_seconds) for physics in ticks}
+            speeds |= {("bare", physics): bare_loop(physics, self.loop_seconds, ticks[physics]) for physics in ticks}
+            speeds["read", STANDARD] = bare_loop(STANDARD, self.loop_seconds, ticks[STANDARD], read=True)
+            rounds.append(speeds)
+
+        def ratio(upper: tuple[str, PyBulletPhysics], lower: tuple[str, PyBulletPhysics]) -> float:
+            return median(speeds[upper] / speeds[lower] for speeds in rounds)
+
+        closed, bare = ("closed", STANDARD), ("bare", STANDARD)
+        return {
+            "closed loop of an episode: seconds simulated per second": median(speeds[closed] for speeds in rounds),
+            "bare physics steps of the same trajectory: seconds simulated per second": median(
+                speeds[bare] for speeds in rounds
+            ),
+            "closed loop over bare physics steps": ratio(closed, bare),
+            "closed loop over bare physics steps at 500 Hz with 30 iterations": ratio(
+                ("closed", FINER), ("bare", FINER)
+            ),
+            "closed loop over bare physics steps at the reference physics": ratio(
+                ("closed", REFERENCE), ("bare", REFERENCE)
+            ),
+            "bare physics steps with PyBullet's answers over those without": ratio(("read", STANDARD), bare),
+            "standard physics over reference physics": ratio(closed, ("closed", REFERENCE)),
+            "standard physics over 500 Hz with 30 iterations": ratio(closed, ("closed", FINER)),
+        }
+
+    def _trainings(self, seed: int, folder: Path) -> dict[str, float]:
+        """The same training with one worker and with two, and its episodes without learner or scheduler."""
+        episode = EpisodeConfig(engine="pybullet", time_limit=self.time_limit)
+        config = TrainingConfig(episodes=self.budget, seed=seed, episode=episode)
+        taken, share = {}, 0.0
+        for count in (1, 2):
+            with Workers(count) as workers:
+                list(
+                    workers.simulate_all([EpisodeSpec(TRAINED_STEPPING, seed) for seed in range(2 * count)])
+                )  # warm up
+                watched = Watched(workers)
+                start = time.perf_counter()
+                train(config, RunFolder.create(folder / f"workers-{count}", config), watched)
+                taken[count] = time.perf_counter() - start
+                share = 1.0 - watched.waited / taken[count]
+        episodes = len(watched.specs)
+        return {
+            "episodes per second of a training, one worker": episodes / taken[1],
+            "episodes per second of a training, two workers": episodes / taken[2],
+            "two workers over one": taken[1] / taken[2],
+            "two workers over two processes without a learner": seconds_without_learner(watched.specs, folder)
+            / taken[2],
+            "learner's share of a training's time": share,
+        }
+
+
+class Watched(Executor):
+    """Notes which episodes are simulated, and how long a training waits for them.
+
+    :param workers: who simulates
+    """
+
+    def __init__(self, workers: Workers) -> None:
+        self.specs: list[EpisodeSpec] = []
+        self.waited = 0.0
+        self._workers = workers
+
+    def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
+        """Have something done.
+
+        :param function: what is done
+        :param subjects: of the function, the specification of an episode first
+        """
+        if function in (simulate, finish_episode):
+            self.specs.append(subjects[0])
+        return WatchedJob(self, self._workers.submit(function, *subjects))
+
+
+@dataclass(frozen=True)
+class WatchedJob:
+    """Something that a training waits for.
+
+    :param watched: who notes how long
+    :param job: what is waited for
+    """
+
+    watched: Watched
+    job: Job
+
+    def result(self) -> Any:
+        """What came of it."""
+        start = time.perf_counter()
+        try:
+            return self.job.result()
+        finally:
+            self.watched.waited += time.perf_counter() - start
+
+
+Tick = tuple[tuple[float, ...], bool]
+"""Targets of the joints, and whether a foot's height is measured."""
+
+
+def started(physics: PyBulletPhysics, limit: float) -> Episode:
+    """An episode that has stood for its second; the caller closes it.
+
+    :param physics: setting of the physics
+    :param limit: time limit, in s
+    """
+    episode = Episode(EpisodeConfig(physics, "pybullet", time_limit=limit), seed=0)
     episode.stand()
     episode.start(TRAINED_STEPPING)
     return episode
 
 
-def commands(physics: Physics, limit: float) -> list[tuple[tuple[float, ...], bool]]:
-    """What the pattern generator commands at every tick, and whether a foot's height is measured."""
+def commands(physics: PyBulletPhysics, limit: float) -> list[Tick]:
+    """What the pattern generator commands at every tick.
+
+    :param physics: setting of the physics
+    :param limit: time limit, in s
+    """
     ticks = []
     with closing(started(physics, limit)) as episode:
         while episode.termination is None:
@@ -57,8 +198,12 @@ def commands(physics: Physics, limit: float) -> list[tuple[tuple[float, ...], bo
     return ticks
 
 
-def closed_loop(physics: Physics, limit: float) -> float:
-    """Simulated seconds per second of an episode's ticks."""
+def closed_loop(physics: PyBulletPhysics, limit: float) -> float:
+    """Simulated seconds per second of an episode's ticks.
+
+    :param physics: setting of the physics
+    :param limit: time limit, in s
+    """
     with closing(started(physics, limit)) as episode:
         start = time.perf_counter()
         while episode.termination is None:
@@ -67,15 +212,20 @@ def closed_loop(physics: Physics, limit: float) -> float:
         return simulated / (time.perf_counter() - start)
 
 
-def bare_loop(physics: Physics, limit: float, ticks: list[tuple[tuple[float, ...], bool]], read: bool = False) -> float:
+def bare_loop(physics: PyBulletPhysics, limit: float, ticks: list[Tick], read: bool = False) -> float:
     """Simulated seconds per second of physics steps alone, on the trajectory of the same targets.
 
-    With ``read`` PyBullet is also asked for what the ticks need, and nothing is made of its answers.
+    :param physics: setting of the physics
+    :param limit: time limit, in s
+    :param ticks: what is commanded
+    :param read: whether PyBullet is also asked for what the ticks need, of which nothing is made
     """
     with closing(started(physics, limit)) as episode:
-        simulation, client = episode.simulation, episode.simulation._client
-        body, joints = simulation._body, simulation._joints
-        foot, _ = simulation._feet["left"]
+        simulation = episode.simulation
+        assert isinstance(simulation, PyBulletSimulator)
+        client, body = simulation.client, simulation.body
+        joints = [simulation.links[name] for name in ACTUATED_JOINTS]
+        foot = [simulation.links[f"{Side.LEFT}_{plate}"] for plate in PLATES]
         start = time.perf_counter()
         for targets, swings in ticks:
             simulation.set_targets(targets)
@@ -90,75 +240,14 @@ def bare_loop(physics: Physics, limit: float, ticks: list[tuple[tuple[float, ...
         return len(ticks) * physics.control_dt / (time.perf_counter() - start)
 
 
-def loops(limit: float, rounds: int) -> dict[str, float]:
-    """Every round measures everything once; ratios are medians of the rounds' ratios."""
-    standard, reference = Physics(), PHYSICS["reference"]
-    ticks, reference_ticks = commands(standard, limit), commands(reference, limit)
-    former_ticks = commands(FORMER_START, limit)
-    measured = [
-        {
-            "closed": closed_loop(standard, limit),
-            "bare": bare_loop(standard, limit, ticks),
-            "read": bare_loop(standard, limit, ticks, read=True),
-            "reference": closed_loop(reference, limit),
-            "bare_reference": bare_loop(reference, limit, reference_ticks),
-            "former": closed_loop(FORMER_START, limit),
-            "bare_former": bare_loop(FORMER_START, limit, former_ticks),
-        }
-        for _ in range(rounds)
-    ]
+def seconds_without_learner(specs: list[EpisodeSpec], folder: Path) -> float:
+    """Seconds that two processes take for half of the episodes each, without their start.
 
-    def ratio(upper: str, lower: str) -> float:
-        return median(one[upper] / one[lower] for one in measured)
-
-    return {
-        "closed_loop_times_real_time": median(one["closed"] for one in measured),
-        "bare_times_real_time": median(one["bare"] for one in measured),
-        "reference_times_real_time": median(one["reference"] for one in measured),
-        "closed_loop_over_bare": ratio("closed", "bare"),
-        "calls_alone_over_bare": ratio("read", "bare"),
-        "closed_loop_over_bare_at_500_hz_30_iterations": ratio("former", "bare_former"),
-        "closed_loop_over_bare_at_reference": ratio("reference", "bare_reference"),
-        "default_over_reference": ratio("closed", "reference"),
-        "default_over_500_hz_30_iterations": ratio("closed", "former"),
-    }
-
-
-def training_seconds(config: TrainingConfig, workers: Workers, folder: Path) -> tuple[float, float]:
-    """Seconds of a training from its first step to its last, and how many of them the learner took."""
-    total = waited = 0.0
-    learn, wait = OffPolicyAlgorithm.learn, EpisodeVecEnv.step_wait
-
-    def timed_wait(env: EpisodeVecEnv) -> Any:
-        nonlocal waited
-        start = time.perf_counter()
-        try:
-            return wait(env)
-        finally:
-            waited += time.perf_counter() - start
-
-    def timed_learn(model: Any, *arguments: Any, **named: Any) -> Any:
-        nonlocal total
-        start = time.perf_counter()
-        try:
-            return learn(model, *arguments, **named)
-        finally:
-            total += time.perf_counter() - start
-
-    EpisodeVecEnv.step_wait = timed_wait  # type: ignore[method-assign]
-    OffPolicyAlgorithm.learn = timed_learn  # type: ignore[method-assign]
-    try:
-        train(config, RunFolder.create(folder, config), workers)
-    finally:
-        EpisodeVecEnv.step_wait = wait  # type: ignore[method-assign]
-        OffPolicyAlgorithm.learn = learn  # type: ignore[method-assign]
-    return total, total - waited
-
-
-def independent_processes(specs: list[EpisodeSpec], folder: Path) -> float:
-    """Seconds that two processes take for half of the episodes each, without their start."""
+    :param specs: the episodes
+    :param folder: folder for files
+    """
     code = (
-        "import pickle, sys, time; from sarah.episode import simulate; specs = pickle.load(open(sys.argv[1], 'rb'));"
+        "import pickle, sys, time; from sarah import simulate; specs = pickle.load(open(sys.argv[1], 'rb'));"
         "simulate(specs[0]); start = time.perf_counter(); [simulate(spec) for spec in specs];"
         "print(time.perf_counter() - start)"
     )
@@ -168,50 +257,3 @@ def independent_processes(specs: list[EpisodeSpec], folder: Path) -> float:
         file.write_bytes(pickle.dumps(specs[index::2]))
         children.append(subprocess.Popen([sys.executable, "-c", code, str(file)], stdout=subprocess.PIPE, text=True))
     return max(float(child.communicate()[0]) for child in children)
-
-
-def trainings(simulations: int, seed: int, folder: Path) -> dict[str, float]:
-    """The same training with one worker and with two, and its episodes without learner or scheduler."""
-    config = TrainingConfig(simulations=simulations, seed=seed)
-    taken, share = {}, 0.0
-    for count in (1, 2):
-        with Workers(count) as workers:
-            list(workers.simulate_all([EpisodeSpec(TRAINED_STEPPING, seed) for seed in range(2 * count)]))  # warm up
-            taken[count], learner = training_seconds(config, workers, folder / f"workers-{count}")
-            share = learner / taken[count]
-    specs = []
-    for row in RunFolder(folder / "workers-1").episodes():
-        specs.append(EpisodeSpec(tuple(float(row[name]) for name in STEPPING.parameter_names), int(row["seed"])))
-    independent = independent_processes(specs, folder)
-    return {
-        "episodes_per_second_1_worker": len(specs) / taken[1],
-        "episodes_per_second_2_workers": len(specs) / taken[2],
-        "two_workers_over_one": taken[1] / taken[2],
-        "two_workers_over_independent_processes": independent / taken[2],
-        "learner_share": share,
-    }
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
-    parser.add_argument("--rounds", type=int, default=5, help="of the loops")
-    parser.add_argument("--seconds", type=float, default=11.0, help="of each loop's episode")
-    parser.add_argument("--trainings", type=int, default=3, help="of different seeds; figures are their medians")
-    parser.add_argument(
-        "--simulations", type=int, default=99, help="of each training; below 100, which has no closing comparison"
-    )
-    options = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        rounds = [trainings(options.simulations, seed, Path(folder, str(seed))) for seed in range(options.trainings)]
-    figures = loops(options.seconds, options.rounds)
-    figures |= {name: median(one[name] for one in rounds) for name in rounds[0]}
-    if options.json:
-        print(json.dumps(figures))
-        return
-    for name, value in figures.items():
-        print(f"{name:42}{value:8.3f}")
-
-
-if __name__ == "__main__":
-    main()

@@ -1,15 +1,17 @@
-"""Gradient updates per second of NAF and of stable-baselines3's TD3 with equal layers, on one thread.
+"""Times gradient updates of NAF and of stable-baselines3's TD3 with equal layers, on one thread.
 
 Every round times each of them once, on random transitions, one after the other; ratios are medians over the rounds. The
-last column is the time of the bare matrix products of NAF's update, forward and backward, as a share of the update's.
+products are the bare matrix products of NAF's update, forward and backward, as a share of the update's time.
 """
 
 from __future__ import annotations
 
-import argparse
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
 from statistics import median
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -19,22 +21,97 @@ from stable_baselines3 import TD3
 from stable_baselines3.common.logger import Logger
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
+from experiments.record import Row
 from sarah.agents import NAF
+
+LAYERS = ((32, 32), (64, 64), (256, 256))
+DIMENSIONS = ((3, 1), (16, 5))
+"""Observations and actions."""
+TRANSITIONS = 2000
+WARM_UP = 20
+"""Number of updates that are not timed."""
+
+
+@dataclass(frozen=True)
+class Updates:
+    """Updates per second of processor time: other processes of the machine do not count.
+
+    :param updates: number of updates in a round
+    :param rounds: number of rounds
+    :param batch_size: number of transitions in the minibatch of an update
+    """
+
+    updates: int = 60
+    rounds: int = 7
+    batch_size: int = 256
+
+    def rows(self) -> Iterator[Row]:
+        """A row for each size of layers, observations and actions."""
+        torch.set_num_threads(1)
+        for layers in LAYERS:
+            for dimensions in DIMENSIONS:
+                times = self._times(layers, dimensions)
+                yield {
+                    "layers": " x ".join(map(str, layers)),
+                    "observations": dimensions[0],
+                    "actions": dimensions[1],
+                    "naf_updates_per_second": round(1.0 / median(times["naf"])),
+                    "td3_updates_per_second": round(1.0 / median(times["td3"])),
+                    "naf_over_td3": ratio(times["td3"], times["naf"]),
+                    "products_share": ratio(times["products"], times["naf"]),
+                }
+
+    def _times(self, layers: tuple[int, ...], dimensions: tuple[int, int]) -> dict[str, list[float]]:
+        """Seconds of an update in every round, by what is timed."""
+        settings: dict[str, Any] = dict(
+            policy_kwargs=dict(net_arch=list(layers)), buffer_size=5000, seed=0, device="cpu"
+        )
+        naf, td3 = (filled(algorithm("MlpPolicy", Noise(*dimensions), **settings)) for algorithm in (NAF, TD3))
+        timed: dict[str, Callable[[int], None]] = {
+            "naf": partial(naf.train, batch_size=self.batch_size),
+            "td3": partial(td3.train, batch_size=self.batch_size),
+            "products": products(naf, self.batch_size),
+        }
+        for run in timed.values():
+            run(WARM_UP)
+        times: dict[str, list[float]] = {name: [] for name in timed}
+        for _ in range(self.rounds):
+            for name, run in timed.items():
+                start = time.process_time()
+                run(self.updates)
+                times[name].append((time.process_time() - start) / self.updates)
+        return times
 
 
 class Noise(gym.Env):
-    """Spaces of a size, and nothing to learn."""
+    """Spaces of a size, and nothing to learn.
+
+    :param observation_dim: number of observations
+    :param action_dim: number of actions
+    """
 
     def __init__(self, observation_dim: int, action_dim: int) -> None:
         self.observation_space = spaces.Box(-1.0, 1.0, (observation_dim,))
         self.action_space = spaces.Box(-1.0, 1.0, (action_dim,))
 
 
-def filled(model: OffPolicyAlgorithm, transitions: int = 2000) -> OffPolicyAlgorithm:
-    """The model with random transitions in its replay buffer."""
+def ratio(upper: list[float], lower: list[float]) -> float:
+    """Median of the rounds' ratios.
+
+    :param upper: times of the rounds
+    :param lower: times of the same rounds
+    """
+    return median(one / other for one, other in zip(upper, lower, strict=True))
+
+
+def filled(model: OffPolicyAlgorithm) -> OffPolicyAlgorithm:
+    """The model with random transitions in its replay buffer.
+
+    :param model: an algorithm
+    """
     observation_dim, action_dim = model.observation_space.shape[0], model.action_space.shape[0]
     generator = np.random.default_rng(0)
-    for _ in range(transitions):
+    for _ in range(TRANSITIONS):
         observations = generator.uniform(-1, 1, (2, 1, observation_dim)).astype(np.float32)
         action = generator.uniform(-1, 1, (1, action_dim)).astype(np.float32)
         done = generator.random(1) < 0.01
@@ -44,7 +121,11 @@ def filled(model: OffPolicyAlgorithm, transitions: int = 2000) -> OffPolicyAlgor
 
 
 def products(model: NAF, batch_size: int) -> Callable[[int], None]:
-    """The matrix products of updates: all layers on a batch with their gradients, and the target's V."""
+    """The matrix products of updates: all layers on a batch with their gradients, and the target's V.
+
+    :param model: an agent
+    :param batch_size: number of transitions in a minibatch
+    """
     layers = [layer for layer in model.q_net.modules() if isinstance(layer, torch.nn.Linear)]
     target = [layer for layer in model.q_net.value_net if layer in layers]
     weights = {layer: torch.randn(layer.weight.shape) for layer in layers}
@@ -63,50 +144,3 @@ def products(model: NAF, batch_size: int) -> Callable[[int], None]:
                     torch.mm(inputs[layer], weights[layer].t())
 
     return run
-
-
-def seconds(run: Callable[[int], None], updates: int) -> float:
-    """Processor time of one update: other processes of the machine do not count."""
-    start = time.process_time()
-    run(updates)
-    return (time.process_time() - start) / updates
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--updates", type=int, default=200, help="of each round")
-    parser.add_argument("--rounds", type=int, default=15)
-    parser.add_argument("--batch-size", type=int, default=256)
-    options = parser.parse_args()
-    torch.set_num_threads(1)
-    print(
-        "| layers | observations, actions | NAF updates/s | TD3 updates/s | NAF/TD3 | products' share |\n"
-        + "|---" * 6
-        + "|"
-    )
-    for layers in ([32, 32], [64, 64], [256, 256]):
-        for dimensions in ((3, 1), (16, 5)):
-            env = Noise(*dimensions)
-            settings = dict(policy_kwargs=dict(net_arch=layers), buffer_size=5000, seed=0, device="cpu")
-            naf, td3 = (filled(algorithm("MlpPolicy", env, **settings)) for algorithm in (NAF, TD3))
-            runs = {
-                "naf": lambda count, model=naf: model.train(count, options.batch_size),
-                "td3": lambda count, model=td3: model.train(count, options.batch_size),
-                "products": products(naf, options.batch_size),
-            }
-            for run in runs.values():
-                run(20)
-            rounds = [
-                {name: seconds(run, options.updates) for name, run in runs.items()} for _ in range(options.rounds)
-            ]
-            times = {name: median(one[name] for one in rounds) for name in runs}
-            print(
-                f"| {' x '.join(map(str, layers))} | {dimensions[0]}, {dimensions[1]} | {1 / times['naf']:.0f} "
-                f"| {1 / times['td3']:.0f} | {median(one['td3'] / one['naf'] for one in rounds):.2f} "
-                f"| {median(one['products'] / one['naf'] for one in rounds):.2f} |",
-                flush=True,
-            )
-
-
-if __name__ == "__main__":
-    main()

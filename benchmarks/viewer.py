@@ -1,30 +1,36 @@
-"""How soon the viewer's page is there, and how many frames per second it plays; with a screenshot on request.
+"""Times how soon the viewer's page is there, and how many frames per second it plays.
 
-Frames are counted where they are sent, and where Chromium draws them. Without a GPU it draws on the processor, which
-says little of a browser that has one; what the page's script, layout and style take of a frame is the same with either.
+Frames are counted where they are sent, and where Chromium draws them. Without a graphics card it draws on the
+processor, which says little of a browser that has one; the page's own work on a frame is the same with either.
 """
 
 from __future__ import annotations
 
-import argparse
 import re
 import shutil
 import subprocess
 import sys
+import threading
 import time
 import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 import playwright.sync_api as playwright
 
-from sarah.runs.run_episodes import choice_of_parameters
+from experiments.record import Row
+from sarah.episode.episode import simulate
+from sarah.runs.run_episodes import RunEpisode, episode_of_parameters
 from sarah.viewer.page import Page
 from sarah.viewer.server import serving
 
-COMMAND = Path(sys.executable).parent / "sarah-view"
 PARAMETERS = (1.06, -0.24, 0.21, -0.15)
-SECONDS = 10.0
-"""Over which frames are counted."""
+HOST, PORT = "127.0.0.1", 8080
+WINDOWS = ((1440, 900), (640, 400))
+"""Sizes of the browser's window, in pixels."""
+PATIENCE_MILLISECONDS = 300_000
 COUNT_DRAWN = """seconds => new Promise(resolve => {
     let drawn = 0;
     const begin = performance.now();
@@ -34,42 +40,66 @@ COUNT_DRAWN = """seconds => new Promise(resolve => {
 })"""
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--screenshot", type=Path, help="PNG to write")
-    parser.add_argument("--size", type=int, nargs=2, default=(1440, 900), help="of the browser's window, in pixels")
-    options = parser.parse_args()
-    print(f"{seconds_until_served():.1f} s from the command to a page that can be loaded")
-    with serving("127.0.0.1", 8080) as server:
-        choice = choice_of_parameters(PARAMETERS)
-        page = Page(server, [choice], choice)
-        while not page.frames:
-            time.sleep(0.01)
-        print(f"{frames_per_second(page):.1f} frames per second are sent")
-        with playwright.sync_playwright() as driver:
-            browser = driver.chromium.launch(executable_path=shutil.which("chromium"))
-            tab = browser.new_page(viewport={"width": options.size[0], "height": options.size[1]})
-            tab.set_default_timeout(300_000)
-            start = time.perf_counter()
-            tab.goto(f"http://127.0.0.1:{server.get_port()}")
-            tab.locator("label").get_by_text("P1", exact=True).wait_for()
-            print(f"{time.perf_counter() - start:.1f} s until Chromium has loaded the page")
-            tab.get_by_role("button", name="Back to this episode").click()
-            performance = tab.context.new_cdp_session(tab)
-            performance.send("Performance.enable")
-            before = seconds_of_the_page(performance)
-            drawn = tab.evaluate(COUNT_DRAWN, SECONDS)
-            print(f"{drawn:.1f} frames per second are drawn")
-            spent = seconds_of_the_page(performance) - before
-            print(f"{1000 * spent / (drawn * SECONDS):.0f} ms of a frame are the page's script, layout and style")
-            if options.screenshot:
-                take_screenshot(tab, options.screenshot)
-        page.close()
+@dataclass(frozen=True)
+class Viewer:
+    """Start of the page, and its frames.
+
+    :param rounds: number of times that everything is measured
+    :param seconds: time over which frames are counted, in s
+    """
+
+    rounds: int = 3
+    seconds: float = 10.0
+
+    def rows(self) -> Iterator[Row]:
+        """A row for each quantity."""
+        measured = [self._round() for _ in range(self.rounds)]
+        for quantity in measured[0]:
+            values = [one[quantity] for one in measured]
+            yield {"quantity": quantity, "lowest": min(values), "highest": max(values)}
+
+    def _round(self) -> dict[str, float]:
+        figures = {"seconds from the command until the page is there": seconds_until_served()}
+        with serving(HOST, PORT) as server:
+            episode = episode_of_parameters(PARAMETERS)
+            page = Page(server, [episode], episode)
+            while not page.frames:
+                time.sleep(0.01)
+            figures["frames per second sent"] = frames_per_second(page, self.seconds)
+            with simulating(episode):
+                while_simulating = frames_per_second(page, self.seconds)
+            figures["frames per second sent while the next episode is simulated"] = while_simulating
+            with playwright.sync_playwright() as driver:
+                browser = driver.chromium.launch(executable_path=shutil.which("chromium"))
+                for width, height in WINDOWS:
+                    tab = browser.new_page(viewport={"width": width, "height": height})
+                    drawn, milliseconds = self._drawn(tab, f"http://{HOST}:{server.get_port()}")
+                    tab.close()
+                    size = f"{width} x {height} pixels"
+                    figures[f"frames per second drawn by Chromium without a graphics card, {size}"] = round(drawn)
+                    figures[f"milliseconds of the page's own work a frame, {size}"] = round(milliseconds)
+            page.close()
+        return figures
+
+    def _drawn(self, tab: playwright.Page, address: str) -> tuple[float, float]:
+        """Frames per second that the browser draws, and milliseconds of the page's own work for each."""
+        tab.set_default_timeout(PATIENCE_MILLISECONDS)
+        tab.goto(address)
+        tab.locator("label").get_by_text("P1", exact=True).wait_for()
+        tab.get_by_role("button", name="Back to this episode").click()
+        performance = tab.context.new_cdp_session(tab)
+        performance.send("Performance.enable")
+        before = seconds_of_the_page(performance)
+        drawn = float(tab.evaluate(COUNT_DRAWN, self.seconds))
+        spent = seconds_of_the_page(performance) - before
+        return drawn, 1000.0 * spent / (drawn * self.seconds)
 
 
 def seconds_until_served() -> float:
+    """Seconds from the command to a page that has been loaded."""
     start = time.perf_counter()
-    process = subprocess.Popen([COMMAND], stdout=subprocess.PIPE, text=True)
+    command = Path(sys.executable).with_name("sarah-view")
+    process = subprocess.Popen([command], stdout=subprocess.PIPE, text=True)
     try:
         assert process.stdout is not None
         url = re.search(r"http://\S+", process.stdout.readline())
@@ -81,44 +111,42 @@ def seconds_until_served() -> float:
         process.wait(30)
 
 
-def frames_per_second(page: Page) -> float:
+@contextmanager
+def simulating(episode: RunEpisode) -> Iterator[None]:
+    """Simulate an episode again and again, in a thread, as the page does when somebody moves a slider.
+
+    :param episode: the episode
+    """
+    done = threading.Event()
+
+    def run() -> None:
+        while not done.is_set():
+            simulate(episode.spec, record_trace=True)
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    try:
+        yield
+    finally:
+        done.set()
+        thread.join()
+
+
+def frames_per_second(page: Page, seconds: float) -> float:
+    """Frames that are sent.
+
+    :param page: the page
+    :param seconds: time over which they are counted, in s
+    """
     frames, start = page.frames, time.perf_counter()
-    time.sleep(SECONDS)
+    time.sleep(seconds)
     return (page.frames - frames) / (time.perf_counter() - start)
 
 
 def seconds_of_the_page(performance: playwright.CDPSession) -> float:
-    """Seconds of script, layout and style so far: what a frame costs whoever rasterises it."""
+    """Seconds of script, layout and style so far: what a frame costs whoever rasterises it.
+
+    :param performance: session of the browser's developer tools
+    """
     values = {metric["name"]: metric["value"] for metric in performance.send("Performance.getMetrics")["metrics"]}
     return sum(values[name] for name in ("ScriptDuration", "LayoutDuration", "RecalcStyleDuration"))
-
-
-def take_screenshot(tab: playwright.Page, path: Path) -> None:
-    """The robot while it is pushed."""
-    notice = tab.locator("#webgl-software-rendering button")
-    if notice.count():
-        notice.click()
-    if tab.get_by_role("button", name="Pause").count():
-        tab.get_by_role("button", name="Pause").click()
-    tab.get_by_role("button", name="Play").wait_for()
-    for label, value in (("Force (N)", "80"), ("Direction (°)", "180"), ("Time (s)", "12.2")):
-        enter(tab, label, value)
-    tab.get_by_text("12.2 s").first.wait_for()
-    tab.get_by_role("button", name="Push now").click()
-    tab.get_by_role("button", name="Pause").click()
-    enter(tab, "Time (s)", "12.35")
-    tab.get_by_text(re.compile(r"12\.[34] s")).first.wait_for()
-    tab.mouse.move(5, 5)
-    time.sleep(5.0)
-    tab.screenshot(path=path)
-
-
-def enter(tab: playwright.Page, label: str, value: str) -> None:
-    name = tab.locator("label").get_by_text(label, exact=True)
-    box = name.locator("xpath=ancestor::div[.//input[@type='text']][1]").locator("input[type=text]").first
-    box.fill(value)
-    box.press("Enter")
-
-
-if __name__ == "__main__":
-    main()

@@ -8,7 +8,9 @@ from pathlib import Path
 
 from sarah.control.pattern_generator import SteppingParameters
 from sarah.episode.episode import simulate
-from sarah.episode.spec import TRAINED_STEPPING, EpisodeConfig, EpisodeSpec
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.pictures.gait_figure import draw_gait_cycle, gait_cycle
 from sarah.pictures.robot_figure import draw_robot
 from sarah.pictures.state_machine_figure import draw_state_machine
@@ -18,7 +20,7 @@ from sarah.simulation.randomisation import Randomisation
 
 HERE = Path(__file__).parent
 CYCLES = 4
-"""Of the gait in the video, which so repeats without a jump."""
+"""Number of gait cycles in the video, which so repeats without a jump."""
 
 
 def main() -> None:

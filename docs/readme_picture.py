@@ -11,11 +11,12 @@ import matplotlib
 import numpy as np
 from PIL import Image, ImageColor, ImageDraw, ImageFont
 
-from sarah.episode.ending import ENDINGS
+from sarah.episode.ending import TERMINATIONS
 from sarah.episode.episode import simulate
 from sarah.episode.push import Push
 from sarah.episode.result import EpisodeResult
-from sarah.episode.spec import EpisodeConfig, EpisodeSpec
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BalanceConfig
 from sarah.episode.trace import Trace
 from sarah.pictures.colours import PUSH
 from sarah.pictures.overlay import INK, METRES_PER_NEWTON, PUSH_SHOWN_SECONDS
@@ -39,7 +40,7 @@ FONT = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans-Bold.ttf
 
 
 def main() -> None:
-    config = EpisodeConfig(push=Push(newtons=(NEWTONS, NEWTONS)), time_limit=10.0)
+    config = BalanceConfig(push=Push(newtons=(NEWTONS, NEWTONS)), time_limit=10.0)
     halves = []
     for parameters, caption in CAPTIONS.items():
         result = simulate(EpisodeSpec(parameters, SEED, "balance", config), record_trace=True)
@@ -71,7 +72,7 @@ def film(result: EpisodeResult, caption: str) -> list[Image.Image]:
                 CAMERA,
             )
         )
-        ending = ENDINGS[result.termination] if time > trace.time[-1] else ""
+        ending = TERMINATIONS[result.termination] if time > trace.time[-1] else ""
         write(picture, view, trace, tick, time, f"{caption}\n{ending}")
         pictures.append(picture)
     renderer.close()

@@ -95,7 +95,7 @@ def write(
     text = io.StringIO(newline="")
     writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
     writer.writeheader()
-    writer.writerows({column: _cell(value) for column, value in row.items()} for row in rows)
+    writer.writerows({column: cell(value) for column, value in row.items()} for row in rows)
     (folder / f"{name}.csv").write_text(text.getvalue(), encoding="utf-8")
     about = {
         "question": question,
@@ -126,7 +126,11 @@ def commit() -> str:
     return process.stdout.strip() or "unknown"
 
 
-def _cell(value: Any) -> str:
+def cell(value: Any) -> str:
+    """A value as it stands in the file.
+
+    :param value: number or text; None leaves the cell empty
+    """
     if value is None:
         return ""
     return f"{value:.5g}" if isinstance(value, float) else str(value)

@@ -29,7 +29,7 @@ def test_a_file_keeps_its_content_until_the_new_one_is_complete(tmp_path: Path) 
 
 
 def test_memory_and_open_files_stay_flat() -> None:
-    """A leaked world, 200 times, would be some 100 MB; benchmarks/long_run.py goes on for longer."""
+    """A leaked world, 200 times, would be some 100 MB; `make endurance` goes on for longer."""
     config = EpisodeConfig(time_limit=1.02, physics=Physics(rate=50, solver_iterations=5, control_rate=50))
 
     def usage_after(episodes: int) -> tuple[int, int]:

@@ -79,7 +79,7 @@ def _defaults(arguments: Sequence[str]) -> CompareOptions:
     """Default options, of the type that task and engine take."""
     given = given_options(arguments, "task", "engine", "episode.engine")
     task = given.get("task", CompareOptions.task)
-    episode = episode_of(task, EpisodeConfig(), given)
+    episode = episode_of(task, given)
     check_episode_options(arguments, episode)
     return CompareOptions(task=task, episode=episode)
 

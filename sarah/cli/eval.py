@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.options import changed_episodes, check_has, numbers, parse_options, run_command, say_engine
+from sarah.cli.options import changed_episodes, numbers, parse_options, run_command, say_engine
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, BalanceConfig
 from sarah.errors import ConfigurationError, check_range, unknown_name
@@ -136,8 +136,8 @@ def _subject(options: EvalOptions) -> tuple[str, str | None, tuple[float, ...], 
 
 def _changed(config: EpisodeConfig, options: EvalOptions, task: str) -> EpisodeConfig:
     """Episode settings with the changes that the options ask for."""
-    if options.robustness is not None:
-        check_has(config, "push", "robustness")
+    if options.robustness is not None and task != BALANCE.name:
+        raise ConfigurationError(f"--robustness is for --task {BALANCE.name}")
     return changed_episodes(
         config, options.stepping, options.push_newtons, options.physics, options.randomisation, options.engine
     )

@@ -248,14 +248,16 @@ def given_options(arguments: Sequence[str], *names: str) -> dict[str, str]:
         return {}
 
 
-def episode_of(task: str, episode: EpisodeConfig, given: Mapping[str, str]) -> EpisodeConfig:
+def episode_of(task: str, given: Mapping[str, str], episode: EpisodeConfig | None = None) -> EpisodeConfig:
     """Episode settings of the type that a task and an engine take.
 
     :param task: name of the task; an unknown one is ignored here, for the caller to report
-    :param episode: settings of any task's episodes
     :param given: values of the options that were given, by name; ``engine`` and ``episode.engine`` are used
+    :param episode: settings of any task's episodes; by default the task's own
     """
-    if task in TASKS and type(episode) is not type(TASKS[task].episode):
+    if episode is None:
+        episode = TASKS.get(task, STEPPING).episode
+    elif task in TASKS and type(episode) is not type(TASKS[task].episode):
         episode = TASKS[task].config_of(episode)
     engine = given.get("engine", given.get("episode.engine"))
     return with_engine(episode, engine if engine in get_args(Engine) else None)

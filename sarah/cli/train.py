@@ -177,7 +177,7 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
     task = given.get("task", training.task)
     if task not in TASKS:  # the real parser reports it
         return TrainOptions(training)
-    episode = episode_of(task, training.episode, given)
+    episode = episode_of(task, given, training.episode if "config" in given else None)
     check_episode_options(arguments, episode)
     if "from" in given and task == BALANCE.name:
         episode = _on_learned_stepping(Path(given["from"]), episode)

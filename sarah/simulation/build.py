@@ -1,4 +1,4 @@
-"""The simulator that an engine's name stands for. No engine is imported before an episode asks for it."""
+"""The simulator of an engine, by the engine's name. An engine is imported only when an episode needs it."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ BuildSimulator = Callable[[RobotDescription, Physics, Conditions], Simulator]
 
 
 def simulator_of(engine: str) -> BuildSimulator:
-    """What builds an engine's simulator.
+    """Class that builds an engine's simulator.
 
-    :param engine: ``"pybullet"`` or ``"mujoco"``
+    :param engine: name of the engine, ``"pybullet"`` or ``"mujoco"``
     :raises ConfigurationError: if the engine is not installed
     """
     check_engine(engine)

@@ -55,11 +55,11 @@ def learn(
 ) -> Parameters:
     """Learn by what the configuration names.
 
-    :param config: of the training
-    :param episodes: to learn from
-    :param run: where an agent is saved
-    :param recorder: of the episodes
-    :param workers: that simulate
+    :param config: settings of the training
+    :param episodes: number of episodes to learn from
+    :param run: run folder, in which an agent is saved
+    :param recorder: recorder of the episodes
+    :param workers: who simulates
     :return: what the algorithm itself would choose in the end
     """
     if config.algo in OPTIMISERS:
@@ -67,8 +67,8 @@ def learn(
     env = EpisodeVecEnv(config.task, config.episode, episodes, config.slots, workers)
     model = make_agent(config, env)
     model.set_logger(recorder.log)
-    standing = nominal_observation(config)
-    recorder.choose = lambda: chosen_parameters(model, standing, TASKS[config.task])
+    nominal = nominal_observation(config)
+    recorder.choose = lambda: chosen_parameters(model, nominal, TASKS[config.task])
     # The recorder logs every episode; stable-baselines3's own averages are left out.
     model.learn(
         episodes + config.slots - 1,
@@ -89,8 +89,8 @@ def spread_seed(config: TrainingConfig) -> int:
 def make_agent(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
     """Make the reinforcement learner that a configuration names, with its settings.
 
-    :param config: of the training
-    :param env: to learn from
+    :param config: settings of the training
+    :param env: environment to learn from
     """
     settings = config.agent
     assert isinstance(settings, LearnerSettings)
@@ -174,7 +174,7 @@ LEARNERS: dict[type[LearnerSettings], tuple[type[OffPolicyAlgorithm], Callable[[
 def nominal_observation(config: TrainingConfig) -> np.ndarray:
     """What the agent sees when the robot as designed stands before it.
 
-    :param config: of the training; the randomisation is left out
+    :param config: settings of the training; the randomisation is left out
     """
     nominal = dataclasses.replace(config.episode, randomisation=Randomisation(enabled=False, start_speed=0.0))
     episode = Episode(nominal, 0, TASKS[config.task])
@@ -188,8 +188,8 @@ def chosen_parameters(model: OffPolicyAlgorithm, observation: np.ndarray, task: 
     """What the agent does, without exploration.
 
     :param model: the agent
-    :param observation: that it acts on
-    :param task: whose parameters they are
+    :param observation: observation that it acts on, of shape (16,)
+    :param task: task whose parameters they are
     """
     action, _ = model.predict(observation, deterministic=True)
     return parameters_from(action, task)

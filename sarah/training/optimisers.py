@@ -1,4 +1,4 @@
-"""What many would take for a few numbers and costly trials: black-box optimisers, behind the same training command.
+"""What many would take for a few numbers and costly episodes: black-box optimisers, behind the same training command.
 
 They see no observation: they are asked for an action, a task's parameters scaled to [-1, 1], and told its return.
 """
@@ -14,7 +14,7 @@ from sarah.runs.agent_settings import AgentSettings, EvolutionSettings
 
 
 class Optimiser(Protocol):
-    """An optimiser that is asked and told, in the same order, with several trials in between."""
+    """An optimiser that is asked and told, in the same order, with several episodes in between."""
 
     def ready(self) -> bool:
         """Whether it can be asked before it is told more."""
@@ -25,8 +25,8 @@ class Optimiser(Protocol):
     def tell(self, action: np.ndarray, episode_return: float) -> None:
         """What came of the oldest action that it was asked for.
 
-        :param action: that action
-        :param episode_return: its return
+        :param action: the action that was asked for
+        :param episode_return: return of its episode
         """
 
     def choice(self) -> np.ndarray:
@@ -36,8 +36,8 @@ class Optimiser(Protocol):
 class RandomSearch:
     """Actions drawn uniformly; it recommends the best one.
 
-    :param dimensions: of an action
-    :param seed: of the draws
+    :param dimensions: number of an action's elements
+    :param seed: seed of the draws
     """
 
     def __init__(self, dimensions: int, seed: int) -> None:
@@ -59,7 +59,7 @@ class RandomSearch:
             self._best, self._best_return = action, episode_return
 
     def choice(self) -> np.ndarray:
-        """The best single trial's."""
+        """The best single episode's."""
         return self._best
 
 
@@ -69,8 +69,8 @@ class EvolutionStrategy:
     A generation is asked for together, and the next one only when all of it has been told.
 
     :param settings: Settings of the strategy
-    :param dimensions: of an action
-    :param seed: of the draws
+    :param dimensions: number of an action's elements
+    :param seed: seed of the draws
     """
 
     def __init__(self, settings: EvolutionSettings, dimensions: int, seed: int) -> None:
@@ -106,10 +106,10 @@ class EvolutionStrategy:
 
 
 class OptunaSearch:
-    """One of Optuna's samplers; it recommends the best single trial.
+    """One of Optuna's samplers; it recommends the best single episode.
 
-    :param dimensions: of an action
-    :param sampler: that chooses the actions
+    :param dimensions: number of an action's elements
+    :param sampler: sampler that chooses the actions
     """
 
     def __init__(self, dimensions: int, sampler: Any) -> None:
@@ -123,21 +123,21 @@ class OptunaSearch:
         self._asked: deque[Any] = deque()
 
     def ready(self) -> bool:
-        """Always: the samplers know of trials that are under way."""
+        """Always: the samplers know of episodes that are under way."""
         return True
 
     def ask(self) -> np.ndarray:
-        """Begin a trial."""
+        """Choose the action of an episode."""
         trial = self._study.ask(self._box)
         self._asked.append(trial)
         return np.array([trial.params[name] for name in self._box])
 
     def tell(self, action: np.ndarray, episode_return: float) -> None:
-        """End the oldest trial."""
+        """Tell the oldest episode's return."""
         self._study.tell(self._asked.popleft(), episode_return)
 
     def choice(self) -> np.ndarray:
-        """The best single trial's."""
+        """The best single episode's."""
         return np.array([self._study.best_params[name] for name in self._box])
 
 
@@ -146,8 +146,8 @@ def make_optimiser(algo: str, settings: AgentSettings, dimensions: int, seed: in
 
     :param algo: ``"cma-es"``, ``"gp"`` (Gaussian process), ``"tpe"`` (tree-structured Parzen estimator), ``"random"``
     :param settings: Settings of that optimiser
-    :param dimensions: of an action
-    :param seed: of everything that it draws
+    :param dimensions: number of an action's elements
+    :param seed: seed of everything that it draws
     """
     if algo == "random":
         return RandomSearch(dimensions, seed)

@@ -125,8 +125,8 @@ def test_a_run_is_not_resumed_with_other_settings(
     trained("mine", "--algo", "random")
     for arguments, message in (
         (("--algo", "naf"), "algo is 'random' in this training, not 'naf': leave it out"),
-        (("--algo", "random", "--slots", "2"), "slots is 4 in this training, not 2: leave it out"),
         (("--task", "balance"), "task is 'stepping' in this training, not 'balance': leave it out"),
+        (("--algo", "random", "--slots", "2"), "slots is 4 in this training, not 2: leave it out"),
     ):
         with pytest.raises(SystemExit):
             command("--resume", "mine", *arguments)

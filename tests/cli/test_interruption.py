@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from experiments import record
+
 BIN = Path(sys.executable).parent
 COARSE = ("--episode.time-limit", "2", "--episode.physics.rate", "100", "--episode.physics.solver-iterations", "5")
 # Long enough to be interrupted three times also where the test itself has to wait for the processor.
@@ -132,10 +134,10 @@ def test_a_folder_that_cannot_be_written_is_one_line(small_disk: Path) -> None:
 
 
 @pytest.mark.slow
-def test_killed_at_random_moments() -> None:
-    """Fewer than by the command that docs/reliability.md names."""
-    program = Path(__file__).parents[2] / "benchmarks" / "kills.py"
-    process = subprocess.run([sys.executable, program, "--kills", "3"], capture_output=True, text=True, timeout=400)
-    found = re.search(r"3 kills, (\d+) trainings, (\d+) of them end as without", process.stdout)
-    assert found is not None, process.stderr
-    assert found[1] == found[2], process.stdout
+def test_killed_at_random_moments(tmp_path: Path) -> None:
+    """Fewer than `make endurance` has."""
+    command = [sys.executable, "-m", "experiments", "kills", "--kills", "3", "--out", str(tmp_path)]
+    process = subprocess.run(command, capture_output=True, text=True, timeout=400, cwd=record.ROOT)
+    assert process.returncode == 0, process.stderr
+    (row,) = record.read("kills", tmp_path).rows
+    assert row["kills"] == "3" and row["same_bytes"] == row["trainings"]

@@ -1,4 +1,4 @@
-"""Black-box optimisers: asked and told in turn, with trials in flight."""
+"""Black-box optimisers: asked and told in turn, with episodes in flight."""
 
 import numpy as np
 import pytest
@@ -10,20 +10,20 @@ OPTIMISERS = ("cma-es", "gp", "tpe", "random")
 BEST = np.array([0.3, -0.4])
 
 
-def trial(action: np.ndarray) -> float:
+def episode(action: np.ndarray) -> float:
     return 1.0 - float(np.square(action - BEST).sum())
 
 
-def tried(algo: str, seed: int, trials: int = 40, in_flight: int = 3) -> tuple[list[np.ndarray], np.ndarray]:
+def tried(algo: str, seed: int, episodes: int = 40, in_flight: int = 3) -> tuple[list[np.ndarray], np.ndarray]:
     """Actions tried, and the choice in the end."""
     optimiser = make_optimiser(algo, settings_of(algo)(), 2, seed)
     actions: list[np.ndarray] = []
     told = 0
-    while told < trials:
-        if len(actions) < trials and len(actions) - told < in_flight and optimiser.ready():
+    while told < episodes:
+        if len(actions) < episodes and len(actions) - told < in_flight and optimiser.ready():
             actions.append(optimiser.ask())
         else:
-            optimiser.tell(actions[told], trial(actions[told]))
+            optimiser.tell(actions[told], episode(actions[told]))
             told += 1
     return actions, optimiser.choice()
 
@@ -32,15 +32,15 @@ def tried(algo: str, seed: int, trials: int = 40, in_flight: int = 3) -> tuple[l
 def test_optimisers_find_what_is_good_within_the_box(algo: str) -> None:
     actions, choice = tried(algo, seed=1)
     assert (np.abs(actions) <= 1.0).all() and choice.shape == (2,)
-    assert trial(choice) > 0.9
+    assert episode(choice) > 0.9
     if algo != "random":
-        late, early = (np.median([trial(action) for action in part]) for part in (actions[30:], actions[:10]))
+        late, early = (np.median([episode(action) for action in part]) for part in (actions[30:], actions[:10]))
         assert late > early
 
 
 @pytest.mark.parametrize("algo", OPTIMISERS)
 def test_optimisers_repeat_with_their_seed(algo: str) -> None:
-    first, second, other = (np.array(tried(algo, seed, trials=16)[0]) for seed in (1, 1, 2))
+    first, second, other = (np.array(tried(algo, seed, episodes=16)[0]) for seed in (1, 1, 2))
     assert np.array_equal(first, second) and not np.array_equal(first, other)
 
 
@@ -53,7 +53,7 @@ def test_a_generation_is_told_before_the_next_is_asked_for(population: int) -> N
     assert len(generation) == population
     for action in generation:
         assert not optimiser.ready()
-        optimiser.tell(action, trial(action))
+        optimiser.tell(action, episode(action))
     assert optimiser.ready()
 
 

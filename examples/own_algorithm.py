@@ -1,0 +1,23 @@
+"""An algorithm of your own: a hill climber in a loop of ten lines.
+
+One sees every improvement of the score. The climber changes the best parameters so far a little, and keeps the change
+if the same two episodes then score more.
+"""
+
+import random
+
+import sarah
+from sarah.episode.tasks import STEPPING
+
+config = sarah.EpisodeConfig(time_limit=5.0)
+generator = random.Random(0)
+best, best_score = (1.0, 1.0, 1.0, 1.0, 1.0), 0.0
+for attempt in range(20):
+    tried = tuple(
+        min(max(generator.gauss(value, 0.3), parameter.low), parameter.high)
+        for value, parameter in zip(best, STEPPING.parameters, strict=True)
+    )
+    score = sarah.evaluate("stepping", tried, config, seeds=range(2)).median("score")
+    if score > best_score:
+        best, best_score = tried, score
+        print(f"attempt {attempt:2}: score {score:.3f} with P = {', '.join(f'{value:.2f}' for value in best)}")

@@ -1,0 +1,99 @@
+"""``python -m experiments NAME``: make a result; without a name, list all of them with their questions.
+
+What follows a name are options: ``--quick`` for a size that takes seconds, ``--out FOLDER`` for files elsewhere than in
+results/, and those of the experiment, which ``python -m experiments NAME --help`` shows.
+
+``python -m experiments stale WHY [NAME...]`` has the pages say of results that they are not of today's project.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+
+from experiments import record
+from experiments.made_with import differences, made_with
+from sarah.cli.options import parse_options, run_command
+from sarah.errors import ConfigurationError, unknown_name
+
+COMMAND = "python -m experiments"
+QUICK_RESULTS = record.ROOT / "build" / "quick_results"
+"""Where the rows of quick experiments go, which say nothing."""
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Do what the arguments of the command say.
+
+    :param arguments: arguments of the process
+    """
+    # Not before: worker processes import this module, and most of them need little of what experiments import.
+    from experiments.table import TABLE
+
+    if not arguments or arguments[0] in ("-h", "--help"):
+        print(__doc__)
+        width = max(map(len, TABLE))
+        print("\n".join(f"{name:{width}}  {maker.question}" for name, maker in TABLE.items()))
+    elif arguments[0] == "stale":
+        mark_stale(record.RESULTS, *arguments[1:])
+    elif arguments[0] in TABLE:
+        make(arguments[0], arguments[1:])
+    else:
+        raise ConfigurationError(unknown_name("experiment", arguments[0], [*TABLE, "stale"]))
+
+
+def make(name: str, arguments: Sequence[str]) -> None:
+    """Make a result, and print its rows as they come.
+
+    :param name: name of the result
+    :param arguments: options
+    """
+    from experiments.table import TABLE
+
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--out", type=Path)
+    shared, own = parser.parse_known_args(arguments)
+    maker = TABLE[name]
+    default = maker.quick_experiment if shared.quick else maker.experiment
+    experiment = parse_options(type(default), f"{COMMAND} {name}", own, default)
+    rows = []
+    for row in experiment.rows():
+        print(", ".join(f"{column} {record.cell(value)}" for column, value in row.items()), flush=True)
+        rows.append(row)
+    folder = shared.out or (QUICK_RESULTS if shared.quick else record.RESULTS)
+    folder.mkdir(parents=True, exist_ok=True)
+    command = shlex.join([*COMMAND.split(), name, *arguments])
+    record.write(name, rows, maker.question, command, made_with() if maker.of_robot else None, folder)
+    print(folder / f"{name}.csv")
+
+
+def mark_stale(folder: Path, reason: str = "", *names: str) -> None:
+    """Have the pages say that results are not of today's project.
+
+    :param folder: folder of the results
+    :param reason: sentence that says why
+    :param names: names of the results; by default all that were made with another physics, controller or robot
+    """
+    if not reason.endswith("."):
+        raise ConfigurationError(f"WHY must be a sentence, which the pages show, not {reason!r}")
+    known = record.names(folder)
+    for name in names:
+        if name not in known:
+            raise ConfigurationError(unknown_name("result", name, known))
+    for name in names or [name for name in known if is_outdated(record.read(name, folder))]:
+        record.mark_stale(name, reason, folder)
+        print(folder / f"{name}.json")
+
+
+def is_outdated(result: record.Result) -> bool:
+    """Whether a result was made with another physics, controller or robot, and does not say so yet.
+
+    :param result: the result
+    """
+    return result.made_with is not None and result.stale is None and bool(differences(result.made_with, made_with()))
+
+
+if __name__ == "__main__":
+    run_command(COMMAND, main)

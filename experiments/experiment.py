@@ -1,0 +1,43 @@
+"""What every experiment is: a dataclass whose fields are its options, and which makes the rows of a result."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from experiments.record import Row
+from sarah.episode.push import Push
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.tasks import TASKS
+
+
+class Experiment(Protocol):
+    """Something that makes the rows of a result."""
+
+    def rows(self) -> Iterator[Row]:
+        """The rows, each as soon as it is known; all of them have the same columns."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OnWorkers:
+    """Options of an experiment whose episodes or trainings run in worker processes.
+
+    :param workers: number of worker processes on this machine; with 0, this process does the work. No row depends on it
+    """
+
+    workers: int = os.cpu_count() or 1
+
+
+def settings_of(task: str, newtons: tuple[float, float], **shared: Any) -> EpisodeConfig:
+    """Settings of a task's episodes, with pushes if the task has some.
+
+    :param task: name of the task
+    :param newtons: range of the pushes' force, in N
+    :param shared: settings that all tasks have
+    """
+    if TASKS[task].has_push:
+        shared["push"] = Push(newtons=newtons)
+    return dataclasses.replace(TASKS[task].episode, **shared)

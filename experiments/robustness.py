@@ -1,0 +1,56 @@
+"""How hard a push the robot comes back from: one Second Training beside V = 0, by force and direction."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from experiments.record import Row
+from experiments.trainings import OfTrainings
+from sarah.episode.tasks import BALANCE, BalanceConfig
+from sarah.episode.workers import Workers
+from sarah.reports.robustness import FORCES, push_many, robustness_table
+from sarah.runs.config import TrainingConfig
+
+
+@dataclass(frozen=True)
+class Robustness(OfTrainings):
+    """Pushes of several forces, the same for a Second Training by NAF and for V = 0.
+
+    :param seed: seed of the training
+    :param budget: number of episodes of the training
+    :param episodes: number of pushes of each force
+    :param forces: forces of the pushes, in N
+    """
+
+    seed: int = 3
+    budget: int = 300
+    episodes: int = 40
+    forces: tuple[float, ...] = FORCES
+
+    def rows(self) -> Iterator[Row]:
+        """A row for each controller, force and group of directions."""
+        config = self.episode("balance")
+        assert BALANCE.neutral is not None and isinstance(config, BalanceConfig)
+        training = TrainingConfig("balance", episodes=self.budget, seed=self.seed, episode=config)
+        with Workers(self.workers) as workers:
+            learned = self.trained(training, workers).parameters()
+            controllers = {
+                "V = 0": BALANCE.neutral,
+                f"V = ({', '.join(f'{value:.2f}' for value in learned)})": learned,
+            }
+            for controller, parameters in controllers.items():
+                (pushed,) = push_many([parameters], config, workers, self.forces, self.episodes)
+                for row in robustness_table(pushed):
+                    yield {
+                        "controller": controller,
+                        "push_n": f"{row.newtons:g}",
+                        "direction": row.direction,
+                        "episodes": row.episodes,
+                        "survival": row.survival,
+                        "survival_low": row.survival_low,
+                        "survival_high": row.survival_high,
+                        "score": row.score_median,
+                        "drift_cm": 100.0 * row.drift_median,
+                        "vibration_m2_s4": row.vibration_median,
+                    }

@@ -1,0 +1,87 @@
+"""NAF on standard tasks, against stable-baselines3's TD3, SAC and DDPG: mean return of evaluation episodes at the end.
+
+Every algorithm runs with the defaults of its class; TD3 and DDPG with the noise that their documentation adds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from statistics import median
+
+import gymnasium as gym
+import numpy as np
+import torch
+import tyro
+from stable_baselines3 import DDPG, SAC, TD3
+from stable_baselines3.common.evaluation import evaluate_policy
+from stable_baselines3.common.monitor import Monitor
+from stable_baselines3.common.noise import NormalActionNoise
+
+from experiments.experiment import OnWorkers
+from experiments.record import Row
+from sarah.agents import NAF
+from sarah.episode.workers import Workers
+
+ALGORITHMS = {"naf": NAF, "td3": TD3, "sac": SAC, "ddpg": DDPG}
+EVALUATION_SEED = 10_000
+
+
+@dataclass(frozen=True)
+class StandardTask(OnWorkers):
+    """Four algorithms on a task of gymnasium, a training for each worker at a time.
+
+    :param task: name of the task
+    :param steps: number of steps of a training
+    :param seeds: number of trainings of each algorithm
+    :param episodes: number of evaluation episodes
+    """
+
+    task: tyro.conf.Suppress[str]
+    steps: int
+    seeds: int = 5
+    episodes: int = 20
+
+    def rows(self) -> Iterator[Row]:
+        """A row for each algorithm."""
+        with Workers(self.workers) as workers:
+            jobs = {
+                algo: [
+                    workers.submit(trained_return, self.task, algo, seed, self.steps, self.episodes)
+                    for seed in range(self.seeds)
+                ]
+                for algo in ALGORITHMS
+            }
+            for algo, running in jobs.items():
+                returns = [job.result() for job in running]
+                yield {
+                    "task": self.task,
+                    "steps": self.steps,
+                    "algorithm": algo,
+                    "seeds": self.seeds,
+                    "median_return": median(returns),
+                    "lowest_return": min(returns),
+                    "highest_return": max(returns),
+                }
+
+
+def trained_return(task: str, algo: str, seed: int, steps: int, episodes: int) -> float:
+    """Mean return of evaluation episodes after a training, the same episodes for every algorithm and seed.
+
+    :param task: name of the task
+    :param algo: name of the algorithm
+    :param seed: seed of the training
+    :param steps: number of its steps
+    :param episodes: number of evaluation episodes
+    """
+    torch.set_num_threads(1)
+    env = gym.make(task)
+    settings = {}
+    if algo in ("td3", "ddpg"):
+        assert isinstance(env.action_space, gym.spaces.Box)
+        (dimensions,) = env.action_space.shape
+        settings["action_noise"] = NormalActionNoise(np.zeros(dimensions), np.full(dimensions, 0.1))
+    model = ALGORITHMS[algo]("MlpPolicy", env, seed=seed, device="cpu", **settings).learn(steps)
+    judged = Monitor(gym.make(task))
+    judged.reset(seed=EVALUATION_SEED)
+    return float(evaluate_policy(model, judged, episodes)[0])

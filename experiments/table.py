@@ -1,0 +1,263 @@
+"""Every result and what makes it: the one table that commands, ``make results`` and tests read."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from benchmarks.engines_speed import EnginesSpeed
+from benchmarks.physics_speed import PhysicsSpeed
+from benchmarks.throughput import Throughput
+from benchmarks.updates import Updates
+from benchmarks.viewer import Viewer
+from experiments.clock import Clock
+from experiments.engines import Engines
+from experiments.experiment import Experiment, OnWorkers
+from experiments.first_training import FirstTraining
+from experiments.flexion_laws import FlexionLaws, FlexionLawsToday
+from experiments.landscape import Landscape
+from experiments.naf_preset import NafPreset
+from experiments.noise_limit import NoiseLimit
+from experiments.physics import Fineness, FinenessAnywhere, FinenessAtSlowGaits
+from experiments.race import Race
+from experiments.robot_dimensions import RobotDimensions
+from experiments.robustness import Robustness
+from experiments.second_training import SecondTraining
+from experiments.slots import SlotsSchedule
+from experiments.slots_cost import SlotsCost
+from experiments.standard_tasks import StandardTask
+from experiments.stepping_and_hips import SteppingAndHips
+from experiments.transfer import TransferBetweenEngines
+from tests.endurance.killed_workers import KilledWorkers
+from tests.endurance.kills import Kills
+from tests.endurance.long_run import LongProcess, LongTraining
+from tests.endurance.protections import Protections
+from tests.endurance.resume import Resume
+
+
+@dataclass(frozen=True)
+class Maker:
+    """What makes a result.
+
+    :param question: sentence that its rows answer
+    :param experiment: the experiment in its full size
+    :param quick: options that differ in a size that takes seconds, and shows only that the experiment runs
+    :param of_robot: whether its rows depend on physics, controller and robot, whose fingerprint is then kept
+    """
+
+    question: str
+    experiment: Experiment
+    quick: Mapping[str, Any] = field(default_factory=dict)
+    of_robot: bool = True
+
+    @property
+    def quick_experiment(self) -> Experiment:
+        """The experiment in a size that takes seconds, in this process."""
+        here = {"workers": 0} if isinstance(self.experiment, OnWorkers) else {}
+        return dataclasses.replace(self.experiment, **here, **self.quick)  # type: ignore[type-var]
+
+
+SHORT = {"time_limit": 2.0}
+TRAINED = {**SHORT, "budget": 5}
+
+TABLE: dict[str, Maker] = {
+    # What trainings learn.
+    "first_training": Maker(
+        "Does the robot learn to step, and where do P1 to P5 settle?",
+        FirstTraining(),
+        {**TRAINED, "seeds": 1, "episodes": 2, "reference_episodes": 1},
+    ),
+    "second_training": Maker(
+        "Does the robot learn to come back after a push, and where do V1 to V4 settle?",
+        SecondTraining(),
+        {**TRAINED, "seeds": 1, "pushes": 2, "reference_pushes": 1, "unpushed": 1},
+    ),
+    "robustness": Maker(
+        "How hard a push does the robot come back from?",
+        Robustness(),
+        {**TRAINED, "seed": 0, "episodes": 2, "forces": (150.0,)},
+    ),
+    "transfer_stepping": Maker(
+        "How much of its score does a First Training keep in the other engine?",
+        TransferBetweenEngines("stepping", episodes=5, budget=100),
+        {**TRAINED, "seeds": 1, "episodes": 2},
+    ),
+    "transfer_balance": Maker(
+        "How much of its score does a Second Training keep in the other engine?",
+        TransferBetweenEngines("balance", episodes=20, budget=300),
+        {**TRAINED, "seeds": 1, "episodes": 2},
+    ),
+    # Algorithms.
+    "race_stepping": Maker(
+        "Which algorithm learns to step in the fewest episodes?",
+        Race("stepping", budget=60, evaluations=4, first_seed=100),
+        {**TRAINED, "seeds": 1, "evaluations": 1, "algorithms": ("cma-es",)},
+    ),
+    "race_balance": Maker(
+        "Which algorithm learns to come back after a push in the fewest episodes?",
+        Race("balance", budget=150, evaluations=12, first_seed=300),
+        {**TRAINED, "seeds": 1, "evaluations": 1, "algorithms": ("cma-es",)},
+    ),
+    "noise_limit": Maker(
+        "How much better could an algorithm do that knows where to look?",
+        NoiseLimit(),
+        {"episodes": 2, "seeds": 1, "judged": 1},
+    ),
+    "naf_preset": Maker(
+        "What is each part of NAF's preset for episodes of one step worth?",
+        NafPreset(),
+        {"seeds": 1, "episodes": 5},
+        of_robot=False,
+    ),
+    "naf_pendulum": Maker(
+        "How does NAF do on Pendulum-v1, next to TD3, SAC and DDPG?",
+        StandardTask("Pendulum-v1", steps=10_000),
+        {"steps": 120, "seeds": 1, "episodes": 1},
+        of_robot=False,
+    ),
+    "naf_inverted_pendulum": Maker(
+        "How does NAF do on InvertedPendulum-v5, next to TD3, SAC and DDPG?",
+        StandardTask("InvertedPendulum-v5", steps=5000),
+        {"steps": 120, "seeds": 1, "episodes": 1},
+        of_robot=False,
+    ),
+    "slots_cost": Maker(
+        "What do slots cost a training?",
+        SlotsCost(),
+        {**TRAINED, "slots": (1,), "seeds": 1, "budget": 8, "episodes": 1},
+    ),
+    "slots_schedule": Maker(
+        "How many slots a worker keep the workers busy?",
+        SlotsSchedule(),
+        {**TRAINED, "seed": 0, "episodes_per_worker": 2},
+        of_robot=False,
+    ),
+    # The controller.
+    "landscape_stepping": Maker(
+        "What does each of P1 to P5 do, one at a time around (0.4, 1, 0.1, 1, 1)?",
+        Landscape("stepping", seeds=3, time_limit=12.0),
+        {**SHORT, "seeds": 1, "points": 1},
+    ),
+    "landscape_balance": Maker(
+        "What does each of V1 to V4 do, one at a time around (1, 0, 0, 0) under pushes of 100 N?",
+        Landscape("balance", seeds=12, time_limit=8.0),
+        {**SHORT, "seeds": 1, "points": 1},
+    ),
+    "clock": Maker(
+        "Can a learner use the time-outs as a clock?",
+        Clock(),
+        {**SHORT, "random_sets": 1},
+    ),
+    "stepping_and_hips": Maker(
+        "Does V1 help whatever P1 to P5 are?",
+        SteppingAndHips(),
+        {"time_limit": 1.1, "v1": (0.7,), "pushes": 1},
+    ),
+    "flexion_laws": Maker(
+        "Which flexion law saves the robot from pushes from front and back?",
+        FlexionLaws(),
+        {"settings": 1, "pushes": 1, "unpushed": 1},
+    ),
+    "flexion_laws_today": Maker(
+        "How many pushes of 105 N from front and back does the robot survive with V3 and without?",
+        FlexionLawsToday(),
+        {"pushes": 1},
+    ),
+    "robot_dimensions": Maker(
+        "What does each dimension of the robot do for its stability?",
+        RobotDimensions(),
+        {"time_limit": 1.1, "pushed_seconds": 1.1, "pushes": 1, "unpushed": 1},
+    ),
+    # The physics.
+    "physics": Maker(
+        "How far are the scores of coarser physics from those of the finest?",
+        Fineness(),
+        {"time_limit": 1.2, "seeds": 2, "sets": 1},
+    ),
+    "physics_anywhere": Maker(
+        "How far are the scores of P1 to P5 from anywhere in their box from those of the finest physics?",
+        FinenessAnywhere(),
+        {"time_limit": 1.2, "seeds": 2, "sets": 1},
+    ),
+    "physics_slow_gait": Maker(
+        "At which V1 does each setting of the physics step slowly, under pushes of 100 N?",
+        FinenessAtSlowGaits(),
+        {"time_limit": 1.2, "seeds": 2, "v1": (0.7,)},
+    ),
+    "engines": Maker(
+        "How far do the two physics engines agree?",
+        Engines(),
+        {**SHORT, "seeds": 1},
+    ),
+    # Timings.
+    "physics_speed": Maker(
+        "How fast is each setting of the physics?",
+        PhysicsSpeed(),
+        {"time_limit": 1.2},
+        of_robot=False,
+    ),
+    "engines_speed": Maker(
+        "How many times as fast is an episode in MuJoCo?",
+        EnginesSpeed(),
+        {**SHORT, "rounds": 2},
+        of_robot=False,
+    ),
+    "throughput": Maker(
+        "How fast are episodes simulated, and where does the time go?",
+        Throughput(),
+        {**SHORT, "rounds": 1, "trainings": 1, "budget": 5},
+        of_robot=False,
+    ),
+    "updates": Maker(
+        "How many updates per second does NAF make, and TD3?",
+        Updates(),
+        {"updates": 2, "rounds": 1, "batch_size": 8},
+        of_robot=False,
+    ),
+    "viewer": Maker(
+        "How fast is the viewer?",
+        Viewer(),
+        {"rounds": 1, "seconds": 1.0},
+        of_robot=False,
+    ),
+    # Endurance.
+    "kills": Maker(
+        "Does a training that is killed at random moments end as without?",
+        Kills(),
+        {"kills": 1},
+        of_robot=False,
+    ),
+    "killed_workers": Maker(
+        "What do killed workers cost a training?",
+        KilledWorkers(),
+        {"budget": 8, "seconds_between_kills": 20.0},
+        of_robot=False,
+    ),
+    "resume": Maker(
+        "What does it cost to resume a training?",
+        Resume(),
+        {"algorithms": ("cma-es",), "budget": 5},
+        of_robot=False,
+    ),
+    "long_process": Maker(
+        "Do many episodes in one process stay flat in memory and open files?",
+        LongProcess(),
+        {"episodes": 10},
+        of_robot=False,
+    ),
+    "long_training": Maker(
+        "Does a long training with two workers stay flat in memory and open files?",
+        LongTraining(),
+        {"budget": 8},
+        of_robot=False,
+    ),
+    "protections": Maker(
+        "Does a test fail when a protection is taken out?",
+        Protections(),
+        {"count": 1},
+        of_robot=False,
+    ),
+}
+"""What makes each result, by its name."""

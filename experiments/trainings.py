@@ -1,0 +1,66 @@
+"""The trainings that several experiments take parameters from: run once, and kept in run folders."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from pathlib import Path
+
+from experiments.experiment import OnWorkers
+from experiments.made_with import made_with, short_hash
+from sarah.episode.push import Push
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.tasks import BalanceConfig
+from sarah.episode.workers import Workers
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.simulation.engines import Engine
+from sarah.training.train import train
+
+EPISODES: dict[str, EpisodeConfig] = {
+    "stepping": EpisodeConfig(),
+    # Softer pushes hardly tell controllers apart, and who falls does so soon.
+    "balance": BalanceConfig(push=Push(newtons=(75.0, 125.0)), time_limit=10.0),
+}
+"""Settings of the trainings' episodes, by task."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfTrainings(OnWorkers):
+    """Options of an experiment that takes what trainings have learned.
+
+    :param runs: folder that keeps the trainings; one that is there is not run again
+    :param time_limit: time limit of the trainings' episodes, in s; by default 30 s, and 10 s with pushes
+    """
+
+    runs: Path = Path("runs/experiments")
+    time_limit: float | None = None
+
+    def episode(self, task: str, engine: Engine = "pybullet") -> EpisodeConfig:
+        """Settings of the trainings' episodes.
+
+        :param task: name of the task
+        :param engine: physics engine
+        """
+        limit = self.time_limit or EPISODES[task].time_limit
+        return dataclasses.replace(EPISODES[task], engine=engine, time_limit=limit)
+
+    def trained(self, config: TrainingConfig, workers: Workers) -> RunFolder:
+        """The run folder of a finished training; it is run, or resumed, unless it is there.
+
+        :param config: settings of the training
+        :param workers: who simulates
+        """
+        path = self.runs / f"{config.task}-{config.algo}-{config.episodes}-s{config.seed}-{identity(config)}"
+        run = RunFolder.resumable(path) if path.exists() else RunFolder.create(path, config)
+        if not run.is_finished:
+            train(config, run, workers)
+        return run
+
+
+def identity(settings: object) -> str:
+    """Name for a folder of trainings with these settings and today's physics, controller and robot.
+
+    :param settings: settings of the trainings
+    """
+    return short_hash([repr(settings), made_with()])

@@ -1,0 +1,1 @@
+"""Kills, faults and long runs: what holds for minutes to hours, run by ``make endurance``."""

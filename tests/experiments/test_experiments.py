@@ -1,0 +1,97 @@
+"""Every experiment runs, in a size that takes seconds, and makes the columns that the pages expect."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+from laboratory import need
+
+from experiments import record
+from experiments.__main__ import main, mark_stale
+from experiments.made_with import made_with
+from experiments.table import TABLE
+from sarah.errors import ConfigurationError
+from tests.endurance.protections import PROTECTIONS, Protection
+
+LONG = {
+    "flexion_laws",
+    "killed_workers",
+    "kills",
+    "long_training",
+    "protections",
+    "second_training",
+    "throughput",
+    "viewer",
+}
+"""Experiments that take more than some seconds in any size."""
+
+
+@pytest.fixture(scope="module")
+def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder for what several experiments share."""
+    return tmp_path_factory.mktemp("workplace")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in record.names()]
+)
+def test_an_experiment_makes_the_columns_of_its_result(
+    name: str, workplace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    need("pybullet")
+    need("mujoco")
+    if name == "viewer" and shutil.which("chromium") is None:
+        pytest.skip("needs chromium")
+    monkeypatch.chdir(workplace)
+    main([name, "--quick", "--out", str(workplace)])
+    made, published = record.read(name, workplace), record.read(name)
+    assert made.columns == published.columns
+    assert made.command == f"python -m experiments {name} --quick --out {workplace}"
+    assert (made.made_with is None) == (published.made_with is None)
+
+
+def test_every_result_has_a_maker_and_every_maker_a_result() -> None:
+    assert set(TABLE) == set(record.names())
+
+
+@pytest.mark.parametrize("name", record.names())
+def test_a_result_answers_the_question_of_its_maker(name: str) -> None:
+    assert record.read(name).question == TABLE[name].question
+
+
+def test_without_a_name_all_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    main([])
+    listed = capsys.readouterr().out
+    assert all(name in listed and maker.question in listed for name, maker in TABLE.items())
+
+
+def test_an_unknown_name_is_one_line_with_the_nearest() -> None:
+    with pytest.raises(ConfigurationError, match=r"unknown experiment 'clok', did you mean 'clock'\?"):
+        main(["clok"])
+
+
+def test_a_result_is_stale_only_for_a_reason() -> None:
+    with pytest.raises(ConfigurationError, match="WHY must be a sentence"):
+        main(["stale"])
+    with pytest.raises(ConfigurationError, match=r"unknown result 'clok', did you mean 'clock'\?"):
+        main(["stale", "The clock runs backwards.", "clok"])
+
+
+def test_what_was_made_with_another_controller_becomes_stale(tmp_path: Path) -> None:
+    others = made_with() | {"controller": "another"}
+    record.write("outdated", [{"score": 1.0}], "How much?", "", others, tmp_path)
+    record.write("todays", [{"score": 1.0}], "How much?", "", made_with(), tmp_path)
+    record.write("of_no_robot", [{"score": 1.0}], "How much?", "", None, tmp_path)
+    mark_stale(tmp_path, "The controller steps backwards.")
+    stale = {name: record.read(name, tmp_path).stale for name in record.names(tmp_path)}
+    assert stale == {"outdated": "The controller steps backwards.", "todays": None, "of_no_robot": None}
+    mark_stale(tmp_path, "Robots are not concerned.", "of_no_robot")
+    assert record.read("of_no_robot", tmp_path).stale == "Robots are not concerned."
+
+
+@pytest.mark.parametrize("protection", PROTECTIONS, ids=lambda protection: protection.promise)
+def test_a_protection_is_where_it_is_said_to_be(protection: Protection) -> None:
+    """Whether its test fails without it, ``make endurance`` finds out."""
+    file, _, test = protection.test.partition("::")
+    assert (record.ROOT / "sarah" / protection.file).read_text(encoding="utf-8").count(protection.code) == 1
+    assert f"def {test}" in (record.ROOT / "tests" / file).read_text(encoding="utf-8")
