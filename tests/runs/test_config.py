@@ -5,12 +5,15 @@ from pathlib import Path
 
 import pytest
 
+from sarah.control.constants import ControllerConstants
+from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
+from sarah.episode.tasks import BalanceConfig
 from sarah.errors import ConfigurationError
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import read_config, write_config
 from sarah.simulation.engines import default_engine
-from sarah.simulation.physics import Physics
+from sarah.simulation.physics import Physics, PyBulletPhysics
 from sarah.simulation.randomisation import Randomisation
 
 
@@ -38,6 +41,29 @@ def test_what_a_file_does_not_name_keeps_its_default(tmp_path: Path) -> None:
     assert config.episode.engine == default_engine()
     path.write_text("")
     assert read_config(TrainingConfig, path) == TrainingConfig()
+
+
+def test_what_a_task_and_an_engine_have_of_their_own_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "config.yaml"
+    path.write_text(
+        "task: balance\n"
+        "episode:\n"
+        "  stepping: [0.1, 0.2, 0.3, 0.4, 0.5]\n"
+        "  push: {newtons: [50, 60], degrees: [0, 0]}\n"
+        "  engine: pybullet\n"
+        "  physics: {added_plate_inertia: 0.001}\n"
+        "  controller: {time_out_seconds: 0.3}\n"
+    )
+    assert read_config(TrainingConfig, path).episode == BalanceConfig(
+        stepping=(0.1, 0.2, 0.3, 0.4, 0.5),
+        push=Push(newtons=(50.0, 60.0), degrees=(0.0, 0.0)),
+        engine="pybullet",
+        physics=PyBulletPhysics(added_plate_inertia=0.001),
+        controller=ControllerConstants(time_out_seconds=0.3),
+    )
+    write_config(read_config(TrainingConfig, path), tmp_path / "again.yaml")
+    assert read_config(TrainingConfig, tmp_path / "again.yaml") == read_config(TrainingConfig, path)
+    assert "added_plate_inertia" in (tmp_path / "again.yaml").read_text()
 
 
 @pytest.mark.parametrize(
@@ -91,6 +117,8 @@ def test_what_a_file_does_not_name_keeps_its_default(tmp_path: Path) -> None:
             "episode: {engine: mujoco, physics: {added_plate_inertia: 0.01}}",
             "unknown key 'episode.physics.added_plate_inertia', did you mean",
         ),
+        ("episode: {controller: {leg_sped: 1}}", "did you mean 'episode.controller.leg_speed'?"),
+        ("episode: {controller: {leg_speed: 0}}", "controller.leg_speed must be between 0.01 and 100 m/s, not 0"),
         ("{task: balance, episode: {time_limit: 3, push: {at_seconds: [3, 4]}}}", "before the time_limit of 3 s"),
         ("a: [", "is not YAML"),
     ],

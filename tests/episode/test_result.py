@@ -1,0 +1,70 @@
+"""The table of metrics: each number that an episode ends with is explained, summarised and written once."""
+
+import dataclasses
+
+import pytest
+from laboratory import RESULT
+
+from sarah.episode.ending import TERMINATIONS
+from sarah.episode.evaluation import STATISTICS, Evaluation
+from sarah.episode.result import METRICS, EpisodeResult
+from sarah.errors import ConfigurationError
+
+OTHER = dataclasses.replace(RESULT, score=0.4, vibration=3.0, final_position=(0.0, 0.0, 0.8), termination="fell")
+NO_UNIT = {"score", "steps", "shifts_by_sensors", "lifts_by_sensors"}
+"""Metrics that are shares or counts."""
+
+
+def test_every_number_of_a_result_is_a_metric_with_unit_and_meaning() -> None:
+    numbers = {name for name, value in RESULT.fields().items() if isinstance(value, (int, float))}
+    assert numbers | {"drift"} == set(METRICS)
+    assert {name for name, metric in METRICS.items() if not metric.unit} == NO_UNIT
+    for name, metric in METRICS.items():
+        assert metric.meaning and metric.label and isinstance(getattr(RESULT, name), (int, float))
+        assert set(metric.statistics) <= set(STATISTICS)
+
+
+def test_a_value_is_shown_in_its_unit_for_people() -> None:
+    shown = {name: METRICS[name].text(value) for name, value in (("sole_clearance", 0.0123), ("drift", 0.034))}
+    assert shown == {"sole_clearance": "12.3 mm", "drift": "3.4 cm"}
+    assert METRICS["score"].text(0.8) == "0.800"
+
+
+def test_the_row_of_a_table_holds_every_number_once() -> None:
+    columns = RESULT.columns()
+    assert set(columns) == (set(METRICS) - {"episode_return", "drift"}) | {"return", "termination", "x", "y"}
+    assert (columns["return"], columns["x"], columns["y"]) == (RESULT.episode_return, *RESULT.final_position[:2])
+    assert all(columns[name] == getattr(RESULT, name) for name in METRICS if name in columns)
+
+
+def test_an_evaluation_holds_every_statistic_that_the_table_names() -> None:
+    summary = Evaluation((RESULT, OTHER)).summary()
+    named = {f"{name}_{statistic}" for name, metric in METRICS.items() for statistic in metric.statistics}
+    assert set(summary) == named | {"episodes", "survival_rate", "diverged"}
+    assert summary["episodes"] == 2 and summary["survival_rate"] == 0.5 and summary["diverged"] == 0
+    assert summary["score_mean"] == pytest.approx(0.6) and summary["score_median"] == pytest.approx(0.6)
+    assert summary["score_std"] == pytest.approx(0.2) and summary["score_min"] == 0.4
+    assert summary["drift_max"] == pytest.approx(0.05) and summary["vibration_median"] == 6.0
+
+
+def test_an_unknown_metric_is_named_with_the_nearest() -> None:
+    evaluation = Evaluation((RESULT,))
+    assert evaluation.mean("score") == evaluation.median("score") == evaluation.statistic("score", "max") == 0.8
+    with pytest.raises(ConfigurationError, match=r"unknown metric 'scor', did you mean 'score'\?"):
+        evaluation.mean("scor")
+
+
+@pytest.mark.parametrize(
+    ("changes", "is_gait"),
+    [({}, True), ({"shifts_by_sensors": 0.89}, False), ({"lifts_by_sensors": 0.5}, False), ({"steps": 0}, True)]
+    + [({"sole_clearance": clearance}, clearance >= 0.01) for clearance in (0.0099, 0.01)],
+)
+def test_a_gait_is_one_by_sensors_that_lifts_its_feet(changes: dict[str, float], is_gait: bool) -> None:
+    assert Evaluation((dataclasses.replace(RESULT, **changes),)).is_gait == is_gait  # type: ignore[arg-type]
+
+
+def test_survival_is_to_the_time_limit_and_every_ending_has_words() -> None:
+    for ending, words in TERMINATIONS.items():
+        result = dataclasses.replace(RESULT, termination=ending)
+        assert words and result.survived == (ending == "time_limit")
+    assert isinstance(RESULT, EpisodeResult) and RESULT.drift == pytest.approx(0.05)

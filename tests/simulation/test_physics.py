@@ -1,0 +1,53 @@
+"""Settings of the integration: what each engine takes of them."""
+
+import dataclasses
+
+import pytest
+
+from sarah.episode.settings import EpisodeConfig
+from sarah.errors import ConfigurationError
+from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics, physics_for, physics_type
+
+
+def test_only_pybullet_has_an_inertia_to_add() -> None:
+    assert physics_type("pybullet") is PyBulletPhysics and physics_type("mujoco") is Physics
+    assert [field.name for field in dataclasses.fields(Physics)] == ["rate", "solver_iterations", "control_rate"]
+    assert PHYSICS["standard"].added_plate_inertia > PHYSICS["reference"].added_plate_inertia == 0.0
+
+
+@pytest.mark.parametrize("name", PHYSICS)
+def test_named_settings_go_to_mujoco_and_come_back(name: str) -> None:
+    in_mujoco = physics_for("mujoco", PHYSICS[name])
+    assert type(in_mujoco) is Physics
+    assert (in_mujoco.rate, in_mujoco.solver_iterations) == (PHYSICS[name].rate, PHYSICS[name].solver_iterations)
+    assert physics_for("mujoco", in_mujoco) is in_mujoco
+    assert physics_for("pybullet", in_mujoco) == PHYSICS[name]
+
+
+def test_settings_without_a_name_get_the_standard_inertia_in_pybullet() -> None:
+    taken = physics_for("pybullet", Physics(rate=400, solver_iterations=7, control_rate=200))
+    assert taken == PyBulletPhysics(400, 7, 200, added_plate_inertia=PHYSICS["standard"].added_plate_inertia)
+    own = PyBulletPhysics(400, 7, 200, added_plate_inertia=0.001)
+    assert physics_for("pybullet", own) is own
+    assert physics_for("mujoco", own) == Physics(400, 7, 200)
+
+
+def test_episodes_take_settings_as_their_engine_can() -> None:
+    in_mujoco = EpisodeConfig(engine="mujoco", physics=PHYSICS["reference"])
+    assert in_mujoco.physics == Physics(1000, 100) and type(in_mujoco.physics) is Physics
+    assert dataclasses.replace(in_mujoco, engine="pybullet").physics == PHYSICS["reference"]
+    assert EpisodeConfig(engine="pybullet", physics=Physics()).physics == PHYSICS["standard"]
+
+
+@pytest.mark.parametrize("inertia", [-0.001, 1.1, float("nan")])
+def test_an_inertia_that_no_plate_has_is_refused(inertia: float) -> None:
+    with pytest.raises(ConfigurationError, match=r"physics.added_plate_inertia must be between 0 and 1 kg m\^2"):
+        PyBulletPhysics(added_plate_inertia=inertia)
+
+
+@pytest.mark.parametrize("rate", [50, 150, 200, 1000])
+def test_another_control_rate_keeps_at_least_the_rate(rate: int) -> None:
+    for physics in PHYSICS.values():
+        taken = physics.at_control_rate(rate)
+        assert taken.control_rate == rate and taken.control_dt == 1.0 / rate
+        assert physics.rate <= taken.rate < physics.rate + rate and taken.rate % rate == 0

@@ -1,0 +1,43 @@
+"""Importing the package: what it does to Python, and which part of it imports which."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+
+
+def test_importing_sarah_registers_both_environments_and_patches_nothing() -> None:
+    program = (
+        "import sys\n"
+        "before = list(sys.meta_path), list(sys.path_hooks), sys.excepthook, __import__\n"
+        "import sarah\n"
+        "assert before == (list(sys.meta_path), list(sys.path_hooks), sys.excepthook, __import__)\n"
+        "import gymnasium\n"
+        "print(*sorted(name for name in gymnasium.registry if name.startswith('Sarah')))\n"
+        "print(*sorted({'mujoco', 'pybullet', 'torch', 'stable_baselines3', 'matplotlib'} & set(sys.modules)))\n"
+    )
+    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert process.stdout.splitlines() == ["SarahBalance-v0 SarahStepping-v0", ""]
+
+
+@pytest.mark.parametrize("package", sorted(path.parent.name for path in (ROOT / "sarah").glob("*/__init__.py")))
+def test_every_package_says_what_it_is_for(package: str) -> None:
+    text = (ROOT / "sarah" / package / "__init__.py").read_text(encoding="utf-8")
+    assert text.startswith('"""') and len(text.split('"""')[1]) > 30
+
+
+def test_imports_keep_to_their_contracts() -> None:
+    pytest.importorskip("importlinter", reason="import-linter is not installed")
+    process = subprocess.run(
+        [Path(sys.executable).with_name("lint-imports"), "--no-cache", "--no-logo"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        env={**os.environ, "NO_COLOR": "1"},
+    )
+    assert process.returncode == 0, process.stdout + process.stderr
+    assert "0 broken" in process.stdout
