@@ -2,8 +2,8 @@
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV ?= $(if $(filter file,$(origin PYTHON)),.venv,.venv-$(notdir $(PYTHON)))
 BIN := $(VENV)/bin
-SIMULATIONS ?= 100
-BALANCE_SIMULATIONS ?= 300
+EPISODES ?= 100
+BALANCE_EPISODES ?= 300
 BALANCE_SECONDS ?= 10
 BALANCE_NEWTONS ?= 75 125
 PUSHES ?= 8
@@ -30,9 +30,9 @@ $(VENV)/installed: setup.cfg pyproject.toml constraints.txt
 
 train: RUN := $(RUN)
 train: install  ## both trainings with NAF, figures, reports and robustness table: a robot that steps in place and comes back from pushes
-	$(BIN)/sarah-train --task stepping --simulations $(SIMULATIONS) --seed $(SEED) \
+	$(BIN)/sarah-train --task stepping --episodes $(EPISODES) --seed $(SEED) \
 		--workers $(WORKERS) --run-dir $(RUN)/stepping
-	$(BIN)/sarah-train --task balance --from $(RUN)/stepping --simulations $(BALANCE_SIMULATIONS) --seed $(SEED) \
+	$(BIN)/sarah-train --task balance --from $(RUN)/stepping --episodes $(BALANCE_EPISODES) --seed $(SEED) \
 		--episode.time-limit $(BALANCE_SECONDS) --episode.push.newtons $(BALANCE_NEWTONS) \
 		--workers $(WORKERS) --run-dir $(RUN)/balance
 	$(BIN)/sarah-figures $(RUN)/stepping $(RUN)/balance --out $(RUN)/figures

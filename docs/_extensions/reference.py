@@ -1,59 +1,124 @@
-"""Sphinx extension: writes the reference of settings and of P1 to V4 from the code, before the pages are read.
+"""Sphinx extension: writes the reference of settings, parameters and metrics from the code, before the pages are read.
 
-``reference/settings.md`` and ``reference/parameters.md`` include what is written here.
+Pages of ``reference/`` include what is written here, by the names of :data:`PAGES`.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import docstring_parser
 from sphinx.application import Sphinx
 
+from sarah.episode.result import METRICS
+from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS
+from sarah.runs import agent_settings
+from sarah.runs.agent_settings import AGENT_SETTINGS, LearnerSettings, NAFSettings
 from sarah.runs.config import TrainingConfig
+from sarah.simulation.physics import PHYSICS, Physics
 
 GENERATED = Path("reference") / "generated"
 
 
-def settings_page() -> str:
+def settings_page() -> Iterator[str]:
     """A table for each group of settings of a training."""
-    return "\n".join(_group("", TrainingConfig())) + "\n"
-
-
-def _group(key: str, config: Any) -> Iterator[str]:
-    """The tables of a dataclass and of the dataclasses in it.
-
-    :param key: name of the group, with dots; empty for the outermost
-    :param config: dataclass with its defaults
-    """
-    meanings = meanings_of(type(config))
-    values = {field.name: getattr(config, field.name) for field in dataclasses.fields(config)}
-    groups = {name: value for name, value in values.items() if dataclasses.is_dataclass(value)}
-    yield f"## {f'`{key}`' if key else 'Training'}\n"
-    yield "| setting | default | meaning |"
-    yield "|---|---|---|"
-    for name, value in values.items():
-        if name not in groups:
-            yield f"| `{key}.{name}` | {shown(value)} | {meanings[name]} |".replace("`.", "`")
-    yield ""
-    for name, value in groups.items():
-        yield from _group(f"{key}.{name}".strip("."), value)
-
-
-def parameters_page() -> str:
-    """A table of each task's parameters."""
-    lines = []
+    yield from section("Training", "", own_fields(TrainingConfig), {"default": TrainingConfig()})
+    yield from agent_sections()
+    yield from section("`episode`", "episode.", own_fields(EpisodeConfig), {"default": EpisodeConfig()})
+    physics = PHYSICS["standard"]
+    yield from section("`episode.physics`", "episode.physics.", own_fields(Physics), {"default": physics})
+    pybullet_only = own_fields(type(physics), Physics)
+    yield from section("`episode.physics`, PyBullet only", "episode.physics.", pybullet_only, {"default": physics})
+    yield from groups("episode.", EpisodeConfig(), leave_out="physics")
     for task in TASKS.values():
-        lines += [f"## Task `{task.name}`", "", "| name | range | unit | meaning | paper |", "|---|---|---|---|---|"]
-        for p in task.parameters:
-            lines.append(f"| {p.name} | {p.low:g} to {p.high:g} | {p.unit or '-'} | {p.meaning} | {p.paper or '-'} |")
-        lines.append("")
-    return "\n".join(lines)
+        names = own_fields(type(task.episode), EpisodeConfig)
+        title = f"`episode`, `--task {task.name}` only"
+        yield from section(title, "episode.", names, {"default": task.episode})
+        own = {name: getattr(task.episode, name) for name in vars(task.episode) if not hasattr(EpisodeConfig(), name)}
+        yield from groups("episode.", own)
+
+
+def agent_sections() -> Iterator[str]:
+    """A table of the settings that reinforcement learners share, and one for each algorithm that has others."""
+    learners = {name: kind() for name, kind in AGENT_SETTINGS.items() if issubclass(kind, LearnerSettings)}
+    yield from section("`agent`: reinforcement learners", "agent.", own_fields(LearnerSettings), learners)
+    for name, kind in AGENT_SETTINGS.items():
+        columns: dict[str, Any] = {"default": kind()}
+        if kind is NAFSettings:
+            columns = {f"preset {preset}": NAFSettings(preset=preset) for preset in agent_settings.PRESETS}
+        yield from section(f"`agent`: `--algo {name}` only", "agent.", own_fields(kind, LearnerSettings), columns)
+
+
+def groups(key: str, config: Any, leave_out: str = "") -> Iterator[str]:
+    """A table for each dataclass within a configuration.
+
+    :param key: beginning of the groups' names
+    :param config: configuration, a dataclass or a mapping
+    :param leave_out: name of a group that has a table already
+    """
+    for name, value in (config if isinstance(config, dict) else vars(config)).items():
+        if dataclasses.is_dataclass(value) and name != leave_out:
+            yield from section(f"`{key}{name}`", f"{key}{name}.", own_fields(type(value)), {"default": value})
+
+
+def section(title: str, key: str, names: Iterable[str], columns: Mapping[str, Any]) -> Iterator[str]:
+    """A heading and a table of settings; nothing if there are none.
+
+    :param title: heading
+    :param key: beginning of the settings' names
+    :param names: names of the fields
+    :param columns: dataclasses with defaults, by heading
+    """
+    meanings = meanings_of(type(next(iter(columns.values()))))
+    rows = [[f"`{key}{name}`", *(shown(getattr(c, name)) for c in columns.values()), meanings[name]] for name in names]
+    if rows:
+        yield f"## {title}\n"
+        yield from table(["setting", *columns, "meaning"], rows)
+
+
+def own_fields(config_type: Any, base: Any = None) -> list[str]:
+    """Names of a dataclass's plain fields that another one does not have.
+
+    :param config_type: the dataclass
+    :param base: the other one, if any
+    """
+    known = {field.name for field in dataclasses.fields(base)} if base else set()
+    names = [field.name for field in dataclasses.fields(config_type) if field.name not in known]
+    defaults = config_type()
+    return [name for name in names if not dataclasses.is_dataclass(getattr(defaults, name))]
+
+
+def parameters_page() -> Iterator[str]:
+    """A table of each task's parameters."""
+    for task in TASKS.values():
+        yield f"## Task `{task.name}`\n"
+        rows = ([p.name, f"{p.low:g} to {p.high:g}", p.unit, p.meaning, p.paper] for p in task.parameters)
+        yield from table(["name", "range", "unit", "meaning", "paper"], rows)
+
+
+def metrics_page() -> Iterator[str]:
+    """A table of what an episode is judged by."""
+    rows = (
+        [f"`{name}`", metric.unit, metric.meaning, ", ".join(metric.statistics), metric.paper]
+        for name, metric in METRICS.items()
+    )
+    yield from table(["metric", "unit", "meaning", "statistics", "paper"], rows)
+
+
+def table(head: list[str], rows: Iterable[list[str]]) -> Iterator[str]:
+    """Lines of a Markdown table.
+
+    :param head: its head
+    :param rows: its cells
+    """
+    for cells in (head, ["---"] * len(head), *rows):
+        yield f"| {' | '.join(cell or '-' for cell in cells)} |"
+    yield ""
 
 
 def meanings_of(config_type: type) -> dict[str, str]:
@@ -69,7 +134,7 @@ def meanings_of(config_type: type) -> dict[str, str]:
 def markdown(text: str) -> str:
     """One line of Markdown from a docstring's reStructuredText.
 
-    :param text: of the docstring
+    :param text: text of the docstring
     """
     text = re.sub(r":\w+(?::\w+)?:`~?([^`]+)`", r"`\1`", " ".join(text.split()))
     return text.replace("``", "`").replace("|", r"\|")
@@ -80,22 +145,26 @@ def shown(value: Any) -> str:
 
     :param value: the default
     """
+    if value in ((), {}):
+        return "none"
     if isinstance(value, tuple):
         return f"`[{', '.join(map(str, value))}]`"
-    if isinstance(value, bool):
-        return f"`{str(value).lower()}`"
-    return f"`{value}`" if value not in (None, {}, "") else "none"
+    return f"`{str(value).lower() if isinstance(value, bool) else value}`"
+
+
+PAGES = {"settings": settings_page, "parameters": parameters_page, "metrics": metrics_page}
+"""What is written, by name of the file."""
 
 
 def write_reference(app: Sphinx) -> None:
     """Write what the pages include.
 
-    :param app: of Sphinx
+    :param app: Sphinx, which builds the site
     """
     folder = Path(app.srcdir) / GENERATED
     folder.mkdir(exist_ok=True)
-    (folder / "settings.md").write_text(settings_page(), encoding="utf-8")
-    (folder / "parameters.md").write_text(parameters_page(), encoding="utf-8")
+    for name, page in PAGES.items():
+        (folder / f"{name}.md").write_text("\n".join(page()), encoding="utf-8")
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 import shlex
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -77,7 +78,7 @@ def main() -> None:
 
 
 def _train(arguments: Sequence[str]) -> None:
-    arguments = [argument.replace("--simulations", "--episodes") for argument in arguments]  # an accepted alias
+    arguments = [re.sub(r"^--simulations(?==|$)", "--episodes", argument) for argument in arguments]  # an alias
     options = parse_options(TrainOptions, COMMAND, arguments, _defaults(arguments))
     config = options.training
     config = dataclasses.replace(config, episode=with_engine(config.episode, options.engine))
@@ -97,7 +98,7 @@ def _train(arguments: Sequence[str]) -> None:
         from sarah.simulation.renderer import check_renderer
 
         check_renderer()
-    if options.resume is not None and _resumed(options.resume, options).is_finished:
+    if options.resume is not None and _resumed(options.resume, options, config).is_finished:
         print(f"{options.resume} is finished: there is nothing to resume")
         return
 
@@ -112,7 +113,7 @@ def _train(arguments: Sequence[str]) -> None:
     _summarise(config.task, learned, run.path)
 
 
-def _resumed(path: Path, options: TrainOptions) -> RunFolder:
+def _resumed(path: Path, options: TrainOptions, config: TrainingConfig) -> RunFolder:
     """Open the run folder to go on with, and warn if the installed versions are not those it was begun with."""
     from sarah.runs.run_folder import RunFolder
     from sarah.versions import versions
@@ -120,10 +121,10 @@ def _resumed(path: Path, options: TrainOptions) -> RunFolder:
     run = RunFolder.resumable(path)
     if options.run_dir is not None or options.config is not None or options.from_run is not None:
         raise ConfigurationError("--resume goes on with a training as it is: leave --run-dir, --config and --from out")
-    difference = first_difference(options.training, run.config())
+    difference = first_difference(config, run.config())
     if difference is not None:
         key, given, there = difference
-        raise ConfigurationError(f"--resume {path}: {key} is {there!r} in this training, not {given!r}: leave it out")
+        _check_same(path, key, there, given)
     before = run.versions()
     for name, version in versions().items():
         if before.get(name) != version:
@@ -133,6 +134,18 @@ def _resumed(path: Path, options: TrainOptions) -> RunFolder:
                 file=sys.stderr,
             )
     return run
+
+
+def _check_same(path: Path, key: str, there: object, given: object) -> None:
+    """Refuse a setting that is not what it is in the training to go on with.
+
+    :param path: path of the training's run folder
+    :param key: name of the setting
+    :param there: value in the training
+    :param given: value on the command line
+    """
+    if given != there:
+        raise ConfigurationError(f"--resume {path}: {key} is {there!r} in this training, not {given!r}: leave it out")
 
 
 def _learned(config: TrainingConfig, run: RunFolder, workers: Workers, picture_interval: int) -> Learned:
@@ -158,11 +171,8 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
     names = ("config", "resume", "from", "task", "algo", "agent.preset", "engine", "episode.engine")
     given = given_options(arguments, *names)
     if "resume" in given:
-        from sarah.runs.run_folder import RunFolder
-
-        training = RunFolder.resumable(Path(given["resume"])).config()
-    else:
-        training = read_config(TrainingConfig, Path(given["config"])) if "config" in given else TrainingConfig()
+        return _resumed_defaults(Path(given["resume"]), given)
+    training = read_config(TrainingConfig, Path(given["config"])) if "config" in given else TrainingConfig()
     training = _with_agent(training, given.get("algo"), given.get("agent.preset"))
     task = given.get("task", training.task)
     if task not in TASKS:  # the real parser reports it
@@ -172,6 +182,22 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
     if "from" in given and task == BALANCE.name:
         episode = _on_learned_stepping(Path(given["from"]), episode)
     return TrainOptions(dataclasses.replace(training, task=task, episode=episode))
+
+
+def _resumed_defaults(path: Path, given: Mapping[str, str]) -> TrainOptions:
+    """Options of the training to go on with; other settings than its own would need other options.
+
+    :param path: path of its run folder
+    :param given: values of the options that were given, by name
+    """
+    from sarah.runs.run_folder import RunFolder
+
+    training = RunFolder.resumable(path).config()
+    engine = given.get("engine", given.get("episode.engine", training.episode.engine))
+    _check_same(path, "task", training.task, given.get("task", training.task))
+    _check_same(path, "algo", training.algo, given.get("algo", training.algo))
+    _check_same(path, "episode.engine", training.episode.engine, engine)
+    return TrainOptions(training)
 
 
 def _with_agent(training: TrainingConfig, algo: str | None, preset: str | None) -> TrainingConfig:

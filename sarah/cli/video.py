@@ -77,7 +77,6 @@ def _film(arguments: Sequence[str]) -> None:
     from sarah.simulation.renderer import check_renderer
 
     check_path(options.out)
-    check_renderer()
     spec = _spec(options, options.subject)
     from tqdm import tqdm
 
@@ -90,6 +89,7 @@ def _film(arguments: Sequence[str]) -> None:
     begin, end = max(begin, result.trace.time[0]), min(end, result.trace.time[-1])
     if begin > end:
         raise ConfigurationError(f"nothing to film: the episode runs from {end:g} to {result.duration:g} s")
+    check_renderer()
     times = frame_times(begin, end, FRAMES_PER_SECOND[options.out.suffix], options.speed)
     robot = describe_robot(spec.config.dimensions)
     pictures = frames(result.trace, robot, tqdm(times, desc="filming", unit=" frames"), _caption(spec, result))

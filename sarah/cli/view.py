@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.options import episodes_of, parse_options, run_command, say_engine, with_engine
+from sarah.cli.options import episodes_of, parse_options, run_command, say_engine
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.errors import ConfigurationError
 
@@ -68,7 +68,8 @@ def _view(arguments: Sequence[str]) -> None:
         raise ConfigurationError("this needs the extra view: pip install 'sarah[view]'")
     choices, chosen = episodes_of(options.subject, options.episode)
     if options.engine is not None:
-        choices, chosen = [_in_engine(choice, options.engine) for choice in choices], _in_engine(chosen, options.engine)
+        choices = [choice.in_engine(options.engine) for choice in choices]
+        chosen = chosen.in_engine(options.engine)
     from sarah.simulation.engines import check_engine
 
     check_engine(chosen.spec.config.engine)
@@ -80,13 +81,6 @@ def _view(arguments: Sequence[str]) -> None:
         _export(options.export, chosen)
     else:
         _serve(options, choices, chosen)
-
-
-def _in_engine(choice: RunEpisode, engine: str) -> RunEpisode:
-    """The same episode in a physics engine; its score in the run folder is dropped if the engine differs."""
-    config = with_engine(choice.spec.config, engine)
-    spec = dataclasses.replace(choice.spec, config=config)
-    return dataclasses.replace(choice, spec=spec, score=choice.score if spec == choice.spec else None)
 
 
 def _export(path: Path, chosen: RunEpisode) -> None:

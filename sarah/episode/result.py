@@ -74,7 +74,7 @@ class EpisodeResult:
     steps_per_second: float = _metric(
         "steps per second",
         "1/s",
-        "mean over that time",
+        "mean number of completed steps per second over that time",
         *("median", "mean", "std"),
         group="episode",
         paper="3 to 5, a human's",

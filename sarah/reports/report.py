@@ -17,30 +17,26 @@ from sarah.episode.episode import simulate
 from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.result import METRICS
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import TASKS, Task
+from sarah.episode.tasks import BALANCE, TASKS, Task
 from sarah.episode.workers import Executor
 from sarah.errors import ConfigurationError
 from sarah.files import replace_text
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
 from sarah.reports.all_figures import draw_all_figures
-from sarah.reports.training_figures import ALGORITHM_LABELS
+from sarah.reports.training_figures import ALGORITHM_LABELS, figures_of
 from sarah.robot.description import describe_robot
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.renderer import check_renderer
 from sarah.training.recommendation import Parameters
 
-CAPTIONS = {
+PAPER_CAPTIONS = {
     "figure_4_reward_and_frequency": "Return and step frequency of every episode (the paper's Figure 4)",
     "figure_5_parameters": "Parameters of every episode (the paper's Figure 5); dotted: the paper's values",
     "figure_6_reward_and_position": "Return and final position of every episode (the paper's Figure 6)",
     "figure_7_parameters": "Parameters of every episode (the paper's Figure 7)",
-    "gait_cycle_stepping": "One step with each leg, with the learned parameters",
-    "gait_cycle_balance": "One step with each leg, with the learned parameters",
-    "figure_3_pattern_generator": "The pattern generator (the paper's Figure 3), drawn from the code",
-    "figure_2_robot": "The robot (the paper's Figure 2)",
 }
-"""Caption of each figure, in the order of the page."""
+"""Captions of the paper's figures of trainings."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +77,9 @@ def write_report(
         folder = Path(name)
         drawn = {file.stem: file for file in draw_all_figures([run], folder) if file.suffix == ".png"}
         figures = [
-            (text, _address(drawn[stem].read_bytes(), "image/png")) for stem, text in CAPTIONS.items() if stem in drawn
+            (text, _address(drawn[stem].read_bytes(), "image/png"))
+            for stem, text in _captions(task).items()
+            if stem in drawn
         ]
         film, caption = _film(EpisodeSpec(learned, 0, config.task, config.episode), folder, seconds)
     page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True).from_string(
@@ -105,6 +103,18 @@ def write_report(
         versions=run.versions(),
     )
     replace_text(path, text)
+
+
+def _captions(task: Task) -> dict[str, str]:
+    """Caption of each figure, in the order of the page."""
+    outcome, parameters = figures_of(task)
+    return {
+        outcome: PAPER_CAPTIONS.get(outcome, "Return and step frequency of every episode"),
+        parameters: PAPER_CAPTIONS.get(parameters, "Parameters of every episode"),
+        f"gait_cycle_{task.name}": "One step with each leg, with the learned parameters",
+        "figure_3_pattern_generator": "The pattern generator (the paper's Figure 3), drawn from the code",
+        "figure_2_robot": "The robot (the paper's Figure 2)",
+    }
 
 
 def _parameter_rows(task: Task, learned: Parameters) -> list[Row]:
@@ -155,7 +165,7 @@ def _film(spec: EpisodeSpec, folder: Path, seconds: tuple[float, float]) -> tupl
 
 def _commands(run: RunFolder, config: TrainingConfig) -> list[str]:
     again = f"{config.algo}-s{config.seed}-again"
-    extra = ["sarah-eval RUN --robustness tables"] if TASKS[config.task].has_push else ["sarah-video RUN out.mp4"]
+    extra = ["sarah-eval RUN --robustness tables"] if config.task == BALANCE.name else ["sarah-video RUN out.mp4"]
     commands = [f"sarah-train --config config.yaml --run-dir {again}", "sarah-eval RUN", "sarah-figures RUN", *extra]
     return [command.replace("RUN", shlex.quote(again)) for command in [*commands, "sarah-report RUN"]]
 

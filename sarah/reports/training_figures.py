@@ -22,7 +22,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.patheffects import withStroke
 
 from sarah.control.parameters import PAPER_STEPPING
-from sarah.episode.tasks import BALANCE, STEPPING, Task
+from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
 from sarah.errors import RunFolderError
 from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
 from sarah.reports.robustness import PushedEpisode, finest_sectors, survival_by_direction
@@ -51,18 +51,16 @@ ALGORITHM_LABELS = {algo: algo.upper() for algo in COLOURS} | {"random": "random
 
 Panels = list[tuple[str, str]]
 """Column of ``episodes.csv`` and label of each panel, from top to bottom."""
-RETURN = ("return", "return (m³ s)")
-FIGURES: dict[Task, dict[str, Panels]] = {
-    STEPPING: {
-        "figure_4_reward_and_frequency": [RETURN, ("steps_per_second", "steps per second")],
-        "figure_5_parameters": [(parameter.name, parameter.label) for parameter in STEPPING.parameters],
-    },
-    BALANCE: {
-        "figure_6_reward_and_position": [RETURN, ("x", "final x (m)"), ("y", "final y (m)")],
-        "figure_7_parameters": [(parameter.name, parameter.label) for parameter in BALANCE.parameters],
-    },
+RETURN, STEPS = ("return", "return (m³ s)"), ("steps_per_second", "steps per second")
+PAPER_FIGURES: dict[str, tuple[str, Panels, str]] = {
+    STEPPING.name: ("figure_4_reward_and_frequency", [RETURN, STEPS], "figure_5_parameters"),
+    BALANCE.name: (
+        "figure_6_reward_and_position",
+        [RETURN, ("x", "final x (m)"), ("y", "final y (m)")],
+        "figure_7_parameters",
+    ),
 }
-"""Figures of the paper, by task."""
+"""Figures of the paper, by task: name and panels of the outcome, and name of the parameters."""
 PAPER = dict(zip(STEPPING.parameter_names[:3], PAPER_STEPPING[:3], strict=True))
 """Values of P1 to P3 that the paper's training found."""
 
@@ -81,21 +79,31 @@ class RunCurves:
     learning: int
 
 
+def figures_of(task: Task) -> dict[str, Panels]:
+    """Panels of a task's figures by name: the paper's, or two of the same kind.
+
+    :param task: task of the trainings
+    """
+    own = (f"{task.name}_reward_and_frequency", [RETURN, STEPS], f"{task.name}_parameters")
+    outcome, panels, parameters = PAPER_FIGURES.get(task.name, own)
+    return {outcome: panels, parameters: [(parameter.name, parameter.label) for parameter in task.parameters]}
+
+
 def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
-    """Draw Figures 4 and 5 of First Trainings, and 6 and 7 of Second Trainings, as PNG and PDF.
+    """Draw Figures 4 and 5 of First Trainings, 6 and 7 of Second Trainings, and others' like them, as PNG and PDF.
 
     :param runs: run folders whose episodes are drawn
     :param folder: folder for the figures, which is made if it does not exist
     :return: the files
     :raises RunFolderError: if a run folder has no episodes, or damaged ones; nothing is drawn then
     """
-    curves = {task: _curves([run for run in runs if run.config().task == task.name], task) for task in FIGURES}
+    curves = {task: _curves([run for run in runs if run.config().task == task.name], task) for task in TASKS.values()}
     folder.mkdir(parents=True, exist_ok=True)
     files = []
     with plt.rc_context(STYLE):
-        for task, figures in FIGURES.items():
-            for name, panels in figures.items() if curves[task] else ():
-                files += _draw(curves[task], panels, folder / name)
+        for task, drawn in curves.items():
+            for name, panels in figures_of(task).items() if drawn else ():
+                files += _draw(drawn, panels, folder / name)
     return files
 
 

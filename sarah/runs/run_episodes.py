@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sarah.episode.ending import TERMINATIONS
 from sarah.episode.spec import EpisodeSpec
@@ -26,6 +26,16 @@ class RunEpisode:
     label: str
     spec: EpisodeSpec
     score: float | None = None
+
+    def in_engine(self, engine: str) -> RunEpisode:
+        """Make the same episode in a physics engine; it has no score if that is not the run folder's engine.
+
+        :param engine: name of the engine
+        :raises ConfigurationError: if there is no such engine
+        """
+        config = replace(self.spec.config, engine=engine)  # type: ignore[arg-type]  # checked
+        spec = replace(self.spec, config=config)
+        return replace(self, spec=spec, score=self.score if spec == self.spec else None)
 
 
 def episodes_of_run(run: RunFolder) -> list[RunEpisode]:

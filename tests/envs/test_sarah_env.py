@@ -1,5 +1,6 @@
 """The gymnasium environments: what checkers, libraries and users expect of it."""
 
+import math
 import subprocess
 import sys
 import warnings
@@ -14,11 +15,12 @@ from stable_baselines3.common.env_checker import check_env as sb3_check_env
 import sarah
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.envs.registration import ENVIRONMENTS
-from sarah.envs.sarah_env import SarahEnv, parameters_from
+from sarah.envs.sarah_env import SarahEnv, observation_from, parameters_from
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, BalanceConfig
-from sarah.errors import ConfigurationError
+from sarah.errors import ConfigurationError, SimulationError
+from sarah.robot.reading import SensorReading
 from sarah.simulation.engines import is_installed
 
 SHORT, SHORT_BALANCE = EpisodeConfig(time_limit=4.0), BalanceConfig(time_limit=4.0)
@@ -148,3 +150,9 @@ def test_render_gives_a_picture() -> None:
     picture = env.render()
     assert picture is not None and picture.shape == (480, 640, 3) and picture.std() > 10
     env.close()
+
+
+def test_observations_that_cannot_be_are_named() -> None:
+    reading = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (75.0,) * 4, (math.nan,) * 6)  # type: ignore[arg-type]
+    with pytest.raises(SimulationError, match=r"an observation must be finite, not .*nan"):
+        observation_from(reading)

@@ -1,9 +1,12 @@
 """What a specification refuses."""
 
+import math
+
 import pytest
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import STEPPING
 from sarah.errors import ConfigurationError
 
 
@@ -18,3 +21,10 @@ def test_spec_refuses_unknown_tasks_and_bad_parameters() -> None:
 def test_spec_refuses_seeds_that_would_not_repeat(seed: object) -> None:
     with pytest.raises(ConfigurationError, match="seed must be a whole number from 0"):
         EpisodeSpec(PAPER_STEPPING, seed)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 2.1, -0.1, "1", None, True, 10**400])
+def test_parameters_that_cannot_be_are_named(value: object) -> None:
+    with pytest.raises(ConfigurationError, match=r"parameter P4 must be between 0 and 2, not"):
+        EpisodeSpec((1.0, 1.0, 1.0, value, 1.0), 0)  # type: ignore[arg-type]
+    assert STEPPING.checked((0, 2, 1, 1, 1)) == (0.0, 2.0, 1.0, 1.0, 1.0)

@@ -62,7 +62,7 @@ def test_report_is_a_page_that_needs_nothing_else(task: str, runs: dict[str, Run
         assert re.search(rf"<td>{name}[^<]*</td><td>{value:.2f}</td>", text)
     noted = json.loads((run.path / "parameters.json").read_text())["evaluation"]  # of the same seeds
     assert f"<td>{noted['score_median']:.3f}</td>" in text and f"<td>{noted['vibration_median']:.1f} m²/s⁴</td>" in text
-    assert ("about 0.4" in text) == (task == "stepping")
+    assert ("about 0.4" in text) == ("P1" in TASKS[task].parameter_names)
 
 
 def test_report_says_what_it_cannot_do(tmp_path: Path) -> None:

@@ -66,7 +66,10 @@ def test_what_a_file_does_not_name_keeps_its_default(tmp_path: Path) -> None:
         ("episode: {reward_form: printd}", "unknown episode.reward_form 'printd', did you mean 'printed'"),
         ("episode: {physics: {rate: 333}}", "physics.rate must be a multiple of the control rate, 100 Hz, not 333"),
         ("episode: {physics: {solver_iterations: 0}}", "physics.solver_iterations must be between 1 and 10000, not 0"),
-        ("episode: {physics: {added_plate_inertia: -1}}", "added_plate_inertia must be between 0 and 1 kg m^2, not -1"),
+        (
+            "episode: {engine: pybullet, physics: {added_plate_inertia: -1}}",
+            "added_plate_inertia must be between 0 and 1 kg m^2, not -1",
+        ),
         ("episode: {randomisation: {friction: 0.9}}", "friction must be a list of 2 values, not 0.9"),
         ("episode: {randomisation: {friction: [1.0, 0.7]}}", "friction must be between 0 and 5 and in rising order"),
         ("episode: {randomisation: {friction: [.nan, 0.7]}}", "friction must be between 0 and 5 and in rising order"),

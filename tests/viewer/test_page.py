@@ -1,12 +1,10 @@
-"""The viewer: what there is to play, and the page in a real browser."""
+"""The page in a real browser."""
 
 import base64
 import io
 import re
 import shutil
 import subprocess
-import sys
-import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,179 +12,20 @@ from typing import Any
 
 import matplotlib.image
 import numpy as np
-import psutil
 import pytest
+from terminal import BIN
 
-from sarah.cli import view
-from sarah.control.parameters import PAPER_STEPPING
-from sarah.episode.ending import TERMINATIONS
 from sarah.episode.episode import simulate
-from sarah.episode.push import Push
-from sarah.episode.result import EpisodeResult
-from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, BalanceConfig
-from sarah.errors import ConfigurationError, RunFolderError
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
-from sarah.runs.config import TrainingConfig
-from sarah.runs.run_episodes import choose_episode, episodes_of_run
+from sarah.runs.run_episodes import episodes_of_run
 from sarah.runs.run_folder import RunFolder
-from sarah.simulation.engines import default_engine
-from sarah.viewer.background import BackgroundSimulation, Wish
-from sarah.viewer.playback import Playback
-from sarah.viewer.scenario import KnownPush, Scenario
+from sarah.viewer.scenario import Scenario
 from sarah.viewer.scene import channels, describe_tick
-from sarah.viewer.server import serving
 
-BIN = Path(sys.executable).parent
-CONFIG = BalanceConfig(time_limit=6.0, push=Push(newtons=(40.0, 60.0), at_seconds=(2.0, 3.0)))
-TRIED = ((0.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.5, 0.0), (-2.0, 1.0, 0.0, 2.0))
-LEARNED = (0.8, 0.1, 0.3, -0.1)
 CHROMIUM = shutil.which("chromium")
 SOFTWARE_WEBGL = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 PATIENCE = 120_000
 """Milliseconds; a busy machine without a GPU draws less than one picture a second."""
-
-
-@pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
-    """A Second Training of three simulations."""
-    path = tmp_path_factory.mktemp("runs") / "balance"
-    run = RunFolder.create(path, TrainingConfig(task="balance", episodes=3, episode=CONFIG))
-    for index, parameters in enumerate(TRIED):
-        result = simulate(EpisodeSpec(parameters, 2**31 + index, "balance", CONFIG))
-        run.append_episode(
-            index, BALANCE.parameter_names, {**result.fields(), "seed": 2**31 + index, "parameters": parameters}
-        )
-    run.write_parameters({"parameters": dict(zip(BALANCE.parameter_names, LEARNED, strict=True))})
-    return run
-
-
-# -- what there is to play
-
-
-def test_every_simulation_of_a_run_is_played_exactly(run: RunFolder) -> None:
-    choices = episodes_of_run(run)
-    assert [choice.name for choice in choices] == ["learned", "best", "0", "1", "2"]
-    for choice in choices[2:]:
-        assert simulate(choice.spec).score == choice.score
-        assert f"score {choice.score:.2f}" in choice.label
-    assert choices[0].spec == EpisodeSpec(LEARNED, 0, "balance", CONFIG)
-    assert choices[1].score == max(choice.score for choice in choices[2:])
-
-
-def test_every_way_to_end_has_words() -> None:
-    assert set(ENDINGS) == set(TERMINATIONS)
-
-
-def test_an_unknown_episode_is_told_which_there_are(run: RunFolder) -> None:
-    choices = episodes_of_run(run)
-    assert choose_episode(choices, "2").spec.parameters == TRIED[2]
-    with pytest.raises(ConfigurationError, match=r"unknown episode '7' \(allowed: learned, best, 0 to 2\)"):
-        choose_episode(choices, "7")
-
-
-def test_an_episode_in_the_other_engine_has_no_noted_score(run: RunFolder) -> None:
-    choice = episodes_of_run(run)[2]
-    own = default_engine()
-    (another,) = {"pybullet", "mujoco"} - {own}
-    other = view._in_engine(choice, another)
-    assert other.spec.config.engine == another and other.spec.seed == choice.spec.seed and other.score is None
-    assert view._in_engine(choice, own) == choice
-
-
-def test_an_unfinished_run_can_be_played_and_a_damaged_one_is_named(run: RunFolder, tmp_path: Path) -> None:
-    copy = tmp_path / "copy"
-    shutil.copytree(run.path, copy)
-    (copy / "parameters.json").unlink()
-    unfinished = RunFolder.open(copy, unfinished=True)
-    assert [choice.name for choice in episodes_of_run(unfinished)] == ["best", "0", "1", "2"]
-    with (copy / "episodes.csv").open("a") as file:
-        file.write("3,torn")
-    with pytest.raises(RunFolderError, match="copy cannot be read"):
-        episodes_of_run(unfinished)
-    (copy / "episodes.csv").unlink()
-    with pytest.raises(RunFolderError, match="has no episodes to show yet"):
-        episodes_of_run(unfinished)
-
-
-def test_sliders_that_stand_still_change_nothing() -> None:
-    stepping = EpisodeSpec(PAPER_STEPPING, 3, config=EpisodeConfig(time_limit=6.0))
-    assert simulate(Scenario.of(stepping).spec()) == simulate(stepping)
-    pushed = EpisodeSpec(LEARNED, 3, "balance", CONFIG)
-    again = simulate(Scenario.of(pushed).spec())
-    # The push goes by degrees and back, which costs a bit of precision.
-    assert again.score == pytest.approx(simulate(pushed).score, abs=0.02) and again.duration == 6.0
-
-
-def test_a_given_push_is_the_push_that_is_simulated() -> None:
-    scenario = Scenario(PAPER_STEPPING, LEARNED, KnownPush(50.0, 90.0, 2.5), 1, EpisodeConfig(time_limit=4.0))
-    trace = simulate(scenario.spec(), record_trace=True).trace
-    assert trace is not None
-    assert trace.push[trace.tick_at(2.55)] == pytest.approx([0.0, 50.0, 0.0])
-    assert not trace.push[trace.tick_at(2.49)].any()
-
-
-def test_playback_goes_on_by_the_clock_and_stops_at_the_end() -> None:
-    shown: list[float] = []
-    ended = threading.Event()
-
-    def show(time: float) -> None:
-        shown.append(time)
-        if time == 3.0:
-            ended.set()
-
-    playback = Playback(show)
-    playback.load(1.0, 3.0, 2.5)
-    playback.speed = 2.0
-    began = time.monotonic()
-    playback.start()
-    playback.play()
-    assert ended.wait(10.0)
-    assert time.monotonic() - began >= 0.25
-    assert shown[0] < 2.9 and sorted(shown) == shown and len(shown) > 2
-    assert not playback.is_playing
-    playback.play()
-    assert playback.time < 3.0  # from the beginning
-    playback.close()
-
-
-def test_the_newest_wish_is_simulated_and_the_one_before_it_given_up() -> None:
-    done: list[EpisodeResult] = []
-    finished = threading.Event()
-    shares: list[float] = []
-    simulation = BackgroundSimulation(shares.append, pytest.fail)
-    old, new = (EpisodeSpec(PAPER_STEPPING, seed) for seed in (0, 1))
-    simulation.request(Wish(old, done.append))
-    while not shares:
-        time.sleep(0.01)
-    simulation.request(Wish(new, lambda result: (done.append(result), finished.set())))  # type: ignore[func-returns-value]
-    assert finished.wait(60.0)
-    assert done == [simulate(new)]
-
-
-def test_the_page_is_served_to_this_machine_only() -> None:
-    with serving(view.ViewOptions().host, view.DEFAULT_PORT) as server:
-        listening = [
-            connection.laddr
-            for connection in psutil.Process().net_connections()
-            if connection.status == psutil.CONN_LISTEN
-        ]
-        assert {address.ip for address in listening} == {"127.0.0.1"}
-        assert server.get_port() in {address.port for address in listening}
-
-
-def test_without_the_extra_the_command_says_what_to_install(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(view, "find_spec", lambda _: None)
-    monkeypatch.setattr(sys, "argv", ["sarah-view"])
-    with pytest.raises(SystemExit):
-        view.main()
-    assert capsys.readouterr().err == "sarah-view: error: this needs the extra view: pip install 'sarah[view]'\n"
-
-
-# -- the page, in a browser
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,42 @@
+"""What the commands say of themselves."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from terminal import run
+
+
+@pytest.mark.parametrize(
+    ("command", "options"),
+    [
+        (
+            "sarah-train",
+            ("--task", "--algo", "--episodes", "--seed", "--run-dir", "--config", "--workers", "--scheduler"),
+        ),
+        ("sarah-figures", ("RUN", "--out")),
+        ("sarah-view", ("RUN|NUMBERS", "--episode", "--seed", "--export", "--host", "--port", "no password")),
+        ("sarah-video", ("RUN|NUMBERS", "OUT", "--episode", "--seed", "--push-newtons", "--seconds", "--speed")),
+        ("sarah-compare", ("DIR", "--algorithms", "--seeds", "--episodes", "--best-known", "--workers")),
+        ("sarah-eval", ("RUN", "--episodes", "--first-seed", "--json", "--parameters", "--task")),
+    ],
+)
+def test_help_names_the_options(command: str, options: tuple[str, ...], tmp_path: Path) -> None:
+    process = run(command, "--help", cwd=tmp_path)
+    assert process.returncode == 0
+    text = " ".join(process.stdout.replace("│", " ").split())
+    assert [option for option in options if option not in text] == []
+
+
+@pytest.mark.parametrize("command", ["train", "eval", "figures", "compare", "transfer", "video", "view"])
+def test_help_loads_nothing_slow(command: str) -> None:
+    program = (
+        f"import sys\nfrom sarah.cli.{command} import main\nsys.argv = ['command', '--help']\n"
+        "try:\n    main()\nexcept SystemExit:\n    pass\n"
+        "slow = {'torch', 'viser', 'matplotlib', 'pybullet', 'stable_baselines3', 'yourdfpy'}\n"
+        "slow |= {'yaml', 'mujoco'}\n"
+        "sys.exit(' '.join(slow & set(sys.modules)) or 0)"
+    )
+    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert process.stderr == "" and process.returncode == 0

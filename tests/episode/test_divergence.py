@@ -1,0 +1,78 @@
+"""An engine that returns no numbers any more: the episode ends as diverged, with a finite return."""
+
+import dataclasses
+import math
+
+import pytest
+from laboratory import RESULT
+
+from sarah.control.pattern_generator import STAND_SECONDS
+from sarah.envs.sarah_env import observation_from
+from sarah.episode.episode import Episode
+from sarah.episode.evaluation import Evaluation
+from sarah.episode.settings import EpisodeConfig
+from sarah.errors import SimulationError
+from sarah.robot.reading import SensorReading
+from sarah.simulation.simulator import TorsoState
+
+STANDING = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (75.0,) * 4, (0.0,) * 6)  # type: ignore[arg-type]
+NOT_A_NUMBER = TorsoState((math.nan, 0.0, 0.8), (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3)  # type: ignore[arg-type]
+
+
+def spoilt(
+    seconds: float, parts: dict[str, object], monkeypatch: pytest.MonkeyPatch, record_trace: bool = False
+) -> Episode:
+    """An episode in which what the engine returns is replaced from some time on."""
+    episode = Episode(EpisodeConfig(time_limit=3.0), 0, record_trace=record_trace)
+    for name, value in parts.items():
+        original = getattr(episode.simulation, name)
+        monkeypatch.setattr(
+            episode.simulation,
+            name,
+            lambda original=original, value=value: value if episode.simulation.time > seconds else original(),
+        )
+    return episode
+
+
+@pytest.mark.parametrize("seconds", [0.5, 1.5])
+@pytest.mark.parametrize(
+    "parts",
+    [
+        {"torso_state": NOT_A_NUMBER, "read": STANDING._replace(acceleration=(math.nan, 0.0, 0.0))},
+        {"read": STANDING._replace(pressures=(math.inf, 0.0, 0.0, 0.0))},
+        {"read": STANDING._replace(joints=(1e30, 0.0, 0.0, 0.0, 0.0, 0.0))},
+        {"torso_state": NOT_A_NUMBER._replace(position=(1e9, 0.0, 0.8))},
+        {"torso_state": NOT_A_NUMBER._replace(position=(0.0, 0.0, 0.8), velocity=(0.0, -1e5, 0.0))},
+    ],
+)
+def test_a_diverging_simulation_ends_as_diverged_with_a_finite_reward(
+    parts: dict[str, object], seconds: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    episode = spoilt(seconds, parts, monkeypatch)
+    observation = observation_from(episode.stand())
+    result = episode.run((0.4, 1.3, 0.1, 1.0, 1.0))
+    episode.close()
+    assert result.termination == "diverged" and 0.0 <= result.episode_return < 1.0
+    assert result.duration <= max(seconds, 1.0) + 0.05
+    assert all(map(math.isfinite, (*observation, *observation_from(episode.last_reading), *result.final_position)))
+    assert Evaluation((result, RESULT)).diverged == 1
+
+
+def test_who_diverges_while_standing_leaves_nothing_to_show(monkeypatch: pytest.MonkeyPatch) -> None:
+    diverging = {"read": STANDING._replace(joints=(1e30, 0.0, 0.0, 0.0, 0.0, 0.0))}
+    for seconds in (0.5, 1.5):
+        episode = spoilt(seconds, diverging, monkeypatch, record_trace=True)
+        episode.stand()
+        if seconds > STAND_SECONDS:
+            trace = episode.run((0.4, 1.3, 0.1, 1.0, 1.0)).trace
+            assert trace is not None and len(trace) > 1
+        else:
+            with pytest.raises(SimulationError, match="nothing to show: the simulation diverged while the robot stood"):
+                episode.run((0.4, 1.3, 0.1, 1.0, 1.0))
+        episode.close()
+
+
+def test_results_that_are_no_numbers_are_named() -> None:
+    for name, value in (("vibration", math.nan), ("final_position", (0.0, math.inf, 0.8))):
+        with pytest.raises(SimulationError, match=f"{name} of an episode must be finite"):
+            dataclasses.replace(RESULT, **{name: value})

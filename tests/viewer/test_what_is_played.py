@@ -1,0 +1,79 @@
+"""Episodes that the viewer can show, and what its sliders make of them."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from sarah.control.parameters import PAPER_STEPPING
+from sarah.episode.episode import simulate
+from sarah.episode.push import Push
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BalanceConfig
+from sarah.errors import ConfigurationError, RunFolderError
+from sarah.runs.run_episodes import choose_episode, episodes_of_run
+from sarah.runs.run_folder import RunFolder
+from sarah.simulation.engines import default_engine
+from sarah.viewer.scenario import KnownPush, Scenario
+
+PUSHED = BalanceConfig(time_limit=6.0, push=Push(newtons=(40.0, 60.0), at_seconds=(2.0, 3.0)))
+LEARNED = (0.8, 0.1, 0.3, -0.1)
+
+
+def test_every_episode_of_a_run_is_played_exactly(run: RunFolder) -> None:
+    choices = episodes_of_run(run)
+    assert [choice.name for choice in choices] == ["learned", "best", "0", "1", "2"]
+    for choice in choices[2:]:
+        assert simulate(choice.spec).score == choice.score
+        assert f"score {choice.score:.2f}" in choice.label
+    assert choices[0].spec == EpisodeSpec(run.parameters(), 0, "balance", run.config().episode)
+    assert choices[1].score == max(choice.score for choice in choices[2:])
+
+
+def test_an_unknown_episode_is_told_which_there_are(run: RunFolder) -> None:
+    choices = episodes_of_run(run)
+    assert choose_episode(choices, "2").spec.parameters == (-2.0, 1.0, 0.0, 2.0)
+    with pytest.raises(ConfigurationError, match=r"unknown episode '7' \(allowed: learned, best, 0 to 2\)"):
+        choose_episode(choices, "7")
+
+
+def test_an_episode_in_the_other_engine_has_no_noted_score(run: RunFolder) -> None:
+    choice = episodes_of_run(run)[2]
+    own = default_engine()
+    (another,) = {"pybullet", "mujoco"} - {own}
+    other = choice.in_engine(another)
+    assert other.spec.config.engine == another and other.spec.seed == choice.spec.seed and other.score is None
+    assert choice.in_engine(own) == choice
+
+
+def test_an_unfinished_run_can_be_played_and_a_damaged_one_is_named(run: RunFolder, tmp_path: Path) -> None:
+    copy = tmp_path / "copy"
+    shutil.copytree(run.path, copy)
+    (copy / "parameters.json").unlink()
+    unfinished = RunFolder.open(copy, unfinished=True)
+    assert [choice.name for choice in episodes_of_run(unfinished)] == ["best", "0", "1", "2"]
+    with (copy / "episodes.csv").open("a") as file:
+        file.write("3,torn")
+    with pytest.raises(RunFolderError, match="copy cannot be read"):
+        episodes_of_run(unfinished)
+    (copy / "episodes.csv").unlink()
+    with pytest.raises(RunFolderError, match="has no episodes to show yet"):
+        episodes_of_run(unfinished)
+
+
+def test_sliders_that_stand_still_change_nothing() -> None:
+    stepping = EpisodeSpec(PAPER_STEPPING, 3, config=EpisodeConfig(time_limit=6.0))
+    assert simulate(Scenario.of(stepping).spec()) == simulate(stepping)
+    pushed = EpisodeSpec(LEARNED, 3, "balance", PUSHED)
+    again = simulate(Scenario.of(pushed).spec())
+    # The push goes by degrees and back, which costs a bit of precision.
+    assert again.score == pytest.approx(simulate(pushed).score, abs=0.02) and again.duration == 6.0
+
+
+def test_a_given_push_is_the_push_that_is_simulated() -> None:
+    scenario = Scenario(PAPER_STEPPING, LEARNED, KnownPush(50.0, 90.0, 2.5), 1, BalanceConfig(time_limit=4.0))
+    trace = simulate(scenario.spec(), record_trace=True).trace
+    assert trace is not None
+    assert trace.push[trace.tick_at(2.55)] == pytest.approx([0.0, 50.0, 0.0])
+    assert not trace.push[trace.tick_at(2.49)].any()
