@@ -101,7 +101,8 @@ def _row(page: Any, label: str, content: str) -> Any:
 
 def scores(page: Any) -> list[str]:
     """Now and before."""
-    return page.locator("#results tr").nth(1).locator("td").all_inner_texts()[1:]
+    row = page.locator("#results tr").filter(has=page.get_by_text("score", exact=True))
+    return row.locator("td").all_inner_texts()[1:]
 
 
 def choose_on_page(page: Any, text: str) -> None:
