@@ -1,7 +1,8 @@
 """``python -m experiments NAME``: make a result; without a name, list all of them with their questions.
 
-What follows a name are options: ``--quick`` for a size that takes seconds, ``--out FOLDER`` for files elsewhere than in
-results/, and those of the experiment, which ``python -m experiments NAME --help`` shows.
+What follows a name are options: ``--quick`` for a size that takes seconds, ``--out FOLDER`` for the files, and those of
+the experiment, which ``python -m experiments NAME --help`` shows. An experiment that options change writes to
+build/experiments/ instead of results/.
 
 ``python -m experiments stale WHY [NAME...]`` has the pages say of results that they are not of today's project.
 """
@@ -14,13 +15,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from experiments import record
+from experiments.experiment import Experiment
 from experiments.made_with import differences, made_with
 from sarah.cli.options import parse_options, run_command
 from sarah.errors import ConfigurationError, unknown_name
 
 COMMAND = "python -m experiments"
-QUICK_RESULTS = record.ROOT / "build" / "quick_results"
-"""Where the rows of quick experiments go, which say nothing."""
+OTHER_RESULTS = record.ROOT / "build" / "experiments"
+"""Folder for the rows of experiments that options change."""
+HARMLESS = {"workers", "runs"}
+"""Options that change no row."""
 
 
 def main(arguments: Sequence[str]) -> None:
@@ -62,11 +66,20 @@ def make(name: str, arguments: Sequence[str]) -> None:
     for row in experiment.rows():
         print(", ".join(f"{column} {record.cell(value)}" for column, value in row.items()), flush=True)
         rows.append(row)
-    folder = shared.out or (QUICK_RESULTS if shared.quick else record.RESULTS)
+    folder = shared.out or (record.RESULTS if makes_the_result(experiment, maker.experiment) else OTHER_RESULTS)
     folder.mkdir(parents=True, exist_ok=True)
     command = shlex.join([*COMMAND.split(), name, *arguments])
     record.write(name, rows, maker.question, command, made_with() if maker.of_robot else None, folder)
     print(folder / f"{name}.csv")
+
+
+def makes_the_result(experiment: Experiment, full: Experiment) -> bool:
+    """Whether an experiment makes the rows that the pages show.
+
+    :param experiment: an experiment with some options
+    :param full: the same in its full size
+    """
+    return all(vars(experiment)[option] == value for option, value in vars(full).items() if option not in HARMLESS)
 
 
 def mark_stale(folder: Path, reason: str = "", *names: str) -> None:

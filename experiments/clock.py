@@ -39,7 +39,7 @@ class Clock(OnWorkers):
         with Workers(self.workers) as workers:
             for seconds in TIME_OUTS:
                 constants = ControllerConstants(time_out_seconds=seconds)
-                config = EpisodeConfig(controller=constants, time_limit=self.time_limit)
+                config = EpisodeConfig(engine="pybullet", controller=constants, time_limit=self.time_limit)
                 specs = [
                     EpisodeSpec(parameters, seed, config=config) for seed, parameters in enumerate((*drawn, *CLOCKS))
                 ]

@@ -82,7 +82,9 @@ class RobotDimensions(OnWorkers):
 
     def _row(self, robot: Robot, controller: tuple[float, ...], workers: Workers) -> Row:
         def spec(seed: int, push: Push, limit: float) -> EpisodeSpec:
-            config = BalanceConfig(dimensions=robot.dimensions, controller=robot.constants, push=push, time_limit=limit)
+            config = BalanceConfig(
+                engine="pybullet", dimensions=robot.dimensions, controller=robot.constants, push=push, time_limit=limit
+            )
             return EpisodeSpec(controller, seed, BALANCE.name, config)
 
         still = Push(newtons=(0.0, 0.0))

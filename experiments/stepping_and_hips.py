@@ -18,6 +18,8 @@ from sarah.episode.push import Push
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.episode.workers import Workers
+from sarah.simulation.engines import Engine
+from sarah.simulation.randomisation import Randomisation
 from sarah.simulation.simulator import GRAVITY
 
 STEPPING = (
@@ -51,12 +53,16 @@ class SteppingAndHips(OnWorkers):
     :param pushes: number of pushes
     :param newtons: range of their force, in N
     :param time_limit: time limit of an episode, in s
+    :param engine: physics engine
+    :param calm: leave out pushes and randomisation: all episodes of a set are then the same
     """
 
     v1: tuple[float, ...] = (0.7, 1.1)
     pushes: int = 8
     newtons: tuple[float, float] = (75.0, 125.0)
     time_limit: float = 10.0
+    engine: Engine = "pybullet"
+    calm: bool = False
 
     def rows(self) -> Iterator[Row]:
         """A row for each P1 to P5, what is told, and V1."""
@@ -65,9 +71,11 @@ class SteppingAndHips(OnWorkers):
             for stepping in STEPPING:
                 for told, v1 in cases:
                     config = BalanceConfig(
+                        engine=self.engine,
+                        randomisation=Randomisation(enabled=not self.calm),
                         controller=TOLD[told],
                         stepping=stepping,
-                        push=Push(newtons=self.newtons),
+                        push=Push(newtons=(0.0, 0.0) if self.calm else self.newtons),
                         time_limit=self.time_limit,
                     )
                     found = evaluate(BALANCE.name, (v1, 0.0, 0.0, 0.0), config, range(self.pushes), workers)

@@ -1,9 +1,15 @@
 """What the site's own build cannot see; `make docs` sees the rest."""
 
 import re
+from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 
 import pytest
+
+from sarah.episode.episode import simulate
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import TASKS
 
 ROOT = Path(__file__).parent.parent
 
@@ -27,3 +33,13 @@ def test_contributing_answers_with_one_file_each() -> None:
     section = (ROOT / "CONTRIBUTING.md").read_text().split("## Where do I change")[1].split("\n## ")[0]
     files = re.findall(r"^\| (.+?) \| `([^`]+)`", section, re.MULTILINE)
     assert len(files) >= 5 and [file for _, file in files if not (ROOT / file).is_file()] == []
+
+
+def test_the_task_of_the_tutorial_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs/tutorials/own_task.md").read_text(), re.DOTALL)
+    (tmp_path / "together.py").write_text(blocks[0])
+    monkeypatch.syspath_prepend(tmp_path)
+    task = import_module("together").TOGETHER
+    monkeypatch.setitem(TASKS, task.name, task)
+    config = replace(task.episode, time_limit=1.5)
+    assert simulate(EpisodeSpec(task.baseline, 0, task.name, config)).survived

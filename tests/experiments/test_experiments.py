@@ -1,5 +1,6 @@
 """Every experiment runs, in a size that takes seconds, and makes the columns that the pages expect."""
 
+import dataclasses
 import shutil
 from pathlib import Path
 
@@ -7,7 +8,7 @@ import pytest
 from laboratory import need
 
 from experiments import record
-from experiments.__main__ import main, mark_stale
+from experiments.__main__ import main, makes_the_result, mark_stale
 from experiments.made_with import made_with
 from experiments.table import TABLE
 from sarah.errors import ConfigurationError
@@ -68,6 +69,13 @@ def test_without_a_name_all_are_listed(capsys: pytest.CaptureFixture[str]) -> No
 def test_an_unknown_name_is_one_line_with_the_nearest() -> None:
     with pytest.raises(ConfigurationError, match=r"unknown experiment 'clok', did you mean 'clock'\?"):
         main(["clok"])
+
+
+def test_only_the_full_experiment_makes_the_result() -> None:
+    clock = TABLE["clock"]
+    assert makes_the_result(dataclasses.replace(clock.experiment, workers=0), clock.experiment)
+    assert not makes_the_result(dataclasses.replace(clock.experiment, random_sets=100), clock.experiment)
+    assert all(not makes_the_result(maker.quick_experiment, maker.experiment) for maker in TABLE.values())
 
 
 def test_a_result_is_stale_only_for_a_reason() -> None:
