@@ -42,8 +42,6 @@ class QuadraticCritic(BaseModel):
     features_extractor: BaseFeaturesExtractor
     rows: th.Tensor
     columns: th.Tensor
-    in_column: th.Tensor
-    is_diagonal: th.Tensor
 
     def __init__(
         self,
@@ -70,8 +68,6 @@ class QuadraticCritic(BaseModel):
         # Where in L its entries are, row by row
         self.register_buffer("rows", rows, persistent=False)
         self.register_buffer("columns", columns, persistent=False)
-        self.register_buffer("in_column", nn.functional.one_hot(columns, action_dim).float(), persistent=False)
-        self.register_buffer("is_diagonal", rows == columns, persistent=False)
 
         self.value_net = nn.Sequential(*create_mlp(features_dim, 1, net_arch["V"], activation_fn))
         self.shared_net = nn.Sequential(*create_mlp(features_dim, -1, net_arch["shared"], activation_fn))
@@ -94,8 +90,8 @@ class QuadraticCritic(BaseModel):
         features = self.extract_features(obs, self.features_extractor)
         shared = self.shared_net(features)
         from_mu = actions - self.mu_net(shared)
-        # (u - mu)^T L L^T (u - mu) is the squared length of the row (u - mu)^T L, summed without building L
-        projected = (from_mu.index_select(1, self.rows) * self._entries(shared)) @ self.in_column
+        # (u - mu)^T L L^T (u - mu) is the squared length of the row (u - mu)^T L
+        projected = (from_mu.unsqueeze(2) * self._lower(shared)).sum(dim=1)
         squared_length = projected.square().sum(dim=1, keepdim=True)
         if self.min_curvature > 0:
             squared_length = squared_length + self.min_curvature * from_mu.square().sum(dim=1, keepdim=True)
@@ -126,12 +122,12 @@ class QuadraticCritic(BaseModel):
         :param obs: Observations
         :return: ``L`` of shape (batch, action dim, action dim)
         """
-        entries = self._entries(self.shared_net(self.extract_features(obs, self.features_extractor)))
-        action_dim = get_action_dim(self.action_space)
-        lower = entries.new_zeros(len(entries), action_dim, action_dim)
-        lower[:, self.rows, self.columns] = entries
-        return lower
+        return self._lower(self.shared_net(self.extract_features(obs, self.features_extractor)))
 
-    def _entries(self, shared: th.Tensor) -> th.Tensor:
+    def _lower(self, shared: th.Tensor) -> th.Tensor:
         outputs = self.lower_net(shared)
-        return th.where(self.is_diagonal, outputs.clamp(LOG_DIAGONAL_MIN, LOG_DIAGONAL_MAX).exp(), outputs)
+        diagonals = outputs.clamp(LOG_DIAGONAL_MIN, LOG_DIAGONAL_MAX).exp()
+        action_dim = get_action_dim(self.action_space)
+        lower = outputs.new_zeros(len(outputs), action_dim, action_dim)
+        lower[:, self.rows, self.columns] = th.where(self.rows == self.columns, diagonals, outputs)
+        return lower

@@ -125,7 +125,7 @@ def test_schedules_and_logs():
 
 
 def test_fast_updates_are_the_plain_ones():
-    """Fused Adam, averaging in one call and the scattered L change nothing but rounding: here all of it in loops."""
+    """Fused Adam, averaging in one call and L in one piece change nothing but rounding: here all of it in loops."""
     env = Corridor()
     env.action_space = spaces.Box(-1, 1, (3,))
     model = NAF("MlpPolicy", env, gamma=GAMMA, learning_starts=40, gradient_steps=0, seed=0)
