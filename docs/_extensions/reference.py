@@ -1,6 +1,6 @@
-"""Sphinx extension: writes the reference of settings, parameters and metrics from the code, before the pages are read.
+"""Sphinx extension: writes from the code what pages say of settings, parameters, metrics and examples.
 
-Pages of ``reference/`` include what is written here, by the names of :data:`PAGES`.
+It does so before the pages are read. They include what is written here, by the names of :data:`PAGES`.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from sarah.runs.config import TrainingConfig
 from sarah.simulation.physics import PHYSICS, Physics
 
 GENERATED = Path("reference") / "generated"
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def settings_page() -> Iterator[str]:
@@ -110,6 +111,13 @@ def metrics_page() -> Iterator[str]:
     yield from table(["metric", "unit", "meaning", "statistics", "paper"], rows)
 
 
+def examples_page() -> Iterator[str]:
+    """The text of each example, under its name."""
+    for path in sorted(EXAMPLES.glob("*.py")):
+        yield f"## `{path.name}`\n"
+        yield f"```python\n{path.read_text(encoding='utf-8')}```\n"
+
+
 def table(head: list[str], rows: Iterable[list[str]]) -> Iterator[str]:
     """Lines of a Markdown table.
 
@@ -152,7 +160,12 @@ def shown(value: Any) -> str:
     return f"`{str(value).lower() if isinstance(value, bool) else value}`"
 
 
-PAGES = {"settings": settings_page, "parameters": parameters_page, "metrics": metrics_page}
+PAGES = {
+    "settings": settings_page,
+    "parameters": parameters_page,
+    "metrics": metrics_page,
+    "examples": examples_page,
+}
 """What is written, by name of the file."""
 
 
