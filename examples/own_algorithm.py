@@ -20,4 +20,5 @@ for attempt in range(20):
     score = sarah.evaluate("stepping", tried, config, seeds=range(2)).median("score")
     if score > best_score:
         best, best_score = tried, score
-        print(f"attempt {attempt:2}: score {score:.3f} with P = {', '.join(f'{value:.2f}' for value in best)}")
+        values = ", ".join(f"{value:.2f}" for value in best)
+        print(f"attempt {attempt:2}: score {score:.3f} with P = {values}")

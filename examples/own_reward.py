@@ -20,12 +20,13 @@ class Thrifty(gymnasium.Wrapper):
     def step(self, action):
         """Simulate the episode and judge it anew."""
         observation, episode_return, terminated, truncated, info = self.env.step(action)
-        result = info["result"]
-        reward = result.score - POWER_COST * result.actuator_power
-        print(f"return {episode_return:.3f}, {result.actuator_power:5.1f} W: reward {reward:.3f}")
+        score, power = info["result"].score, info["result"].actuator_power
+        reward = score - POWER_COST * power
+        print(f"return {episode_return:.3f}, {power:4.1f} W: reward {reward:.3f}")
         return observation, reward, terminated, truncated, info
 
 
 torch.set_num_threads(1)  # the networks are small: more threads only wait for each other
-env = Thrifty(gymnasium.make("SarahStepping-v0", config=sarah.EpisodeConfig(time_limit=5.0)))
+config = sarah.EpisodeConfig(time_limit=5.0)
+env = Thrifty(gymnasium.make("SarahStepping-v0", config=config))
 NAF("MlpPolicy", env, gamma=0.0, learning_starts=5, gradient_steps=10, seed=0).learn(12)

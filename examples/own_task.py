@@ -1,7 +1,7 @@
 """A task of your own: P1 to P3 are learned, and P4 and P5, which hardly matter, stay 1.
 
 One sees what CMA-ES learned. Once the task has an entry in ``TASKS``, everything takes it by its name. A task for
-the command line and for several workers stands in a file of the package: docs/tutorials/own_task.md.
+the command line and for several workers stands in a file of the package; the tutorial shows how.
 """
 
 import tempfile
@@ -15,12 +15,18 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.training.train import train
 
+
+def controller_parameters(chosen, config):
+    """P1 to P5, and no hip law."""
+    return SteppingParameters(*chosen, 1.0, 1.0), None
+
+
 TASKS["three"] = Task(
     name="three",
     title="Stepping with three parameters",
     parameters=STEPPING_PARAMETERS[:3],
     episode=sarah.EpisodeConfig(time_limit=6.0),
-    controller_parameters=lambda chosen, config: (SteppingParameters(*chosen, 1.0, 1.0), None),
+    controller_parameters=controller_parameters,
     baseline=PAPER_STEPPING[:3],
     baseline_label="the paper's parameters, simulated here",
 )

@@ -34,11 +34,11 @@ def settings_page() -> Iterator[str]:
     physics = PHYSICS["standard"]
     yield from section("`episode.physics`", "episode.physics.", own_fields(Physics), {"default": physics})
     pybullet_only = own_fields(type(physics), Physics)
-    yield from section("`episode.physics`, PyBullet only", "episode.physics.", pybullet_only, {"default": physics})
+    yield from section("`episode.physics`: PyBullet", "episode.physics.", pybullet_only, {"default": physics})
     yield from groups("episode.", EpisodeConfig(), leave_out="physics")
     for task in TASKS.values():
         names = own_fields(type(task.episode), EpisodeConfig)
-        title = f"`episode`, `--task {task.name}` only"
+        title = f"`episode`: `--task {task.name}`"
         yield from section(title, "episode.", names, {"default": task.episode})
         own = {name: getattr(task.episode, name) for name in vars(task.episode) if not hasattr(EpisodeConfig(), name)}
         yield from groups("episode.", own)
@@ -47,12 +47,12 @@ def settings_page() -> Iterator[str]:
 def agent_sections() -> Iterator[str]:
     """A table of the settings that reinforcement learners share, and one for each algorithm that has others."""
     learners = {name: kind() for name, kind in AGENT_SETTINGS.items() if issubclass(kind, LearnerSettings)}
-    yield from section("`agent`: reinforcement learners", "agent.", own_fields(LearnerSettings), learners)
+    yield from section("`agent`: all reinforcement learners", "agent.", own_fields(LearnerSettings), learners)
     for name, kind in AGENT_SETTINGS.items():
         columns: dict[str, Any] = {"default": kind()}
         if kind is NAFSettings:
             columns = {f"preset {preset}": NAFSettings(preset=preset) for preset in agent_settings.PRESETS}
-        yield from section(f"`agent`: `--algo {name}` only", "agent.", own_fields(kind, LearnerSettings), columns)
+        yield from section(f"`agent`: `--algo {name}`", "agent.", own_fields(kind, LearnerSettings), columns)
 
 
 def groups(key: str, config: Any, leave_out: str = "") -> Iterator[str]:
@@ -112,10 +112,12 @@ def metrics_page() -> Iterator[str]:
 
 
 def examples_page() -> Iterator[str]:
-    """The text of each example, under its name."""
+    """What each example says of itself, and its code."""
     for path in sorted(EXAMPLES.glob("*.py")):
+        _, docstring, code = path.read_text(encoding="utf-8").split('"""', 2)
         yield f"## `{path.name}`\n"
-        yield f"```python\n{path.read_text(encoding='utf-8')}```\n"
+        yield "\n\n".join(markdown(paragraph) for paragraph in docstring.split("\n\n")) + "\n"
+        yield f"```python\n{code.strip()}\n```\n"
 
 
 def table(head: list[str], rows: Iterable[list[str]]) -> Iterator[str]:
