@@ -96,7 +96,7 @@ def _to_plain(value: Any) -> Any:
 
 def _from_mapping(config_type: type[ConfigType], content: Any, key: str) -> ConfigType:
     if not isinstance(content, Mapping):
-        raise ConfigurationError(f"{key or 'the file'} must hold keys and values, not {shortened(content)}")
+        raise ConfigurationError(f"{key.rstrip('.') or 'the file'} must hold keys and values, not {shortened(content)}")
     types = get_type_hints(config_type)
     types |= getattr(config_type, "field_types", lambda _: {})(content)
     values = {}
