@@ -15,6 +15,9 @@ from typing import NamedTuple
 from experiments.record import ROOT, Row
 
 
+TESTS = ROOT / "tests"
+
+
 class Protection(NamedTuple):
     """What protects, and who watches.
 
@@ -22,7 +25,7 @@ class Protection(NamedTuple):
     :param file: file of the package that keeps the promise
     :param code: code that does
     :param instead: code without the protection
-    :param test: test that fails then, a path below tests/
+    :param test: name of the test that fails then
     """
 
     promise: str
@@ -31,6 +34,13 @@ class Protection(NamedTuple):
     instead: str
     test: str
 
+    @property
+    def place(self) -> str:
+        """Test with its file, as pytest takes it."""
+        files = [path for path in TESTS.rglob("test_*.py") if f"def {self.test}(" in path.read_text(encoding="utf-8")]
+        (file,) = files
+        return f"{file.relative_to(ROOT)}::{self.test}"
+
 
 PROTECTIONS = (
     Protection(
@@ -38,126 +48,126 @@ PROTECTIONS = (
         "files.py",
         'path.with_name(f"{path.name}.new")',
         "path",
-        "test_files.py::test_a_file_keeps_its_content_until_the_new_one_is_complete",
+        "test_a_file_keeps_its_content_until_the_new_one_is_complete",
     ),
     Protection(
         "damaged rows of the journal are found",
         "runs/journal.py",
         "if int(checksum, 16) != zlib.crc32(text):",
         "if False:",
-        "training/test_resume.py::test_a_damaged_row_costs_its_simulation_only",
+        "test_a_damaged_row_costs_its_simulation_only",
     ),
     Protection(
         "a training that does not repeat is refused",
         "runs/journal.py",
         "if row.request != request:",
         "if False:",
-        "training/test_resume.py::test_a_training_that_does_not_repeat_is_not_resumed",
+        "test_a_training_that_does_not_repeat_is_not_resumed",
     ),
     Protection(
         "run folders are locked",
         "runs/journal.py",
         "fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)",
         "pass",
-        "training/test_resume.py::test_two_trainings_do_not_share_a_run_folder",
+        "test_two_trainings_do_not_share_a_run_folder",
     ),
     Protection(
         "weights that are no numbers stop a training",
         "training/recorder.py",
         "if not torch.isfinite(torch.stack(norms)).all():",
         "if False:",
-        "training/test_resume.py::test_weights_that_are_not_finite_stop_the_training",
+        "test_weights_that_are_not_finite_stop_the_training",
     ),
     Protection(
         "Ctrl-C and SIGTERM finish the episode",
         "cli/interruption.py",
         "signal.signal(number, self._note)",
         "pass",
-        "cli/test_interruption.py::test_killed_locked_stopped_and_resumed",
+        "test_killed_locked_stopped_and_resumed",
     ),
     Protection(
         "a full disk is one line",
         "cli/train.py",
         "except (SarahError, OSError) as error:",
         "except ZeroDivisionError as error:",
-        "cli/test_interruption.py::test_a_full_disk_stops_the_training_and_space_lets_it_go_on",
+        "test_a_full_disk_stops_the_training_and_space_lets_it_go_on",
     ),
     Protection(
         "states that are no numbers end an episode",
         "simulation/simulator.py",
         "return math.hypot(*position, *orientation, *velocity, *angular_velocity) < LARGEST_STATE",
         "return True",
-        "cli/test_fuzz.py::test_a_diverging_simulation_ends_as_diverged_with_a_finite_reward",
+        "test_a_diverging_simulation_ends_as_diverged_with_a_finite_reward",
     ),
     Protection(
         "results that are no numbers are refused",
         "episode/result.py",
         "if not isinstance(value, str) and not math.isfinite(",
         "if False and not math.isfinite(",
-        "cli/test_fuzz.py::test_results_that_are_no_numbers_are_named",
+        "test_results_that_are_no_numbers_are_named",
     ),
     Protection(
         "an episode with nothing to show says so",
         "episode/trace.py",
         "if not rows:",
         "if False:",
-        "cli/test_fuzz.py::test_who_diverges_while_standing_leaves_nothing_to_show",
+        "test_who_diverges_while_standing_leaves_nothing_to_show",
     ),
     Protection(
         "readings that are no numbers are passed over",
         "control/pattern_generator.py",
         "if not reading.is_finite:",
         "if False:",
-        "cli/test_fuzz.py::test_a_sensor_that_drops_out_does_not_stop_the_stepping_by_sensors",
+        "test_a_sensor_that_drops_out_does_not_stop_the_stepping_by_sensors",
     ),
     Protection(
         "keys that stand twice are refused",
         "runs/config_files.py",
         "if key.value in seen:",
         "if False:",
-        "cli/test_mistakes.py::test_configuration_files",
+        "test_configuration_files",
     ),
     Protection(
         "robot dimensions are checked",
         "robot/description.py",
         "if name not in allowed:",
         "if False:",
-        "cli/test_mistakes.py::test_configuration_files",
+        "test_bad_dimensions_are_refused_by_name",
     ),
     Protection(
         "options that contradict a resumed run are refused",
         "cli/train.py",
         "if options.run_dir is not None or options.config is not None or options.from_run is not None:",
         "if False:",
-        "cli/test_mistakes.py",
+        "test_damaged_run_folders",
     ),
     Protection(
         "YAML makes no objects",
         "runs/config_files.py",
         "yaml.safe_load(text)",
         "yaml.unsafe_load(text)",
-        "runs/test_opening.py::test_yaml_makes_no_objects",
+        "test_yaml_makes_no_objects",
     ),
     Protection(
         "commands do not load models",
         "runs/run_folder.py",
         "task = TASKS[self.config().task]",
         "task = TASKS[self.config().task]; import torch; torch.load(self.model_path, weights_only=False)",
-        "runs/test_opening.py::test_no_file_of_a_run_is_unpickled",
+        "test_no_file_of_a_run_is_unpickled",
     ),
     Protection(
         "workers are out of others' reach",
         "episode/workers.py",
         'host="127.0.0.1",',
         'host="0.0.0.0",',
-        "episode/test_workers.py::test_workers_listen_to_this_machine_only",
+        "test_workers_listen_to_this_machine_only",
     ),
     Protection(
         "the viewer is out of others' reach",
         "cli/view.py",
         'host: str = "127.0.0.1"',
         'host: str = "0.0.0.0"',
-        "viewer/test_viewer.py::test_the_page_is_served_to_this_machine_only",
+        "test_the_page_is_served_to_this_machine_only",
     ),
 )
 
@@ -181,7 +191,7 @@ class Protections:
             said = verdict(protection)
             if said != "fails":
                 unwatched.append(protection.promise)
-            yield {"promise": protection.promise, "test": f"tests/{protection.test}", "without_it": said}
+            yield {"promise": protection.promise, "test": protection.place, "without_it": said}
         if unwatched:
             raise SystemExit(f"nobody watches that {', that '.join(unwatched)}")
 
@@ -200,7 +210,7 @@ def verdict(protection: Protection) -> str:
             return f"{protection.file} has other code"
         file.write_text(text.replace(protection.code, protection.instead), encoding="utf-8")
         options = ["-q", "-x", "-p", "no:cacheprovider", "-c", str(ROOT / "setup.cfg")]
-        command = [sys.executable, "-m", "pytest", *options, str(ROOT / "tests" / protection.test)]
-        environment = {**os.environ, "PYTHONPATH": folder}
+        command = [sys.executable, "-m", "pytest", *options, str(ROOT / protection.place)]
+        environment = {**os.environ, "PYTHONPATH": f"{folder}{os.pathsep}{ROOT}"}
         process = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
     return {0: "PASSES", 1: "fails"}.get(process.returncode, "cannot be run")
