@@ -39,6 +39,7 @@ train: install  ## both trainings with NAF, figures, reports and robustness tabl
 	$(BIN)/sarah-report $(RUN)/stepping --workers $(WORKERS)
 	$(BIN)/sarah-report $(RUN)/balance --workers $(WORKERS)
 	$(BIN)/sarah-eval $(RUN)/balance --robustness $(RUN)/figures --episodes $(PUSHES) --workers $(WORKERS)
+	@echo "all of it is in $(RUN): open $(RUN)/balance/report.html"
 
 test: install  ## the tests
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m 'not slow'
