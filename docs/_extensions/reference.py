@@ -112,10 +112,11 @@ def metrics_page() -> Iterator[str]:
 
 
 def examples_page() -> Iterator[str]:
-    """What each example says of itself, and its code."""
-    for path in sorted(EXAMPLES.glob("*.py")):
-        _, docstring, code = path.read_text(encoding="utf-8").split('"""', 2)
-        yield f"## `{path.name}`\n"
+    """What each example says of itself, and its code, in the order of their list."""
+    listed = (EXAMPLES / "README.md").read_text(encoding="utf-8")
+    for name in re.findall(r"\((\w+\.py)\)", listed):
+        _, docstring, code = (EXAMPLES / name).read_text(encoding="utf-8").split('"""', 2)
+        yield f"## `{name}`\n"
         yield "\n\n".join(markdown(paragraph) for paragraph in docstring.split("\n\n")) + "\n"
         yield f"```python\n{code.strip()}\n```\n"
 
