@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 from experiments.record import ROOT, Row
 
-
 TESTS = ROOT / "tests"
 
 
