@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from sarah.episode.spec import EpisodeSpec
     from sarah.episode.tasks import BalanceConfig
     from sarah.errors import SarahError
-    from sarah.simulation.physics import PHYSICS, Physics
+    from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
     from sarah.simulation.randomisation import Randomisation
 
 _HOMES = {
@@ -37,6 +37,7 @@ _HOMES = {
     "Evaluation": "episode.evaluation",
     "Physics": "simulation.physics",
     "Push": "episode.push",
+    "PyBulletPhysics": "simulation.physics",
     "Randomisation": "simulation.randomisation",
     "SarahError": "errors",
     "evaluate": "episode.evaluation",
@@ -53,6 +54,7 @@ __all__ = [
     "Evaluation",
     "Physics",
     "Push",
+    "PyBulletPhysics",
     "Randomisation",
     "SarahError",
     "evaluate",

@@ -139,4 +139,8 @@ def parameters_from(action: np.ndarray, task: Task) -> tuple[float, ...]:
     if values.shape != (count,) or not (np.abs(values) <= 1.0).all():
         raise ConfigurationError(f"an action must be {count} numbers within -1 and 1, not {action!r}")
     boxes = zip(task.parameters, values, strict=True)
-    return tuple(float(parameter.low + parameter.width * (value + 1.0) / 2.0) for parameter, value in boxes)
+    # Rounding may lead beyond an end of a range.
+    return tuple(
+        min(max(float(parameter.low + parameter.width * (value + 1.0) / 2.0), parameter.low), parameter.high)
+        for parameter, value in boxes
+    )

@@ -89,5 +89,6 @@ def physics_for(engine: str, physics: Physics) -> Physics:
     shared = Physics(physics.rate, physics.solver_iterations, physics.control_rate)
     if engine != "pybullet":
         return shared
-    named = (setting for setting in PHYSICS.values() if physics_for("mujoco", setting) == shared)
-    return next(named, PyBulletPhysics(shared.rate, shared.solver_iterations, shared.control_rate))
+    named = (setting.at_control_rate(physics.control_rate) for setting in PHYSICS.values())
+    same = (setting for setting in named if physics_for("mujoco", setting) == shared)
+    return next(same, PyBulletPhysics(shared.rate, shared.solver_iterations, shared.control_rate))

@@ -1,5 +1,6 @@
 """The gymnasium environments: what checkers, libraries and users expect of it."""
 
+import dataclasses
 import math
 import subprocess
 import sys
@@ -13,7 +14,7 @@ from laboratory import NEEDS_PYBULLET
 from stable_baselines3.common.env_checker import check_env as sb3_check_env
 
 import sarah
-from sarah.control.parameters import PAPER_STEPPING
+from sarah.control.parameters import PAPER_STEPPING, Parameter
 from sarah.envs.registration import ENVIRONMENTS
 from sarah.envs.sarah_env import SarahEnv, observation_from, parameters_from
 from sarah.episode.settings import EpisodeConfig
@@ -130,6 +131,15 @@ def test_impossible_actions_are_refused(action: np.ndarray) -> None:
     with pytest.raises(ConfigurationError, match="an action must be 5 numbers within -1 and 1"):
         env.step(action)
     env.close()
+
+
+@pytest.mark.parametrize(("low", "high"), [(-0.1, 0.2), (-1.0, -0.45), (-1.0, 0.1), (0.0, 2.0)])
+def test_the_ends_of_an_action_are_the_ends_of_the_range(low: float, high: float) -> None:
+    """Rounded, -0.1 + 0.3 is more than 0.2, which the task would refuse."""
+    task = dataclasses.replace(STEPPING, parameters=(Parameter("odd", low, high, "", "a range", ""),))
+    assert parameters_from(np.array([-1.0]), task) == (low,)
+    assert parameters_from(np.array([1.0]), task)[0] <= high
+    assert task.checked(parameters_from(np.array([1.0]), task))[0] == pytest.approx(high)
 
 
 def test_an_episode_has_one_step() -> None:

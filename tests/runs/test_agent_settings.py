@@ -132,7 +132,7 @@ def test_what_a_file_does_not_name_is_the_default_of_its_algorithm(tmp_path: Pat
         ("{algo: gp, agent: {layers: [1]}}", "unknown key 'agent.layers' (allowed: none)"),
         ("{algo: td4, agent: {layers: [1]}}", "unknown algo 'td4', did you mean 'td3'?"),
         ("{agent: {}, algo: [1]}", "algo must be a text, not [1]"),
-        ("agent: 5", "agent. must hold keys and values, not 5"),
+        ("agent: 5", "agent must hold keys and values, not 5"),
         ("agent: {v_layers: 5}", "agent.v_layers must be a list, not 5"),
         ("agent: {v_layers: [5, x]}", "agent.v_layers must be a whole number, not 'x'"),
         ("agent: {exploration_std: [0.1]}", "agent.exploration_std must be a list of 2 values, not [0.1]"),

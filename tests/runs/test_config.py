@@ -84,7 +84,7 @@ def test_what_a_task_and_an_engine_have_of_their_own_is_read(tmp_path: Path) -> 
         ("task: [balance]", "task must be a text, not ['balance']"),
         ("algo: td33", "unknown algo 'td33', did you mean 'td3'"),
         ("algo: 3", "algo must be a text, not 3"),
-        ("episode: 5", "episode. must hold keys and values, not 5"),
+        ("episode: 5", "episode must hold keys and values, not 5"),
         ("[1, 2]", "the file must hold keys and values"),
         ("episode: {time_limit: .inf}", "time_limit must be between 1 and 3600 s, not inf"),
         ("episode: {time_limit: 1}", "time_limit must be above the 1 s of standing, not 1.0"),

@@ -24,6 +24,12 @@ def test_named_settings_go_to_mujoco_and_come_back(name: str) -> None:
     assert physics_for("pybullet", in_mujoco) == PHYSICS[name]
 
 
+@pytest.mark.parametrize("control_rate", [50, 200, 250])
+def test_named_settings_come_back_at_any_control_rate(control_rate: int) -> None:
+    reference = PHYSICS["reference"].at_control_rate(control_rate)
+    assert physics_for("pybullet", physics_for("mujoco", reference)) == reference
+
+
 def test_settings_without_a_name_get_the_standard_inertia_in_pybullet() -> None:
     taken = physics_for("pybullet", Physics(rate=400, solver_iterations=7, control_rate=200))
     assert taken == PyBulletPhysics(400, 7, 200, added_plate_inertia=PHYSICS["standard"].added_plate_inertia)
