@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from experiments.experiment import OnWorkers
-from experiments.made_with import made_with, short_hash
+from experiments.made_with import short_hash
 from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BalanceConfig
@@ -16,6 +16,7 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import Engine
 from sarah.training.train import train
+from sarah.versions import versions
 
 EPISODES: dict[str, EpisodeConfig] = {
     "stepping": EpisodeConfig(),
@@ -59,8 +60,8 @@ class OfTrainings(OnWorkers):
 
 
 def identity(settings: object) -> str:
-    """Name for a folder of trainings with these settings and today's physics, controller and robot.
+    """Name for a folder of trainings with these settings, made with today's code and versions.
 
     :param settings: settings of the trainings
     """
-    return short_hash([repr(settings), made_with()])
+    return short_hash([repr(settings), versions()])

@@ -26,6 +26,10 @@ class RunFolderError(SarahError, OSError):
     """A run folder is missing, not empty, or lacks a file that it should have."""
 
 
+class ResumeError(RunFolderError):
+    """A training cannot be resumed, because it would not go on exactly."""
+
+
 class SimulationError(SarahError, RuntimeError):
     """An episode cannot be simulated, or has no usable result."""
 

@@ -1,24 +1,70 @@
-"""Installed versions of Python and of the packages that results depend on."""
+"""What results depend on beside their settings: this package's own sources, and the versions of others."""
 
 from __future__ import annotations
 
+import hashlib
+import os
 import platform
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 
-PACKAGES = ("sarah", "pybullet", "mujoco", "numpy", "stable-baselines3", "gymnasium", "torch", "distributed")
-SIMULATING = ("sarah", "pybullet", "mujoco", "numpy")
-"""Packages that an episode's bytes depend on."""
+SIMULATING = ("pybullet", "mujoco", "numpy", "xacro")
+"""Packages that an episode's bytes depend on, beside this one."""
+LEARNING = (*SIMULATING, "torch", "stable-baselines3", "gymnasium", "cma", "optuna", "scipy")
+"""Packages that a training's bytes depend on, beside this one."""
+SOURCES = (".py", ".xacro")
+"""Endings of the names of files that are hashed."""
 
 
-def versions(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
-    """Versions by name, Python's first.
+def versions(packages: Iterable[str] = LEARNING) -> dict[str, str]:
+    """Versions by name: Python's, this package's with the hash of its sources, and those of other packages.
 
     :param packages: names of the distributions
     """
-    found = {"python": platform.python_version()}
-    for package in packages:
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            found[package] = "not installed as a distribution"
-    return found
+    found = {"python": platform.python_version(), "sarah": _version("sarah"), "sarah-sources": source_hash()}
+    return found | {package: _version(package) for package in packages}
+
+
+@lru_cache
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "not installed as a distribution"
+
+
+@lru_cache
+def source_hash(package: Path = Path(__file__).parent) -> str:
+    """Hash of a package's own sources, as they were when this process first asked: twelve hexadecimal digits.
+
+    A version number stays the same over many states of the code; this does not.
+
+    :param package: folder of the package, by default this one
+    """
+    digest = hashlib.sha256()
+    for path in sorted(_sources(package), key=lambda path: path.relative_to(package).as_posix()):
+        name, content = path.relative_to(package).as_posix().encode(), path.read_bytes()
+        digest.update(b"%d %s %d " % (len(name), name, len(content)) + content)
+    return digest.hexdigest()[:12]
+
+
+def _sources(package: Path) -> Iterable[Path]:
+    # In a checkout, agents/ and urdf/ are links.
+    for folder, _, names in os.walk(package, followlinks=True):
+        yield from (Path(folder, name) for name in names if name.endswith(SOURCES))
+
+
+def differences(here: Mapping[str, object], there: Mapping[str, object], other: str) -> str:
+    """Say what differs between two places, such as their versions; nothing if they are the same.
+
+    :param here: values of this process, by name
+    :param there: values of the other place, by name
+    :param other: words for the other place
+    """
+    return "; ".join(
+        f"{name} is {here.get(name, 'not known')} here, and {there.get(name, 'not known')} {other}"
+        for name in dict.fromkeys((*here, *there))
+        if here.get(name) != there.get(name)
+    )

@@ -11,11 +11,14 @@ from pathlib import Path
 
 import pytest
 
+from sarah.versions import source_hash
+
 ROOT = Path(__file__).parent.parent
 PROGRAM = (
     "import sarah, sarah.agents, sarah.urdf\n"
     "from sarah.robot.description import describe_robot\n"
-    "print(sarah.__file__, describe_robot().standing_height, sorted(sarah.agents.PRESETS))"
+    "from sarah.versions import source_hash\n"
+    "print(sarah.__file__, source_hash(), describe_robot().standing_height, sorted(sarah.agents.PRESETS))"
 )
 
 
@@ -65,6 +68,7 @@ def test_wheel_works_from_another_folder(built: tuple[Path, Path], tmp_path: Pat
         [sys.executable, "-c", PROGRAM], cwd=elsewhere, env=environment, capture_output=True, text=True, check=True
     )
     assert process.stdout.startswith(str(site))
+    assert source_hash() in process.stdout  # workers may have the wheel, and the learner a checkout
     assert "0.84" in process.stdout and "one-step" in process.stdout
     arguments = ["--parameters", "0.4,1.3,0.1,1,1", "--episodes", "1", "--json"]
     evaluated = subprocess.run(

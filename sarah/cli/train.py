@@ -26,7 +26,7 @@ from sarah.cli.options import (
 )
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS
-from sarah.errors import ConfigurationError, RunFolderError, SarahError, TrainingInterruptedError
+from sarah.errors import ConfigurationError, ResumeError, RunFolderError, SarahError, TrainingInterruptedError
 from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import first_difference, read_config
@@ -55,8 +55,6 @@ class TrainOptions:
     :param resume: run folder of an interrupted training to go on with, with its settings; the result is the same as
         without the interruption
     :param from_run: run folder of a First Training, for --task balance: its P1 to P5 and its robot are used
-    :param pictures: number of episodes between pictures of the recommendation for TensorBoard: a gait cycle, and a
-        video of 3 s. Each takes some seconds, and changes no result; 0 for none
     :param workers: number of processes on this machine that simulate; with 0, this process does. It changes no result
     :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
     """
@@ -67,7 +65,6 @@ class TrainOptions:
     config: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     resume: Annotated[Path | None, tyro.conf.arg(metavar="RUN")] = None
     from_run: Annotated[Path | None, tyro.conf.arg(name="from", metavar="RUN")] = None
-    pictures: int = 0
     workers: int = 0
     scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
 
@@ -94,7 +91,7 @@ def _train(arguments: Sequence[str]) -> None:
 
     check_device(config.agent)
     check_engine(config.episode.engine)
-    if options.pictures:
+    if config.pictures:
         from sarah.simulation.renderer import check_renderer
 
         check_renderer()
@@ -109,30 +106,21 @@ def _train(arguments: Sequence[str]) -> None:
             run = RunFolder.create(options.run_dir or new_run_path(config.task, config.algo, config.seed), config)
         say_engine(config.episode, options.engine)
         print(f"training {config.algo} on {config.task}: {config.episodes} episodes into {run.path}", flush=True)
-        learned = _learned(config, run, workers, options.pictures)
+        learned = _learned(config, run, workers)
     _summarise(config.task, learned, run.path)
 
 
 def _resumed(path: Path, options: TrainOptions, config: TrainingConfig) -> RunFolder:
-    """Open the run folder to go on with, and warn if the installed versions are not those it was begun with."""
+    """Open the run folder to go on with."""
     from sarah.runs.run_folder import RunFolder
-    from sarah.versions import versions
 
     run = RunFolder.resumable(path)
     if options.run_dir is not None or options.config is not None or options.from_run is not None:
         raise ConfigurationError("--resume goes on with a training as it is: leave --run-dir, --config and --from out")
-    difference = first_difference(config, run.config())
-    if difference is not None:
-        key, given, there = difference
-        _check_same(path, key, there, given)
-    before = run.versions()
-    for name, version in versions().items():
-        if before.get(name) != version:
-            print(
-                f"{COMMAND}: warning: {path} was begun with {name} {before.get(name)}, but {version} is installed: "
-                "it may not continue exactly",
-                file=sys.stderr,
-            )
+    there = dataclasses.replace(run.config(), pictures=config.pictures)  # they change no result
+    if difference := first_difference(config, there):
+        key, given, recorded = difference
+        _check_same(path, key, recorded, given)
     return run
 
 
@@ -148,17 +136,19 @@ def _check_same(path: Path, key: str, there: object, given: object) -> None:
         raise ConfigurationError(f"--resume {path}: {key} is {there!r} in this training, not {given!r}: leave it out")
 
 
-def _learned(config: TrainingConfig, run: RunFolder, workers: Workers, picture_interval: int) -> Learned:
+def _learned(config: TrainingConfig, run: RunFolder, workers: Workers) -> Learned:
     """Train; if the training stops early, the message says how to go on."""
     from sarah.training.train import train
 
     go_on = f"go on with {COMMAND} --resume {shlex.quote(str(run.path))}"
     with Interruption(COMMAND) as interruption:
         try:
-            return train(config, run, workers, True, interruption.came, picture_interval)
+            return train(config, run, workers, True, interruption.came)
         except (TrainingInterruptedError, KeyboardInterrupt):
             print(f"\n{COMMAND}: interrupted; {go_on}", file=sys.stderr)
             raise SystemExit(128 + (interruption.signal or signal.SIGINT)) from None
+        except ResumeError:
+            raise
         except (SarahError, OSError) as error:
             raise RunFolderError(f"{error}; finished episodes are kept, {go_on}") from error
 

@@ -7,24 +7,21 @@ how often it was repeated because a worker died.
 from __future__ import annotations
 
 import functools
-import logging
 import os
-import signal
-import threading
 from abc import ABC, abstractmethod
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Sequence
-from concurrent import futures
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
+from sarah.episode.cluster import RemoteJob, connect, start
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import TASKS
-from sarah.errors import ConfigurationError, WorkersError, check_range
+from sarah.errors import ConfigurationError, check_range
 from sarah.robot.reading import SensorReading
-from sarah.versions import SIMULATING, versions
+from sarah.versions import LEARNING, SIMULATING
 
 if TYPE_CHECKING:
     from distributed import Client, LocalCluster
@@ -32,23 +29,10 @@ if TYPE_CHECKING:
 MOST_WAITING = 8
 """Largest number of episodes that a process keeps standing until their parameters are known. Each takes some 15 MB.
 Parameters may go to another process, which then lets the episode stand anew, at a thirtieth of an episode's cost."""
-SCHEDULER_SECONDS = 10
-"""Time limit for connecting to a scheduler, in s."""
 SAFE_PATH = "PYTHONSAFEPATH"
 """Environment variable that keeps Python 3.11 and later from searching the working folder for modules."""
-NICENESS = 5
-"""Niceness of local workers, so that the learner gets the processor first."""
-UNWATCHED = {
-    "distributed.worker.profile.enabled": False,
-    "distributed.admin.tick.interval": "1s",
-    "distributed.admin.system-monitor.interval": "10s",
-}
-"""Settings with which Dask's workers on this machine watch themselves less. By default they do so every 10 to 500 ms,
-which takes the processor from the episodes."""
 MOST_WORKERS = 1000
 """Largest number of workers on one machine."""
-ATTEMPTS = 20
-"""Largest number of times that an episode is submitted: a scheduler gives it up after the deaths of a few workers."""
 
 _waiting: OrderedDict[tuple[Any, ...], Episode] = OrderedDict()
 
@@ -124,6 +108,9 @@ def _key(spec: EpisodeSpec) -> tuple[Any, ...]:
     return (spec.task, spec.seed, repr(spec.config))
 
 
+_EPISODES = (begin_episode, finish_episode, simulate)
+
+
 class Executor(ABC):
     """Something that computes calls, in this process or in others."""
 
@@ -155,7 +142,8 @@ class Workers(Executor):
         its result is asked for
     :param scheduler: address of a Dask scheduler, such as ``tcp://10.0.0.1:8786``, whose workers are used instead
     :raises ConfigurationError: if the count is negative or too large, or if count and scheduler are both given
-    :raises WorkersError: on entering, if no scheduler answers
+    :raises WorkersError: on entering, if no scheduler answers, or a worker has other code or versions; an outcome from
+        such a worker, which may come later, is refused as well
     """
 
     client: Client | None
@@ -174,12 +162,12 @@ class Workers(Executor):
     def __enter__(self) -> Workers:
         """Start the workers, or connect to the scheduler."""
         if self._scheduler is not None:
-            self.client = _connect(self._scheduler)
+            self.client = connect(self._scheduler)
         elif self._count:
             # Otherwise a worker imports modules from the working folder, such as a pickle.py in somebody's run folder.
             self._safe_path = os.environ.get(SAFE_PATH, "")
             os.environ[SAFE_PATH] = "1"
-            self._cluster, self.client = _start(self._count)
+            self._cluster, self.client = start(self._count)
         return self
 
     def __exit__(
@@ -202,90 +190,10 @@ class Workers(Executor):
         """
         if self.client is None:
             return _LocalJob(function, *subjects)
-        return _RemoteJob(functools.partial(self.client.submit, function, *subjects, pure=False))
+        packages = SIMULATING if function in _EPISODES else LEARNING
+        return RemoteJob(self.client, packages, function, *subjects)
 
 
 class _LocalJob:
     def __init__(self, function: Callable[..., Any], *subjects: Any) -> None:
         self.result = functools.partial(function, *subjects)
-
-
-class _RemoteJob:
-    def __init__(self, submit: Callable[[], Any]) -> None:
-        self._submit = submit
-        self._future = submit()
-
-    def result(self) -> Any:
-        from concurrent.futures import CancelledError
-
-        from distributed.scheduler import KilledWorker
-
-        for _ in range(ATTEMPTS):
-            try:
-                return self._future.result()
-            except KilledWorker:  # the scheduler gave up after a few deaths, but a pure function can be repeated
-                self._future = self._submit()
-            except CancelledError as error:
-                raise WorkersError(f"the connection to the scheduler is lost: {error}") from error
-        raise WorkersError(f"an episode was submitted {ATTEMPTS} times, and its workers died each time")
-
-
-def _connect(address: str) -> Client:
-    try:
-        client = _client_in_time(address)
-    except futures.TimeoutError as error:
-        raise WorkersError(f"no Dask scheduler answers at {address!r}: the port is open, but silent") from error
-    except (OSError, ValueError, TypeError, RuntimeError) as error:
-        raise WorkersError(f"no Dask scheduler answers at {address!r}: {error}") from error
-    here = versions(SIMULATING)
-    for worker, there in client.run(versions, SIMULATING).items():
-        if there != here:
-            client.close()
-            raise WorkersError(f"results would differ: worker {worker} has {there}, but this process has {here}")
-    return client
-
-
-def _client_in_time(address: str) -> Client:
-    """Make a client in a thread of its own, because Dask waits for ever at a port where nothing answers."""
-    from distributed import Client
-
-    made: futures.Future[Client] = futures.Future()
-
-    def make() -> None:
-        try:
-            made.set_result(Client(address, timeout=SCHEDULER_SECONDS))
-        except BaseException as error:
-            made.set_exception(error)
-
-    threading.Thread(target=make, daemon=True).start()
-    return made.result(2 * SCHEDULER_SECONDS)
-
-
-def _start(count: int) -> tuple[LocalCluster, Client]:
-    import dask
-    from distributed import Client, LocalCluster, WorkerPlugin
-
-    class Serve(WorkerPlugin):
-        """Ignore Ctrl-C, which the training handles, and give the learner's process priority over the worker."""
-
-        def setup(self, worker: Any) -> None:
-            signal.signal(signal.SIGINT, signal.SIG_IGN)
-            os.nice(NICENESS)
-
-    with dask.config.set(UNWATCHED):
-        cluster = LocalCluster(
-            n_workers=count,
-            threads_per_worker=1,
-            host="127.0.0.1",
-            dashboard_address="127.0.0.1:0",  # any free port; the default 8787 may be taken
-            security=True,  # other users of this machine can reach the ports too
-            memory_limit=0,
-            silence_logs=logging.CRITICAL,
-        )
-    try:
-        client = Client(cluster)
-        client.register_plugin(Serve())
-    except BaseException:
-        cluster.close()
-        raise
-    return cluster, client

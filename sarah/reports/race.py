@@ -141,7 +141,7 @@ def run_entry(entry: Entry) -> None:
     unfinished = entry.folder.with_name(f"{entry.folder.name}.unfinished")
     if unfinished.exists():  # an interrupted race left it, or another race is using it
         journal = RunFolder(unfinished).journal_path
-        with Journal(journal, Workers()) if journal.exists() else nullcontext():
+        with Journal(journal, entry.config, Workers()) if journal.exists() else nullcontext():
             shutil.rmtree(unfinished)
     start = time.perf_counter()
     run = RunFolder.create(unfinished, entry.config)

@@ -44,6 +44,8 @@ class TrainingConfig:
         the slots - 1 episodes before it. It changes the result of a training; the number of workers does not
     :param agent: settings of the algorithm; by default the algorithm's own
     :param episode: settings of the episodes; by default the task's own
+    :param pictures: number of episodes between pictures of the recommendation for TensorBoard: a gait cycle, and a
+        video of 3 s. Each takes some seconds, and changes no result; 0 for none
     """
 
     task: str = "stepping"
@@ -53,6 +55,7 @@ class TrainingConfig:
     slots: int = 4
     agent: AgentSettings = None  # type: ignore[assignment]  # the algorithm's own
     episode: EpisodeConfig = None  # type: ignore[assignment]  # the task's own
+    pictures: int = 0
 
     def __post_init__(self) -> None:
         """Refuse unknown names and impossible budgets."""
@@ -65,6 +68,7 @@ class TrainingConfig:
             )
         check_range("episodes", self.episodes, 1, MOST_EPISODES)
         check_range("slots", self.slots, 1, MOST_SLOTS)
+        check_range("pictures", self.pictures, 0, MOST_EPISODES)
         if not 0 <= self.seed < FIRST_TRAINING_SEED:
             last = FIRST_TRAINING_SEED - 1
             raise ConfigurationError(f"seed must be between 0 and {last}, not {shortened(self.seed)}")

@@ -87,6 +87,21 @@ def write_config(config: Any, path: Path) -> None:
     replace_text(path, yaml.safe_dump(_to_plain(dataclasses.asdict(config)), sort_keys=False))
 
 
+def settings_by_key(config: Any) -> dict[str, Any]:
+    """All values of a configuration by their full names, such as ``episode.push.newtons``, as JSON would return them.
+
+    :param config: configuration, a dataclass
+    """
+    found: dict[str, Any] = {}
+    for item in dataclasses.fields(config):
+        value = getattr(config, item.name)
+        if dataclasses.is_dataclass(value):
+            found |= {f"{item.name}.{key}": inner for key, inner in settings_by_key(value).items()}
+        else:
+            found[item.name] = _to_plain(value)
+    return found
+
+
 def _to_plain(value: Any) -> Any:
     """Convert tuples to lists, because safe YAML loaders refuse tuples."""
     if isinstance(value, Mapping):

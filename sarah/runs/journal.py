@@ -5,16 +5,21 @@ training runs again from its beginning, but takes the outcomes that the journal 
 That costs only the learner's share of the time, a few per cent. It restores random generators, replay buffer, optimiser
 and schedules of any algorithm, because they go through the same states again.
 
+The first row says what all others depend on: the training's settings, this package's code, and the versions of others.
+A training in which one of these differs would not go on exactly, so it is refused.
+
 A row is a checksum and a JSON object, and is on the disk before the training goes on. A damaged row is ignored, and its
-episode is simulated again.
+episode is simulated again. Checksums begin from the hash of the first row, so rows of other trainings count as damaged.
 """
 
 from __future__ import annotations
 
 import fcntl
+import hashlib
 import json
 import logging
 import os
+import stat
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -26,8 +31,18 @@ from sarah.episode.episode import simulate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Executor, Job, Outcome, begin_episode, finish_episode
-from sarah.errors import RunFolderError, SarahError, TrainingInterruptedError
+from sarah.errors import ResumeError, RunFolderError, SarahError, TrainingInterruptedError
 from sarah.robot.reading import SensorReading
+from sarah.runs.config import TrainingConfig
+from sarah.runs.config_files import settings_by_key
+from sarah.versions import differences, versions
+
+LONGEST_ROW = 100_000
+"""Largest number of bytes in a row; an episode's has some 1500."""
+ROOM_PER_EPISODE = 10_000
+"""Largest number of bytes for each episode in a journal that is read."""
+EPISODES_BESIDE = 1000
+"""Number of episodes, beside those of the budget, that a journal has room for: evaluations, and rows that were cut."""
 
 _log = logging.getLogger(__name__)
 
@@ -85,17 +100,23 @@ class Journal(Executor):
     It is a context, in which no other training can use the file.
 
     :param path: path of the file, which must exist
+    :param config: settings of the training
     :param executor: executor that simulates episodes
     :param interrupted: function that says after every episode whether the training is to stop
     :raises RunFolderError: on entering, if the file is missing or another training uses it
+    :raises ResumeError: on entering, if the file was begun with other settings, code or versions
     """
 
-    def __init__(self, path: Path, executor: Executor, interrupted: Callable[[], bool] = lambda: False) -> None:
+    def __init__(
+        self, path: Path, config: TrainingConfig, executor: Executor, interrupted: Callable[[], bool] = lambda: False
+    ) -> None:
         self._path = path
+        self._config = config
         self._executor = executor
         self._interrupted = interrupted
         self._submitted = 0
         self._known: dict[int, _Row] = {}
+        self._seed = 0
         self._file: BinaryIO
 
     @property
@@ -106,11 +127,13 @@ class Journal(Executor):
     def __enter__(self) -> Journal:
         """Lock the file, and read it."""
         try:
-            descriptor = os.open(self._path, os.O_RDWR | os.O_APPEND)
+            descriptor = os.open(self._path, os.O_RDWR | os.O_APPEND | os.O_NONBLOCK)
         except FileNotFoundError:
             raise RunFolderError(f"{self._path.parent} cannot be resumed: it has no {self._path.name}") from None
         self._file = open(descriptor, "r+b", buffering=0)  # closed on leaving
         try:
+            if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+                raise RunFolderError(f"{self._path.parent} cannot be resumed: {self._path.name} is no file")
             # The system releases the lock when the process ends, however it ends.
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             self._read()
@@ -128,18 +151,45 @@ class Journal(Executor):
         self._file.close()
 
     def _read(self) -> None:
-        content = self._file.read()
-        whole = content.rfind(b"\n") + 1
-        damaged = int(whole < len(content))
-        if damaged:
-            self._file.truncate(whole)
-        for line in content[:whole].splitlines():
-            row = _read_row(line)
+        """Read the file; a new one, or one that was cut in its first row, begins anew."""
+        limit = ROOM_PER_EPISODE * (self._config.episodes + EPISODES_BESIDE)
+        if (size := os.fstat(self._file.fileno()).st_size) > limit:
+            raise ResumeError(f"{self._path} has {size} bytes, but such a training writes at most {limit}")
+        origin = _origin_of(self._config)
+        expected = _first_row(origin)
+        with open(self._path, "rb") as reader:
+            first = reader.readline(LONGEST_ROW)
+            if not expected.startswith(first) or first == expected:
+                self._check_origin(_read_origin(first), origin)
+                self._seed = _seed_of(first)
+                self._read_rows(reader)
+                return
+        self._file.truncate(0)
+        self._append(expected)
+        os.fsync(self._file.fileno())
+        self._seed = _seed_of(expected)
+
+    def _check_origin(self, there: dict[str, Any] | None, here: dict[str, Any]) -> None:
+        if there is None:
+            raise ResumeError(
+                f"{self._path.parent} cannot be resumed: the first row of {self._path.name}, which says with what the "
+                "training was begun, is damaged or missing"
+            )
+        if different := differences(here, there, "in this training"):
+            raise ResumeError(f"{self._path.parent} cannot be resumed: {different}")
+
+    def _read_rows(self, reader: BinaryIO) -> None:
+        damaged, whole = 0, reader.tell()
+        while line := reader.readline(LONGEST_ROW):
+            row = _read_row(line, self._seed)
+            if line.endswith(b"\n"):
+                whole = reader.tell()
             if row is None:
                 damaged += 1
             else:
                 self._known[row.request["index"]] = row
         if damaged:
+            self._file.truncate(whole)  # a row that was cut has no end
             _log.warning("%s: damaged rows: %d; their episodes are simulated again", self._path, damaged)
 
     def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
@@ -148,7 +198,7 @@ class Journal(Executor):
         :param function: function to call: :func:`~sarah.episode.workers.begin_episode`,
             :func:`~sarah.episode.workers.finish_episode` or :func:`sarah.simulate`
         :param subjects: arguments of the function, the episode's specification first
-        :raises RunFolderError: if the training asks for another episode than it did when the journal was written
+        :raises ResumeError: if the training asks for another episode than it did when the journal was written
         """
         request = _request(self._submitted, function, subjects[0])
         row = self._known.pop(self._submitted, None)
@@ -156,9 +206,9 @@ class Journal(Executor):
         if row is None:
             return _NewJob(self, request, self._executor.submit(function, *subjects))
         if row.request != request:
-            raise RunFolderError(
+            raise ResumeError(
                 f"{self._path.parent} cannot be resumed here: it does not repeat what it did before its interruption, "
-                "because versions or the kind of processor differ, or its config.yaml was changed"
+                "as the kind of processor differs, or something else that arithmetic depends on"
             )
         return _KnownJob(self, row.value)
 
@@ -168,13 +218,15 @@ class Journal(Executor):
         :param request: number, kind, seed and parameters of the episode
         :param value: outcome of the episode
         """
-        row = {**request, "outcome": _KINDS[request["kind"]].plain(value)}
-        text = json.dumps(row, allow_nan=False, separators=(",", ":")).encode()
-        left = memoryview(b"%08x %s\n" % (zlib.crc32(text), text))
-        while left:  # a disk that is nearly full takes only a part
-            left = left[self._file.write(left) :]
+        text = _as_json({**request, "outcome": _KINDS[request["kind"]].plain(value)})
+        self._append(b"%08x %s\n" % (zlib.crc32(text, self._seed), text))
         if request["kind"] != "begin":  # standing is cheap to simulate again
             os.fsync(self._file.fileno())
+
+    def _append(self, row: bytes) -> None:
+        left = memoryview(row)
+        while left:  # a disk that is nearly full takes only a part
+            left = left[self._file.write(left) :]
 
     def stop_if_interrupted(self) -> None:
         """Raise :class:`~sarah.errors.TrainingInterruptedError` if the training is to stop."""
@@ -209,14 +261,49 @@ def _request(index: int, function: Callable[..., Any], spec: EpisodeSpec) -> dic
     return {"index": index, "kind": _NAMES[function], "seed": spec.seed, "parameters": list(spec.parameters)}
 
 
-def _read_row(line: bytes) -> _Row | None:
+def _read_row(line: bytes, seed: int) -> _Row | None:
     """Read a row of the journal; return ``None`` if it is damaged."""
-    checksum, _, text = line.partition(b" ")
+    checksum, _, text = line.rstrip(b"\n").partition(b" ")
     try:
-        if int(checksum, 16) != zlib.crc32(text):
+        if int(checksum, 16) != zlib.crc32(text, seed):
             return None
         request = json.loads(text)
         value = _KINDS[request["kind"]].value(request.pop("outcome"))
         return _Row({"index": int(request["index"]), **request}, value)
     except (ValueError, TypeError, LookupError, SarahError, RecursionError):
         return None
+
+
+def _origin_of(config: TrainingConfig) -> dict[str, Any]:
+    """All that the rows of a training depend on, by name."""
+    settings = settings_by_key(config)
+    del settings["pictures"]  # they change no result
+    return {**settings, **versions()}
+
+
+def _first_row(origin: dict[str, Any]) -> bytes:
+    text = _as_json(origin)
+    return b"%s %s\n" % (_digest(text), text)
+
+
+def _read_origin(first: bytes) -> dict[str, Any] | None:
+    """Read the first row of the journal; return ``None`` if it is damaged."""
+    digest, _, text = first.rstrip(b"\n").partition(b" ")
+    try:
+        origin = json.loads(text) if digest == _digest(text) else None
+    except (ValueError, RecursionError):
+        return None
+    return origin if isinstance(origin, dict) else None
+
+
+def _seed_of(first: bytes) -> int:
+    """Where the checksums of the rows begin, from the hash in the first row."""
+    return int(first[:8], 16)
+
+
+def _digest(text: bytes) -> bytes:
+    return hashlib.sha256(text).hexdigest()[:16].encode()
+
+
+def _as_json(row: dict[str, Any]) -> bytes:
+    return json.dumps(row, allow_nan=False, separators=(",", ":")).encode()

@@ -201,10 +201,14 @@ class RunFolder:
         writer.writerows(_rows(self._progress_path))
         replace_text(self._progress_path, text.getvalue())
 
+    def event_files(self) -> list[Path]:
+        """Paths of TensorBoard's files."""
+        return sorted(path for path in self.path.glob(f"{EVENTS}*") if path.is_file())
+
     def remove_records(self) -> None:
         """Remove the tables and curves of the episodes: a resumed training writes all of them anew."""
         tables = (self._episodes_path, self._recommendations_path, self._progress_path)
-        for path in (*tables, *self.path.glob(f"{EVENTS}*")):
+        for path in (*tables, *self.event_files()):
             path.unlink(missing_ok=True)
 
     def write_parameters(self, content: Mapping[str, Any]) -> None:

@@ -11,7 +11,9 @@ import socket
 import time
 from typing import TYPE_CHECKING, Any
 
+from google.protobuf.message import DecodeError
 from stable_baselines3.common.logger import filter_excluded_keys
+from tensorboard.backend.event_processing.event_file_loader import LegacyEventFileLoader
 from tensorboard.compat.proto.event_pb2 import Event
 from tensorboard.compat.proto.summary_pb2 import Summary
 from tensorboard.plugins.hparams import summary_v2 as hparams
@@ -68,22 +70,13 @@ class CurveWriter:
         points = [Summary.Value(tag=name, simple_value=float(value)) for name, value in sorted(shown.items())]
         self._add(Event(step=step, summary=Summary(value=points)))
 
-    def show(self, pictures: list[Picture], step: int) -> None:
+    def show(self, pictures: Summary, step: int) -> None:
         """Add pictures, which only TensorBoard shows.
 
         :param pictures: pictures to add
         :param step: number of episodes so far
         """
-        values = [
-            Summary.Value(
-                tag=picture.name,
-                image=Summary.Image(
-                    width=picture.width, height=picture.height, colorspace=RGB, encoded_image_string=picture.content
-                ),
-            )
-            for picture in pictures
-        ]
-        self._add(Event(step=step, summary=Summary(value=values)))
+        self._add(Event(step=step, summary=pictures))
 
     def _add(self, event: Event) -> None:
         event.wall_time = time.time()
@@ -93,6 +86,36 @@ class CurveWriter:
     def close(self) -> None:
         """Close the event file."""
         self._file.close()
+
+
+def summary_of(pictures: list[Picture]) -> Summary:
+    """Pictures as TensorBoard takes them.
+
+    :param pictures: pictures of the same moment
+    """
+    values = []
+    for picture in pictures:
+        image = Summary.Image(
+            width=picture.width, height=picture.height, colorspace=RGB, encoded_image_string=picture.content
+        )
+        values.append(Summary.Value(tag=picture.name, image=image))
+    return Summary(value=values)
+
+
+def kept_pictures(run: RunFolder) -> dict[int, Summary]:
+    """Pictures that TensorBoard has of a training, by the number of episodes before them.
+
+    :param run: run folder of the training
+    """
+    kept = {}
+    for path in run.event_files():
+        try:
+            for event in LegacyEventFileLoader(str(path)).Load():
+                if any(value.HasField("image") for value in event.summary.value):
+                    kept[event.step] = event.summary
+        except (OSError, ValueError, DecodeError):
+            continue  # what is damaged is drawn again
+    return kept
 
 
 def hyper_parameters(config: TrainingConfig) -> dict[str, str | int | float]:

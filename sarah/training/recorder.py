@@ -15,11 +15,12 @@ from tqdm import tqdm
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.result import METRICS, EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import Task
+from sarah.episode.tasks import TASKS
 from sarah.errors import LearningError
+from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
-from sarah.training.learning_curves import LEARNED, CurveWriter
+from sarah.training.learning_curves import LEARNED, CurveWriter, kept_pictures, summary_of
 from sarah.training.recommendation import Parameters, candidates, merit
 
 EPISODES_PER_RECOMMENDATION = 5
@@ -30,13 +31,13 @@ class EpisodeRecorder(BaseCallback):
     """Writes every episode to ``episodes.csv`` and to the learning curves.
 
     While a resumed training replays the episodes of its journal, nothing is written. When it goes on, all files are
-    written anew, so that they are the same as without the interruption.
+    written anew, so that they are the same as without the interruption. Pictures that TensorBoard had are not drawn
+    again.
 
     :param run: run folder of the training
-    :param task: task that owns the parameters
+    :param config: settings of the training
     :param journal: journal of the training
     :param progress: progress bar, which every episode moves on
-    :param picture_interval: number of episodes between pictures of the recommendation for TensorBoard; 0 for none
     """
 
     log: Logger
@@ -49,20 +50,19 @@ class EpisodeRecorder(BaseCallback):
     """Function that returns the parameters that the algorithm itself would choose now. While it is set, the
     recommendation is recorded in ``recommendations.csv``."""
 
-    def __init__(
-        self, run: RunFolder, task: Task, journal: Journal, progress: tqdm[NoReturn], picture_interval: int = 0
-    ) -> None:
+    def __init__(self, run: RunFolder, config: TrainingConfig, journal: Journal, progress: tqdm[NoReturn]) -> None:
         super().__init__()
         self.log = Logger(folder=None, output_formats=[_LoggerOutput(self)])
         self.tried = []
         self.diverged = 0
         self.choose = None
-        self._task = task
+        self._config = config
+        self._task = TASKS[config.task]
         self._run = run
         self._journal = journal
         self._progress = progress
-        self._picture_interval = picture_interval
         self._curves: CurveWriter | None = None
+        self._kept = kept_pictures(run)  # before the old curves are removed
         self._held: list[Callable[[], None]] = []
 
     def _on_rollout_start(self) -> None:
@@ -99,8 +99,9 @@ class EpisodeRecorder(BaseCallback):
 
     def _record_recommendation(self, choose: Callable[[], Parameters], episodes: int) -> None:
         """Record the recommendation, and draw it, after the numbers of episodes that are set for each."""
+        interval = self._config.pictures
         noted = episodes % EPISODES_PER_RECOMMENDATION == 0
-        drawn = self._picture_interval and episodes % self._picture_interval == 0
+        drawn = episodes in self._kept or (interval and episodes % interval == 0)
         if not noted and not drawn:
             return
         (recommended,) = candidates(self._task, choose(), self.tried, 1)
@@ -113,10 +114,13 @@ class EpisodeRecorder(BaseCallback):
             self._write(partial(self._draw, recommended, episodes))
 
     def _draw(self, recommended: Parameters, episodes: int) -> None:
-        from sarah.pictures.gait_snapshot import draw_gait  # slow to import because of matplotlib
+        if episodes in self._kept:
+            summary = self._kept.pop(episodes)
+        else:
+            from sarah.pictures.gait_snapshot import draw_gait  # slow to import because of matplotlib
 
-        config = self._run.config()
-        self._open_curves().show(draw_gait(recommended, config.task, config.episode), episodes)
+            summary = summary_of(draw_gait(recommended, self._config.task, self._config.episode))
+        self._open_curves().show(summary, episodes)
 
     def write_curves(self, values: dict[str, Any], excluded: dict[str, tuple[str, ...]], step: int) -> None:
         """Write a point of each learning curve.

@@ -47,7 +47,6 @@ def train(
     workers: Executor | None = None,
     progress_bar: bool = False,
     interrupted: Callable[[], bool] = lambda: False,
-    picture_interval: int = 0,
 ) -> Learned:
     """Train, and write the run folder. Episodes whose outcomes the run folder's journal has are not simulated again.
 
@@ -56,25 +55,23 @@ def train(
     :param workers: executor that simulates the episodes; by default this process does. It changes no result
     :param progress_bar: whether to show a progress bar
     :param interrupted: function that says after every episode whether to stop
-    :param picture_interval: number of episodes between pictures for TensorBoard; 0 for none. They change no result
     :return: the learned parameters and their evaluation
-    :raises RunFolderError: if another training uses the run folder, or if it cannot be resumed here
+    :raises RunFolderError: if another training uses the run folder
+    :raises ResumeError: if the run folder was begun with other settings, code or versions, or does not repeat
     :raises LearningError: if the learning algorithm does not return finite numbers
     :raises TrainingInterruptedError: if ``interrupted`` asks to stop
     """
-    with Journal(run.journal_path, workers or Workers(), interrupted) as journal:
-        return _train(config, run, journal, progress_bar, picture_interval)
+    with Journal(run.journal_path, config, workers or Workers(), interrupted) as journal:
+        return _train(config, run, journal, progress_bar)
 
 
-def _train(
-    config: TrainingConfig, run: RunFolder, journal: Journal, progress_bar: bool, picture_interval: int
-) -> Learned:
+def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_bar: bool) -> Learned:
     # The networks are small, so more threads would only wait for each other.
     torch.set_num_threads(1)
     task = TASKS[config.task]
     seeds = range(SUMMARY_EPISODES)
     with tqdm(total=config.episodes, unit=" episodes", disable=not progress_bar) as progress:
-        recorder = EpisodeRecorder(run, task, journal, progress, picture_interval)
+        recorder = EpisodeRecorder(run, config, journal, progress)
         choice = learn(config, config.episodes - config.compared_episodes, run, recorder, journal)
         recorder.choose = None
         best = candidates(task, choice, recorder.tried, config.candidate_count)

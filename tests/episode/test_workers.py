@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import socket
 import subprocess
@@ -13,11 +14,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import dask
-import distributed  # noqa: F401  # its settings are there before a test changes one, and stay when that ends
+import distributed  # its settings are there before a test changes one, and stay when that ends
 import psutil
 import pytest
 from laboratory import NEEDS_PYBULLET
 
+from sarah.episode import cluster as cluster_module
 from sarah.episode import workers as workers_module
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.settings import EpisodeConfig
@@ -29,6 +31,7 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.pybullet_client import pybullet
 from sarah.training.train import train
+from sarah.versions import source_hash
 
 # Longer than the 8 simulations of warm-up; some episodes fall, most last a second of stepping.
 TRAINING = TrainingConfig(episodes=20, slots=4, seed=5, episode=EpisodeConfig(time_limit=2.0))
@@ -111,31 +114,87 @@ def test_training_survives_the_death_of_workers(alone: dict[str, bytes], tmp_pat
     assert survived == alone
 
 
-@pytest.fixture
-def cluster(tmp_path: Path) -> Iterator[str]:
-    """A scheduler and two workers, started as on a cluster; yields the scheduler's address."""
-    file = tmp_path / "scheduler.json"
-    scheduler = ["scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file)]
-    worker = ["worker", "--nthreads", "1", "--no-dashboard", "--scheduler-file", str(file), "--death-timeout", "60"]
-    processes = [
-        subprocess.Popen([sys.executable, "-m", "dask", *arguments], stderr=subprocess.DEVNULL, cwd=tmp_path)
-        for arguments in (scheduler, worker, worker)
-    ]
-    try:
-        while not file.exists():
-            assert processes[0].poll() is None
+class Cluster:
+    """A scheduler and its workers, started as on a cluster.
+
+    :param folder: folder that they run in
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._file = folder / "scheduler.json"
+        self._processes = [self._begin("scheduler", "--host", "127.0.0.1", "--port", "0")]
+        while not self._file.exists():
+            assert self._processes[0].poll() is None
             time.sleep(0.1)
-        yield json.loads(file.read_text())["address"]
-    finally:
-        for process in processes:
+        self.address = json.loads(self._file.read_text())["address"]
+
+    def add_worker(self, path: str = "") -> None:
+        """Start a worker, which finds modules in a folder first."""
+        self._processes.append(self._begin("worker", "--nthreads", "1", "--death-timeout", "60", PYTHONPATH=path))
+
+    def _begin(self, *arguments: str, **environment: str) -> subprocess.Popen[bytes]:
+        command = [sys.executable, "-m", "dask", *arguments, "--no-dashboard", "--scheduler-file", str(self._file)]
+        environment = {name: value for name, value in {**os.environ, **environment}.items() if value}
+        return subprocess.Popen(command, stderr=subprocess.DEVNULL, cwd=self.folder, env=environment)
+
+    def stop(self) -> None:
+        for process in self._processes:
             process.terminate()
-        for process in processes:
+        for process in self._processes:
             process.wait(timeout=30)
 
 
-def test_training_on_a_cluster_is_the_same(cluster: str, alone: dict[str, bytes], tmp_path: Path) -> None:
-    with Workers(scheduler=cluster) as workers:
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[Cluster]:
+    made = Cluster(tmp_path)
+    yield made
+    made.stop()
+
+
+def test_training_on_a_cluster_is_the_same(cluster: Cluster, alone: dict[str, bytes], tmp_path: Path) -> None:
+    cluster.add_worker()
+    cluster.add_worker()
+    with Workers(scheduler=cluster.address) as workers:
         assert learned_bytes(train_in(tmp_path / "run", workers)) == alone
+
+
+@pytest.fixture
+def other_code(tmp_path: Path) -> str:
+    """A folder with this package in another state of its code, whose version number is the same."""
+    package = Path(cluster_module.__file__).parents[1]
+    copied = shutil.copytree(package, tmp_path / "other" / "sarah", ignore=shutil.ignore_patterns("__pycache__"))
+    reward = copied / "episode" / "reward.py"
+    reward.write_text(reward.read_text() + "# another state\n")
+    return str(copied.parent)
+
+
+def test_a_worker_with_other_code_is_refused_whenever_it_comes(
+    cluster: Cluster, other_code: str, tmp_path: Path
+) -> None:
+    refused = rf"worker tcp://127.0.0.1:\d+ is refused, .*: sarah-sources is {source_hash()} here, and \w{{12}} there"
+    with Workers(scheduler=cluster.address) as workers:
+        cluster.add_worker(other_code)
+        with pytest.raises(WorkersError, match=refused):
+            next(workers.simulate_all([SPEC]))
+        with pytest.raises(WorkersError, match=refused):
+            train_in(tmp_path / "run", workers)
+        assert not list(RunFolder(tmp_path / "run").episodes())
+    with pytest.raises(WorkersError, match=refused), Workers(scheduler=cluster.address):
+        pass
+
+
+def test_a_worker_without_this_package_is_refused(cluster: Cluster, tmp_path: Path) -> None:
+    (tmp_path / "none").mkdir()
+    (tmp_path / "none" / "sarah.py").write_text("raise ModuleNotFoundError(\"No module named 'sarah'\")\n")
+    cluster.add_worker(str(tmp_path / "none"))
+    with distributed.Client(cluster.address) as client:
+        client.wait_for_workers(1, timeout=30)
+    with (
+        pytest.raises(WorkersError, match=r"tells no versions: .*No module named 'sarah'"),
+        Workers(scheduler=cluster.address),
+    ):
+        pass
 
 
 def test_results_come_in_the_order_of_the_specifications() -> None:
@@ -236,13 +295,13 @@ def test_bad_workers_are_refused() -> None:
 
 
 def test_a_scheduler_that_does_not_answer_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(workers_module, "SCHEDULER_SECONDS", 1)
+    monkeypatch.setattr(cluster_module, "SCHEDULER_SECONDS", 1)
     with pytest.raises(WorkersError, match=r"no Dask scheduler answers at 'tcp://127.0.0.1:9'"):
         Workers(scheduler="tcp://127.0.0.1:9").__enter__()
 
 
 def test_a_port_that_says_nothing_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(workers_module, "SCHEDULER_SECONDS", 1)
+    monkeypatch.setattr(cluster_module, "SCHEDULER_SECONDS", 1)
     with socket.create_server(("127.0.0.1", 0)) as server:
         address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
         with pytest.raises(WorkersError, match=f"{address}': the port is open, but silent"):

@@ -99,7 +99,7 @@ def test_a_race_leaves_a_training_alone_that_another_is_at(tmp_path: Path) -> No
     (entry,) = entries_of(("random",), range(1), TINY, 1, tmp_path)
     begun = RunFolder.create(tmp_path / "random-s0.unfinished", entry.config)
     with (
-        Journal(begun.journal_path, Workers()),
+        Journal(begun.journal_path, entry.config, Workers()),
         pytest.raises(RunFolderError, match="in use by another training"),
     ):
         run_entry(entry)

@@ -34,9 +34,10 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, RunFolder]:
         monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
         for name, task in TASKS.items():
             episode = dataclasses.replace(task.episode, time_limit=1.5, physics=PHYSICS)
-            config = TrainingConfig(name, episodes=10, seed=3, slots=1, episode=episode)
+            pictures = 5 if name == "stepping" and is_installed("pybullet") else 0
+            config = TrainingConfig(name, episodes=10, seed=3, slots=1, episode=episode, pictures=pictures)
             made[name] = RunFolder.create(folder / name, config)
-            train(config, made[name], picture_interval=5 if name == "stepping" and is_installed("pybullet") else 0)
+            train(config, made[name])
     return made
 
 
@@ -107,8 +108,9 @@ def test_pictures_change_nothing_of_a_training(
 ) -> None:
     monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
     run = runs["stepping"]
-    without = RunFolder.create(tmp_path / "without", run.config())
-    train(run.config(), without)
+    config = dataclasses.replace(run.config(), pictures=0)
+    without = RunFolder.create(tmp_path / "without", config)
+    train(config, without)
     for name in ("episodes.csv", "recommendations.csv", "progress.csv", "parameters.json"):
         assert (without.path / name).read_bytes() == (run.path / name).read_bytes()
     assert not events(without).Tags()["images"]

@@ -162,5 +162,20 @@ def test_a_device_that_is_not_there_is_refused(device: str, monkeypatch: pytest.
     check_device(AgentSettings())
 
 
+def test_a_training_computes_on_the_processor_and_naf_alone_where_stable_baselines3_would(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[Any] = []
+
+    def device(name: Any) -> torch.device:
+        asked.append(name)
+        return torch.device("cpu")
+
+    monkeypatch.setattr("stable_baselines3.common.base_class.get_device", device)
+    model = built()
+    NAF("MlpPolicy", model.get_env())
+    assert asked == ["cpu", "auto"]
+
+
 def test_agents_are_those_with_networks() -> None:
     assert all(issubclass(settings_of(algo), LearnerSettings) for algo in AGENTS)

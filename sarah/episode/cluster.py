@@ -1,0 +1,178 @@
+"""Worker processes of Dask, on this machine or behind a scheduler. Every outcome says with what it was computed."""
+
+from __future__ import annotations
+
+import logging
+import os
+import signal
+import threading
+from collections.abc import Callable
+from concurrent import futures
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from sarah.errors import WorkersError
+from sarah.versions import SIMULATING, differences, versions
+
+if TYPE_CHECKING:
+    from distributed import Client, Future, LocalCluster
+
+SCHEDULER_SECONDS = 10
+"""Time limit for connecting to a scheduler, in s."""
+NICENESS = 5
+"""Niceness of local workers, so that the learner gets the processor first."""
+UNWATCHED = {
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
+    "distributed.admin.system-monitor.interval": "10s",
+}
+"""Settings with which Dask's workers on this machine watch themselves less. By default they do so every 10 to 500 ms,
+which takes the processor from the episodes."""
+ATTEMPTS = 20
+"""Largest number of times that a call is submitted: a scheduler gives it up after the deaths of a few workers."""
+
+
+class Answer(NamedTuple):
+    """What a worker returns.
+
+    :param value: what the call returned
+    :param worker: address of the worker
+    :param versions: versions that the worker has, by name
+    """
+
+    value: Any
+    worker: str
+    versions: dict[str, str]
+
+
+def answer(packages: tuple[str, ...], function: Callable[..., Any], *subjects: Any) -> Answer:
+    """Compute a call, in a worker.
+
+    :param packages: names of the packages whose versions matter
+    :param function: function to call
+    :param subjects: arguments of the function
+    """
+    from distributed import get_worker
+
+    return Answer(function(*subjects), get_worker().address, versions(packages))
+
+
+class RemoteJob:
+    """A call that some worker computes.
+
+    :param client: client of the scheduler
+    :param packages: names of the packages whose versions must be the same there
+    :param function: function to call
+    :param subjects: arguments of the function
+    """
+
+    def __init__(self, client: Client, packages: tuple[str, ...], function: Callable[..., Any], *subjects: Any) -> None:
+        self._client = client
+        self._packages = packages
+        self._call = (answer, packages, function, *subjects)
+        self._future = self._submit()
+
+    def _submit(self) -> Future:
+        return self._client.submit(*self._call, pure=False)
+
+    def result(self) -> Any:
+        """Wait for the call, and return what it returned.
+
+        :raises WorkersError: if the worker has other code or versions than this process, or if all workers die
+        """
+        answered = self._wait()
+        _check_worker(answered.worker, answered.versions, self._packages)
+        return answered.value
+
+    def _wait(self) -> Answer:
+        from concurrent.futures import CancelledError
+
+        from distributed.scheduler import KilledWorker
+
+        for _ in range(ATTEMPTS):
+            try:
+                answered: Answer = self._future.result()
+                return answered
+            except KilledWorker:  # the scheduler gave up after a few deaths, but a pure function can be repeated
+                self._future = self._submit()
+            except CancelledError as error:
+                raise WorkersError(f"the connection to the scheduler is lost: {error}") from error
+        raise WorkersError(f"an episode was submitted {ATTEMPTS} times, and its workers died each time")
+
+
+def _check_worker(worker: str, there: dict[str, str], packages: tuple[str, ...]) -> None:
+    """Refuse a worker whose results would differ, with its address and the difference."""
+    if different := differences(versions(packages), there, "there"):
+        raise WorkersError(f"worker {worker} is refused, because its results would differ: {different}")
+
+
+def connect(address: str) -> Client:
+    """Connect to a scheduler.
+
+    :param address: address of the scheduler, such as ``tcp://10.0.0.1:8786``
+    :raises WorkersError: if no scheduler answers, or one of its workers has other code or versions
+    """
+    try:
+        client = _client_in_time(address)
+    except futures.TimeoutError as error:
+        raise WorkersError(f"no Dask scheduler answers at {address!r}: the port is open, but silent") from error
+    except (OSError, ValueError, TypeError, RuntimeError) as error:
+        raise WorkersError(f"no Dask scheduler answers at {address!r}: {error}") from error
+    try:
+        for worker, there in client.run(versions, SIMULATING).items():
+            _check_worker(worker, there, SIMULATING)
+    except BaseException as error:
+        client.close()
+        if isinstance(error, Exception) and not isinstance(error, WorkersError):
+            raise WorkersError(f"a worker behind {address!r} tells no versions: {error}") from error
+        raise
+    return client
+
+
+def _client_in_time(address: str) -> Client:
+    """Make a client in a thread of its own, because Dask waits for ever at a port where nothing answers."""
+    from distributed import Client
+
+    made: futures.Future[Client] = futures.Future()
+
+    def make() -> None:
+        try:
+            made.set_result(Client(address, timeout=SCHEDULER_SECONDS))
+        except BaseException as error:
+            made.set_exception(error)
+
+    threading.Thread(target=make, daemon=True).start()
+    return made.result(2 * SCHEDULER_SECONDS)
+
+
+def start(count: int) -> tuple[LocalCluster, Client]:
+    """Start workers on this machine.
+
+    :param count: number of worker processes
+    """
+    import dask
+    from distributed import Client, LocalCluster, WorkerPlugin
+
+    class Serve(WorkerPlugin):
+        """Ignore Ctrl-C, which the training handles, and give the learner's process priority over the worker."""
+
+        def setup(self, worker: Any) -> None:
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
+            os.nice(NICENESS)
+
+    with dask.config.set(UNWATCHED):
+        cluster = LocalCluster(
+            n_workers=count,
+            threads_per_worker=1,
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",  # any free port; the default 8787 may be taken
+            security=True,  # other users of this machine can reach the ports too
+            memory_limit=0,
+            silence_logs=logging.CRITICAL,
+        )
+    try:
+        client = Client(cluster)
+        client.register_plugin(Serve())
+    except BaseException:
+        cluster.close()
+        raise
+    return cluster, client

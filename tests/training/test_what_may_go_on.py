@@ -1,0 +1,295 @@
+"""A training goes on only with the settings, the code and the versions that it was begun with."""
+
+import dataclasses
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.tasks import TASKS
+from sarah.episode.workers import Workers
+from sarah.errors import ConfigurationError, ResumeError, TrainingInterruptedError
+from sarah.pictures import gait_snapshot
+from sarah.pictures.gait_snapshot import Picture
+from sarah.runs import journal as journal_module
+from sarah.runs.config import ALGORITHMS, TrainingConfig
+from sarah.runs.config_files import read_config, settings_by_key
+from sarah.runs.journal import Journal
+from sarah.runs.run_folder import RunFolder
+from sarah.simulation.physics import Physics
+from sarah.training import train as training
+from sarah.training.train import train
+from sarah.versions import LEARNING, source_hash, versions
+
+COMMAND = Path(sys.executable).with_name("sarah-train")
+EPISODE = EpisodeConfig(
+    time_limit=1.2, physics=Physics(rate=100, solver_iterations=5, control_rate=50), dimensions={"thigh_length": 0.34}
+)
+INTERRUPTED = 3
+"""Number of episodes after which a training of these tests is interrupted."""
+
+
+def begun(path: Path, config: TrainingConfig) -> RunFolder:
+    """The run folder of a training that nobody has simulated an episode of."""
+    run = RunFolder.create(path, config)
+    with Journal(run.journal_path, config, Workers()):
+        return run
+
+
+def interrupted(path: Path, config: TrainingConfig, episodes: int = INTERRUPTED) -> RunFolder:
+    run = RunFolder.create(path, config)
+    go_on(run, episodes)
+    return run
+
+
+def go_on(run: RunFolder, episodes: int) -> None:
+    countdown = iter(range(episodes))
+    with pytest.raises(TrainingInterruptedError):
+        train(run.config(), run, interrupted=lambda: next(countdown, None) is None)
+
+
+def content(run: RunFolder) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in run.path.iterdir()}
+
+
+def others(value: Any) -> Iterator[Any]:
+    """Values that a setting might have instead."""
+    if isinstance(value, bool):
+        yield not value
+    elif isinstance(value, (int, float)):
+        yield from (
+            value * 2,
+            value + 1,
+            value * 1.01,
+            value * 0.99,
+            value + 0.001,
+            0.0 if isinstance(value, float) else 1,
+        )
+    elif isinstance(value, str):
+        yield from (
+            "mujoco",
+            "pybullet",
+            "printed",
+            "described",
+            "paper",
+            "one-step",
+            "relu",
+            "cuda",
+            "td3",
+            "sac",
+            "stepping",
+            "balance",
+            0.1,
+        )
+    elif isinstance(value, list):
+        yield from ([*value[:-1], other] for other in others(value[-1] if value else 0))
+        yield [*value, 7]
+    elif isinstance(value, dict):
+        yield from ({**value, name: other} for name in value for other in others(value[name]))
+
+
+def edited(path: Path, key: str) -> None:
+    """Give one setting in a ``config.yaml`` another value that is allowed."""
+    settings = yaml.safe_load(path.read_text())
+    original = settings_by_key(read_config(TrainingConfig, path))[key]
+    *groups, name = key.split(".")
+    part = settings
+    for group in groups:
+        part = part[group]
+    for other in others(part[name]):
+        previous, part[name] = part[name], other
+        if key in DECIDING:  # the settings of the other one are others
+            part.pop(DECIDING[key], None)
+        path.write_text(yaml.safe_dump(settings))
+        try:
+            if settings_by_key(read_config(TrainingConfig, path))[key] != original:
+                return
+        except ConfigurationError:
+            part[name] = previous
+    raise AssertionError(f"no other value of {key} is known to be allowed")
+
+
+DECIDING = {"task": "episode", "algo": "agent", "episode.engine": "physics"}
+"""Settings on which it depends what others beside them there are."""
+
+
+def keys_of(config: TrainingConfig) -> set[str]:
+    return settings_by_key(config).keys() - {"pictures"}
+
+
+@pytest.mark.parametrize(
+    ("task", "algo"), [("balance", "naf"), *(("stepping", algo) for algo in ALGORITHMS if algo != "naf")]
+)
+def test_every_setting_edited_in_turn_is_refused(task: str, algo: str, tmp_path: Path) -> None:
+    config = TrainingConfig(task, algo, episodes=5, episode=TASKS[task].config_of(EPISODE))
+    run = begun(tmp_path / "run", config)
+    path = run.path / "config.yaml"
+    written = path.read_bytes()
+    assert len(keys_of(config)) > 40
+    for key in keys_of(config):
+        edited(path, key)
+        before = content(run)
+        with pytest.raises(
+            ResumeError, match=rf"run cannot be resumed: (.*; )?{key} is .* here, and .* in this training"
+        ):
+            train(run.config(), run)
+        assert content(run) == before
+        path.write_bytes(written)
+    go_on(run, INTERRUPTED)
+
+
+@pytest.mark.parametrize("name", ["python", "sarah", "sarah-sources", *LEARNING])
+def test_other_versions_are_refused(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(journal_module, "versions", lambda: {**versions(), name: "0.0.7"})
+    run = interrupted(tmp_path / "run", TrainingConfig(algo="random", episodes=5, episode=EPISODE))
+    go_on(run, INTERRUPTED)
+    monkeypatch.undo()
+    before = content(run)
+    with pytest.raises(
+        ResumeError, match=f"run cannot be resumed: {name} is {re.escape(versions()[name])} here, and 0.0.7 in this"
+    ):
+        train(run.config(), run)
+    assert content(run) == before
+
+
+def test_the_command_names_what_was_edited_and_changes_nothing(tmp_path: Path) -> None:
+    run = interrupted(tmp_path / "run", TrainingConfig(algo="random", episodes=5, episode=EPISODE))
+    path = run.path / "config.yaml"
+    path.write_text(path.read_text().replace("time_limit: 1.2", "time_limit: 2.4").replace("seed: 0", "seed: 1"))
+    before = content(run)
+    resumed = subprocess.run([COMMAND, "--resume", "run"], cwd=tmp_path, capture_output=True, text=True)
+    assert resumed.returncode != 0
+    assert resumed.stderr == (
+        "sarah-train: error: run cannot be resumed: seed is 1 here, and 0 in this training; "
+        "episode.time_limit is 2.4 here, and 1.2 in this training\n"
+    )
+    assert content(run) == before
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda first: first.replace(b'"seed":0', b'"seed":1'),
+        lambda first: first[:-40] + b"\n",
+        lambda first: b"",
+        lambda first: b"rubbish\n",
+        lambda first: b"x" * 200_000 + b"\n",
+    ],
+)
+def test_without_the_first_row_nothing_goes_on(damage: Any, tmp_path: Path) -> None:
+    run = interrupted(tmp_path / "run", TrainingConfig(algo="random", episodes=5, episode=EPISODE))
+    first, *rows = run.journal_path.read_bytes().splitlines(keepends=True)
+    run.journal_path.write_bytes(b"".join([damage(first), *rows]))
+    before = content(run)
+    with pytest.raises(ResumeError, match=r"the first row of journal.jsonl, .* is damaged or missing"):
+        train(run.config(), run)
+    assert content(run) == before
+
+
+def test_rows_of_another_training_do_not_count(tmp_path: Path) -> None:
+    config = TrainingConfig(algo="random", episodes=5, slots=1, episode=EPISODE)
+    other = interrupted(
+        tmp_path / "other", dataclasses.replace(config, episode=dataclasses.replace(EPISODE, time_limit=1.5))
+    )
+    run = begun(tmp_path / "run", config)
+    _, *rows = other.journal_path.read_bytes().splitlines(keepends=True)
+    with run.journal_path.open("ab") as file:
+        file.writelines(rows)
+    with Journal(run.journal_path, config, Workers()) as journal:
+        assert rows and not journal.replaying
+
+
+def test_a_journal_larger_than_any_such_training_is_not_read(tmp_path: Path) -> None:
+    run = begun(tmp_path / "run", TrainingConfig(algo="random", episodes=5, episode=EPISODE))
+    with run.journal_path.open("ab") as file:
+        file.truncate(2**40)  # takes no room on the disk
+    with pytest.raises(ResumeError, match=r"journal.jsonl has 1099511627776 bytes, .* at most 10050000"):
+        train(run.config(), run)
+
+
+def test_a_run_folder_says_with_what_it_was_begun(tmp_path: Path) -> None:
+    run = begun(tmp_path / "run", TrainingConfig())
+    assert run.versions() == versions() and run.versions()["sarah-sources"] == source_hash()
+
+
+PACKAGE = Path(training.__file__).parents[1]
+
+
+def test_the_hash_of_the_sources_tells_states_of_the_code_apart(tmp_path: Path) -> None:
+    def copy(name: str) -> Path:
+        return shutil.copytree(PACKAGE, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
+
+    assert source_hash(copy("same")) == source_hash()
+    hashes = {source_hash()}
+    for name in ("control/hip_law.py", "agents/naf.py", "urdf/sarah.urdf.xacro"):
+        file = copy(name.replace("/", " ")) / name
+        file.write_text(file.read_text() + "\n")
+        hashes.add(source_hash(file.parents[1]))
+    moved = copy("moved")
+    (moved / "control" / "hip_law.py").rename(moved / "control" / "hips.py")
+    assert len(hashes | {source_hash(moved)}) == 5
+    described = copy("described")
+    (described / "notes.txt").write_text("no source")
+    assert source_hash(described) == source_hash()
+
+
+class Artist:
+    """Draws nothing, and remembers after how many drawings."""
+
+    def __init__(self) -> None:
+        self.drawn = 0
+
+    def __call__(self, *_: Any) -> list[Picture]:
+        self.drawn += 1
+        return [Picture("gait/cycle", 1, 1, b"picture %d" % self.drawn)]
+
+
+@pytest.fixture
+def artist(monkeypatch: pytest.MonkeyPatch) -> Artist:
+    made = Artist()
+    monkeypatch.setattr(gait_snapshot, "draw_gait", made)
+    return made
+
+
+def pictures(run: RunFolder) -> list[tuple[int, bytes]]:
+    (events,) = run.path.glob("events.out.tfevents.*")
+    curves = EventAccumulator(str(events), size_guidance={"images": 0})
+    curves.Reload()
+    return [(event.step, event.encoded_image_string) for event in curves.Images("gait/cycle")]
+
+
+def test_a_resumed_training_keeps_its_pictures_and_draws_on(artist: Artist, tmp_path: Path) -> None:
+    config = TrainingConfig(algo="random", episodes=10, slots=1, episode=EPISODE, pictures=2)
+    run = interrupted(tmp_path / "run", config, 5)
+    assert artist.drawn == len(pictures(run)) == 2
+    train(run.config(), run)
+    assert artist.drawn == 5
+    assert pictures(run) == [(2 * number, b"picture %d" % number) for number in (1, 2, 3, 4, 5)]
+
+
+def test_pictures_that_were_lost_are_drawn_again(artist: Artist, tmp_path: Path) -> None:
+    config = TrainingConfig(algo="random", episodes=10, slots=1, episode=EPISODE, pictures=2)
+    run = interrupted(tmp_path / "run", config, 3)
+    (events,) = run.path.glob("events.out.tfevents.*")
+    events.write_bytes(events.read_bytes()[:-60])
+    train(run.config(), run)
+    assert [step for step, _ in pictures(run)] == [2, 4, 6, 8, 10]
+    assert pictures(run)[0] == (2, b"picture 1")
+
+
+@pytest.mark.parametrize(("before", "after", "steps"), [(5, 0, [5]), (0, 5, [5, 10]), (4, 5, [4, 5, 8, 10])])
+def test_other_pictures_may_be_asked_for(
+    before: int, after: int, steps: list[int], artist: Artist, tmp_path: Path
+) -> None:
+    config = TrainingConfig(algo="random", episodes=10, slots=1, episode=EPISODE, pictures=before)
+    run = interrupted(tmp_path / "run", config, 8)
+    train(dataclasses.replace(config, pictures=after), run)
+    assert [step for step, _ in pictures(run)] == steps
