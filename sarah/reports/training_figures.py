@@ -26,6 +26,7 @@ from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
 from sarah.errors import RunFolderError
 from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
 from sarah.reports.robustness import PushedEpisode, finest_sectors, survival_by_direction
+from sarah.runs.run_episodes import LONGEST_REASON
 from sarah.runs.run_folder import RunFolder
 
 if TYPE_CHECKING:  # the import would load the learning algorithms
@@ -118,7 +119,7 @@ def _curves(runs: Sequence[RunFolder], task: Task) -> list[RunCurves]:
         try:
             columns = {name: [_number(row[name]) for row in rows] for name in names}
         except (KeyError, TypeError, ValueError) as error:
-            raise RunFolderError(f"the episodes of {run.path} cannot be read: {error!r}") from error
+            raise RunFolderError(f"the episodes of {run.path} cannot be read: {repr(error)[:LONGEST_REASON]}") from error
         config = run.config()
         by_algorithm.setdefault(config.algo, []).append(columns)
         before_comparison = min(len(rows), config.episodes - config.compared_episodes)
