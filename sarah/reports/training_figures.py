@@ -119,7 +119,8 @@ def _curves(runs: Sequence[RunFolder], task: Task) -> list[RunCurves]:
         try:
             columns = {name: [_number(row[name]) for row in rows] for name in names}
         except (KeyError, TypeError, ValueError) as error:
-            raise RunFolderError(f"the episodes of {run.path} cannot be read: {repr(error)[:LONGEST_REASON]}") from error
+            reason = repr(error)[:LONGEST_REASON]
+            raise RunFolderError(f"the episodes of {run.path} cannot be read: {reason}") from error
         config = run.config()
         by_algorithm.setdefault(config.algo, []).append(columns)
         before_comparison = min(len(rows), config.episodes - config.compared_episodes)
