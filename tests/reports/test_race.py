@@ -22,7 +22,7 @@ from sarah.errors import RunFolderError
 from sarah.reports import race as race_module
 from sarah.reports.race import RaceCurve, entries_of, is_run, race, read_curve, run_entry
 from sarah.reports.rankings import as_markdown, episodes_until, interquartile_mean, rankings
-from sarah.runs.config import TrainingConfig
+from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 
@@ -55,7 +55,13 @@ def test_rankings_are_shares_of_the_best_final_score() -> None:
     assert second.runs == 2 and second.reached == {0.9: 1, 0.95: 0}
     assert math.isinf(second.episodes[0.95])
     assert "| naf | 1 | 10 | 1 | 10 | 1 | 0.800 (0.800 to 0.800) | 1 s |" in as_markdown([first, second])
+    assert "\n- naf: chosen on the tasks stepping and balance" in as_markdown([first, second])
     assert rankings([good], best_known=2.0)[0].reached == {0.9: 0, 0.95: 0}
+
+
+def test_the_origin_of_every_algorithms_settings_is_said() -> None:
+    table = as_markdown(rankings([curve(algo, 0.1, 0.2) for algo in ALGORITHMS]))
+    assert "- td3, sac, ddpg: set once by hand" in table and "- gp, tpe: the defaults of Optuna" in table
 
 
 def test_a_race_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
