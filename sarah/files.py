@@ -20,6 +20,8 @@ SMALL = 65_536
 """Largest size of a small text file, in bytes: settings, parameters, versions."""
 LONGEST_LINE = 16_384
 """Largest size of a line in a table, in bytes."""
+LARGEST = 2**30
+"""Largest size of a table, in bytes: that of a run of a million episodes is less than half of it."""
 
 
 @contextmanager
@@ -98,7 +100,7 @@ def read_lines(path: Path, most_lines: int, most_bytes: int = LONGEST_LINE) -> I
     :raises UnicodeDecodeError: if it is no text
     """
     with io.BufferedReader(open_regular(path)) as file:  # type: ignore[type-var]  # it is a raw file
-        _check_size(file, path, most_lines * most_bytes)
+        _check_size(file, path, min(most_lines * most_bytes, LARGEST))
         for number in range(1, most_lines + 2):
             line = file.readline(most_bytes + 1)
             if not line:
