@@ -11,7 +11,8 @@ import tyro
 from experiments.record import Row
 from experiments.trainings import OfTrainings, identity
 from sarah.episode.workers import Workers
-from sarah.reports.race import Entry, entries_of, race, rankings
+from sarah.reports.race import Entry, entries_of, race
+from sarah.reports.rankings import rankings
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
 

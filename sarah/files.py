@@ -1,12 +1,27 @@
-"""Files that are never half written: the old content stays until the new one is on the disk."""
+"""Files that are never half written, and files that are read within bounds, whoever wrote them.
+
+What is replaced keeps its old content until the new one is on the disk. What is read is a regular file of a bounded
+size: a FIFO would block for ever, and a file of gigabytes would fill the memory.
+"""
 
 from __future__ import annotations
 
+import errno
+import fcntl
+import io
 import os
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
+
+SMALL = 65_536
+"""Largest size of a small text file, in bytes: settings, parameters, versions."""
+LONGEST_LINE = 16_384
+"""Largest size of a line in a table, in bytes."""
+LARGEST = 2**30
+"""Largest size of a table, in bytes: that of a run of a million episodes is less than half of it."""
 
 
 @contextmanager
@@ -17,7 +32,8 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
     """
     unfinished = path.with_name(f"{path.name}.new")
     try:
-        with unfinished.open("wb") as file:
+        unfinished.unlink(missing_ok=True)  # whatever it is: a FIFO would block, and a link lead elsewhere
+        with unfinished.open("xb") as file:
             yield file
             file.flush()
             os.fsync(file.fileno())
@@ -36,6 +52,85 @@ def replace_text(path: Path, text: str) -> None:
     """
     with replacing(path) as file:
         file.write(text.encode())
+
+
+def open_regular(path: Path, flags: int = os.O_RDONLY) -> BinaryIO:
+    """Open a regular file, or a link to one, without ever waiting for somebody else.
+
+    :param path: path of the file
+    :param flags: flags of :func:`os.open`
+    :raises OSError: if it is a FIFO, a device or a folder, or cannot be opened
+    """
+    descriptor = os.open(path, flags | os.O_NONBLOCK)
+    try:
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            raise OSError(errno.EINVAL, "it is not a regular file", str(path))
+        return open(descriptor, "rb" if flags & os.O_ACCMODE == os.O_RDONLY else "r+b", buffering=0)
+    except BaseException:
+        os.close(descriptor)
+        raise
+
+
+def read_text(path: Path, most_bytes: int = SMALL) -> str:
+    """Read a small text file as a whole.
+
+    :param path: path of the file
+    :param most_bytes: largest size in bytes
+    :raises OSError: if it is no regular file, or larger
+    :raises UnicodeDecodeError: if it is no text
+    """
+    with open_regular(path) as file:
+        _check_size(file, path, most_bytes)
+        content = b""
+        while len(content) <= most_bytes and (part := file.read(most_bytes + 1 - len(content))):
+            content += part
+    if len(content) > most_bytes:
+        raise _too_large(path, f"more than {most_bytes:,} bytes")
+    return content.decode()
+
+
+def read_lines(path: Path, most_lines: int, most_bytes: int = LONGEST_LINE) -> Iterator[str]:
+    """Read a text file line by line.
+
+    :param path: path of the file
+    :param most_lines: largest number of lines
+    :param most_bytes: largest size of a line, in bytes
+    :return: iterator over the lines, with their ends
+    :raises OSError: if it is no regular file, or has more or longer lines
+    :raises UnicodeDecodeError: if it is no text
+    """
+    with io.BufferedReader(open_regular(path)) as file:  # type: ignore[type-var]  # it is a raw file
+        _check_size(file, path, min(most_lines * most_bytes, LARGEST))
+        for number in range(1, most_lines + 2):
+            line = file.readline(most_bytes + 1)
+            if not line:
+                return
+            if len(line) > most_bytes:
+                raise _too_large(path, f"more than {most_bytes:,} bytes in line {number}")
+            if number > most_lines:
+                raise _too_large(path, f"more than {most_lines:,} lines")
+            yield line.decode()
+
+
+@contextmanager
+def locked(path: Path) -> Iterator[None]:
+    """Hold a lock that one process at a time can have; the others wait. It ends with its process, however that ends.
+
+    :param path: path of the lock's file, which is made if it is missing
+    """
+    with open_regular(path, os.O_RDWR | os.O_CREAT) as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
+def _check_size(file: BinaryIO, path: Path, most_bytes: int) -> None:
+    size = os.fstat(file.fileno()).st_size
+    if size > most_bytes:
+        raise _too_large(path, f"{size:,} bytes, and at most {most_bytes:,} are read")
+
+
+def _too_large(path: Path, found: str) -> OSError:
+    return OSError(errno.EFBIG, f"it has {found}", str(path))
 
 
 def _sync_folder(folder: Path) -> None:

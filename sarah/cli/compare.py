@@ -102,7 +102,8 @@ def _compare(arguments: Sequence[str]) -> None:
     describe_robot(options.episode.dimensions)
     check_engine(episode.engine)
     from sarah.episode.workers import Workers
-    from sarah.reports.race import as_markdown, entries_of, race, rankings, write_csv
+    from sarah.reports.race import entries_of, race
+    from sarah.reports.rankings import as_markdown, rankings, write_csv
     from sarah.reports.training_figures import draw_race
 
     seeds = range(options.first_seed, options.first_seed + options.seeds)

@@ -205,7 +205,7 @@ class Episode:
                 "stable_x": generator.stable_x,
                 "tilt": generator.tilt,
                 "rate": generator.rate,
-                "steps_per_second": self._gait.steps_per_second(self._ticks),
+                "steps_per_second": self._gait.steps_per_second(self._ticks + 1),  # as its reward has it
                 "push": push,
                 "score": self._return / self._highest_return,
             }

@@ -35,7 +35,7 @@ class Trace:
         m/s^2
     :param rate: value that P1 and P3 are compared with
         (:attr:`~sarah.control.pattern_generator.PatternGenerator.rate`), in rad/s
-    :param steps_per_second: steps per second in the last 2 s
+    :param steps_per_second: steps per second in the last 2 s, at the end of the tick, as the tick's reward has it
     :param push: force of the push during the tick, in the world's frame, in N; shape (ticks, 3)
     :param score: score so far
     """

@@ -26,6 +26,7 @@ from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
 from sarah.errors import RunFolderError
 from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
 from sarah.reports.robustness import PushedEpisode, finest_sectors, survival_by_direction
+from sarah.runs.run_episodes import LONGEST_REASON
 from sarah.runs.run_folder import RunFolder
 
 if TYPE_CHECKING:  # the import would load the learning algorithms
@@ -112,16 +113,20 @@ def _curves(runs: Sequence[RunFolder], task: Task) -> list[RunCurves]:
     learning: dict[str, int] = {}
     names = ("return", "steps_per_second", "x", "y", *task.parameter_names)
     for run in runs:
-        rows = list(run.episodes())
-        if not rows:
-            raise RunFolderError(f"{run.path} has no episodes to draw")
+        columns: dict[str, list[float]] = {name: [] for name in names}
         try:
-            columns = {name: [_number(row[name]) for row in rows] for name in names}
+            for row in run.episodes():
+                for name in names:
+                    columns[name].append(_number(row[name]))
         except (KeyError, TypeError, ValueError) as error:
-            raise RunFolderError(f"the episodes of {run.path} cannot be read: {error!r}") from error
+            reason = repr(error)[:LONGEST_REASON]
+            raise RunFolderError(f"the episodes of {run.path} cannot be read: {reason}") from error
+        episodes = len(columns["return"])
+        if not episodes:
+            raise RunFolderError(f"{run.path} has no episodes to draw")
         config = run.config()
         by_algorithm.setdefault(config.algo, []).append(columns)
-        before_comparison = min(len(rows), config.episodes - config.compared_episodes)
+        before_comparison = min(episodes, config.episodes - config.compared_episodes)
         learning[config.algo] = min(learning.get(config.algo, before_comparison), before_comparison)
     curves = []
     for algorithm, tables in by_algorithm.items():

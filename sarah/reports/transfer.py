@@ -1,4 +1,4 @@
-"""The transfer of learned parameters from one physics engine to the other, on the same seeds and pushes."""
+"""The transfer of learned parameters from one physics engine to the others, on the same seeds and pushes."""
 
 from __future__ import annotations
 
@@ -46,10 +46,10 @@ class Transfer:
 
     @property
     def kept(self) -> float:
-        """Score in the other engine, as a share of that in the engine of the training; 0 if the latter is 0."""
-        at_home = self.evaluations[self.learned.config.engine].mean("score")
-        (abroad,) = (e.mean("score") for engine, e in self.evaluations.items() if engine != self.learned.config.engine)
-        return abroad / at_home if at_home else 0.0
+        """Lowest score in another engine, as a share of that in the engine of the training; 0 if the latter is 0."""
+        scores = {engine: evaluation.mean("score") for engine, evaluation in self.evaluations.items()}
+        at_home = scores.pop(self.learned.config.engine)
+        return min(scores.values()) / at_home if at_home else 0.0
 
 
 def transfer(many: Sequence[LearnedParameters], seeds: Sequence[int], workers: Workers) -> list[Transfer]:

@@ -39,6 +39,8 @@ PRESETS: dict[str, dict[str, Any]] = {
 """Defaults of NAF that a preset decides: local NAF, or plain NAF with the paper's networks."""
 
 MOST_LAYERS = 20
+WARM_UP = 5
+"""Default number of episodes before an algorithm uses what it knows: the same for all, which makes races fair."""
 PLAUSIBLE: dict[str, tuple[float, float]] = {
     "learning_rate": (1e-9, 1.0),
     "buffer_size": (1, 10_000_000),
@@ -91,7 +93,7 @@ class LearnerSettings(AgentSettings):
 
     :param learning_rate: step size of the optimiser Adam, above 0
     :param buffer_size: number of episodes, from 1, that the replay buffer holds
-    :param learning_starts: number of episodes before the networks learn; twice the slots, if that is more
+    :param learning_starts: number of uniform episodes before the networks learn; twice the slots, if that is more
     :param batch_size: number of episodes, from 1, in the minibatch of an update
     :param tau: share of their weights, 0 to 1, that the target networks take over from the others at an update
     :param gamma: discount factor, 0 to 1, of what follows an action; nothing does, as an episode is one action
@@ -101,7 +103,7 @@ class LearnerSettings(AgentSettings):
 
     learning_rate: float = 1e-3
     buffer_size: int = 1_000_000
-    learning_starts: int = 30
+    learning_starts: int = WARM_UP
     batch_size: int = 64
     tau: float = 0.005
     gamma: float = 0.0
@@ -143,7 +145,6 @@ class NAFSettings(LearnerSettings):
     """
 
     buffer_size: int = 10_000
-    learning_starts: int = 5
     tau: float = 0.02
     preset: Preset = "one-step"
     max_grad_norm: float = 10.0

@@ -8,14 +8,18 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
-from sarah.errors import ConfigurationError, SarahError, shortened, unknown_name
-from sarah.files import replace_text
+from sarah.errors import LONGEST_NAME, ConfigurationError, SarahError, shortened, unknown_name
+from sarah.files import read_text, replace_text
 from sarah.robot.description import check_dimensions
 from sarah.runs.config import TrainingConfig
 
 ConfigType = TypeVar("ConfigType")
 EXPONENT = re.compile(r"[-+]?\d+[eE][-+]?\d+")
 """Numbers such as 3e-4, which YAML 1.1 takes for texts as they have no decimal point."""
+LONGEST_REASON = 500
+"""Length up to which a message quotes YAML's own, in characters."""
+DEEPEST = 20
+"""Largest number of lists and mappings in a settings file that lie in each other."""
 
 
 def first_difference(config: Any, other: Any, key: str = "") -> tuple[str, Any, Any] | None:
@@ -46,13 +50,17 @@ def read_config(config_type: type[ConfigType], path: Path) -> ConfigType:
     import yaml
 
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path)
+        _check_structure(text)
         content = yaml.safe_load(text)
         repeated = _repeated_key(yaml.compose(text, yaml.SafeLoader))
     except (OSError, UnicodeDecodeError) as error:
         raise ConfigurationError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from error
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise ConfigurationError(f"{path} is not YAML: {' '.join(str(error).split())}") from error
+    except SarahError as error:
+        raise ConfigurationError(f"{path}: {error}") from error
+    # The safe loader lets errors of its conversions through: of !!bool x, of a sexagesimal number without end.
+    except (yaml.YAMLError, ValueError, LookupError, ArithmeticError) as error:
+        raise ConfigurationError(f"{path} is not YAML: {' '.join(str(error).split())[:LONGEST_REASON]}") from error
     if repeated is not None:
         raise ConfigurationError(f"{path}: key {shortened(repeated)} is given twice")
     try:
@@ -62,6 +70,20 @@ def read_config(config_type: type[ConfigType], path: Path) -> ConfigType:
         return config
     except SarahError as error:
         raise ConfigurationError(f"{path}: {error}") from error
+
+
+def _check_structure(text: str) -> None:
+    """Refuse what makes a short text a large value: aliases, of which each can double it, and depth without end."""
+    import yaml
+
+    depth = 0
+    for event in yaml.parse(text, yaml.SafeLoader):
+        anchor = getattr(event, "anchor", None)
+        if anchor is not None:
+            raise ConfigurationError(f"anchors and aliases are not allowed, such as {shortened(anchor)}")
+        depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+        if depth > DEEPEST:
+            raise ConfigurationError(f"lists and mappings must lie at most {DEEPEST} deep in each other")
 
 
 def _repeated_key(node: Any) -> str | None:
@@ -134,7 +156,7 @@ def _converted(expected: Any, value: Any, key: str) -> Any:
     if get_origin(expected) is Mapping:
         if not isinstance(value, Mapping):
             raise ConfigurationError(f"{key} must hold names and values, not {shortened(value)}")
-        return {name: _converted(get_args(expected)[1], item, f"{key}.{name}") for name, item in value.items()}
+        return {name: _converted(get_args(expected)[1], item, f"{key}.{_short(name)}") for name, item in value.items()}
     if expected is float and isinstance(value, str) and EXPONENT.fullmatch(value):
         value = float(value)
     allowed = {float: (float, int), int: (int,), bool: (bool,)}.get(expected, (str,))
@@ -147,6 +169,11 @@ def _converted(expected: Any, value: Any, key: str) -> Any:
         return float(value) if expected is float else value
     except OverflowError:
         raise ConfigurationError(f"{key} must be a number that a float can hold, not {shortened(value)}") from None
+
+
+def _short(name: Any) -> str:
+    """A key as it stands in the file, unless a line cannot hold it."""
+    return name if isinstance(name, str) and name.isidentifier() and len(name) <= LONGEST_NAME else shortened(name)
 
 
 def _converted_tuple(parts: tuple[Any, ...], value: Any, key: str) -> tuple[Any, ...]:

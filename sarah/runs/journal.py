@@ -19,7 +19,6 @@ import hashlib
 import json
 import logging
 import os
-import stat
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -32,6 +31,7 @@ from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Executor, Job, Outcome, begin_episode, finish_episode
 from sarah.errors import ResumeError, RunFolderError, SarahError, TrainingInterruptedError
+from sarah.files import open_regular
 from sarah.robot.reading import SensorReading
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import settings_by_key
@@ -127,13 +127,11 @@ class Journal(Executor):
     def __enter__(self) -> Journal:
         """Lock the file, and read it."""
         try:
-            descriptor = os.open(self._path, os.O_RDWR | os.O_APPEND | os.O_NONBLOCK)
-        except FileNotFoundError:
-            raise RunFolderError(f"{self._path.parent} cannot be resumed: it has no {self._path.name}") from None
-        self._file = open(descriptor, "r+b", buffering=0)  # closed on leaving
+            self._file = open_regular(self._path, os.O_RDWR | os.O_APPEND)  # closed on leaving
+        except OSError as error:
+            reason = f"it has no {self._path.name}" if isinstance(error, FileNotFoundError) else str(error)
+            raise RunFolderError(f"{self._path.parent} cannot be resumed: {reason}") from error
         try:
-            if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-                raise RunFolderError(f"{self._path.parent} cannot be resumed: {self._path.name} is no file")
             # The system releases the lock when the process ends, however it ends.
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             self._read()

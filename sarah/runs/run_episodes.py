@@ -11,6 +11,9 @@ from sarah.episode.tasks import TASKS
 from sarah.errors import ConfigurationError, RunFolderError
 from sarah.runs.run_folder import RunFolder
 
+LONGEST_REASON = 200
+"""Length up to which a message quotes the error of a row, in characters."""
+
 
 @dataclass(frozen=True)
 class RunEpisode:
@@ -55,7 +58,8 @@ def episodes_of_run(run: RunFolder) -> list[RunEpisode]:
             label = f"episode {row['index']} · score {score:.2f} · {ending}"
             simulated.append(RunEpisode(row["index"], label, spec, score))
         except (KeyError, TypeError, ValueError) as error:
-            raise RunFolderError(f"the episodes of {run.path} cannot be read: {error!r}") from error
+            reason = repr(error)[:LONGEST_REASON]
+            raise RunFolderError(f"the episodes of {run.path} cannot be read: {reason}") from error
     shown = []
     if run.is_finished:
         spec = EpisodeSpec(run.parameters(), 0, task.name, training.episode)

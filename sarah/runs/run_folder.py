@@ -27,8 +27,8 @@ from typing import Any
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import TASKS
-from sarah.errors import RunFolderError
-from sarah.files import replace_text
+from sarah.errors import RunFolderError, shortened
+from sarah.files import read_lines, read_text, replace_text
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import read_config, write_config
 from sarah.versions import versions
@@ -141,9 +141,9 @@ class RunFolder:
     def versions(self) -> dict[str, str]:
         """Read the versions with which the training began, by name of the package."""
         try:
-            lines = self._versions_path.read_text(encoding="utf-8").splitlines()
+            lines = read_text(self._versions_path).splitlines()
         except (OSError, UnicodeDecodeError) as error:
-            raise RunFolderError(f"cannot read {self._versions_path}: {error}") from error
+            raise _unreadable(self._versions_path, error) from error
         return {name: version for name, _, version in (line.partition(" ") for line in lines)}
 
     def config(self) -> TrainingConfig:
@@ -152,7 +152,10 @@ class RunFolder:
 
     def config_text(self) -> str:
         """Read the text of ``config.yaml``."""
-        return self._config_path.read_text(encoding="utf-8")
+        try:
+            return read_text(self._config_path)
+        except (OSError, UnicodeDecodeError) as error:
+            raise _unreadable(self._config_path, error) from error
 
     def append_episode(self, index: int, spec: EpisodeSpec, result: EpisodeResult) -> None:
         """Add one episode to ``episodes.csv``.
@@ -167,7 +170,7 @@ class RunFolder:
 
     def episodes(self) -> Iterator[dict[str, str]]:
         """Read ``episodes.csv``, row by row, as text; there are no rows before the first episode."""
-        return _rows(self._episodes_path)
+        return self._rows(self._episodes_path)
 
     def append_recommendation(self, episodes: int, parameters: Mapping[str, float]) -> None:
         """Add a row to ``recommendations.csv``.
@@ -180,7 +183,7 @@ class RunFolder:
 
     def recommendations(self) -> Iterator[dict[str, str]]:
         """Read ``recommendations.csv``, row by row, as text."""
-        return _rows(self._recommendations_path)
+        return self._rows(self._recommendations_path)
 
     def append_progress(self, columns: Sequence[str], values: Mapping[str, Any]) -> None:
         """Add a row to ``progress.csv``.
@@ -198,7 +201,7 @@ class RunFolder:
         text = io.StringIO(newline="")
         writer = csv.DictWriter(text, columns)
         writer.writeheader()
-        writer.writerows(_rows(self._progress_path))
+        writer.writerows(self._rows(self._progress_path))
         replace_text(self._progress_path, text.getvalue())
 
     def event_files(self) -> list[Path]:
@@ -226,12 +229,24 @@ class RunFolder:
         task = TASKS[self.config().task]
         names = task.parameter_names
         try:
-            learned = json.loads(self._parameters_path.read_text(encoding="utf-8"))["parameters"]
+            learned = json.loads(read_text(self._parameters_path))["parameters"]
             if set(learned) != set(names):
-                raise ValueError(f"it names {', '.join(map(str, learned)) or 'none'} instead of {', '.join(names)}")
+                found = shortened(", ".join(map(str, learned)))
+                raise ValueError(f"it names {found} instead of {', '.join(names)}")
             return task.checked([learned[name] for name in names])
-        except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+        except OSError as error:
+            raise _unreadable(self._parameters_path, error) from error
+        except (ValueError, KeyError, TypeError, RecursionError) as error:
             raise RunFolderError(f"{self._parameters_path} does not hold learned parameters: {error}") from error
+
+    def _rows(self, path: Path) -> Iterator[dict[str, str]]:
+        """Read a table, which has at most a row for each episode of the training."""
+        if not path.exists():
+            return
+        try:
+            yield from csv.DictReader(read_lines(path, self.config().episodes + 1))
+        except (OSError, csv.Error, UnicodeDecodeError) as error:
+            raise _unreadable(path, error) from error
 
 
 def _append_row(path: Path, fields: Sequence[str], row: Mapping[str, Any]) -> None:
@@ -243,11 +258,5 @@ def _append_row(path: Path, fields: Sequence[str], row: Mapping[str, Any]) -> No
         writer.writerow(row)
 
 
-def _rows(path: Path) -> Iterator[dict[str, str]]:
-    if not path.exists():
-        return
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            yield from csv.DictReader(file)
-    except (csv.Error, UnicodeDecodeError) as error:
-        raise RunFolderError(f"{path} cannot be read: {error}") from error
+def _unreadable(path: Path, error: Exception) -> RunFolderError:
+    return RunFolderError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}")

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import torch
-from stable_baselines3 import DDPG, SAC, TD3
 from stable_baselines3.common.noise import NormalActionNoise
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from stable_baselines3.common.utils import LinearSchedule
@@ -26,6 +25,7 @@ from sarah.episode.workers import Executor, Job
 from sarah.errors import ConfigurationError
 from sarah.files import replacing
 from sarah.runs.agent_settings import (
+    WARM_UP,
     AgentSettings,
     DDPGSettings,
     LearnerSettings,
@@ -36,10 +36,12 @@ from sarah.runs.agent_settings import (
 from sarah.runs.config import OPTIMISERS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.randomisation import Randomisation
-from sarah.training.optimisers import Optimiser, make_optimiser
+from sarah.training.beginnings import BeginningDDPG, BeginningSAC, BeginningTD3
+from sarah.training.optimisers import Optimiser, Start, make_optimiser
 from sarah.training.recommendation import Parameters
 from sarah.training.recorder import EpisodeRecorder, check_weights
 from sarah.training.replay import LateRankReplayBuffer, LateReplayBuffer
+from sarah.training.seeds import seeds_of
 
 SCHEDULED_SHARE = 0.8
 """Share of a training after which what NAF's settings change in its course has its last value."""
@@ -81,9 +83,12 @@ def learn(
     return recorder.choose()
 
 
-def spread_seed(config: TrainingConfig) -> int:
-    """The seed of what learns and of its episodes: from neighbouring seeds come trainings that share no episode."""
-    return int(np.random.SeedSequence(config.seed).generate_state(1)[0]) // 2
+def warm_up(config: TrainingConfig) -> int:
+    """Number of episodes before an algorithm uses what it knows: at least as many outcomes as are in flight.
+
+    :param config: settings of the training
+    """
+    return max(getattr(config.agent, "learning_starts", WARM_UP), 2 * config.slots)
 
 
 def make_agent(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
@@ -97,11 +102,24 @@ def make_agent(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
     check_device(settings)
     # All algorithms of stable-baselines3's kind take these under the same names.
     common = {item.name: getattr(settings, item.name) for item in dataclasses.fields(LearnerSettings)}
-    # Learning begins with as many outcomes as are in flight.
-    common["learning_starts"] = max(settings.learning_starts, 2 * config.slots)
+    common["learning_starts"] = warm_up(config)
     algorithm, own_arguments = LEARNERS[type(settings)]
-    own = own_arguments(settings, TASKS[config.task])
-    return algorithm("MlpPolicy", env, seed=spread_seed(config), **common, **own)
+    task = TASKS[config.task]
+    own = own_arguments(settings, task) | {"first_action_centre": begins_at_centre(task)}
+    seeds = seeds_of(config.seed)
+    model = algorithm("MlpPolicy", env, seed=seeds.algorithm, **common, **own)
+    # stable-baselines3 seeds everything alike: torch and numpy then draw the same bits, as do warm-up and episodes.
+    np.random.seed(seeds.exploration)
+    env.seed(seeds.episodes)
+    return model
+
+
+def begins_at_centre(task: Task) -> bool:
+    """Whether the first action of every algorithm is the centre of the box: few uniform draws come near V = 0.
+
+    :param task: task whose parameters are learned
+    """
+    return task.neutral is not None
 
 
 def check_device(settings: AgentSettings) -> None:
@@ -126,7 +144,6 @@ def _naf_arguments(settings: NAFSettings, task: Task) -> dict[str, Any]:
         elite_share=settings.elite_share,
         elite_std=LinearSchedule(*settings.elite_std, end_fraction=SCHEDULED_SHARE),
         elite_draws=settings.elite_draws,
-        first_action_centre=task.neutral is not None,  # few uniform draws come near V = 0
         policy_kwargs=dict(
             net_arch={name: list(widths) for name, widths in layers.items()},
             activation_fn=ACTIVATIONS[settings.activation],
@@ -164,9 +181,9 @@ def _sac_arguments(settings: SACSettings, task: Task) -> dict[str, Any]:
 
 LEARNERS: dict[type[LearnerSettings], tuple[type[OffPolicyAlgorithm], Callable[[Any, Task], dict[str, Any]]]] = {
     NAFSettings: (LocalNAF, _naf_arguments),
-    TD3Settings: (TD3, _td3_arguments),
-    SACSettings: (SAC, _sac_arguments),
-    DDPGSettings: (DDPG, _ddpg_arguments),
+    TD3Settings: (BeginningTD3, _td3_arguments),
+    SACSettings: (BeginningSAC, _sac_arguments),
+    DDPGSettings: (BeginningDDPG, _ddpg_arguments),
 }
 """Class of every kind of settings' algorithm, and what makes its arguments beyond those that all share."""
 
@@ -198,8 +215,10 @@ def chosen_parameters(model: OffPolicyAlgorithm, observation: np.ndarray, task: 
 def _search(config: TrainingConfig, episodes: int, recorder: EpisodeRecorder, workers: Executor) -> Parameters:
     """Let a black-box optimiser try parameters, as many in flight as there are slots; its choice is returned."""
     task = TASKS[config.task]
-    optimiser = make_optimiser(config.algo, config.agent, len(task.parameter_names), spread_seed(config))
-    generator = np.random.default_rng(spread_seed(config))
+    seeds, dimensions = seeds_of(config.seed), len(task.parameter_names)
+    start = Start(begins_at_centre(task), warm_up(config), config.slots)
+    optimiser = make_optimiser(config.algo, config.agent, dimensions, seeds.algorithm, start)
+    generator = np.random.default_rng(seeds.episodes)
     recorder.choose = lambda: parameters_from(optimiser.choice(), task)
     running: deque[tuple[np.ndarray, EpisodeSpec, Job]] = deque()
     for _ in range(episodes):

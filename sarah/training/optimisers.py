@@ -6,11 +6,12 @@ They see no observation: they are asked for an action, a task's parameters scale
 from __future__ import annotations
 
 from collections import deque
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 
-from sarah.runs.agent_settings import AgentSettings, EvolutionSettings
+from sarah.runs.agent_settings import WARM_UP, AgentSettings, EvolutionSettings
 
 
 class Optimiser(Protocol):
@@ -33,14 +34,30 @@ class Optimiser(Protocol):
         """The action that it would recommend now."""
 
 
+@dataclass(frozen=True)
+class Start:
+    """How an optimiser begins, which is as NAF does.
+
+    :param at_centre: whether the first action is the centre of the box
+    :param warm_up: number of actions before the ones that a model chooses, of optimisers that have a model
+    :param slots: number of episodes in flight
+    """
+
+    at_centre: bool = False
+    warm_up: int = WARM_UP
+    slots: int = 1
+
+
 class RandomSearch:
     """Actions drawn uniformly; it recommends the best one.
 
     :param dimensions: number of an action's elements
     :param seed: seed of the draws
+    :param at_centre: whether the first action is the centre of the box instead
     """
 
-    def __init__(self, dimensions: int, seed: int) -> None:
+    def __init__(self, dimensions: int, seed: int, at_centre: bool = False) -> None:
+        self._at_centre = at_centre
         self._generator = np.random.default_rng(seed)
         self._best = np.zeros(dimensions)
         self._best_return = -np.inf
@@ -51,6 +68,9 @@ class RandomSearch:
 
     def ask(self) -> np.ndarray:
         """Draw an action."""
+        if self._at_centre:
+            self._at_centre = False
+            return np.zeros(self._best.shape)
         return self._generator.uniform(-1.0, 1.0, self._best.shape)
 
     def tell(self, action: np.ndarray, episode_return: float) -> None:
@@ -71,14 +91,17 @@ class EvolutionStrategy:
     :param settings: Settings of the strategy
     :param dimensions: number of an action's elements
     :param seed: seed of the draws
+    :param at_centre: whether the first action is the first generation's mean, the centre of the box
     """
 
-    def __init__(self, settings: EvolutionSettings, dimensions: int, seed: int) -> None:
+    def __init__(self, settings: EvolutionSettings, dimensions: int, seed: int, at_centre: bool = False) -> None:
         import cma
 
         # The package takes a seed of 0 for the time of day.
         options = {"bounds": [-1.0, 1.0], "popsize": settings.population, "seed": seed % 2**31 + 1, "verbose": -9}
         self._strategy = cma.CMAEvolutionStrategy(np.zeros(dimensions), settings.deviation, options)
+        if at_centre:
+            self._strategy.inject([np.zeros(dimensions)], force=True)
         self._unasked: deque[np.ndarray] = deque()
         self._told: list[tuple[np.ndarray, float]] = []
         self._generation: list[np.ndarray] = []
@@ -108,11 +131,14 @@ class EvolutionStrategy:
 class OptunaSearch:
     """One of Optuna's samplers; it recommends the best single episode.
 
+    The warm-up's actions are drawn here: the samplers would draw them from the stream that they use again afterwards.
+
     :param dimensions: number of an action's elements
-    :param sampler: sampler that chooses the actions
+    :param sampler: sampler that chooses the actions after the warm-up
+    :param warm_up: actions of the warm-up
     """
 
-    def __init__(self, dimensions: int, sampler: Any) -> None:
+    def __init__(self, dimensions: int, sampler: Any, warm_up: np.ndarray) -> None:
         import optuna
 
         optuna.logging.set_verbosity(optuna.logging.ERROR)
@@ -120,6 +146,8 @@ class OptunaSearch:
         self._box: dict[str, Any] = {
             str(index): optuna.distributions.FloatDistribution(-1.0, 1.0) for index in range(dimensions)
         }
+        for action in warm_up:
+            self._study.enqueue_trial(dict(zip(self._box, map(float, action), strict=True)))
         self._asked: deque[Any] = deque()
 
     def ready(self) -> bool:
@@ -141,18 +169,23 @@ class OptunaSearch:
         return np.array([self._study.best_params[name] for name in self._box])
 
 
-def make_optimiser(algo: str, settings: AgentSettings, dimensions: int, seed: int) -> Optimiser:
+def make_optimiser(algo: str, settings: AgentSettings, dimensions: int, seed: int, start: Start = Start()) -> Optimiser:
     """Make an optimiser by name.
 
     :param algo: ``"cma-es"``, ``"gp"`` (Gaussian process), ``"tpe"`` (tree-structured Parzen estimator), ``"random"``
     :param settings: Settings of that optimiser
     :param dimensions: number of an action's elements
     :param seed: seed of everything that it draws
+    :param start: how it begins
     """
     if algo == "random":
-        return RandomSearch(dimensions, seed)
+        return RandomSearch(dimensions, seed, start.at_centre)
     if isinstance(settings, EvolutionSettings):
-        return EvolutionStrategy(settings, dimensions, seed)
+        return EvolutionStrategy(settings, dimensions, seed, start.at_centre)
     from optuna.samplers import GPSampler, TPESampler
 
-    return OptunaSearch(dimensions, GPSampler(seed=seed) if algo == "gp" else TPESampler(seed=seed))
+    # The actions that are in flight when the warm-up ends have no return yet, and are not waited for.
+    first = RandomSearch(dimensions, seed, start.at_centre)
+    known = start.warm_up - start.slots + 1
+    sampler = (GPSampler if algo == "gp" else TPESampler)(seed=seed, n_startup_trials=known)
+    return OptunaSearch(dimensions, sampler, np.array([first.ask() for _ in range(start.warm_up)]))

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import random
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import ceil
 
+import numpy as np
 import torch
 from tqdm import tqdm
 
+from sarah.envs.sarah_env import draw_seed
 from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.result import EpisodeResult
-from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
+from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import TASKS
 from sarah.episode.workers import Executor, Workers
 from sarah.runs.config import TrainingConfig
@@ -20,6 +22,7 @@ from sarah.runs.run_folder import RunFolder
 from sarah.training.learners import learn
 from sarah.training.recommendation import Parameters, candidates, rank
 from sarah.training.recorder import EpisodeRecorder
+from sarah.training.seeds import seeds_of
 
 SUMMARY_EPISODES = 10
 """Number of episodes on unseen seeds in the final evaluation."""
@@ -75,11 +78,11 @@ def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_ba
         choice = learn(config, config.episodes - config.compared_episodes, run, recorder, journal)
         recorder.choose = None
         best = candidates(task, choice, recorder.tried, config.candidate_count)
-        baseline = None
-        if task.neutral is not None:
-            baseline = evaluate(config.task, task.neutral, config.episode, seeds, journal)
-        parameters = _compare(best, config, recorder, journal, baseline)
+        parameters = _compare(best, config, recorder, journal)
     evaluation = evaluate(config.task, parameters, config.episode, seeds, journal)
+    baseline = None
+    if task.neutral is not None:
+        baseline = evaluate(config.task, task.neutral, config.episode, seeds, journal)
     recorder.close(evaluation)
     run.write_parameters(
         {
@@ -99,21 +102,22 @@ def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_ba
 
 
 def _compare(
-    best: list[Parameters],
-    config: TrainingConfig,
-    recorder: EpisodeRecorder,
-    workers: Executor,
-    baseline: Evaluation | None,
+    best: list[Parameters], config: TrainingConfig, recorder: EpisodeRecorder, workers: Executor
 ) -> Parameters:
-    """Simulate the candidates in turn, all on the same seed in each round, and return the best candidate."""
-    generator = random.Random(config.seed)
-    specs: list[EpisodeSpec] = []
-    while len(specs) < config.compared_episodes:
-        seed = generator.randrange(FIRST_TRAINING_SEED, 2**32)
-        specs += [EpisodeSpec(candidate, seed, config.task, config.episode) for candidate in best]
+    """Simulate the candidates in turn, all on the same seed in each round, and return the best candidate.
+
+    Whether one chatters is judged against the neutral parameters on the same seeds; the summary's stay unseen.
+    """
+    if not config.compared_episodes:
+        return best[0]
+    generator = np.random.default_rng(seeds_of(config.seed).comparison)
+    seeds = [draw_seed(generator) for _ in range(ceil(config.compared_episodes / len(best)))]
+    specs = [EpisodeSpec(candidate, seed, config.task, config.episode) for seed in seeds for candidate in best]
     results: dict[Parameters, list[EpisodeResult]] = {candidate: [] for candidate in best}
     specs = specs[: config.compared_episodes]
     for spec, result in zip(specs, workers.simulate_all(specs), strict=True):
         recorder.record(spec, result)
         results[spec.parameters].append(result)
+    neutral = TASKS[config.task].neutral
+    baseline = None if neutral is None else evaluate(config.task, neutral, config.episode, seeds, workers)
     return max(best, key=lambda candidate: rank(results[candidate], baseline))

@@ -17,11 +17,10 @@ from sarah.robot.description import describe_robot
 def test_return_is_equation_2_integrated_over_the_trace(paper_episode: EpisodeResult) -> None:
     trace = paper_episode.trace
     assert trace is not None
-    start = trace.position[0]
-    moved = trace.position - [start[0], start[1], 0.0]
+    # A row has the position before its tick, and the reward is that of the one after it. The robot starts at (0, 0).
+    moved = [*trace.position[1:], paper_episode.final_position]
     rewards = [reward_rate(*position, f) for position, f in zip(moved, trace.steps_per_second, strict=True)]
-    # The trace holds the state before each tick and the reward the one after it, hence the tolerance.
-    assert sum(rewards) * CONTROL_DT == pytest.approx(paper_episode.episode_return, rel=0.01)
+    assert sum(rewards) * CONTROL_DT == pytest.approx(paper_episode.episode_return, rel=1e-12)
     ceiling = highest_return(describe_robot().standing_height, 29.0)
     assert paper_episode.score == pytest.approx(paper_episode.episode_return / ceiling)
 

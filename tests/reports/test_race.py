@@ -2,29 +2,27 @@
 
 import dataclasses
 import math
+import subprocess
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import TimeoutError as FutureTimeoutError
 from pathlib import Path
+from typing import Any
 
 import pytest
+from terminal import BIN
 
 from sarah.episode.episode import simulate
+from sarah.episode.evaluation import Evaluation
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import STEPPING
 from sarah.episode.workers import Workers
 from sarah.errors import RunFolderError
 from sarah.reports import race as race_module
-from sarah.reports.race import (
-    RaceCurve,
-    as_markdown,
-    entries_of,
-    episodes_until,
-    interquartile_mean,
-    is_run,
-    race,
-    rankings,
-    run_entry,
-)
-from sarah.runs.config import TrainingConfig
+from sarah.reports.race import RaceCurve, entries_of, is_run, race, read_curve, run_entry
+from sarah.reports.rankings import as_markdown, episodes_until, interquartile_mean, rankings
+from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 
@@ -57,16 +55,20 @@ def test_rankings_are_shares_of_the_best_final_score() -> None:
     assert second.runs == 2 and second.reached == {0.9: 1, 0.95: 0}
     assert math.isinf(second.episodes[0.95])
     assert "| naf | 1 | 10 | 1 | 10 | 1 | 0.800 (0.800 to 0.800) | 1 s |" in as_markdown([first, second])
+    assert "\n- naf: chosen on the tasks stepping and balance" in as_markdown([first, second])
     assert rankings([good], best_known=2.0)[0].reached == {0.9: 0, 0.95: 0}
+
+
+def test_the_origin_of_every_algorithms_settings_is_said() -> None:
+    table = as_markdown(rankings([curve(algo, 0.1, 0.2) for algo in ALGORITHMS]))
+    assert "- td3, sac, ddpg: set once by hand" in table and "- gp, tpe: the defaults of Optuna" in table
 
 
 def test_a_race_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     entries = entries_of(("naf", "random"), range(1), TINY, 2, tmp_path)
-    begun = RunFolder.create(tmp_path / "random-s0.unfinished", entries[1].config)  # and killed
-    begun.append_recommendation(5, dict.fromkeys(STEPPING.parameter_names, 9.0))
     curves = race(entries, Workers())
-    assert not begun.path.exists()
     assert [one.algo for one in curves] == ["naf", "random"] and all(map(is_run, entries))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["naf-s0", "random-s0"]
     run = RunFolder.open(entries[0].folder)
     assert curves[0].episodes == (5, 10, 10)
     specs = [EpisodeSpec(run.parameters(), seed, config=TINY.episode) for seed in range(2)]
@@ -76,7 +78,7 @@ def test_a_race_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(race_module, "run_entry", lambda entry: pytest.fail("it is there already"))
     assert race(entries, Workers()) == curves
     monkeypatch.undo()
-    monkeypatch.setattr(race_module, "train", lambda config, run: pytest.fail("it is trained already"))
+    monkeypatch.setattr(race_module, "train", lambda *_, **__: pytest.fail("it is trained already"))
     (more,) = race([dataclasses.replace(entries[0], evaluations=3)], Workers())
     assert more.seconds == curves[0].seconds and more.episodes == (5, 10, 10)
     assert 3 * more.scores[-1] == pytest.approx(2 * curves[0].scores[-1] + simulate(third).score)
@@ -97,10 +99,100 @@ def test_a_race_removes_nobody_elses_run(tmp_path: Path) -> None:
 
 def test_a_race_leaves_a_training_alone_that_another_is_at(tmp_path: Path) -> None:
     (entry,) = entries_of(("random",), range(1), TINY, 1, tmp_path)
-    begun = RunFolder.create(tmp_path / "random-s0.unfinished", entry.config)
+    begun = RunFolder.create(tmp_path / "random-s0", entry.config)
     with (
         Journal(begun.journal_path, entry.config, Workers()),
         pytest.raises(RunFolderError, match="in use by another training"),
     ):
         run_entry(entry)
     assert begun.config() == entry.config
+
+
+def test_an_evaluation_that_was_interrupted_is_all_that_is_repeated(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (entry,) = entries_of(("random",), range(1), TINY, 2, tmp_path)
+    (whole,) = race([entry], Workers())
+    (entry.folder / "race.csv").unlink()
+    monkeypatch.setattr(race_module, "train", lambda *_, **__: pytest.fail("it is trained already"))
+    assert race([entry], Workers()) == [whole]
+
+
+def test_a_race_waits_for_another_that_is_at_the_same_training(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (entry,) = entries_of(("random",), range(1), TINY, 1, tmp_path)
+    begun, may_end = threading.Event(), threading.Event()
+    evaluate = race_module.evaluate
+
+    def slow(*arguments: Any) -> Evaluation:
+        begun.set()
+        assert may_end.wait(60)
+        return evaluate(*arguments)
+
+    monkeypatch.setattr(race_module, "evaluate", slow)
+    with ThreadPoolExecutor(2) as pool:
+        first = pool.submit(run_entry, entry)
+        assert begun.wait(60)
+        monkeypatch.setattr(race_module, "train", lambda *_, **__: pytest.fail("it is trained already"))
+        second = pool.submit(run_entry, entry)
+        with pytest.raises(FutureTimeoutError):
+            second.result(0.3)
+        may_end.set()
+        assert second.result(60) == first.result(60)
+
+
+RACE = ("--algorithms", "random", "--seeds", "1", "--episodes", "30", "--evaluations", "2", "--episode.time-limit", "2")
+
+
+def begin(folder: Path) -> subprocess.Popen[str]:
+    command = [BIN / "sarah-compare", "race", *RACE]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=folder)
+
+
+def wait_for_rows(process: subprocess.Popen[str], journal: Path, count: int) -> None:
+    while not journal.exists() or journal.read_bytes().count(b"\n") < count:
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.01)
+
+
+def test_a_killed_race_resumes_and_two_races_at_once_share_the_work(tmp_path: Path) -> None:
+    run = tmp_path / "race" / "random-s0"
+    journal = run / "journal.jsonl"
+    first = begin(tmp_path)
+    wait_for_rows(first, journal, 10)
+    first.kill()
+    first.communicate()
+    kept, earlier = journal.read_bytes(), float((run / "race_seconds.txt").read_text())
+    assert earlier > 0.0 and not (run / "race.csv").exists()
+
+    first, second = begin(tmp_path), begin(tmp_path)
+    (told, errors), (also_told, other_errors) = first.communicate(timeout=100), second.communicate(timeout=100)
+    assert first.returncode == second.returncode == 0, errors + other_errors
+    assert told == also_told and "| random | 1 |" in told
+
+    config = TrainingConfig(algo="random", episodes=30, slots=1, episode=EpisodeConfig(time_limit=2.0))
+    (entry,) = entries_of(("random",), range(1), config, 2, tmp_path / "undisturbed")
+    (undisturbed,) = race([entry], Workers())
+    for name in ("episodes.csv", "recommendations.csv", "parameters.json", "journal.jsonl"):
+        assert (run / name).read_bytes() == (entry.folder / name).read_bytes(), name  # no row is there twice
+    assert journal.read_bytes().startswith(kept[: kept.rindex(b"\n") + 1])
+    found = read_curve(dataclasses.replace(entry, folder=run))
+    assert found.scores == undisturbed.scores and found.seconds > earlier
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("race.csv", "episodes,score,seconds,evaluations\n" + 50 * "5,0.5,1,1\n"),
+        ("race.csv", "episodes,score,seconds,evaluations\n5,x,1,1\n"),
+        ("race.csv", "x" * 100_000),
+        ("race.csv", ""),
+        ("recommendations.csv", "episodes\nx\n"),
+    ],
+)
+def test_damaged_tables_are_named(name: str, content: str, tmp_path: Path) -> None:
+    (entry,) = entries_of(("random",), range(1), TINY, 1, tmp_path)
+    race([entry], Workers())
+    (entry.folder / name).write_text(content)
+    with pytest.raises(RunFolderError, match=r"random-s0.* cannot be read") as raised:
+        race([entry if name == "race.csv" else dataclasses.replace(entry, evaluations=2)], Workers())
+    assert len(str(raised.value).splitlines()) == 1

@@ -1,5 +1,6 @@
 """Agents are built from their settings: by default as the presets say, and every setting reaches them."""
 
+import copy
 import dataclasses
 from collections.abc import Callable
 from typing import Any
@@ -13,7 +14,8 @@ from torch import nn
 
 from sarah.agents import NAF, PRESETS, LocalNAF, RankReplayBuffer
 from sarah.envs.episode_vec_env import EpisodeVecEnv
-from sarah.episode.workers import Workers
+from sarah.envs.sarah_env import draw_seed
+from sarah.episode.workers import Job, Workers
 from sarah.errors import ConfigurationError
 from sarah.runs.agent_settings import AgentSettings, LearnerSettings, NAFSettings, settings_of
 from sarah.runs.config import AGENTS, TrainingConfig
@@ -148,8 +150,32 @@ def test_the_warm_up_knows_as_many_outcomes_as_are_in_flight() -> None:
     assert built("sac", slots=20).learning_starts == 40
 
 
-def test_the_first_action_is_neutral_where_the_task_has_one() -> None:
-    assert [built(task=task).first_action_centre for task in ("stepping", "balance")] == [False, True]
+@pytest.mark.parametrize("algo", AGENTS)
+def test_the_first_action_is_neutral_where_the_task_has_one(algo: str) -> None:
+    assert [built(algo, task=task).first_action_centre for task in ("stepping", "balance")] == [False, True]
+
+
+@pytest.mark.parametrize("algo", AGENTS)
+def test_no_random_stream_is_used_twice(algo: str) -> None:
+    class Asked(Workers):
+        def __init__(self) -> None:
+            super().__init__()
+            self.seeds: list[int] = []
+
+        def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
+            self.seeds += [subject.seed for subject in subjects]
+            return super().submit(function, *subjects)
+
+    config = TrainingConfig(algo=algo, slots=3)
+    asked = Asked()
+    env = EpisodeVecEnv("stepping", config.episode, 3, 3, asked)
+    model = make_agent(config, env)
+    # torch and numpy have the same generator, of which torch's draws the weights and numpy's the exploration.
+    weights = np.random.RandomState(torch.initial_seed()).get_state()[1]
+    assert not np.array_equal(np.random.get_state()[1], weights)  # type: ignore[call-overload]
+    warm_up = copy.deepcopy(model.action_space.np_random)
+    env.reset()
+    assert len(asked.seeds) == 3 and asked.seeds != [draw_seed(warm_up) for _ in range(3)]
 
 
 @pytest.mark.parametrize("device", ["cuda", "cuda:1"])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sarah.runs.agent_settings import EvolutionSettings, settings_of
-from sarah.training.optimisers import make_optimiser
+from sarah.training.optimisers import Start, make_optimiser
 
 OPTIMISERS = ("cma-es", "gp", "tpe", "random")
 BEST = np.array([0.3, -0.4])
@@ -62,3 +62,31 @@ def test_the_first_generation_of_cma_es_has_the_deviation_that_is_set() -> None:
         optimiser = make_optimiser("cma-es", EvolutionSettings(deviation=deviation, population=500), 4, 0)
         actions = np.array([optimiser.ask() for _ in range(500)])
         assert actions.std() == pytest.approx(deviation, rel=0.05)
+
+
+@pytest.mark.parametrize("algo", OPTIMISERS)
+def test_the_first_action_is_the_centre_if_it_is_to_be(algo: str) -> None:
+    optimiser = make_optimiser(algo, settings_of(algo)(), 4, 5, Start(at_centre=True))
+    first, second = optimiser.ask(), optimiser.ask()
+    assert not first.any() and second.any()
+    assert make_optimiser(algo, settings_of(algo)(), 4, 5).ask().any()
+
+
+@pytest.mark.parametrize("slots", [1, 4])
+@pytest.mark.parametrize("algo", ["gp", "tpe"])
+def test_a_model_chooses_from_the_end_of_the_warm_up_on(algo: str, slots: int) -> None:
+    """Its choices follow from the returns, and the actions of the warm-up do not."""
+    warm_up = 8
+
+    def asked(sign: float) -> list[list[float]]:
+        optimiser = make_optimiser(algo, settings_of(algo)(), 2, 3, Start(warm_up=warm_up, slots=slots))
+        actions: list[np.ndarray] = []
+        for index in range(warm_up + 1):
+            if index >= slots:
+                action = actions[index - slots]
+                optimiser.tell(action, sign * episode(action))
+            actions.append(optimiser.ask())
+        return [action.tolist() for action in actions]
+
+    good, bad = asked(1.0), asked(-1.0)
+    assert good[:warm_up] == bad[:warm_up] and good[warm_up] != bad[warm_up]

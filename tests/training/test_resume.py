@@ -26,6 +26,7 @@ from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
 from sarah.training import learners as learning
 from sarah.training import train as training
+from sarah.training.seeds import seeds_of
 from sarah.training.train import train
 
 # As coarse as it gets: what is tested does not depend on it.
@@ -163,7 +164,7 @@ def test_a_training_that_does_not_repeat_is_not_resumed(whole: RunFolder, tmp_pa
         train(whole.config(), begun, interrupted=interrupted_after(20))
     before = {path.name: path.read_bytes() for path in begun.path.iterdir()}
     with pytest.MonkeyPatch.context() as another_processor:
-        another_processor.setattr(learning, "spread_seed", lambda config: 1)
+        another_processor.setattr(learning, "seeds_of", lambda seed: seeds_of(seed + 1))
         with pytest.raises(ResumeError, match="cannot be resumed here: it does not repeat"):
             train(whole.config(), begun)
     assert {path.name: path.read_bytes() for path in begun.path.iterdir()} == before

@@ -12,7 +12,7 @@ from sarah.control.parameters import Parameter
 from sarah.control.pattern_generator import SteppingParameters
 from sarah.episode.push import DrawnPush
 from sarah.episode.settings import EpisodeConfig
-from sarah.errors import ConfigurationError
+from sarah.errors import ConfigurationError, shortened
 
 ConfigType = TypeVar("ConfigType", bound=EpisodeConfig)
 ControllerParameters = tuple[SteppingParameters, BalanceParameters | None]
@@ -80,7 +80,7 @@ class Task(Generic[ConfigType]):
             low, high = parameter.low, parameter.high
             if not isinstance(value, Real) or isinstance(value, bool) or not low <= value <= high:
                 raise ConfigurationError(
-                    f"parameter {parameter.name} must be between {low:g} and {high:g}, not {value!r}"
+                    f"parameter {parameter.name} must be between {low:g} and {high:g}, not {shortened(value)}"
                 )
         return tuple(map(float, values))
 

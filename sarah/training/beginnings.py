@@ -1,0 +1,50 @@
+"""stable-baselines3's algorithms, which begin as NAF does, so that a comparison is one of what they learn.
+
+Their warm-up is uniform: stable-baselines3 adds the action noise to it, so that many actions lie on a bound. On tasks
+with neutral parameters the first action is the centre of the action space. A saved model is that of the plain
+algorithm, and loads as such.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from stable_baselines3 import DDPG, SAC, TD3
+from stable_baselines3.common.noise import ActionNoise
+from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
+
+
+class _Beginning(OffPolicyAlgorithm):
+    """Begins as NAF does.
+
+    :param arguments: arguments of the algorithm
+    :param first_action_centre: whether the first action is the centre of the action space
+    :param keywords: arguments of the algorithm, by name
+    """
+
+    def __init__(self, *arguments: Any, first_action_centre: bool = False, **keywords: Any) -> None:
+        super().__init__(*arguments, **keywords)
+        self.first_action_centre = first_action_centre
+
+    def _sample_action(
+        self, learning_starts: int, action_noise: ActionNoise | None = None, n_envs: int = 1
+    ) -> tuple[np.ndarray, np.ndarray]:
+        noise = None if self.num_timesteps < learning_starts else action_noise
+        action, scaled_action = super()._sample_action(learning_starts, noise, n_envs)
+        if self.first_action_centre and self.num_timesteps == 0:
+            scaled_action[0] = 0.0
+            action = self.policy.unscale_action(scaled_action)
+        return action, scaled_action
+
+
+class BeginningTD3(_Beginning, TD3):
+    """TD3 that begins as NAF does."""
+
+
+class BeginningDDPG(_Beginning, DDPG):
+    """DDPG that begins as NAF does."""
+
+
+class BeginningSAC(_Beginning, SAC):
+    """SAC that begins as NAF does."""

@@ -1,0 +1,192 @@
+"""A run folder that somebody made to harm: each command that reads it ends with one line, within seconds."""
+
+import os
+import shutil
+import signal
+from collections.abc import Callable, Iterator
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.workers import Workers
+from sarah.errors import RunFolderError
+from sarah.files import read_lines, read_text, replace_text
+from sarah.reports.race import entries_of, race
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.simulation.physics import Physics
+from sarah.training import train as training
+
+EPISODE = EpisodeConfig(time_limit=1.1, physics=Physics(50, 5, control_rate=50))
+SETTINGS = "--episode.time-limit 1.1 --episode.physics.rate 50 --episode.physics.solver-iterations 5"
+EVAL = "sarah-eval race/random-s0 --episodes 1"
+FIGURES = "sarah-figures race/random-s0 --out figures"
+VIDEO = "sarah-video race/random-s0 out.gif --seconds 1 1.05"
+VIEW = "sarah-view race/random-s0 --export out.html"
+REPORT = "sarah-report race/random-s0 --episodes 1 --out report.html"
+TRANSFER = "sarah-transfer race/random-s0 --episodes 1 --out transfer"
+RESUME = "sarah-train --resume race/random-s0"
+FROM = "sarah-train --task balance --run-dir second --from race/random-s0"
+COMPARE = (
+    f"sarah-compare race --algorithms random --seeds 1 --episodes 5 --evaluations 2 {SETTINGS} "
+    "--episode.physics.control-rate 50"
+)
+READERS = {
+    "config.yaml": (EVAL, FIGURES, VIDEO, VIEW, REPORT, TRANSFER, RESUME, FROM, COMPARE),
+    "parameters.json": (EVAL, FIGURES, VIDEO, VIEW, REPORT, TRANSFER, FROM, COMPARE),
+    "episodes.csv": (FIGURES, VIDEO, VIEW, REPORT),
+    "versions.txt": (REPORT, RESUME),
+    "race.csv": (COMPARE,),
+    "recommendations.csv": (COMPARE,),
+}
+"""Commands that read a file of a run folder."""
+
+
+def laughs(path: Path) -> None:
+    """A small file that is a large value: each level is twice the one before."""
+    levels = ["a0: &a0 {x: 1, y: 1}"]
+    levels += [f"a{level}: &a{level} {{x: *a{level - 1}, y: *a{level - 1}}}" for level in range(1, 40)]
+    path.write_text("\n".join(levels))
+
+
+def nested(path: Path) -> None:
+    path.write_text("[" * 60_000)
+
+
+def digits(path: Path) -> None:
+    path.write_text("task: stepping\nepisodes: " + "9" * 60_000 if path.suffix == ".yaml" else "9" * 60_000)
+
+
+def gigabytes(path: Path) -> None:
+    with path.open("wb") as file:
+        file.truncate(20 * 2**30)
+
+
+def long_line(path: Path) -> None:
+    path.write_text("x," * 1_000_000)
+
+
+def blank_lines(path: Path) -> None:
+    path.write_text("index,seed\n" + "\n" * 10_000)
+
+
+def fifo(path: Path) -> None:
+    path.unlink()
+    os.mkfifo(path)
+
+
+def device(path: Path) -> None:
+    path.unlink()
+    path.symlink_to("/dev/zero")
+
+
+HARMS: dict[str, tuple[Callable[[Path], None], ...]] = {
+    "config.yaml": (laughs, nested, digits, gigabytes, long_line, fifo, device),
+    "parameters.json": (nested, digits, gigabytes, long_line, fifo, device),
+    "versions.txt": (gigabytes, fifo, device),
+    "race.csv": (gigabytes, long_line, blank_lines, fifo, device),
+    "recommendations.csv": (gigabytes, long_line, blank_lines, fifo, device),
+    "episodes.csv": (gigabytes, long_line, blank_lines, fifo, device),
+}
+
+
+SECONDS = 20
+"""Time that a command may take on a machine that has other things to do, too."""
+
+
+class TooSlow(BaseException):
+    """Not an error that a command could take for one of its own."""
+
+
+@pytest.fixture
+def within_seconds() -> Iterator[None]:
+    def stop(*_: object) -> None:
+        raise TooSlow
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.alarm(SECONDS)
+    yield
+    signal.alarm(0)
+    signal.signal(signal.SIGALRM, before)
+
+
+@pytest.fixture(scope="module")
+def honest(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("honest") / "race"
+    base = TrainingConfig(episodes=5, slots=1, episode=EPISODE)
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        monkeypatch.setattr(training, "SUMMARY_EPISODES", 1)
+        race(entries_of(("random",), range(1), base, 1, folder), Workers())
+    return folder
+
+
+@pytest.mark.usefixtures("within_seconds")
+@pytest.mark.parametrize(("name", "harm"), [(name, harm) for name, harms in HARMS.items() for harm in harms])
+def test_hostile_files_are_refused_within_seconds(
+    name: str,
+    harm: Callable[[Path], None],
+    honest: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    shutil.copytree(honest, tmp_path / "race")
+    harm(tmp_path / "race" / "random-s0" / name)
+    monkeypatch.chdir(tmp_path)
+    is_finished = (tmp_path / "race" / "random-s0" / "parameters.json").is_file()
+    for line in READERS[name]:
+        if line in (VIDEO, VIEW, COMPARE) and not is_finished:
+            continue  # they take a training that is not finished as it is
+        monkeypatch.setattr("sys.argv", line.split())
+        signal.alarm(SECONDS)
+        try:
+            with pytest.raises(SystemExit) as ended:
+                import_module(f"sarah.cli.{line.split()[0].removeprefix('sarah-')}").main()
+        except TooSlow:
+            pytest.fail(f"{line} did not end", pytrace=False)
+        message = capsys.readouterr().err.splitlines()[-1]
+        assert ended.value.code == 2 and message.startswith(f"{line.split()[0]}: error: "), line
+        assert ("random-s0" in message) and len(message) < 1000, message
+
+
+def test_links_are_followed(honest: Path, tmp_path: Path) -> None:
+    (tmp_path / "run").symlink_to(honest / "random-s0")
+    (tmp_path / "parameters.json").symlink_to(honest / "random-s0" / "parameters.json")
+    assert len(RunFolder.open(tmp_path / "run").parameters()) == 5
+    assert '"parameters"' in read_text(tmp_path / "parameters.json")
+
+
+def test_sizes_are_those_that_are_said(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_text("ab\ncd\n")
+    assert read_text(path, most_bytes=6) == "ab\ncd\n" and list(read_lines(path, 2, 3)) == ["ab\n", "cd\n"]
+    with pytest.raises(OSError, match="it has 6 bytes, and at most 5 are read"):
+        read_text(path, most_bytes=5)
+    with pytest.raises(OSError, match="it has more than 2 bytes in line 1"):
+        list(read_lines(path, 3, 2))
+    path.write_text("a\nb\nc\n")
+    with pytest.raises(OSError, match="it has more than 2 lines"):
+        list(read_lines(path, 2, 9))
+    with pytest.raises(OSError, match="it is not a regular file"):
+        read_text(tmp_path)
+
+
+def test_a_run_has_no_more_rows_than_episodes(honest: Path, tmp_path: Path) -> None:
+    shutil.copytree(honest / "random-s0", tmp_path / "run")
+    path = tmp_path / "run" / "episodes.csv"
+    path.write_text(path.read_text() + path.read_text().splitlines()[-1] + "\n")
+    with pytest.raises(RunFolderError, match=r"episodes.csv cannot be read: it has more than 6 lines"):
+        list(RunFolder(tmp_path / "run").episodes())
+
+
+@pytest.mark.usefixtures("within_seconds")
+def test_what_is_replaced_goes_through_no_link_and_waits_for_nobody(tmp_path: Path) -> None:
+    precious = tmp_path / "precious"
+    precious.write_text("data")
+    (tmp_path / "file.new").symlink_to(precious)
+    replace_text(tmp_path / "file", "one")
+    os.mkfifo(tmp_path / "file.new")
+    replace_text(tmp_path / "file", "two")
+    assert (tmp_path / "file").read_text() == "two" and precious.read_text() == "data"
