@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from experiments.record import ROOT, Row
-from tests.endurance.mutants_tested import EQUIVALENT, EXCLUDED, SUBJECTS, Subject
+from tests.endurance.mutants_tested import EXCLUDED, EXPLAINED, SUBJECTS, Subject
 
 LEAST_KILLED_PERCENT = 90.0
 """Percentage of each file's mutants that its tests have to kill."""
@@ -77,32 +77,40 @@ def judged(subject: Subject, tree: Path, count: int) -> dict[str, Any]:
     :param tree: copy of the project
     :param count: largest number of mutants
     """
-    from cosmic_ray.mutating import use_mutation
-    from cosmic_ray.plugins import get_operator
-
     start = time.perf_counter()
     if not passes(subject, tree, None):  # leaves compiled modules for the mutants' tests
         raise SystemExit(f"the tests of {subject.file} fail without a change")
     patience = 10.0 * (time.perf_counter() - start)
-    explained = EQUIVALENT.get(subject.file, {})
-    killed = equivalent = survived = 0
-    for mutation in mutations_of(subject, tree)[:count]:
-        operator = get_operator(mutation.operator_name)()
-        with use_mutation(mutation.module_path, operator, mutation.occurrence) as (before, after):
-            is_killed = not passes(subject, tree, patience)
-        if is_killed:
-            killed += 1
-            continue
-        line = mutation.start_pos[0]
-        mutated = after.splitlines()[line - 1].strip()
-        reason = explained.get(mutated)
-        equivalent, survived = equivalent + (reason is not None), survived + (reason is None)
-        print(
-            f"{subject.file}:{line} {before.splitlines()[line - 1].strip()}\n    {mutated}\n    {reason or 'SURVIVED'}"
-        )
-    mutants = killed + equivalent + survived
-    numbers = {"mutants": mutants, "killed": killed, "equivalent": equivalent, "survived": survived}
-    return {"file": subject.file, **numbers, "killed_percent": round(100.0 * killed / mutants, 1)}
+    mutations = mutations_of(subject, tree)[:count]
+    survivors = [mutant for mutation in mutations if (mutant := survivor(subject, tree, mutation, patience))]
+    reasons = EXPLAINED.get(subject.file, {})
+    for line, code in survivors:
+        print(f"{subject.file}:{line}: {code}\n    {reasons.get(code, 'SURVIVED, and nobody says why')}")
+    explained = sum(code in reasons for _, code in survivors)
+    return {
+        "file": subject.file,
+        "mutants": len(mutations),
+        "killed": len(mutations) - len(survivors),
+        "explained": explained,
+        "survived": len(survivors) - explained,
+        "killed_percent": round(100.0 * (1.0 - len(survivors) / len(mutations)), 1),
+    }
+
+
+def survivor(subject: Subject, tree: Path, mutation: Any, patience: float) -> tuple[int, str] | None:
+    """Number and code of the line that a mutation has changed, if the tests pass nevertheless.
+
+    :param subject: the file and its tests
+    :param tree: copy of the project
+    :param mutation: what Cosmic Ray changes
+    :param patience: longest time for the tests, in s
+    """
+    from cosmic_ray.mutating import use_mutation
+    from cosmic_ray.plugins import get_operator
+
+    operator, line = get_operator(mutation.operator_name)(), mutation.start_pos[0]
+    with use_mutation(mutation.module_path, operator, mutation.occurrence) as (_, mutated):
+        return (line, mutated.splitlines()[line - 1].strip()) if passes(subject, tree, patience) else None
 
 
 def mutations_of(subject: Subject, tree: Path) -> list[Any]:

@@ -53,5 +53,5 @@ EXCLUDED = (
 )
 """Cosmic Ray's operators whose mutants say nothing: they would be killed by almost any test, or by none."""
 
-EQUIVALENT: dict[str, dict[str, str]] = {}
+EXPLAINED: dict[str, dict[str, str]] = {}
 """Mutants that no test can kill: for each file, the changed line and the reason."""

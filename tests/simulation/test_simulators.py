@@ -167,7 +167,7 @@ def test_gyroscope_reads_the_rate_in_the_torsos_frame(lab: Laboratory, build: Bu
 def test_accelerometer_reads_a_push_on_every_axis(
     lab: Laboratory, build: BuildSimulation, force: tuple[float, float, float]
 ) -> None:
-    """In the air, where the torso falls: what it gains beyond gravity's share in a tick of 10 ms, turned by a degree."""
+    """In the air, tilted by a degree: the velocity that the torso gains in a tick of 10 ms, and gravity."""
     simulation = build()
     lab.place(simulation, pitch=math.radians(1.0))
     velocity = simulation.torso_state().velocity
