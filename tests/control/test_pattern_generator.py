@@ -154,7 +154,7 @@ def test_phases_last_their_time_to_the_nearest_tick() -> None:
         constants = ControllerConstants(minimum_phase_seconds=ticks * tick, time_out_seconds=ticks * tick)
         for steady in (reading(), reading(lateral=-3.0, rate=0.3)):  # ended by the time-out, or by the sensors
             generator = PatternGenerator(SteppingParameters(0.0, 0.0, 0.0, 0.0, 0.0), dt=tick, constants=constants)
-            generator.tick(OVER_RIGHT)
+            generator.tick(steady)
             assert tick_until_change(generator, steady)[1] == expected
 
 
@@ -253,6 +253,9 @@ def test_phases_last_at_least_their_minimum() -> None:
     generator = lifted((0.0, 0.0, 0.0, 0.0, 0.0))
     _, ticks = tick_until_change(generator, ROCKING_BACK)
     assert ticks == 4  # 0.04 s
+    faster = PatternGenerator(SteppingParameters(0.0, 0.0, 0.0, 0.0, 0.0), dt=0.001)
+    faster.tick(OVER_RIGHT)
+    assert tick_until_change(faster, OVER_RIGHT)[1] == 40
 
 
 def test_legs_push_lift_and_straighten_at_the_leg_speed() -> None:
