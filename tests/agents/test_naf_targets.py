@@ -102,6 +102,15 @@ def test_target_network_follows_by_tau():
         th.testing.assert_close(new, 0.75 * old + 0.25 * online)
 
 
+def test_an_update_samples_100_transitions_unless_told_otherwise():
+    model, sizes = make_model(Corridor()).learn(30), []
+    sample = model.replay_buffer.sample
+    model.replay_buffer.sample = lambda size, **kwargs: sizes.append(size) or sample(size, **kwargs)
+    model.train(1)
+    model.train(2, 16)
+    assert sizes == [100, 16, 16]
+
+
 def test_gradient_is_clipped():
     model = make_model(Corridor(), max_grad_norm=1e-3).learn(30)
     model.train(1, 16)

@@ -23,8 +23,8 @@ EPISODE = "tests/episode/test_gait_and_reward.py"
 ENDING = "tests/episode/test_ending.py -k criteria"
 SENSORS = "tests/simulation/test_sensors.py"
 CRITIC = "tests/agents/test_naf_equations.py"
-TARGETS = "tests/agents/test_naf_targets.py"
-BUFFERS = "tests/agents/test_rank_buffer.py"
+TARGETS = "tests/agents/test_naf_targets.py tests/agents/test_naf_train_eval_mode.py"
+BUFFERS = "tests/agents/test_best_action.py tests/agents/test_rank_buffer.py"
 
 SUBJECTS = (
     Subject("sarah/control/pattern_generator.py", CONTROL),
@@ -53,10 +53,14 @@ EXCLUDED = (
 )
 """Cosmic Ray's operators whose mutants say nothing: they would be killed by almost any test, or by none."""
 
+AS_FLOATS = ".clip(-1, 1).astype(np.float32)"
 FIRST_TICK = "the first tick ends STAND, whatever this is, and sets it"
 NO_CURVATURE = "a curvature of 0 adds nothing, and none is negative"
-NO_OUTPUT = "stable-baselines3 makes an output layer of more than 0 units only"
+NO_FUTURE = "what comes next, times a discount of 0, is 0; the condition saves its computation"
 NO_LOAD = "a negative load is as little above a threshold as none"
+NO_OUTPUT = "stable-baselines3 makes an output layer of more than 0 units only"
+ONE_ROW = "the buffer has one row a transition, whichever environment it comes from"
+
 EXPLAINED: dict[str, dict[str, str]] = {
     "sarah/control/pattern_generator.py": {
         "self._ticks_in_phase = 1": FIRST_TICK,
@@ -83,6 +87,21 @@ EXPLAINED: dict[str, dict[str, str]] = {
         'self.shared_net = nn.Sequential(*create_mlp(features_dim, - 0, net_arch["shared"], activation_fn))': NO_OUTPUT,
         "lower[:, self.rows, self.columns] = th.where(self.rows <= self.columns, diagonals, outputs)": "a lower "
         "triangle has no entries above the diagonal",
+    },
+    "agents/buffers.py": {
+        "n_envs: int = 2,": ONE_ROW,
+        "n_envs: int = 0,": ONE_ROW,
+        "LITTLE_DOUBT = 0.0011": "a tenth of a thousandth of a transition decides between no draws",
+        "weights = np.exp(self.temperature * average_ranks(self.rewards[: self.size(), -1]))": ONE_ROW,
+        "actions, rewards = self.actions[: self.size(), -1], self.rewards[: self.size(), 0]": ONE_ROW,
+        "actions, rewards = self.actions[: self.size(), 0], self.rewards[: self.size(), -1]": ONE_ROW,
+        f"drawn = np.where(np.abs(drawn) >= 1, 2 * np.sign(drawn) - drawn, drawn){AS_FLOATS}": "1 reflected is 1",
+        f"drawn = np.where(np.abs(drawn) > 1, 2 / np.sign(drawn) - drawn, drawn){AS_FLOATS}": "a sign is 1 or -1",
+    },
+    "agents/naf.py": {
+        "if self.gamma >= 0:  # Otherwise what comes next does not count": NO_FUTURE,
+        "if self.gamma != 0:  # Otherwise what comes next does not count": NO_FUTURE,
+        "if self.gamma > -1:  # Otherwise what comes next does not count": NO_FUTURE,
     },
 }
 """Why some mutants survive: for each file, the changed line and the reason."""
