@@ -86,6 +86,8 @@ def judged(subject: Subject, tree: Path, count: int) -> dict[str, Any]:
     reasons = EXPLAINED.get(subject.file, {})
     for line, code in survivors:
         print(f"{subject.file}:{line}: {code}\n    {reasons.get(code, 'SURVIVED, and nobody says why')}")
+    for code in reasons.keys() - {code for _, code in survivors}:
+        print(f"{subject.file}: explained, but killed or not tried: {code}")
     explained = sum(code in reasons for _, code in survivors)
     return {
         "file": subject.file,
