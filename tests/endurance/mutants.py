@@ -24,7 +24,7 @@ from tests.endurance.mutants_tested import EXCLUDED, EXPLAINED, SUBJECTS, Subjec
 
 LEAST_KILLED_PERCENT = 90.0
 """Percentage of each file's mutants that its tests have to kill."""
-COPIED = ("agents", "experiments", "sarah", "tests", "urdf", "setup.cfg")
+COPIED = ("agents", "sarah", "tests", "urdf", "setup.cfg")
 
 
 @dataclass(frozen=True)
