@@ -14,7 +14,7 @@ NAME = $(basename $(notdir $(wildcard results/*.csv)))
 TIMINGS := throughput engines_speed physics_speed updates viewer
 ENDURANCE := kills killed_workers resume long_process long_training protections
 
-.PHONY: help install train test test-slow lint format docs results bench endurance clean
+.PHONY: help install train test test-slow lint format docs results bench endurance mutants clean
 
 help:  ## show what can be made
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
@@ -70,6 +70,9 @@ bench: install  ## how fast it is: simulation, workers, learner, viewer; minutes
 endurance: install  ## kills, faults and long runs; half an hour
 	@for name in $(ENDURANCE); do $(BIN)/python -m experiments $$name --out build/endurance || exit 1; done
 	$(BIN)/python -m tests.endurance.stable_baselines3_tests
+
+mutants: install  ## do the tests see changes to core files? each must kill nine of ten; half an hour
+	$(BIN)/python -m experiments mutants --out build/mutants
 
 clean:  ## remove what was built, but no runs
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

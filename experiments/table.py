@@ -33,6 +33,7 @@ from experiments.transfer import TransferBetweenEngines
 from tests.endurance.killed_workers import KilledWorkers
 from tests.endurance.kills import Kills
 from tests.endurance.long_run import LongProcess, LongTraining
+from tests.endurance.mutants import Mutants
 from tests.endurance.protections import Protections
 from tests.endurance.resume import Resume
 
@@ -257,6 +258,12 @@ TABLE: dict[str, Maker] = {
         "Does a test fail when a protection is taken out?",
         Protections(),
         {"count": 1},
+        of_robot=False,
+    ),
+    "mutants": Maker(
+        "How many changes to core files do the tests of their package see?",
+        Mutants(),
+        {"files": "sarah/episode/reward.py", "count": 2},
         of_robot=False,
     ),
 }

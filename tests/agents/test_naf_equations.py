@@ -6,6 +6,7 @@ import torch as th
 from gymnasium import spaces
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from stable_baselines3.common.torch_layers import FlattenExtractor
 from stable_baselines3.common.utils import ConstantSchedule
 from torch import nn
 
@@ -148,6 +149,39 @@ def test_an_untrained_policy_proposes_the_centre():
     policy = MlpPolicy(spaces.Box(-1, 1, (OBS_DIM,)), space, ConstantSchedule(1e-3))
     actions, _ = policy.predict(draw(2)[0].numpy())
     np.testing.assert_array_equal(actions, np.tile([1.0, -1.0], (7, 1)))
+
+
+def test_an_untrained_mu_is_zero_because_its_output_layer_is():
+    """The layers before it are not: there the gradient would be zero for good."""
+    th.manual_seed(0)
+    spaces_ = spaces.Box(-1, 1, (OBS_DIM,)), spaces.Box(-1, 1, (2,))
+    net_arch = dict(V=[8], shared=[8], mu=[16, 16], L=[8])
+    mu_net = MlpPolicy(*spaces_, ConstantSchedule(1e-3), net_arch=net_arch).q_net.mu_net
+    *hidden, output = [layer for layer in mu_net if isinstance(layer, nn.Linear)]
+    assert not output.weight.any() and not output.bias.any()
+    assert len(hidden) == 2 and all(layer.weight.all() for layer in hidden)
+
+
+def test_a_critic_by_itself_is_the_publications_with_mu_in_the_action_space():
+    """Images in [0, 1], mu behind a tanh, and no curvature but that of L. Its weights are the networks' only."""
+    th.manual_seed(0)
+    image = spaces.Box(0, 255, (3, 4, 4), np.uint8)
+    extractor = FlattenExtractor(image)
+    net_arch = dict(V=[8], shared=[], mu=[8], L=[8])
+    critic = QuadraticCritic(image, spaces.Box(-1, 1, (2,)), extractor, extractor.features_dim, net_arch)
+    for parameter in critic.parameters():
+        nn.init.normal_(parameter, std=2.0)
+    pictures = th.randint(0, 256, (5, 3, 4, 4), dtype=th.uint8)
+    actions = th.full((5, 2), 0.5)
+    with th.no_grad():
+        features = pictures.flatten(1) / 255
+        th.testing.assert_close(critic.value(pictures), critic.value_net(features))
+        mu, lower = critic.mu(pictures), critic.lower(pictures)
+        th.testing.assert_close(mu, th.tanh(critic.mu_net[:-1](features)))
+        row = ((actions - mu).unsqueeze(1) @ lower).squeeze(1)
+        expected = critic.value(pictures) - 0.5 * row.square().sum(dim=1, keepdim=True)
+        th.testing.assert_close(critic(pictures, actions), expected)
+    assert {name.split(".")[0] for name in critic.state_dict()} == {"value_net", "mu_net", "lower_net"}
 
 
 @for_every_architecture

@@ -87,6 +87,16 @@ def test_targets(timeout, n_steps):
     assert logged == pytest.approx(np.mean((q_values - targets) ** 2), rel=1e-5)
 
 
+def test_without_a_future_the_reward_is_the_target_whatever_the_target_network_says():
+    model = make_model(Corridor(), gamma=0.0).learn(30)
+    for parameter in model.q_net_target.parameters():
+        nn.init.constant_(parameter, np.inf)
+    batch, logged = one_update(model)
+    with th.no_grad():
+        q_values = model.q_net(batch.observations, batch.actions)
+    assert logged == pytest.approx((q_values - batch.rewards).square().mean().item(), rel=1e-5)
+
+
 def test_target_network_starts_as_a_copy():
     model = make_model(Corridor())
     for target, online in zip(model.q_net_target.parameters(), model.q_net.parameters(), strict=True):
@@ -100,6 +110,15 @@ def test_target_network_follows_by_tau():
     model.train(1, 16)
     for old, new, online in zip(before, model.q_net_target.parameters(), model.q_net.parameters(), strict=True):
         th.testing.assert_close(new, 0.75 * old + 0.25 * online)
+
+
+def test_an_update_samples_100_transitions_unless_told_otherwise():
+    model, sizes = make_model(Corridor()).learn(30), []
+    sample = model.replay_buffer.sample
+    model.replay_buffer.sample = lambda size, **kwargs: sizes.append(size) or sample(size, **kwargs)
+    model.train(1)
+    model.train(2, 16)
+    assert sizes == [100, 16, 16]
 
 
 def test_gradient_is_clipped():

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sarah.control.constants import STANDARD_CONSTANTS as CONSTANTS
+from sarah.control.constants import ControllerConstants
 from sarah.control.hip_law import BalanceParameters, HipLaw
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
@@ -45,6 +46,41 @@ def test_pitch_is_the_rate_integrated_and_forgets() -> None:
     turned, memory = after(law(), reading(rate_x=0.5), ticks=20), CONSTANTS.pitch_time_constant
     assert turned.pitch == pytest.approx(0.5 * memory * (1 - math.exp(-0.2 / memory)), rel=0.01)
     assert after(turned, reading(), ticks=100).pitch < 0.04
+
+
+def test_pitch_of_a_steady_rate_is_the_rate_times_its_time_constant() -> None:
+    """It is 1 s, unless another is given."""
+    locked = BalanceParameters(0.0, 0.0, 0.0, 0.0)
+    for leaky, seconds in ((law(), 1.0), (HipLaw(locked, DT, ControllerConstants(pitch_time_constant=0.5)), 0.5)):
+        assert after(leaky, reading(rate_x=0.4), ticks=2000).pitch == pytest.approx(0.4 * seconds)
+
+
+def test_abduction_goes_to_its_target_at_6_rad_per_second() -> None:
+    """0.1 rad: a tick of 0.06 rad, and one of 0.04. Before the first tick and at the target it does not move."""
+    moved = law(v2=-2.0)
+    abductions, rates = [moved.abduction], [moved.abduction_rate]
+    for _ in range(3):
+        after(moved, reading(), ticks=1)
+        abductions.append(moved.abduction)
+        rates.append(moved.abduction_rate)
+    assert abductions == pytest.approx([0.0, 0.06, 0.1, 0.1])
+    assert rates == pytest.approx([0.0, 6.0, 4.0, 0.0])
+
+
+def test_the_hips_own_low_pass_takes_three_tenths_of_a_second() -> None:
+    assert after(law(), reading(lateral=2.0), ticks=30).stable_x == pytest.approx(2.0 * (1.0 - math.exp(-1.0)))
+
+
+def test_extreme_readings_count_as_20_metres_per_second_squared_and_10_radians_per_second() -> None:
+    for sign in (1.0, -1.0):
+        extreme = after(law(), reading(lateral=1000.0 * sign, rate_x=1000.0 * sign), ticks=1)
+        assert extreme.stable_x == pytest.approx(sign * 20.0 * (1.0 - math.exp(-0.01 / 0.3)))
+        assert extreme.pitch == pytest.approx(sign * 10.0 * 0.01)
+
+
+def test_hips_turn_by_no_more_than_three_tenths_of_a_radian() -> None:
+    turned = after(law(v1=2.0, v3=2.0), reading(lateral=15.0, rate_x=5.0), ticks=100)
+    assert turned.abduction == -0.3 and turned.flexion[Side.LEFT] == 0.3
 
 
 def test_only_the_swing_leg_turns_with_the_fall() -> None:

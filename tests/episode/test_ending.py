@@ -1,5 +1,7 @@
 """How an episode ends."""
 
+import math
+
 import numpy as np
 import pytest
 from laboratory import CONTROL_DT
@@ -42,6 +44,47 @@ def test_stop_criteria(state: TorsoState, steps: int, time: float, expected: str
     start = (0.0, 0.0, 0.84)
     assert termination(state, start, steps, time, time_limit=30.0, control_dt=CONTROL_DT) == expected
     assert expected is None or expected in TERMINATIONS
+
+
+def standing(position: tuple[float, float, float], degrees: float = 0.0) -> TorsoState:
+    """A torso at rest, tilted about x."""
+    half = math.radians(degrees) / 2
+    return TorsoState(position, (math.sin(half), 0.0, 0.0, math.cos(half)), (0.0,) * 3, (0.0,) * 3)
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_criteria_of_the_box_it_ends_25_cm_from_the_start(axis: int, sign: float) -> None:
+    """Wherever the episode began. The numbers are multiples of 1/16 m, and exact."""
+    start = (0.5, -0.75, 1.0)
+    for moved, expected in ((0.1875, None), (0.25, None), (0.26, "left_box")):
+        position = list(start)
+        position[axis] += sign * moved
+        assert termination(standing(tuple(position)), start, 9, 10.0, 30.0, CONTROL_DT) == expected
+
+
+@pytest.mark.parametrize(("degrees", "expected"), [(44.5, None), (45.5, "fell"), (-44.5, None), (-45.5, "fell")])
+def test_criteria_of_a_fall_it_is_a_tilt_beyond_45_degrees(degrees: float, expected: str | None) -> None:
+    start = (0.0, 0.0, 0.84)
+    assert termination(standing(start, degrees), start, 9, 10.0, 30.0, CONTROL_DT) == expected
+
+
+@pytest.mark.parametrize(
+    ("steps", "time", "expected"),
+    [
+        (1, 4.994, None),
+        (1, 4.995, None),
+        (1, 4.996, "no_oscillation"),
+        (2, 5.0, None),  # one with each leg
+        (2, 29.994, None),
+        (2, 29.995, None),
+        (2, 29.996, "time_limit"),
+    ],
+)
+def test_criteria_of_time_count_from_half_a_tick_before(steps: int, time: float, expected: str | None) -> None:
+    """A sum of ticks of 10 ms is rounded, so 5 s and 30 s are met by less than 5 ms."""
+    start = (0.0, 0.0, 0.84)
+    assert termination(standing(start), start, steps, time, time_limit=30.0, control_dt=0.01) == expected
 
 
 def test_diverging_physics_ends_with_a_finite_return(monkeypatch: pytest.MonkeyPatch) -> None:

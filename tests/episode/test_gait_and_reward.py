@@ -48,6 +48,28 @@ def test_clearance_is_the_median_of_each_steps_highest() -> None:
     assert GaitRecord(100).sole_clearance == 0.0
 
 
+def test_a_foot_that_stays_in_the_floors_give_clears_nothing() -> None:
+    """Soles sink in by micrometres. Every step begins anew, so a high one lends nothing to the next."""
+    gait = GaitRecord(100)
+    for heights in ((-0.00001,), (0.030,), (-0.00001, -0.00002)):
+        for height in heights:
+            gait.swing(height)
+        gait.phase_change(100, STEP)
+    assert gait.sole_clearance == 0.0
+
+
+@pytest.mark.parametrize("phase", [Phase.SHIFT, Phase.LIFT, Phase.LAND])
+def test_share_by_sensors_counts_its_own_phase_only(phase: Phase) -> None:
+    gait = GaitRecord(100)
+    shares = []
+    for by_sensors in (True, False, False, True, True):
+        gait.phase_change(0, PhaseChange(phase, by_sensors))
+        shares.append(gait.by_sensors(phase))
+    assert shares == [1.0, 1 / 2, 1 / 3, 2 / 4, 3 / 5]
+    others = {Phase.SHIFT, Phase.LIFT, Phase.LAND} - {phase}
+    assert [gait.by_sensors(other) for other in others] == [0.0, 0.0]
+
+
 def test_shares_of_phases_that_sensors_ended() -> None:
     gait = GaitRecord(100)
     for by_sensors in (True, True, True, False):
@@ -78,6 +100,12 @@ def test_equation_2_symmetric(x: float, y: float, height: float, frequency: floa
 def test_equation_2_as_printed_rewards_drifting_to_one_side() -> None:
     assert reward_rate(0.1, 0.2, 0.8, 3.0, "printed") == pytest.approx(0.4 * 0.3 * 0.8)
     assert reward_rate(-0.1, -0.2, 0.8, 3.0, "printed") == pytest.approx(0.6 * 0.7 * 0.8)
+    assert reward_rate(-0.1, -0.2, 0.8, 4.0, "printed") == pytest.approx(0.6 * 0.7 * 0.5 * 0.8)
+
+
+def test_ceiling_of_the_return_is_a_quarter_of_height_times_time() -> None:
+    """A robot 0.84 m tall that steps in place for 29 s, at 0.5 * 0.5 * 2^0 * 0.84 a second."""
+    assert highest_return(0.84, 29.0) == pytest.approx(6.09)
 
 
 @given(x=st.floats(-1, 1), y=st.floats(-1, 1), height=st.floats(0, 0.84), frequency=st.floats(0, 100))

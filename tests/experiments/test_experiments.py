@@ -19,6 +19,7 @@ LONG = {
     "killed_workers",
     "kills",
     "long_training",
+    "mutants",
     "protections",
     "second_training",
     "throughput",

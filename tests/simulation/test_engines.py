@@ -19,9 +19,12 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.errors import ConfigurationError
 from sarah.reports.transfer import LearnedParameters, Transfer
+from sarah.robot.description import describe_robot
+from sarah.robot.reading import Side
 from sarah.simulation import engines
 from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import Physics
+from sarah.simulation.randomisation import NOMINAL
 
 SHORT = EpisodeConfig(engine="mujoco", time_limit=6.0)
 MUJOCO_IS_MISSING = "import sys\nsys.modules['mujoco'] = None\n"
@@ -75,6 +78,18 @@ def test_mujoco_takes_at_least_300_steps_a_second(mujoco_engine: None, asked: Ph
         for physics in (asked, taken, Physics(500))
     ]
     assert results[0] == results[1] != results[2]
+
+
+@pytest.mark.parametrize(("rate", "micrometres"), [(300, 3.23), (1000, 1.32)])
+def test_soles_sink_a_few_micrometres_into_mujocos_floor(mujoco_engine: None, rate: int, micrometres: float) -> None:
+    """A contact of impedance d and stiffness k lets a standing body sink by (1 - d) a / k.
+
+    d is 0.99, and k is 2 / (15 ms) times the rate. a is what the sole would fall with: 1.3 g or 1.8 g, with its plate.
+    """
+    simulation = simulator_of("mujoco")(describe_robot(), Physics(rate, solver_iterations=100), NOMINAL)
+    for _ in range(300):
+        simulation.advance()
+    assert [simulation.sole_height(side) for side in Side] == pytest.approx([-1e-6 * micrometres] * 2, rel=0.02)
 
 
 def test_episodes_that_stand_side_by_side_do_not_touch_each_other(mujoco_engine: None) -> None:

@@ -1,0 +1,83 @@
+"""The best action and the draws around it, against the formulas written as plain loops."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from gymnasium import spaces
+from stable_baselines3.common.utils import set_random_seed
+
+from sarah.agents import RankReplayBuffer
+
+BOX = spaces.Box(-1, 1, (2,))
+Action = Sequence[float]
+
+
+def buffer_of(actions: Sequence[Action], rewards: Sequence[float]) -> RankReplayBuffer:
+    buffer = RankReplayBuffer(1000, BOX, spaces.Box(-1, 1, (len(actions[0]),)), "cpu")
+    zeros = np.zeros((1, 2), np.float32)
+    for action, reward in zip(actions, rewards, strict=True):
+        buffer.add(zeros, zeros, np.array([action], np.float32), np.array([reward]), np.ones(1), [{}])
+    return buffer
+
+
+def random_buffer(seed: int) -> RankReplayBuffer:
+    """40 transitions, of which the best and the worst rewards are negative too."""
+    rng = np.random.default_rng(seed)
+    return buffer_of(rng.uniform(-1, 1, (40, 2)).tolist(), rng.normal(-0.5, 1.0, 40).tolist())
+
+
+def stored(buffer: RankReplayBuffer) -> tuple[list[list[float]], list[float]]:
+    actions, rewards = buffer.actions[: buffer.size(), 0].tolist(), buffer.rewards[: buffer.size(), 0].tolist()
+    return actions, rewards
+
+
+def mean_around(place: Action, actions: list[list[float]], values: list[float], distance: float, doubt: float) -> float:
+    weights = [math.exp(-(math.dist(place, action) ** 2) / (2 * distance**2)) for action in actions]
+    return sum(w * value for w, value in zip(weights, values, strict=True)) / (sum(weights) + doubt)
+
+
+def reflected(value: float) -> float:
+    """At the bounds -1 and 1, and no further than the other one."""
+    if value > 1:
+        value = 2 - value
+    elif value < -1:
+        value = -2 - value
+    return max(-1.0, min(1.0, value))
+
+
+def test_best_action_has_the_highest_mean_around_it() -> None:
+    """Over a distance of 0.15, with a quarter of a transition that is as bad as the worst."""
+    for seed in range(60):
+        buffer = random_buffer(seed)
+        actions, rewards = stored(buffer)
+        above_worst = [reward - min(rewards) for reward in rewards]
+        means = [mean_around(action, actions, above_worst, 0.15, 0.25) for action in actions]
+        assert buffer.best_action().tolist() == actions[means.index(max(means))]
+
+
+def test_best_action_is_among_the_100_highest_rewards() -> None:
+    """99 lonely ones earn 1, the hundredth 0.99 among neighbours; the next has more of them, and comes too late."""
+    lonely = [(float(n), 0.0) for n in range(2, 101)]
+    among_neighbours = [(0.05, 0.0), (0.0, 0.0), (-0.05, 0.0), (-0.1, 0.0), (0.0, 0.05)]
+    buffer = buffer_of([*among_neighbours, *lonely, (-50.0, 0.0)], [0.99, 0.98, 0.97, 0.96, 0.95, *[1.0] * 99, 0.0])
+    assert buffer.best_action() == pytest.approx((0.05, 0.0))
+
+
+@pytest.mark.parametrize("std", [0.1, 0.21, 0.22, 0.5, 1.5])
+def test_a_draw_near_the_best_has_the_highest_mean_around_it(std: float) -> None:
+    """Over 0.7 standard deviations, at least 0.15, above the average reward; draws are reflected at the bounds."""
+    for seed in range(40):
+        buffer = random_buffer(seed)
+        actions, rewards = stored(buffer)
+        set_random_seed(seed)
+        gaussian = np.random.normal(0.0, 1.0, (8, 2)).tolist()
+        set_random_seed(seed)
+        best = buffer.best_action().tolist()
+        draws = [[reflected(b + std * z) for b, z in zip(best, row, strict=True)] for row in gaussian]
+        above_average = [reward - sum(rewards) / len(rewards) for reward in rewards]
+        means = [mean_around(draw, actions, above_average, max(0.15, 0.7 * std), 0.001) for draw in draws]
+        drawn = buffer.draw_near_best(std, draws=8)
+        assert drawn.dtype == np.float32
+        assert drawn.tolist() == pytest.approx(draws[means.index(max(means))], abs=1e-6)

@@ -1,0 +1,48 @@
+"""The table of learned parameters, from which pages, help texts and figures take what they say."""
+
+import dataclasses
+from typing import Any
+
+import pytest
+
+from sarah.control.constants import STANDARD_CONSTANTS
+from sarah.control.hip_law import BalanceParameters
+from sarah.control.parameters import BALANCE_PARAMETERS, PAPER_STEPPING, STEPPING_PARAMETERS
+from sarah.control.pattern_generator import Phase, PhaseChange, SteppingParameters
+
+
+def test_papers_training_found_these_values() -> None:
+    assert PAPER_STEPPING == (0.4, 1.3, 0.1, 1.0, 1.0)
+
+
+def test_p1_to_p5_are_positive_and_v1_to_v4_of_either_sign_up_to_2() -> None:
+    assert {p.name: (p.low, p.high, p.width) for p in STEPPING_PARAMETERS} == {
+        name: (0.0, 2.0, 2.0) for name in ("P1", "P2", "P3", "P4", "P5")
+    }
+    assert {v.name: (v.low, v.high, v.width) for v in BALANCE_PARAMETERS} == {
+        name: (-2.0, 2.0, 4.0) for name in ("V1", "V2", "V3", "V4")
+    }
+
+
+def test_labels_and_descriptions_name_the_unit_if_there_is_one() -> None:
+    p1, p4 = STEPPING_PARAMETERS[0], STEPPING_PARAMETERS[3]
+    assert p1.label == "P1 (rad/s)" and p1.description == f"{p1.meaning}, in rad/s"
+    assert p4.label == "P4" and p4.description == p4.meaning
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        STANDARD_CONSTANTS,
+        STEPPING_PARAMETERS[0],
+        SteppingParameters(*PAPER_STEPPING),
+        BalanceParameters(1.0, 0.0, 0.0, 0.0),
+        PhaseChange(Phase.LAND, by_sensors=True),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_values_of_a_controller_do_not_change(value: Any) -> None:
+    """An episode is a function of its specification, so nothing may write to it."""
+    field = dataclasses.fields(value)[0].name
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        setattr(value, field, 0.0)
