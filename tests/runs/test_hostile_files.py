@@ -136,7 +136,8 @@ def test_hostile_files_are_refused_within_seconds(
     harm(tmp_path / "race" / "random-s0" / name)
     monkeypatch.chdir(tmp_path)
     is_finished = (tmp_path / "race" / "random-s0" / "parameters.json").is_file()
-    for line in READERS[name]:
+    # The worst are tried on every command, the others on one: all read by the same functions.
+    for line in READERS[name][: None if harm in (laughs, fifo) else 1]:
         if line in (VIDEO, VIEW, COMPARE) and not is_finished:
             continue  # they take a training that is not finished as it is
         monkeypatch.setattr("sys.argv", line.split())
