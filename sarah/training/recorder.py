@@ -70,7 +70,7 @@ class EpisodeRecorder(BaseCallback):
 
     def _on_step(self) -> bool:
         for info in self.locals["infos"]:
-            if info:  # the first steps only fill the slots
+            if info["transition"] is not None:  # the first steps only fill the slots
                 self.record(info["spec"], info["result"])
         return True
 
