@@ -8,13 +8,12 @@ budget compare the best candidates, all on the same new seeds.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from statistics import mean
 
 import numpy as np
 
-from sarah.agents.buffers import neighbourhood_means
+from sarah.agents.buffers import DOUBT
 from sarah.episode.evaluation import SMALLEST_CLEARANCE, SMALLEST_SENSOR_SHARE, Evaluation
 from sarah.episode.result import EpisodeResult
 from sarah.episode.tasks import Task
@@ -38,29 +37,100 @@ def merit(result: EpisodeResult) -> float:
     return merit
 
 
+class Tried:
+    """Episodes so far, and the mean merit around each: kept up to date, so that a new one costs linear time.
+
+    :param task: task that owns the parameters
+    :param episodes: parameters and merit of each episode
+    """
+
+    def __init__(self, task: Task, episodes: Iterable[tuple[Parameters, float]] = ()) -> None:
+        self.parameters: list[Parameters] = []
+        """Parameters of every episode."""
+        self._widths = np.array([parameter.width for parameter in task.parameters])
+        # Of every episode, with room for more: its place, its merit, and around it the sums of weights and of merits.
+        self._places = np.empty((0, len(self._widths)))
+        self._merits, self._weights, self._weighted_merits = np.empty((3, 0))
+        for episode in episodes:
+            self.append(episode)
+
+    def __len__(self) -> int:
+        """Number of episodes."""
+        return len(self.parameters)
+
+    def append(self, episode: tuple[Parameters, float]) -> None:
+        """Add an episode.
+
+        :param episode: its parameters and its merit
+        """
+        parameters, merit = episode
+        new = len(self)
+        if new == len(self._merits):
+            self._make_room()
+        self.parameters.append(parameters)
+        self._places[new] = np.array(parameters) / self._widths
+        self._merits[new] = merit
+        weights = self._weights_around(self._places[new])
+        self._weights[:new] += weights[:-1]
+        self._weighted_merits[:new] += merit * weights[:-1]
+        self._weights[new] = weights.sum()
+        self._weighted_merits[new] = weights @ self._merits[: new + 1]
+
+    def best(self, choice: Parameters, count: int) -> list[Parameters]:
+        """Choose the parameters whose neighbourhoods have the highest merit, not too close together.
+
+        :param choice: parameters to choose among, beside those of the episodes
+        :param count: largest number to choose
+        :return: the best first; among equals the choice, then the oldest
+        """
+        known = len(self)
+        place = np.array(choice) / self._widths
+        weights = self._weights_around(place)
+        totals = np.append(weights.sum(), self._weights[:known])
+        means = np.append(weights @ self._merits[:known], self._weighted_merits[:known]) / (totals + DOUBT)
+        places = np.vstack((place, self._places[:known]))
+        chosen: list[Parameters] = []
+        while len(chosen) < count and means.max() > -np.inf:
+            index = int(np.argmax(means))
+            chosen.append(self.parameters[index - 1] if index else choice)
+            means[squared_lengths(places - places[index]) < DISTINCT**2] = -np.inf
+        return chosen
+
+    def _weights_around(self, place: np.ndarray) -> np.ndarray:
+        """How much each episode counts at a place."""
+        weights: np.ndarray = np.exp(squared_lengths(self._places[: len(self)] - place) / (-2 * NEIGHBOURHOOD**2))
+        return weights
+
+    def _make_room(self) -> None:
+        rows = max(64, len(self))
+        self._places = np.vstack((self._places, np.zeros((rows, len(self._widths)))))
+        self._merits = np.append(self._merits, np.zeros(rows))
+        self._weights = np.append(self._weights, np.zeros(rows))
+        self._weighted_merits = np.append(self._weighted_merits, np.zeros(rows))
+
+
+def squared_lengths(differences: np.ndarray) -> np.ndarray:
+    """Squared length of each row.
+
+    :param differences: array of shape (n, dimensions)
+    """
+    lengths: np.ndarray = np.einsum("ij,ij->i", differences, differences)
+    return lengths
+
+
 def candidates(
-    task: Task, choice: Parameters, tried: Sequence[tuple[Parameters, float]], count: int
+    task: Task, choice: Parameters, tried: Tried | Iterable[tuple[Parameters, float]], count: int
 ) -> list[Parameters]:
     """Choose the candidates: parameters whose neighbourhoods have the highest merit, not too close together.
 
     :param task: task that owns the parameters
     :param choice: parameters that the algorithm itself would choose
-    :param tried: parameters and merit of every episode so far
+    :param tried: parameters and merit of every episode so far; asked again and again, a :class:`Tried` is quicker
     :param count: number of candidates
     :return: candidates among the algorithm's choice and the tried parameters, the best one first
     """
-    parameters = [choice, *(tried_parameters for tried_parameters, _ in tried)]
-    places = np.array(parameters) / [parameter.width for parameter in task.parameters]
-    merits = np.zeros(len(parameters))
-    if tried:
-        merits = neighbourhood_means(places, places[1:], np.array([merit for _, merit in tried]), NEIGHBOURHOOD)
-    chosen: list[int] = []
-    for index in np.argsort(-merits, kind="stable"):
-        if len(chosen) == count:
-            break
-        if all(math.dist(places[index], places[other]) >= DISTINCT for other in chosen):
-            chosen.append(index)
-    return [parameters[index] for index in chosen]
+    known = tried if isinstance(tried, Tried) else Tried(task, tried)
+    return known.best(choice, count)
 
 
 def rank(results: Sequence[EpisodeResult], baseline: Evaluation | None) -> tuple[bool, float]:

@@ -20,7 +20,7 @@ from sarah.errors import LearningError
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 from sarah.training.learning_curves import LEARNED, CurveWriter
-from sarah.training.recommendation import Parameters, candidates, merit
+from sarah.training.recommendation import Parameters, Tried, candidates, merit
 
 EPISODES_PER_RECOMMENDATION = 5
 """Number of episodes after which the recommendation is recorded again."""
@@ -41,7 +41,7 @@ class EpisodeRecorder(BaseCallback):
 
     log: Logger
     """Logger of the learning curves, which the agent uses as well."""
-    tried: list[tuple[Parameters, float]]
+    tried: Tried
     """Parameters and merit of every episode so far."""
     diverged: int
     """Number of episodes so far that diverged."""
@@ -54,7 +54,7 @@ class EpisodeRecorder(BaseCallback):
     ) -> None:
         super().__init__()
         self.log = Logger(folder=None, output_formats=[_LoggerOutput(self)])
-        self.tried = []
+        self.tried = Tried(task)
         self.diverged = 0
         self.choose = None
         self._task = task
