@@ -22,6 +22,7 @@ from experiments.naf_preset import NafPreset
 from experiments.noise_limit import NoiseLimit
 from experiments.physics import Fineness, FinenessAnywhere, FinenessAtSlowGaits
 from experiments.race import Race
+from experiments.rank_replay import RankReplay
 from experiments.robot_dimensions import RobotDimensions
 from experiments.robustness import Robustness
 from experiments.second_training import SecondTraining
@@ -109,6 +110,12 @@ TABLE: dict[str, Maker] = {
         "What is each part of NAF's preset for episodes of one step worth?",
         NafPreset(),
         {"seeds": 1, "episodes": 5},
+        of_robot=False,
+    ),
+    "rank_replay": Maker(
+        "What does ranked replay make of a noisy reward?",
+        RankReplay(),
+        {"seeds": 1, "episodes": 8},
         of_robot=False,
     ),
     "naf_pendulum": Maker(

@@ -24,6 +24,8 @@ NEIGHBOURHOOD = 0.075
 """Distance up to which an episode counts for other parameters than its own, as a share of each parameter's range."""
 DISTINCT = 0.1
 """Smallest distance between candidates, as a share of each parameter's range."""
+SMALLEST_ROOM = 64
+"""Number of rows for episodes at first. It doubles whenever they are full."""
 
 
 def merit(result: EpisodeResult) -> float:
@@ -48,9 +50,10 @@ class Tried:
         self.parameters: list[Parameters] = []
         """Parameters of every episode."""
         self._widths = np.array([parameter.width for parameter in task.parameters])
-        # Of every episode, with room for more: its place, its merit, and around it the sums of weights and of merits.
-        self._places = np.empty((0, len(self._widths)))
-        self._merits, self._weights, self._weighted_merits = np.empty((3, 0))
+        # Of the choice, then of every episode, with room for more: the place, the merit, and of the episodes around it
+        # the sums of their weights and of their weighted merits.
+        self._places = np.zeros((SMALLEST_ROOM, len(self._widths)))
+        self._merits, self._weights, self._weighted_merits = np.zeros((3, SMALLEST_ROOM))
         for episode in episodes:
             self.append(episode)
 
@@ -64,17 +67,14 @@ class Tried:
         :param episode: its parameters and its merit
         """
         parameters, merit = episode
+        self.parameters.append(parameters)
         new = len(self)
         if new == len(self._merits):
-            self._make_room()
-        self.parameters.append(parameters)
-        self._places[new] = np.array(parameters) / self._widths
+            self._double_room()
         self._merits[new] = merit
-        weights = self._weights_around(self._places[new])
-        self._weights[:new] += weights[:-1]
-        self._weighted_merits[:new] += merit * weights[:-1]
-        self._weights[new] = weights.sum()
-        self._weighted_merits[new] = weights @ self._merits[: new + 1]
+        weights = self._put(new, parameters)
+        self._weights[1:new] += weights[:-1]
+        self._weighted_merits[1:new] += merit * weights[:-1]
 
     def best(self, choice: Parameters, count: int) -> list[Parameters]:
         """Choose the parameters whose neighbourhoods have the highest merit, not too close together.
@@ -83,30 +83,37 @@ class Tried:
         :param count: largest number to choose
         :return: the best first; among equals the choice, then the oldest
         """
-        known = len(self)
-        place = np.array(choice) / self._widths
-        weights = self._weights_around(place)
-        totals = np.append(weights.sum(), self._weights[:known])
-        means = np.append(weights @ self._merits[:known], self._weighted_merits[:known]) / (totals + DOUBT)
-        places = np.vstack((place, self._places[:known]))
+        self._put(0, choice)
+        rows = slice(0, len(self) + 1)
+        places = self._places[rows]
+        means = self._weighted_merits[rows] / (self._weights[rows] + DOUBT)
         chosen: list[Parameters] = []
-        while len(chosen) < count and means.max() > -np.inf:
+        while True:
             index = int(np.argmax(means))
             chosen.append(self.parameters[index - 1] if index else choice)
+            if len(chosen) == count:
+                return chosen
             means[squared_lengths(places - places[index]) < DISTINCT**2] = -np.inf
-        return chosen
+            if means.max() == -np.inf:
+                return chosen
 
-    def _weights_around(self, place: np.ndarray) -> np.ndarray:
-        """How much each episode counts at a place."""
-        weights: np.ndarray = np.exp(squared_lengths(self._places[: len(self)] - place) / (-2 * NEIGHBOURHOOD**2))
+    def _put(self, row: int, parameters: Parameters) -> np.ndarray:
+        """Put parameters into a row, with the sums of the episodes around them, whose weights are returned."""
+        self._places[row] = np.array(parameters) / self._widths
+        episodes = slice(1, len(self) + 1)
+        weights: np.ndarray = np.exp(
+            squared_lengths(self._places[episodes] - self._places[row]) / (-2 * NEIGHBOURHOOD**2)
+        )
+        self._weights[row] = weights.sum()
+        self._weighted_merits[row] = weights @ self._merits[episodes]
         return weights
 
-    def _make_room(self) -> None:
-        rows = max(64, len(self))
-        self._places = np.vstack((self._places, np.zeros((rows, len(self._widths)))))
-        self._merits = np.append(self._merits, np.zeros(rows))
-        self._weights = np.append(self._weights, np.zeros(rows))
-        self._weighted_merits = np.append(self._weighted_merits, np.zeros(rows))
+    def _double_room(self) -> None:
+        self._places = np.vstack((self._places, np.zeros_like(self._places)))
+        self._merits, self._weights, self._weighted_merits = (
+            np.append(values, np.zeros_like(values))
+            for values in (self._merits, self._weights, self._weighted_merits)
+        )
 
 
 def squared_lengths(differences: np.ndarray) -> np.ndarray:
