@@ -68,8 +68,9 @@ class RankReplayBuffer(ReplayBuffer):
     Transitions of all environments are ranked together.
 
     It is meant for episodes of one step, where the reward is the return. In longer episodes it would
-    favour transitions of high reward whatever they lead to, so ``gamma`` must be 0. The probabilities are computed at the first
-    draw after an addition, in O(n log n). The best action is looked for among the newest 10,000 transitions.
+    favour transitions of high reward whatever they lead to, so ``gamma`` must be 0. It favours lucky ones, too:
+    noise makes what is learned from it too high. The probabilities are computed at the first draw after an
+    addition, in O(n log n). The best action is looked for among the newest 10,000 transitions.
 
     :param buffer_size: Max number of elements in the buffer
     :param observation_space: Observation space

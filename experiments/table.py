@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from benchmarks.decisions import Decisions
 from benchmarks.engines_speed import EnginesSpeed
 from benchmarks.physics_speed import PhysicsSpeed
 from benchmarks.throughput import Throughput
@@ -221,6 +222,12 @@ TABLE: dict[str, Maker] = {
         "How many updates per second does NAF make, and TD3?",
         Updates(),
         {"updates": 2, "rounds": 1, "batch_size": 8},
+        of_robot=False,
+    ),
+    "decisions": Maker(
+        "How long does a training think between two episodes?",
+        Decisions(),
+        {"episodes": (10,), "rounds": 1},
         of_robot=False,
     ),
     "viewer": Maker(

@@ -111,8 +111,7 @@ class Tried:
     def _double_room(self) -> None:
         self._places = np.vstack((self._places, np.zeros_like(self._places)))
         self._merits, self._weights, self._weighted_merits = (
-            np.append(values, np.zeros_like(values))
-            for values in (self._merits, self._weights, self._weighted_merits)
+            np.append(values, np.zeros_like(values)) for values in (self._merits, self._weights, self._weighted_merits)
         )
 
 

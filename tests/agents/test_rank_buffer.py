@@ -150,7 +150,6 @@ def add(buffer: RankReplayBuffer, action, reward: float) -> None:
 def test_one_terrible_reward_moves_no_choice(outlier):
     """The best of a hill is its top, whatever it costs to fall off somewhere else."""
 
-
     def hill(actions: np.ndarray) -> np.ndarray:
         return np.exp(-4 * np.sum((actions - 0.6) ** 2, axis=-1))
 
@@ -183,7 +182,11 @@ def test_of_a_large_buffer_the_newest_decide():
 def test_a_draw_takes_no_more_memory_in_a_large_buffer():
     buffer = fill([], buffer_size=100_000)
     rng = np.random.default_rng(0)
-    buffer.actions[:, 0], buffer.rewards[:, 0], buffer.full = rng.uniform(-1, 1, (100_000, 2)), rng.random(100_000), True
+    buffer.actions[:, 0], buffer.rewards[:, 0], buffer.full = (
+        rng.uniform(-1, 1, (100_000, 2)),
+        rng.random(100_000),
+        True,
+    )
     tracemalloc.start()
     buffer.draw_near_best(0.2, 16)
     buffer.sample(64)
@@ -197,10 +200,10 @@ def test_ranks_say_nothing_of_what_follows(algorithm):
     """So values of next observations cannot be learned from them."""
     arguments = dict(replay_buffer_class=RankReplayBuffer, policy_kwargs={"net_arch": [8]}, gamma=0.5)
     plain = dict(replay_buffer_kwargs={"temperature": 0.0})
-    with pytest.raises(ValueError, match="^gamma must be 0 with a RankReplayBuffer of temperature 4, not 0.5: .*$"):
+    with pytest.raises(ValueError, match=r"^gamma must be 0 with a RankReplayBuffer of temperature 4, not 0.5: .*$"):
         algorithm("MlpPolicy", "Pendulum-v1", **arguments)
     if algorithm is LocalNAF:
-        with pytest.raises(ValueError, match="^gamma must be 0 with elite_share above 0, not 0.5: .*$"):
+        with pytest.raises(ValueError, match=r"^gamma must be 0 with elite_share above 0, not 0.5: .*$"):
             LocalNAF("MlpPolicy", "Pendulum-v1", **arguments, **plain)
         plain["elite_share"] = 0.0
     assert algorithm("MlpPolicy", "Pendulum-v1", **arguments, **plain).gamma == 0.5
