@@ -9,6 +9,8 @@ from stable_baselines3.common.buffers import ReplayBuffer
 from stable_baselines3.common.type_aliases import ReplayBufferSamples
 from stable_baselines3.common.vec_env import VecNormalize
 
+from sarah.agents.arguments import check_number
+
 DOUBT = 0.25
 """Worthless transitions that every neighbourhood is thought to hold, so that single lucky ones do not win."""
 NEIGHBOURHOOD = 0.15
@@ -20,6 +22,8 @@ LITTLE_DOUBT = 1e-3
 """Of them: average transitions in every neighbourhood, which count only where hardly anything is known."""
 BEST_CANDIDATES = 100
 """Transitions of the highest rewards, among which the best action is looked for."""
+MOST_JUDGED = 10_000
+"""Newest transitions that the best action is judged by: in larger buffers a decision takes no longer."""
 
 
 def neighbourhood_means(
@@ -35,9 +39,13 @@ def neighbourhood_means(
     :param doubt: Values of 0 that every place is thought to have
     :return: Means of shape (m,)
     """
-    squared_distances = np.square(at[:, None] - places).sum(axis=2)
-    weights = np.exp(-squared_distances / (2 * distance**2))
-    means: np.ndarray = weights @ values / (weights.sum(axis=1) + doubt)
+    # -|a - b|^2 / 2 as a b - |a|^2 / 2 - |b|^2 / 2, in one matrix: several times faster than by all differences
+    weights = at @ places.T
+    weights -= np.square(at).sum(axis=1)[:, None] / 2
+    weights -= np.square(places).sum(axis=1) / 2
+    weights /= distance**2
+    np.exp(weights, out=weights)
+    means: np.ndarray = weights @ values.astype(weights.dtype) / (weights.sum(axis=1) + doubt)
     return means
 
 
@@ -60,8 +68,9 @@ class RankReplayBuffer(ReplayBuffer):
     Transitions of all environments are ranked together.
 
     It is meant for episodes of one step, where the reward is the return. In longer episodes it would
-    favour transitions of high reward whatever they lead to. The probabilities are computed at the first
-    draw after an addition, in O(n log n).
+    favour transitions of high reward whatever they lead to, so ``gamma`` must be 0. It favours lucky ones, too:
+    noise makes what is learned from it too high. The probabilities are computed at the first draw after an
+    addition, in O(n log n). The best action is looked for among the newest 10,000 transitions.
 
     :param buffer_size: Max number of elements in the buffer
     :param observation_space: Observation space
@@ -97,8 +106,9 @@ class RankReplayBuffer(ReplayBuffer):
             n_envs=1,
             handle_timeout_termination=handle_timeout_termination,
         )
+        check_number("temperature", temperature, 0.0)
         self.temperature = temperature
-        self._probabilities: np.ndarray | None = None
+        self._cumulative_probabilities: np.ndarray | None = None
 
     def add(
         self,
@@ -122,7 +132,7 @@ class RankReplayBuffer(ReplayBuffer):
         for i, info in enumerate(infos):
             row = slice(i, i + 1)
             super().add(obs[row], next_obs[row], action[row], reward[row], done[row], [info])
-        self._probabilities = None
+        self._cumulative_probabilities = None
 
     def sample(self, batch_size: int, env: VecNormalize | None = None) -> ReplayBufferSamples:
         """
@@ -133,21 +143,23 @@ class RankReplayBuffer(ReplayBuffer):
             to normalize the observations/rewards when sampling
         :return: The transitions
         """
-        if self._probabilities is None:
+        if self._cumulative_probabilities is None:
             weights = np.exp(self.temperature * average_ranks(self.rewards[: self.size(), 0]))
-            self._probabilities = weights / weights.sum()
-        batch_inds = np.random.choice(self.size(), size=batch_size, p=self._probabilities)
+            cumulative = np.cumsum(weights / weights.sum())
+            self._cumulative_probabilities = cumulative / cumulative[-1]
+        # As np.random.choice does with probabilities, which it would add up again for every batch
+        batch_inds = self._cumulative_probabilities.searchsorted(np.random.random_sample(batch_size), side="right")
         return self._get_samples(batch_inds, env=env)
 
     def best_action(self) -> np.ndarray:
         """
-        The action around which rewards are highest, so that one lucky transition does not win.
+        The action around which ranks are highest, so that one lucky transition does not win.
 
         :return: One of the stored scaled actions, of shape (action dim,)
         """
-        actions, rewards = self.actions[: self.size(), 0], self.rewards[: self.size(), 0]
-        highest = np.argsort(-rewards, kind="stable")[:BEST_CANDIDATES]
-        means = neighbourhood_means(actions[highest], actions, rewards - rewards.min(), NEIGHBOURHOOD)
+        actions, ranks = self._newest()
+        highest = np.argsort(-ranks, kind="stable")[:BEST_CANDIDATES]
+        means = neighbourhood_means(actions[highest], actions, ranks, NEIGHBOURHOOD)
         best: np.ndarray = actions[highest[np.argmax(means)]]
         return best
 
@@ -163,8 +175,14 @@ class RankReplayBuffer(ReplayBuffer):
         drawn = np.random.normal(best, std, (draws, len(best)))
         # Reflected at the bounds, where otherwise every wide draw would end
         drawn = np.where(np.abs(drawn) > 1, 2 * np.sign(drawn) - drawn, drawn).clip(-1, 1).astype(np.float32)
-        actions, rewards = self.actions[: self.size(), 0], self.rewards[: self.size(), 0]
+        actions, ranks = self._newest()
         distance = max(NEIGHBOURHOOD, SURROUNDINGS * std)
-        means = neighbourhood_means(drawn, actions, rewards - rewards.mean(), distance, LITTLE_DOUBT)
+        means = neighbourhood_means(drawn, actions, ranks - ranks.mean(), distance, LITTLE_DOUBT)
         promising: np.ndarray = drawn[np.argmax(means)]
         return promising
+
+    def _newest(self) -> tuple[np.ndarray, np.ndarray]:
+        """Actions and ranks of the newest transitions."""
+        count = min(self.size(), MOST_JUDGED)
+        newest = np.arange(self.pos - count, self.pos)  # In a full buffer, negative ones count from its end
+        return self.actions[newest, 0], average_ranks(self.rewards[newest, 0])

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from stable_baselines3.common.noise import ActionNoise
 from stable_baselines3.common.type_aliases import GymEnv, Schedule
-from stable_baselines3.common.utils import FloatSchedule
 
+from sarah.agents.arguments import check_number, checked_schedule
 from sarah.agents.buffers import RankReplayBuffer
 from sarah.agents.naf import NAF
 from sarah.agents.policies import NAFPolicy
@@ -22,6 +22,8 @@ class LocalNAF(NAF):
 
     :param policy: The policy model to use (MlpPolicy, CnnPolicy, ...)
     :param env: The environment to learn from (if registered in Gym, can be str)
+    :param gamma: the discount factor; above 0 only for a replay without ranks, that is with ``temperature=0`` and
+        ``elite_share=0``
     :param elite_share: Share of the exploring actions that are drawn around the best action of the replay buffer;
         it can be a function of the current progress remaining (from 1 to 0)
     :param elite_std: Standard deviation of these draws, in actions scaled to [-1, 1]; it can be a function of the
@@ -41,6 +43,7 @@ class LocalNAF(NAF):
         policy: str | type[NAFPolicy],
         env: GymEnv | str,
         *,
+        gamma: float = 0.0,
         elite_share: float | Schedule = 0.5,
         elite_std: float | Schedule = 0.2,
         elite_draws: int = 16,
@@ -49,7 +52,9 @@ class LocalNAF(NAF):
         _init_setup_model: bool = True,
         **kwargs: Any,
     ) -> None:
-        super().__init__(policy, env, replay_buffer_class=replay_buffer_class, _init_setup_model=False, **kwargs)
+        super().__init__(
+            policy, env, gamma=gamma, replay_buffer_class=replay_buffer_class, _init_setup_model=False, **kwargs
+        )
 
         self.elite_share = elite_share
         self.elite_std = elite_std
@@ -61,10 +66,16 @@ class LocalNAF(NAF):
 
     def _setup_model(self) -> None:
         super()._setup_model()
-        self.elite_share_schedule = FloatSchedule(self.elite_share)
-        self.elite_std_schedule = FloatSchedule(self.elite_std)
+        check_number("elite_draws", self.elite_draws, 1, whole=True)
+        self.elite_share_schedule = checked_schedule("elite_share", self.elite_share, 0.0, 1.0)
+        self.elite_std_schedule = checked_schedule("elite_std", self.elite_std, 0.0)
         if not isinstance(self.replay_buffer, RankReplayBuffer):
             raise ValueError(f"LocalNAF needs a RankReplayBuffer, not a {type(self.replay_buffer).__name__}")
+        if self.gamma != 0 and self.elite_share != 0:
+            raise ValueError(
+                f"gamma must be 0 with elite_share above 0, not {self.gamma!r}: "
+                "the best action is that of the best reward, whatever it leads to"
+            )
 
     def _sample_action(
         self,

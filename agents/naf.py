@@ -1,5 +1,6 @@
 """Normalized advantage functions (NAF): Q-learning for continuous actions, for stable-baselines3."""
 
+import math
 from typing import Any, ClassVar, TypeVar
 
 import numpy as np
@@ -10,10 +11,12 @@ from stable_baselines3.common.noise import ActionNoise, NormalActionNoise
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from stable_baselines3.common.policies import BasePolicy
 from stable_baselines3.common.type_aliases import GymEnv, MaybeCallback, Schedule
-from stable_baselines3.common.utils import FloatSchedule, get_parameters_by_name, polyak_update
+from stable_baselines3.common.utils import get_parameters_by_name, polyak_update
 from torch import nn
 from torch.optim.swa_utils import get_ema_multi_avg_fn
 
+from sarah.agents.arguments import check_number, checked_schedule
+from sarah.agents.buffers import RankReplayBuffer
 from sarah.agents.critic import QuadraticCritic
 from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy, NAFPolicy
 
@@ -46,7 +49,7 @@ class NAF(OffPolicyAlgorithm):
         Set to ``-1`` means to do as many gradient steps as steps done in the environment
         during the rollout.
     :param action_noise: the action noise type. If ``None`` (default), Gaussian noise
-        of ``exploration_std`` is used.
+        of ``exploration_std`` is used. Before ``learning_starts`` actions are uniform, without noise.
     :param replay_buffer_class: Replay buffer class to use (for instance ``HerReplayBuffer``).
         If ``None``, it will be automatically selected.
     :param replay_buffer_kwargs: Keyword arguments to pass to the replay buffer on creation.
@@ -149,7 +152,13 @@ class NAF(OffPolicyAlgorithm):
         # Running mean and running var, which the target network copies
         self.batch_norm_stats = get_parameters_by_name(self.q_net, ["running_"])
         self.batch_norm_stats_target = get_parameters_by_name(self.q_net_target, ["running_"])
-        self.exploration_schedule = FloatSchedule(self.exploration_std)
+        check_number("max_grad_norm", self.max_grad_norm, 0.0, highest=math.inf, above=True)
+        self.exploration_schedule = checked_schedule("exploration_std", self.exploration_std, 0.0)
+        if isinstance(self.replay_buffer, RankReplayBuffer) and self.replay_buffer.temperature > 0 and self.gamma != 0:
+            raise ValueError(
+                f"gamma must be 0 with a RankReplayBuffer of temperature {self.replay_buffer.temperature:g}, "
+                f"not {self.gamma!r}: it ranks rewards, whatever they lead to"
+            )
 
     def _create_aliases(self) -> None:
         self.q_net = self.policy.q_net
@@ -161,7 +170,9 @@ class NAF(OffPolicyAlgorithm):
         action_noise: ActionNoise | None = None,
         n_envs: int = 1,
     ) -> tuple[np.ndarray, np.ndarray]:
-        if action_noise is None:
+        if self.num_timesteps < learning_starts:
+            action_noise = None  # Clipped noise would move part of the uniform warm-up actions to the bounds
+        elif action_noise is None:
             shape = (n_envs, *self.action_space.shape)
             std = self.exploration_schedule(self._current_progress_remaining)
             action_noise = NormalActionNoise(np.zeros(shape), np.full(shape, std))

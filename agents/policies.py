@@ -15,6 +15,7 @@ from stable_baselines3.common.torch_layers import (
 from stable_baselines3.common.type_aliases import PyTorchObs, Schedule
 from torch import nn
 
+from sarah.agents.arguments import check_number
 from sarah.agents.critic import QuadraticCritic
 
 
@@ -77,6 +78,7 @@ class NAFPolicy(BasePolicy):
             squash_output=True,
             normalize_images=normalize_images,
         )
+        check_number("min_curvature", min_curvature, 0.0)
         if net_arch is None:
             net_arch = [256, 256]
         if not isinstance(net_arch, dict):

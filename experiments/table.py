@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from benchmarks.decisions import Decisions
 from benchmarks.engines_speed import EnginesSpeed
 from benchmarks.physics_speed import PhysicsSpeed
 from benchmarks.throughput import Throughput
@@ -22,6 +23,7 @@ from experiments.naf_preset import NafPreset
 from experiments.noise_limit import NoiseLimit
 from experiments.physics import Fineness, FinenessAnywhere, FinenessAtSlowGaits
 from experiments.race import Race
+from experiments.rank_replay import RankReplay
 from experiments.robot_dimensions import RobotDimensions
 from experiments.robustness import Robustness
 from experiments.second_training import SecondTraining
@@ -110,6 +112,12 @@ TABLE: dict[str, Maker] = {
         "What is each part of NAF's preset for episodes of one step worth?",
         NafPreset(),
         {"seeds": 1, "episodes": 5},
+        of_robot=False,
+    ),
+    "rank_replay": Maker(
+        "What does ranked replay make of a noisy reward?",
+        RankReplay(),
+        {"seeds": 1, "episodes": 8},
         of_robot=False,
     ),
     "naf_pendulum": Maker(
@@ -215,6 +223,12 @@ TABLE: dict[str, Maker] = {
         "How many updates per second does NAF make, and TD3?",
         Updates(),
         {"updates": 2, "rounds": 1, "batch_size": 8},
+        of_robot=False,
+    ),
+    "decisions": Maker(
+        "How long does a training think between two episodes?",
+        Decisions(),
+        {"episodes": (10,), "rounds": 1},
         of_robot=False,
     ),
     "viewer": Maker(

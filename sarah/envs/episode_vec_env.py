@@ -39,8 +39,8 @@ class EpisodeVecEnv(VecEnv):
 
     Step k submits the episode of its action and returns the outcome of step ``k - slots + 1``: the reward is that
     episode's return, and ``info`` contains its ``spec``, ``result`` and ``transition`` (observation, action, last
-    observation). The first ``slots - 1`` steps have no outcome, and an empty ``info``. The last ``slots - 1`` steps
-    submit nothing.
+    observation). The first ``slots - 1`` steps have no outcome, which ``info["transition"] = None`` says. The last
+    ``slots - 1`` steps submit nothing.
 
     :param task: name of the task, ``"stepping"`` or ``"balance"``
     :param config: settings of the episodes
@@ -94,7 +94,7 @@ class EpisodeVecEnv(VecEnv):
 
     def step_wait(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
         """Wait for the oldest episode if all slots are in flight, and for the next episode to stand."""
-        reward, info = 0.0, dict[str, Any]()
+        reward, info = 0.0, dict[str, Any](transition=None)
         if self._steps >= self._slots:
             reward, info = self._oldest_outcome()
         self._observe()

@@ -171,6 +171,10 @@ class NAFSettings(LearnerSettings):
         if self.activation not in get_args(Activation):
             raise ConfigurationError(unknown_name("agent.activation", self.activation, get_args(Activation)))
         super().__post_init__()
+        if self.gamma > 0 and (self.temperature > 0 or self.elite_share > 0):
+            raise ConfigurationError(
+                f"agent.gamma must be 0 unless agent.temperature and agent.elite_share are 0, not {self.gamma:g}"
+            )
 
     def with_preset(self, preset: str) -> NAFSettings:
         """Settings with everything that a preset decides; the others stay.

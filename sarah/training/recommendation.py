@@ -8,13 +8,12 @@ budget compare the best candidates, all on the same new seeds.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from statistics import mean
 
 import numpy as np
 
-from sarah.agents.buffers import neighbourhood_means
+from sarah.agents.buffers import DOUBT
 from sarah.episode.evaluation import SMALLEST_CLEARANCE, SMALLEST_SENSOR_SHARE, Evaluation
 from sarah.episode.result import EpisodeResult
 from sarah.episode.tasks import Task
@@ -25,6 +24,8 @@ NEIGHBOURHOOD = 0.075
 """Distance up to which an episode counts for other parameters than its own, as a share of each parameter's range."""
 DISTINCT = 0.1
 """Smallest distance between candidates, as a share of each parameter's range."""
+SMALLEST_ROOM = 64
+"""Number of rows for episodes at first. It doubles whenever they are full."""
 
 
 def merit(result: EpisodeResult) -> float:
@@ -38,29 +39,104 @@ def merit(result: EpisodeResult) -> float:
     return merit
 
 
+class Tried:
+    """Episodes so far, and the mean merit around each: kept up to date, so that a new one costs linear time.
+
+    :param task: task that owns the parameters
+    :param episodes: parameters and merit of each episode
+    """
+
+    def __init__(self, task: Task, episodes: Iterable[tuple[Parameters, float]] = ()) -> None:
+        self.parameters: list[Parameters] = []
+        """Parameters of every episode."""
+        self._widths = np.array([parameter.width for parameter in task.parameters])
+        # Of the choice, then of every episode, with room for more: the place, the merit, and of the episodes around it
+        # the sums of their weights and of their weighted merits.
+        self._places = np.zeros((SMALLEST_ROOM, len(self._widths)))
+        self._merits, self._weights, self._weighted_merits = np.zeros((3, SMALLEST_ROOM))
+        for episode in episodes:
+            self.append(episode)
+
+    def __len__(self) -> int:
+        """Number of episodes."""
+        return len(self.parameters)
+
+    def append(self, episode: tuple[Parameters, float]) -> None:
+        """Add an episode.
+
+        :param episode: its parameters and its merit
+        """
+        parameters, merit = episode
+        self.parameters.append(parameters)
+        new = len(self)
+        if new == len(self._merits):
+            self._double_room()
+        self._merits[new] = merit
+        weights = self._put(new, parameters)
+        self._weights[1:new] += weights[:-1]
+        self._weighted_merits[1:new] += merit * weights[:-1]
+
+    def best(self, choice: Parameters, count: int) -> list[Parameters]:
+        """Choose the parameters whose neighbourhoods have the highest merit, not too close together.
+
+        :param choice: parameters to choose among, beside those of the episodes
+        :param count: largest number to choose
+        :return: the best first; among equals the choice, then the oldest
+        """
+        self._put(0, choice)
+        rows = slice(0, len(self) + 1)
+        places = self._places[rows]
+        means = self._weighted_merits[rows] / (self._weights[rows] + DOUBT)
+        chosen: list[Parameters] = []
+        while True:
+            index = int(np.argmax(means))
+            chosen.append(self.parameters[index - 1] if index else choice)
+            if len(chosen) == count:
+                return chosen
+            means[squared_lengths(places - places[index]) < DISTINCT**2] = -np.inf
+            if means.max() == -np.inf:
+                return chosen
+
+    def _put(self, row: int, parameters: Parameters) -> np.ndarray:
+        """Put parameters into a row, with the sums of the episodes around them, whose weights are returned."""
+        self._places[row] = np.array(parameters) / self._widths
+        episodes = slice(1, len(self) + 1)
+        weights: np.ndarray = np.exp(
+            squared_lengths(self._places[episodes] - self._places[row]) / (-2 * NEIGHBOURHOOD**2)
+        )
+        self._weights[row] = weights.sum()
+        self._weighted_merits[row] = weights @ self._merits[episodes]
+        return weights
+
+    def _double_room(self) -> None:
+        self._places = np.vstack((self._places, np.zeros_like(self._places)))
+        self._merits, self._weights, self._weighted_merits = (
+            np.append(values, np.zeros_like(values)) for values in (self._merits, self._weights, self._weighted_merits)
+        )
+
+
+def squared_lengths(differences: np.ndarray) -> np.ndarray:
+    """Squared length of each row.
+
+    :param differences: array of shape (n, dimensions)
+    """
+    lengths: np.ndarray = np.einsum("ij,ij->i", differences, differences)
+    return lengths
+
+
 def candidates(
-    task: Task, choice: Parameters, tried: Sequence[tuple[Parameters, float]], count: int
+    task: Task, choice: Parameters, tried: Tried | Iterable[tuple[Parameters, float]], count: int
 ) -> list[Parameters]:
     """Choose the candidates: parameters whose neighbourhoods have the highest merit, not too close together.
 
     :param task: task that owns the parameters
     :param choice: parameters that the algorithm itself would choose
-    :param tried: parameters and merit of every episode so far
+    :param tried: parameters and merit of every episode so far; asked again and again, a :class:`Tried` is quicker
     :param count: number of candidates
     :return: candidates among the algorithm's choice and the tried parameters, the best one first
     """
-    parameters = [choice, *(tried_parameters for tried_parameters, _ in tried)]
-    places = np.array(parameters) / [parameter.width for parameter in task.parameters]
-    merits = np.zeros(len(parameters))
-    if tried:
-        merits = neighbourhood_means(places, places[1:], np.array([merit for _, merit in tried]), NEIGHBOURHOOD)
-    chosen: list[int] = []
-    for index in np.argsort(-merits, kind="stable"):
-        if len(chosen) == count:
-            break
-        if all(math.dist(places[index], places[other]) >= DISTINCT for other in chosen):
-            chosen.append(index)
-    return [parameters[index] for index in chosen]
+    known = tried if isinstance(tried, Tried) else Tried(task, tried)
+    return known.best(choice, count)
 
 
 def rank(results: Sequence[EpisodeResult], baseline: Evaluation | None) -> tuple[bool, float]:

@@ -21,7 +21,7 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 from sarah.training.learning_curves import LEARNED, CurveWriter, kept_pictures, summary_of
-from sarah.training.recommendation import Parameters, candidates, merit
+from sarah.training.recommendation import Parameters, Tried, candidates, merit
 
 EPISODES_PER_RECOMMENDATION = 5
 """Number of episodes after which the recommendation is recorded again."""
@@ -42,7 +42,7 @@ class EpisodeRecorder(BaseCallback):
 
     log: Logger
     """Logger of the learning curves, which the agent uses as well."""
-    tried: list[tuple[Parameters, float]]
+    tried: Tried
     """Parameters and merit of every episode so far."""
     diverged: int
     """Number of episodes so far that diverged."""
@@ -53,11 +53,11 @@ class EpisodeRecorder(BaseCallback):
     def __init__(self, run: RunFolder, config: TrainingConfig, journal: Journal, progress: tqdm[NoReturn]) -> None:
         super().__init__()
         self.log = Logger(folder=None, output_formats=[_LoggerOutput(self)])
-        self.tried = []
         self.diverged = 0
         self.choose = None
         self._config = config
         self._task = TASKS[config.task]
+        self.tried = Tried(self._task)
         self._run = run
         self._journal = journal
         self._progress = progress
@@ -70,7 +70,7 @@ class EpisodeRecorder(BaseCallback):
 
     def _on_step(self) -> bool:
         for info in self.locals["infos"]:
-            if info:  # the first steps only fill the slots
+            if info["transition"] is not None:  # the first steps only fill the slots
                 self.record(info["spec"], info["result"])
         return True
 

@@ -11,7 +11,7 @@ from sarah.agents.buffers import RankReplayBuffer
 
 
 class _LateTransitions:
-    """Stores what :class:`EpisodeVecEnv` returns with the action that it came from."""
+    """Stores what :class:`EpisodeVecEnv` returns with the action that it came from, and what others return as it is."""
 
     def add(
         self,
@@ -24,13 +24,15 @@ class _LateTransitions:
     ) -> None:
         """Add the transition that ``infos`` names; none while the first episodes are in flight."""
         if "transition" in infos[0]:
+            if infos[0]["transition"] is None:
+                return
             obs, action, next_obs = (part[None] for part in infos[0]["transition"])
-            super().add(obs, next_obs, action, reward, done, infos)  # type: ignore[misc]  # of the replay buffer
+        super().add(obs, next_obs, action, reward, done, infos)  # type: ignore[misc]  # of the replay buffer
 
 
 class LateReplayBuffer(_LateTransitions, ReplayBuffer):
-    """stable-baselines3's replay buffer for :class:`EpisodeVecEnv`."""
+    """stable-baselines3's replay buffer for :class:`EpisodeVecEnv`, and for any other environment."""
 
 
 class LateRankReplayBuffer(_LateTransitions, RankReplayBuffer):
-    """The replay buffer of local NAF for :class:`EpisodeVecEnv`."""
+    """The replay buffer of local NAF for :class:`EpisodeVecEnv`, and for any other environment."""

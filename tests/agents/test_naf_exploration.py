@@ -78,6 +78,20 @@ def test_uniform_warm_up():
     np.testing.assert_allclose(actions.std(axis=0), 1 / np.sqrt(3), rtol=0.05)
 
 
+@pytest.mark.parametrize(
+    "noise", [{"exploration_std": 0.3}, {"action_noise": NormalActionNoise(np.full(2, 0.5), np.full(2, 0.3))}]
+)
+@pytest.mark.parametrize("algorithm", [NAF, LocalNAF])
+def test_noise_moves_no_warm_up_action(algorithm, noise):
+    """Otherwise many of them would be clipped to the bounds."""
+    actions = explore(3100, algorithm=algorithm, learning_starts=3000, **noise)
+    warm_up = actions[:3000]
+    assert np.abs(warm_up).max() < 1.0
+    np.testing.assert_allclose(warm_up.mean(axis=0), 0.0, atol=0.04)
+    np.testing.assert_allclose(warm_up.std(axis=0), 1 / np.sqrt(3), rtol=0.03)
+    assert len(np.unique(actions[3000:], axis=0)) > 90  # noise again
+
+
 class Target(Recorder):
     """Rewards what is near (0.5, -0.5), in scaled actions."""
 

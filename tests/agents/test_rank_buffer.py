@@ -1,5 +1,7 @@
 """The rank replay buffer draws by the rank of the reward, and by nothing else."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from gymnasium import spaces
@@ -7,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from stable_baselines3.common.utils import set_random_seed
 
-from sarah.agents import RankReplayBuffer
+from sarah.agents import NAF, LocalNAF, RankReplayBuffer
 from sarah.agents.buffers import average_ranks, neighbourhood_means
 
 BOX = spaces.Box(-1, 1, (2,))
@@ -132,16 +134,80 @@ def test_memory_optimisation_is_refused():
 
 def test_the_best_action_is_the_one_among_good_ones():
     rng = np.random.default_rng(0)
-    buffer = RankReplayBuffer(100, spaces.Box(-1, 1, (1,)), BOX, "cpu", 1)
-
-    def add(action, reward):
-        buffer.add(np.zeros((1, 1)), np.zeros((1, 1)), np.array([action]), np.array([reward]), np.ones(1), [{}])
-
-    add([-0.8, 0.8], 1.0)  # lucky, among bad ones
+    buffer = fill([])
+    add(buffer, [-0.8, 0.8], 1.0)  # lucky, among bad ones
     for _ in range(5):
-        add(rng.normal([-0.8, 0.8], 0.02), -1.0)
-        add(rng.normal([0.5, 0.5], 0.02), 0.7)
+        add(buffer, rng.normal([-0.8, 0.8], 0.02), -1.0)
+        add(buffer, rng.normal([0.5, 0.5], 0.02), 0.7)
     np.testing.assert_allclose(buffer.best_action(), [0.5, 0.5], atol=0.1)
+
+
+def add(buffer: RankReplayBuffer, action, reward: float) -> None:
+    buffer.add(np.zeros((1, 1)), np.zeros((1, 1)), np.array([action]), np.array([reward]), np.ones(1), [{}])
+
+
+@pytest.mark.parametrize("outlier", [None, -1000.0])
+def test_one_terrible_reward_moves_no_choice(outlier):
+    """The best of a hill is its top, whatever it costs to fall off somewhere else."""
+
+    def hill(actions: np.ndarray) -> np.ndarray:
+        return np.exp(-4 * np.sum((actions - 0.6) ** 2, axis=-1))
+
+    rng = np.random.default_rng(0)
+    buffer = fill([])
+    for action in rng.uniform(-1, 1, (60, 2)):
+        add(buffer, action, float(hill(action)))
+    for action in rng.normal(-0.5, 0.05, (30, 2)):  # often tried, and worth little
+        add(buffer, action, 0.03)
+    if outlier is not None:
+        add(buffer, [0.9, -0.9], outlier)
+    assert hill(buffer.best_action()) > 0.8
+    set_random_seed(0)
+    for std in (0.2, 0.4, 1.0):
+        assert hill(np.array([buffer.draw_near_best(std, 16) for _ in range(40)])).mean() > 0.4
+
+
+def test_of_a_large_buffer_the_newest_decide():
+    """Also where the oldest have been overwritten."""
+    buffer = fill([], buffer_size=12_000)
+    rng = np.random.default_rng(0)
+    buffer.actions[:, 0], buffer.rewards[:, 0] = rng.uniform(-1, 0, (12_000, 2)), rng.normal(size=12_000)
+    buffer.full, buffer.pos = True, 11_999
+    assert (buffer.best_action() < 0).all()
+    for _ in range(5):
+        add(buffer, [0.5, 0.5], 9.0)
+    np.testing.assert_array_equal(buffer.best_action(), [0.5, 0.5])
+
+
+def test_a_draw_takes_no_more_memory_in_a_large_buffer():
+    buffer = fill([], buffer_size=100_000)
+    rng = np.random.default_rng(0)
+    buffer.actions[:, 0], buffer.rewards[:, 0], buffer.full = (
+        rng.uniform(-1, 1, (100_000, 2)),
+        rng.random(100_000),
+        True,
+    )
+    tracemalloc.start()
+    buffer.draw_near_best(0.2, 16)
+    buffer.sample(64)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 50e6
+
+
+@pytest.mark.parametrize("algorithm", [NAF, LocalNAF])
+def test_ranks_say_nothing_of_what_follows(algorithm):
+    """So values of next observations cannot be learned from them."""
+    arguments = dict(replay_buffer_class=RankReplayBuffer, policy_kwargs={"net_arch": [8]}, gamma=0.5)
+    plain = dict(replay_buffer_kwargs={"temperature": 0.0})
+    with pytest.raises(ValueError, match=r"^gamma must be 0 with a RankReplayBuffer of temperature 4, not 0.5: .*$"):
+        algorithm("MlpPolicy", "Pendulum-v1", **arguments)
+    if algorithm is LocalNAF:
+        with pytest.raises(ValueError, match=r"^gamma must be 0 with elite_share above 0, not 0.5: .*$"):
+            LocalNAF("MlpPolicy", "Pendulum-v1", **arguments, **plain)
+        plain["elite_share"] = 0.0
+    assert algorithm("MlpPolicy", "Pendulum-v1", **arguments, **plain).gamma == 0.5
+    assert LocalNAF("MlpPolicy", "Pendulum-v1", policy_kwargs={"net_arch": [8]}).gamma == 0.0
 
 
 def test_neighbourhood_means_by_hand():

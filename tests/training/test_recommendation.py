@@ -1,7 +1,9 @@
 """Candidates for the comparison that ends a training."""
 
 import dataclasses
+import tracemalloc
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -10,7 +12,7 @@ from laboratory import RESULT
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.tasks import STEPPING
 from sarah.runs.config import TrainingConfig
-from sarah.training.recommendation import DISTINCT, candidates, merit, rank
+from sarah.training.recommendation import DISTINCT, Tried, candidates, merit, rank
 
 CHOICE = (1.0, 1.0, 1.0, 1.0, 1.0)
 WIDTH = 2.0
@@ -62,6 +64,41 @@ def test_there_are_never_more_than_asked_for(tried: list[tuple[tuple[float, ...]
         for index, first in enumerate(chosen)
         for second in chosen[:index]
     )
+
+
+def random_episodes(count: int) -> list[tuple[tuple[float, ...], float]]:
+    generator = np.random.default_rng(0)
+    return [(tuple(map(float, generator.uniform(0, 2, 5))), float(generator.random())) for _ in range(count)]
+
+
+def test_candidates_are_those_of_the_definition() -> None:
+    """The highest mean merit by a Gaussian kernel, with a quarter of an episode without merit everywhere."""
+    episodes = random_episodes(300)
+    tried = Tried(STEPPING)
+    for count, episode in enumerate(episodes, start=1):
+        tried.append(episode)
+        if count % 60:
+            continue
+        places = np.array([CHOICE, *(parameters for parameters, _ in episodes[:count])]) / WIDTH
+        distances = np.linalg.norm(places[:, None] - places[1:], axis=2)
+        weights = np.exp(-0.5 * (distances / 0.075) ** 2)
+        means = weights @ [merit for _, merit in episodes[:count]] / (weights.sum(axis=1) + 0.25)
+        (best,) = candidates(STEPPING, CHOICE, tried, 1)
+        assert best == tuple(places[np.argmax(means)] * WIDTH)
+        assert candidates(STEPPING, CHOICE, tried, 4) == candidates(STEPPING, CHOICE, episodes[:count], 4)
+        assert len(tried) == count
+
+
+def test_memory_grows_no_faster_than_the_episodes() -> None:
+    peaks = {}
+    for count in (800, 4000):
+        episodes = random_episodes(count)
+        tracemalloc.start()
+        candidates(STEPPING, CHOICE, episodes, 3)
+        _, peaks[count] = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+    assert peaks[4000] < 8 * peaks[800]  # a matrix of all with all would take 25 times as much
+    assert peaks[4000] < 2e6
 
 
 def test_what_is_no_gait_has_less_merit() -> None:

@@ -1,0 +1,52 @@
+"""Checks of arguments, which refuse a bad value in one line that names the argument, the value and what is allowed."""
+
+import sys
+from numbers import Integral, Real
+
+from stable_baselines3.common.type_aliases import Schedule
+from stable_baselines3.common.utils import FloatSchedule
+
+
+def check_number(
+    name: str,
+    value: float,
+    lowest: float,
+    highest: float = sys.float_info.max,
+    above: bool = False,
+    whole: bool = False,
+) -> None:
+    """
+    Refuse what is no number in a range.
+
+    :param name: Name of the argument
+    :param value: Its value
+    :param lowest: Lowest value
+    :param highest: Highest value; by default any finite one
+    :param above: Whether the lowest value itself is too low
+    :param whole: Whether only whole numbers are allowed
+    """
+    is_number = isinstance(value, Integral if whole else Real) and not isinstance(value, bool)
+    if is_number and lowest <= value <= highest and not (above and value == lowest):
+        return
+    ends = f"{'above' if above else 'from'} {lowest:g}" + (f" to {highest:g}" if highest < sys.float_info.max else "")
+    raise ValueError(f"{name} must be a {'whole ' if whole else ''}number {ends}, not {value!r}")
+
+
+def checked_schedule(
+    name: str, value: float | Schedule, lowest: float, highest: float = sys.float_info.max
+) -> FloatSchedule:
+    """
+    Make a schedule, and refuse a number out of its range, or a schedule that begins or ends out of it.
+
+    :param name: Name of the argument
+    :param value: A number, or a function of the current progress remaining (from 1 to 0)
+    :param lowest: Lowest value
+    :param highest: Highest value; by default any finite one
+    :return: The schedule
+    """
+    if not callable(value):
+        check_number(name, value, lowest, highest)
+        return FloatSchedule(float(value))
+    for progress_remaining in (1, 0):
+        check_number(f"{name}({progress_remaining})", value(progress_remaining), lowest, highest)
+    return FloatSchedule(value)

@@ -1,0 +1,67 @@
+"""Bad values are refused at once, in one line that names the argument and the value."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+from stable_baselines3.common.env_util import make_vec_env
+from stable_baselines3.common.utils import LinearSchedule
+
+from sarah.agents import NAF, LocalNAF
+
+SMALL = {"net_arch": [8]}
+BAD = [
+    (NAF, "max_grad_norm", [0.0, -1.0, math.nan, "1", None]),
+    (NAF, "exploration_std", [-0.1, math.inf, math.nan, "0.1", None]),
+    (LocalNAF, "elite_share", [-0.1, 1.5, math.nan, None]),
+    (LocalNAF, "elite_std", [-0.1, math.inf, None]),
+    (LocalNAF, "elite_draws", [0, -3, 2.5, math.nan, True, None]),
+]
+
+
+def refusal(name: str, value: object) -> str:
+    return f"^{re.escape(name)} must be a (whole )?number (from|above) [01]( to 1)?, not {re.escape(repr(value))}$"
+
+
+@pytest.mark.parametrize(
+    ("algorithm", "name", "value"), [(algorithm, name, value) for algorithm, name, values in BAD for value in values]
+)
+def test_bad_values_of_the_algorithm(algorithm, name, value):
+    with pytest.raises(ValueError, match=refusal(name, value)):
+        algorithm("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL, **{name: value})
+
+
+@pytest.mark.parametrize("value", [-1.0, math.inf, math.nan, "4"])
+def test_bad_values_of_replay_and_policy(value):
+    with pytest.raises(ValueError, match=refusal("temperature", value)):
+        LocalNAF("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL, replay_buffer_kwargs={"temperature": value})
+    with pytest.raises(ValueError, match=refusal("min_curvature", value)):
+        NAF("MlpPolicy", "Pendulum-v1", policy_kwargs={**SMALL, "min_curvature": value})
+
+
+@pytest.mark.parametrize("ends", [(-0.1, 0.5), (0.5, 2.0)])
+def test_schedules_are_judged_by_their_ends(ends):
+    end, value = (1, ends[0]) if ends[0] < 0 else (0, ends[1])
+    with pytest.raises(ValueError, match=refusal(f"elite_share({end})", value)):
+        LocalNAF("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL, elite_share=LinearSchedule(*ends, 0.5))
+
+
+def test_bad_values_at_load(tmp_path):
+    LocalNAF("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL).save(tmp_path / "model")
+    with pytest.raises(ValueError, match=refusal("elite_draws", 0)):
+        LocalNAF.load(tmp_path / "model", env=make_vec_env("Pendulum-v1"), elite_draws=0)
+
+
+def test_ends_of_the_ranges_are_allowed():
+    LocalNAF(
+        "MlpPolicy",
+        "Pendulum-v1",
+        max_grad_norm=math.inf,
+        exploration_std=0,
+        elite_share=np.float32(1.0),
+        elite_std=0.0,
+        elite_draws=np.int64(1),
+        replay_buffer_kwargs={"temperature": 0},
+        policy_kwargs={**SMALL, "min_curvature": 0},
+    )
