@@ -8,6 +8,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from statistics import median
 from typing import Any
 
@@ -46,11 +47,11 @@ class Decisions:
             tried = Tried(STEPPING)
             for action, reward in zip(actions, rewards, strict=True):
                 remember(action, reward, buffer, tried)
-            note = milliseconds(lambda: tried.append((CENTRE, 0.5)), self.rounds)
-            recommend = milliseconds(lambda: candidates(STEPPING, CENTRE, tried, 1), self.rounds)
+            note = milliseconds(partial(tried.append, (CENTRE, 0.5)), self.rounds)
+            recommend = milliseconds(partial(candidates, STEPPING, CENTRE, tried, 1), self.rounds)
             yield {
                 "episodes": count,
-                "action_milliseconds": milliseconds(lambda: decide(buffer), self.rounds),
+                "action_milliseconds": milliseconds(partial(decide, buffer), self.rounds),
                 "recommendation_milliseconds": note + recommend / EPISODES_PER_RECOMMENDATION,
             }
 

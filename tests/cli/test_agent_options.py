@@ -96,6 +96,7 @@ def test_the_help_shows_the_settings_of_the_algorithm(
     ("line", "message"),
     [
         ("--agent.gamma 1.5", "agent.gamma must be between 0 and 1, not 1.5"),
+        ("--agent.gamma 0.5", "agent.gamma must be 0 unless agent.temperature and agent.elite_share are 0, not 0.5"),
         ("--agent.learning-rate fast", "--agent.learning-rate must be a number, not 'fast'"),
         ("--agent.learning-rat 1e-4", "did you mean --agent.learning-rate?"),
         ("--agent.v-layers 8 x", "--agent.v-layers must be whole numbers, not ['8', 'x']"),

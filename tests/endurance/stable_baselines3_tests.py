@@ -43,7 +43,12 @@ CHANGES = (
     Change(
         "test_save_load.py", "if model_class in [SAC, TD3]:\n        actor =", "if False:\n        actor =", "no actor"
     ),
-    Change("test_tensorboard.py", "logname = model_name.upper()", "logname = algo.__name__", "name of the algorithm"),
+    Change(
+        "test_tensorboard.py",
+        "logname = model_name.upper()",
+        "logname = MODEL_DICT[model_name][0].__name__",
+        "name of the algorithm",
+    ),
     Change(CNN, "isinstance(model, DQN)", "isinstance(model, (DQN, TD3))", NETWORKS),
     Change(CNN, "model_class == TD3", "False", NETWORKS),
     Change(CNN, "model_class != DQN", "model_class == SAC", NETWORKS),
