@@ -23,9 +23,10 @@ def buffer_of(actions: Sequence[Action], rewards: Sequence[float]) -> RankReplay
 
 
 def random_buffer(seed: int) -> RankReplayBuffer:
-    """40 transitions, of which the best and the worst rewards are negative too."""
+    """40 transitions, or a few that are far from each other; nearly all of their rewards are negative."""
     rng = np.random.default_rng(seed)
-    return buffer_of(rng.uniform(-1, 1, (40, 2)).tolist(), rng.normal(-0.5, 1.0, 40).tolist())
+    number, dim = (40, 2) if seed % 2 else (6, 4)
+    return buffer_of(rng.uniform(-1, 1, (number, dim)).tolist(), rng.normal(-3.0, 1.0, number).tolist())
 
 
 def stored(buffer: RankReplayBuffer) -> tuple[list[list[float]], list[float]]:
@@ -72,7 +73,7 @@ def test_a_draw_near_the_best_has_the_highest_mean_around_it(std: float) -> None
         buffer = random_buffer(seed)
         actions, rewards = stored(buffer)
         set_random_seed(seed)
-        gaussian = np.random.normal(0.0, 1.0, (8, 2)).tolist()
+        gaussian = np.random.normal(0.0, 1.0, (8, len(actions[0]))).tolist()
         set_random_seed(seed)
         best = buffer.best_action().tolist()
         draws = [[reflected(b + std * z) for b, z in zip(best, row, strict=True)] for row in gaussian]

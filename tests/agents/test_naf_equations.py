@@ -182,6 +182,7 @@ def test_a_critic_by_itself_is_the_publications_with_mu_in_the_action_space():
         expected = critic.value(pictures) - 0.5 * row.square().sum(dim=1, keepdim=True)
         th.testing.assert_close(critic(pictures, actions), expected)
     assert {name.split(".")[0] for name in critic.state_dict()} == {"value_net", "mu_net", "lower_net"}
+    assert critic.min_curvature == 0.0
 
 
 @for_every_architecture

@@ -163,25 +163,6 @@ def test_gyroscope_reads_the_rate_in_the_torsos_frame(lab: Laboratory, build: Bu
     assert simulation.read().angular_rate == pytest.approx((-z, y, x), abs=1e-9)
 
 
-@pytest.mark.parametrize("force", [(90.0, 0.0, 0.0), (0.0, 90.0, 0.0), (0.0, -90.0, 60.0)])
-def test_accelerometer_reads_a_push_on_every_axis(
-    lab: Laboratory, build: BuildSimulation, force: tuple[float, float, float]
-) -> None:
-    """In the air, tilted by a degree: the velocity that the torso gains in a tick of 10 ms, and gravity."""
-    simulation = build()
-    lab.place(simulation, pitch=math.radians(1.0))
-    velocity = simulation.torso_state().velocity
-    for _ in range(5):
-        simulation.push(force)
-        simulation.advance()
-        torso = simulation.torso_state()
-        gained = [(now - then) * SECOND for now, then in zip(torso.velocity, velocity, strict=True)]
-        expected = rotate_to_body(torso.orientation, (gained[0], gained[1], gained[2] + GRAVITY))
-        assert simulation.read().acceleration == pytest.approx(expected, abs=1e-6)
-        assert math.hypot(*expected) > 3.0
-        velocity = torso.velocity
-
-
 @NEEDS_PYBULLET
 def test_rotation_keeps_length_and_undoes_itself() -> None:
     orientation = pybullet.getQuaternionFromEuler((0.3, -0.5, 0.9))
