@@ -34,6 +34,12 @@ def stored(buffer: RankReplayBuffer) -> tuple[list[list[float]], list[float]]:
     return actions, rewards
 
 
+def ranks(rewards: list[float]) -> list[float]:
+    """From 0, the lowest, to 1; equal ones share the mean of theirs."""
+    places = [sum(other < own for other in rewards) + (rewards.count(own) - 1) / 2 for own in rewards]
+    return [place / (len(rewards) - 1) for place in places]
+
+
 def mean_around(place: Action, actions: list[list[float]], values: list[float], distance: float, doubt: float) -> float:
     weights = [math.exp(-(math.dist(place, action) ** 2) / (2 * distance**2)) for action in actions]
     return sum(w * value for w, value in zip(weights, values, strict=True)) / (sum(weights) + doubt)
@@ -49,12 +55,11 @@ def reflected(value: float) -> float:
 
 
 def test_best_action_has_the_highest_mean_around_it() -> None:
-    """Over a distance of 0.15, with a quarter of a transition that is as bad as the worst."""
+    """Of ranks, over a distance of 0.15, with a quarter of a transition that is as bad as the worst."""
     for seed in range(60):
         buffer = random_buffer(seed)
         actions, rewards = stored(buffer)
-        above_worst = [reward - min(rewards) for reward in rewards]
-        means = [mean_around(action, actions, above_worst, 0.15, 0.25) for action in actions]
+        means = [mean_around(action, actions, ranks(rewards), 0.15, 0.25) for action in actions]
         assert buffer.best_action().tolist() == actions[means.index(max(means))]
 
 
@@ -62,13 +67,15 @@ def test_best_action_is_among_the_100_highest_rewards() -> None:
     """99 lonely ones earn 1, the hundredth 0.99 among neighbours; the next has more of them, and comes too late."""
     lonely = [(float(n), 0.0) for n in range(2, 101)]
     among_neighbours = [(0.05, 0.0), (0.0, 0.0), (-0.05, 0.0), (-0.1, 0.0), (0.0, 0.05)]
-    buffer = buffer_of([*among_neighbours, *lonely, (-50.0, 0.0)], [0.99, 0.98, 0.97, 0.96, 0.95, *[1.0] * 99, 0.0])
+    worthless = [(-float(n), 0.0) for n in range(2, 802)]
+    rewards = [0.99, 0.98, 0.97, 0.96, 0.95, *[1.0] * 99, *[0.0] * 800]
+    buffer = buffer_of([*among_neighbours, *lonely, *worthless], rewards)
     assert buffer.best_action() == pytest.approx((0.05, 0.0))
 
 
 @pytest.mark.parametrize("std", [0.1, 0.21, 0.22, 0.5, 1.5])
 def test_a_draw_near_the_best_has_the_highest_mean_around_it(std: float) -> None:
-    """Over 0.7 standard deviations, at least 0.15, above the average reward; draws are reflected at the bounds."""
+    """Of ranks above the mean rank, over 0.7 deviations, at least 0.15; draws are reflected at the bounds."""
     for seed in range(40):
         buffer = random_buffer(seed)
         actions, rewards = stored(buffer)
@@ -77,7 +84,7 @@ def test_a_draw_near_the_best_has_the_highest_mean_around_it(std: float) -> None
         set_random_seed(seed)
         best = buffer.best_action().tolist()
         draws = [[reflected(b + std * z) for b, z in zip(best, row, strict=True)] for row in gaussian]
-        above_average = [reward - sum(rewards) / len(rewards) for reward in rewards]
+        above_average = [rank - 0.5 for rank in ranks(rewards)]
         means = [mean_around(draw, actions, above_average, max(0.15, 0.7 * std), 0.001) for draw in draws]
         drawn = buffer.draw_near_best(std, draws=8)
         assert drawn.dtype == np.float32

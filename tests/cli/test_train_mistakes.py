@@ -90,7 +90,7 @@ MISTAKES = {
         (f"{PUSHED}.time-limit 1.5 --episode.push.at-seconds 2 3", "before the time_limit of 1.5 s"),
     ],
     "files and folders": [
-        ("--config full", "cannot read full: Is a directory"),
+        ("--config full", "cannot read full: it is not a regular file"),
         ("--config nothing.yaml", "cannot read nothing.yaml"),
         ("--run-dir full", "run folder full is not empty: name another with --run-dir"),
         ("--run-dir full/precious.txt", "cannot write run folder"),

@@ -37,7 +37,8 @@ READERS = {
     "config.yaml": (EVAL, FIGURES, VIDEO, VIEW, REPORT, TRANSFER, RESUME, FROM, COMPARE),
     "parameters.json": (EVAL, FIGURES, VIDEO, VIEW, REPORT, TRANSFER, FROM, COMPARE),
     "episodes.csv": (FIGURES, VIDEO, VIEW, REPORT),
-    "versions.txt": (REPORT, RESUME),
+    "versions.txt": (REPORT,),
+    "journal.jsonl": (RESUME,),
     "race.csv": (COMPARE,),
     "recommendations.csv": (COMPARE,),
 }
@@ -86,6 +87,7 @@ HARMS: dict[str, tuple[Callable[[Path], None], ...]] = {
     "config.yaml": (laughs, nested, digits, gigabytes, long_line, fifo, device),
     "parameters.json": (nested, digits, gigabytes, long_line, fifo, device),
     "versions.txt": (gigabytes, fifo, device),
+    "journal.jsonl": (nested, digits, gigabytes, long_line, fifo, device),
     "race.csv": (gigabytes, long_line, blank_lines, fifo, device),
     "recommendations.csv": (gigabytes, long_line, blank_lines, fifo, device),
     "episodes.csv": (gigabytes, long_line, blank_lines, fifo, device),
@@ -134,6 +136,8 @@ def test_hostile_files_are_refused_within_seconds(
 ) -> None:
     shutil.copytree(honest, tmp_path / "race")
     harm(tmp_path / "race" / "random-s0" / name)
+    if name == "journal.jsonl":
+        (tmp_path / "race" / "random-s0" / "parameters.json").unlink()  # what is finished is not resumed
     monkeypatch.chdir(tmp_path)
     is_finished = (tmp_path / "race" / "random-s0" / "parameters.json").is_file()
     # The worst are tried on every command, the others on one: all read by the same functions.

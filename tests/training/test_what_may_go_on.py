@@ -20,6 +20,7 @@ from sarah.errors import ConfigurationError, ResumeError, TrainingInterruptedErr
 from sarah.pictures import gait_snapshot
 from sarah.pictures.gait_snapshot import Picture
 from sarah.runs import journal as journal_module
+from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.config_files import read_config, settings_by_key
 from sarah.runs.journal import Journal
@@ -129,7 +130,9 @@ def keys_of(config: TrainingConfig) -> set[str]:
     ("task", "algo"), [("balance", "naf"), *(("stepping", algo) for algo in ALGORITHMS if algo != "naf")]
 )
 def test_every_setting_edited_in_turn_is_refused(task: str, algo: str, tmp_path: Path) -> None:
-    config = TrainingConfig(task, algo, episodes=5, episode=TASKS[task].config_of(EPISODE))
+    # Without ranks, gamma may be another.
+    agent = NAFSettings(temperature=0.0, elite_share=0.0) if algo == "naf" else settings_of(algo)()
+    config = TrainingConfig(task, algo, episodes=5, agent=agent, episode=TASKS[task].config_of(EPISODE))
     run = begun(tmp_path / "run", config)
     path = run.path / "config.yaml"
     written = path.read_bytes()
