@@ -145,7 +145,7 @@ class RankReplayBuffer(ReplayBuffer):
         """
         if self._cumulative_probabilities is None:
             weights = np.exp(self.temperature * average_ranks(self.rewards[: self.size(), 0]))
-            cumulative = np.cumsum(weights / weights.sum())
+            cumulative = np.cumsum(weights)
             self._cumulative_probabilities = cumulative / cumulative[-1]
         # As np.random.choice does with probabilities, which it would add up again for every batch
         batch_inds = self._cumulative_probabilities.searchsorted(np.random.random_sample(batch_size), side="right")

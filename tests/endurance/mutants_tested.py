@@ -24,7 +24,7 @@ ENDING = "tests/episode/test_ending.py -k criteria"
 SENSORS = "tests/simulation/test_sensors.py -k 'not push'"
 CRITIC = "tests/agents/test_naf_equations.py"
 TARGETS = "tests/agents/test_naf_targets.py tests/agents/test_naf_train_eval_mode.py"
-BUFFERS = "tests/agents/test_best_action.py tests/agents/test_rank_buffer.py"
+BUFFERS = "tests/agents/test_best_action.py tests/agents/test_rank_buffer.py tests/agents/test_naf_arguments.py"
 
 SUBJECTS = (
     Subject("sarah/control/pattern_generator.py", CONTROL),
@@ -60,6 +60,7 @@ NO_CURVATURE = "a curvature of 0 adds nothing, and none is negative"
 NOT_COUNTED = "an exponential average does not ask how many it has averaged"
 NO_LOAD = "a negative load is as little above a threshold as none"
 NO_OUTPUT = "stable-baselines3 makes an output layer of more than 0 units only"
+ROUND = "a round number, of which a few more or less say the same"
 ONE_ROW = "the buffer has one row a transition, whichever environment it comes from"
 
 EXPLAINED: dict[str, dict[str, str]] = {
@@ -95,10 +96,12 @@ EXPLAINED: dict[str, dict[str, str]] = {
     "agents/buffers.py": {
         "n_envs: int = 2,": ONE_ROW,
         "n_envs: int = 0,": ONE_ROW,
-        "LITTLE_DOUBT = 0.0011": "a tenth of a thousandth of a transition decides between no draws",
         "weights = np.exp(self.temperature * average_ranks(self.rewards[: self.size(), -1]))": ONE_ROW,
-        "actions, rewards = self.actions[: self.size(), -1], self.rewards[: self.size(), 0]": ONE_ROW,
-        "actions, rewards = self.actions[: self.size(), 0], self.rewards[: self.size(), -1]": ONE_ROW,
+        "return self.actions[newest, -1], average_ranks(self.rewards[newest, 0])": ONE_ROW,
+        "return self.actions[newest, 0], average_ranks(self.rewards[newest, -1])": ONE_ROW,
+        "MOST_JUDGED = 10001": ROUND,
+        "MOST_JUDGED = 9999": ROUND,
+        "MOST_JUDGED = 11000": ROUND,
         f"drawn = np.where(np.abs(drawn) >= 1, 2 * np.sign(drawn) - drawn, drawn){AS_FLOATS}": "1 reflected is 1",
         f"drawn = np.where(np.abs(drawn) > 1, 2 / np.sign(drawn) - drawn, drawn){AS_FLOATS}": "a sign is 1 or -1",
     },
