@@ -21,7 +21,7 @@ SMALL = 65_536
 LONGEST_LINE = 16_384
 """Largest size of a line in a table, in bytes."""
 LARGEST = 2**30
-"""Largest size of a table, in bytes: that of a run of a million episodes is less than half of it."""
+"""Largest size of any file but a journal, in bytes: the table of a million episodes is less than half of it."""
 
 
 @contextmanager

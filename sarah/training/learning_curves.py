@@ -20,6 +20,7 @@ from tensorboard.plugins.hparams import summary_v2 as hparams
 from tensorboard.summary.writer.record_writer import RecordWriter
 
 from sarah.episode.tasks import BalanceConfig
+from sarah.files import LARGEST
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import EVENTS, RunFolder
 
@@ -105,16 +106,20 @@ def summary_of(pictures: list[Picture]) -> Summary:
 def kept_pictures(run: RunFolder) -> dict[int, Summary]:
     """Pictures that TensorBoard has of a training, by the number of episodes before them.
 
+    What is damaged, or of a size that would fill the memory, is left out: such pictures are drawn again.
+
     :param run: run folder of the training
     """
     kept = {}
     for path in run.event_files():
+        if path.stat().st_size > LARGEST:
+            continue
         try:
             for event in LegacyEventFileLoader(str(path)).Load():
                 if any(value.HasField("image") for value in event.summary.value):
                     kept[event.step] = event.summary
         except (OSError, ValueError, DecodeError):
-            continue  # what is damaged is drawn again
+            continue
     return kept
 
 

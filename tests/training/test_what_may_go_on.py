@@ -1,11 +1,12 @@
 """A training goes on only with the settings, the code and the versions that it was begun with."""
 
 import dataclasses
+import os
 import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -286,6 +287,30 @@ def test_pictures_that_were_lost_are_drawn_again(artist: Artist, tmp_path: Path)
     train(run.config(), run)
     assert [step for step, _ in pictures(run)] == [2, 4, 6, 8, 10]
     assert pictures(run)[0] == (2, b"picture 1")
+
+
+def rubbish(events: Path) -> None:
+    events.write_bytes(b"rubbish" * 1000)
+
+
+def gigabytes(events: Path) -> None:
+    with events.open("wb") as file:
+        file.truncate(20 * 2**30)
+
+
+def fifo(events: Path) -> None:
+    events.unlink()
+    os.mkfifo(events)
+
+
+@pytest.mark.parametrize("harm", [rubbish, gigabytes, fifo])
+def test_a_hostile_file_of_curves_is_no_obstacle(harm: Callable[[Path], None], artist: Artist, tmp_path: Path) -> None:
+    config = TrainingConfig(algo="random", episodes=10, slots=1, episode=EPISODE, pictures=2)
+    run = interrupted(tmp_path / "run", config, 5)
+    (events,) = run.path.glob("events.out.tfevents.*")
+    harm(events)
+    train(run.config(), run)
+    assert artist.drawn == 2 + 5
 
 
 @pytest.mark.parametrize(("before", "after", "steps"), [(5, 0, [5]), (0, 5, [5, 10]), (4, 5, [4, 5, 8, 10])])
