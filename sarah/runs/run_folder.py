@@ -211,7 +211,7 @@ class RunFolder:
     def remove_records(self) -> None:
         """Remove the tables and curves of the episodes: a resumed training writes all of them anew."""
         tables = (self._episodes_path, self._recommendations_path, self._progress_path)
-        for path in (*tables, *self.event_files()):
+        for path in (*tables, *self.path.glob(f"{EVENTS}*")):  # whatever they are: a FIFO of that name would block
             path.unlink(missing_ok=True)
 
     def write_parameters(self, content: Mapping[str, Any]) -> None:
