@@ -144,7 +144,7 @@ class RankReplayBuffer(ReplayBuffer):
         :return: The transitions
         """
         if self._cumulative_probabilities is None:
-            weights = np.exp(self.temperature * average_ranks(self.rewards[: self.size(), 0]))
+            weights = np.exp(self.temperature * (average_ranks(self.rewards[: self.size(), 0]) - 1))
             cumulative = np.cumsum(weights)
             self._cumulative_probabilities = cumulative / cumulative[-1]
         # As np.random.choice does with probabilities, which it would add up again for every batch

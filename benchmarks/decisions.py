@@ -18,7 +18,7 @@ from gymnasium import spaces
 from experiments.record import Row
 from sarah.agents import PRESETS, RankReplayBuffer
 from sarah.episode.tasks import STEPPING
-from sarah.training.recommendation import Tried, candidates
+from sarah.training.recommendation import Tried
 from sarah.training.recorder import EPISODES_PER_RECOMMENDATION
 
 OBSERVATION = np.zeros((1, 16), np.float32)
@@ -48,7 +48,7 @@ class Decisions:
             for action, reward in zip(actions, rewards, strict=True):
                 remember(action, reward, buffer, tried)
             note = milliseconds(partial(tried.append, (CENTRE, 0.5)), self.rounds)
-            recommend = milliseconds(partial(candidates, STEPPING, CENTRE, tried, 1), self.rounds)
+            recommend = milliseconds(partial(tried.best, CENTRE, 1), self.rounds)
             yield {
                 "episodes": count,
                 "action_milliseconds": milliseconds(partial(decide, buffer), self.rounds),

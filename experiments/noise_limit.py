@@ -16,7 +16,7 @@ from sarah.episode.evaluation import evaluate
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE
 from sarah.episode.workers import Workers
-from sarah.training.recommendation import Parameters, candidates, merit
+from sarah.training.recommendation import Parameters, Tried, merit
 
 GOOD = (0.97, 0.13, -0.15, -0.3)
 """V1 to V4 that did best of 12,600 episodes."""
@@ -63,7 +63,7 @@ class NoiseLimit(OnWorkers):
         ]
         results = workers.simulate_all(specs)
         tried = [(spec.parameters, merit(result)) for spec, result in zip(specs, results, strict=True)]
-        (choice,) = candidates(BALANCE, specs[0].parameters, tried, 1)
+        (choice,) = Tried(BALANCE, tried).best(specs[0].parameters, 1)
         return choice
 
 

@@ -27,7 +27,7 @@ class RunFolderError(SarahError, OSError):
 
 
 class ResumeError(RunFolderError):
-    """A training cannot be resumed, because it would not go on exactly."""
+    """A training cannot be resumed: it would not go on exactly, or another training is at it."""
 
 
 class SimulationError(SarahError, RuntimeError):

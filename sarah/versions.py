@@ -14,6 +14,8 @@ SIMULATING = ("pybullet", "mujoco", "numpy", "xacro")
 """Packages that an episode's bytes depend on, beside this one."""
 LEARNING = (*SIMULATING, "torch", "stable-baselines3", "gymnasium", "cma", "optuna", "scipy")
 """Packages that a training's bytes depend on, beside this one."""
+LONGEST_SHOWN = 100
+"""Largest number of characters of a value in a message."""
 SOURCES = (".py", ".xacro")
 """Endings of the names of files that are hashed."""
 
@@ -64,7 +66,14 @@ def differences(here: Mapping[str, object], there: Mapping[str, object], other: 
     :param other: words for the other place
     """
     return "; ".join(
-        f"{name} is {here.get(name, 'not known')} here, and {there.get(name, 'not known')} {other}"
+        f"{_shown(name)} is {_shown(here.get(name, 'not known'))} here, and "
+        f"{_shown(there.get(name, 'not known'))} {other}"
         for name in dict.fromkeys((*here, *there))
         if here.get(name) != there.get(name)
     )
+
+
+def _shown(value: object) -> str:
+    """A value as a terminal may print it, of a bounded length: it can come from a file that somebody else wrote."""
+    text = str(value)
+    return text if text.isprintable() and len(text) <= LONGEST_SHOWN else f"{ascii(text)[:LONGEST_SHOWN]}…"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -111,7 +112,11 @@ def _compare(arguments: Sequence[str]) -> None:
     options.out.mkdir(parents=True, exist_ok=True)
     with Workers(options.workers, options.scheduler) as workers:
         say_engine(episode, options.engine)
-        curves = race(entries, workers)
+        try:
+            curves = race(entries, workers)
+        except KeyboardInterrupt:
+            print(f"\n{COMMAND}: interrupted; the same command goes on with the race", file=sys.stderr)
+            raise SystemExit(130) from None
     table = rankings(curves, options.best_known)
     print(as_markdown(table))
     (options.out / "race.md").write_text(as_markdown(table) + "\n", encoding="utf-8")

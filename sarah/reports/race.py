@@ -26,6 +26,8 @@ from sarah.errors import RunFolderError
 from sarah.files import locked, read_lines, read_text, replace_text
 from sarah.runs.agent_settings import settings_of
 from sarah.runs.config import TrainingConfig
+from sarah.runs.config_files import first_difference
+from sarah.runs.origin import check_origin
 from sarah.runs.run_episodes import LONGEST_REASON
 from sarah.runs.run_folder import RunFolder
 from sarah.training.train import train
@@ -77,10 +79,15 @@ def race(entries: Sequence[Entry], workers: Workers) -> list[RaceCurve]:
     :param entries: trainings of the race; on a cluster, all workers must share the file system of their folders
     :param workers: workers that train
     :raises RunFolderError: if a folder is not a run folder of a race, or has a training with other settings
+    :raises ResumeError: if a training was made with other code or versions, and others are still to be made
     """
     for entry in entries:
         if entry.folder.exists():
             _check_settings(entry)
+    if not all(is_evaluated(entry) for entry in entries):  # otherwise nothing of today comes into the table
+        for entry in entries:
+            if entry.folder.exists():
+                check_origin(RunFolder(entry.folder).journal_path, entry.config)
     jobs = [None if is_evaluated(entry) else workers.submit(run_entry, entry) for entry in entries]
     return [read_curve(entry) if job is None else job.result() for entry, job in zip(entries, jobs, strict=True)]
 
@@ -91,8 +98,9 @@ def _check_settings(entry: Entry) -> None:
         there = RunFolder.resumable(entry.folder).config()
     except RunFolderError as error:
         raise RunFolderError(f"{entry.folder} is not of a race: name another folder") from error
-    if there != entry.config:
-        raise RunFolderError(f"{entry.folder} is a training with other settings: name another folder")
+    if difference := first_difference(entry.config, there):
+        key, here, recorded = difference
+        raise RunFolderError(f"{entry.folder} is a training with {key} {recorded}, not {here}: name another folder")
 
 
 def is_run(entry: Entry) -> bool:

@@ -113,7 +113,7 @@ def as_markdown(table: Sequence[Ranking]) -> str:
     shares = "".join(f" {share:.0%} of the best after | reached by |" for share in SHARES)
     lines = [f"| algorithm | runs |{shares} final score | wall time |", "|---" * (4 + 2 * len(SHARES)) + "|"]
     for row in table:
-        cells = "".join(f" {row.episodes[share]:.0f} | {row.reached[share]} |" for share in SHARES)
+        cells = "".join(f" {row.episodes[share]:g} | {row.reached[share]} |" for share in SHARES)
         score, low, high = row.final
         lines.append(
             f"| {row.algo} | {row.runs} |{cells} {score:.3f} ({low:.3f} to {high:.3f}) | {row.seconds:.0f} s |"

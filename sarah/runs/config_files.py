@@ -22,21 +22,17 @@ DEEPEST = 20
 """Largest number of lists and mappings in a settings file that lie in each other."""
 
 
-def first_difference(config: Any, other: Any, key: str = "") -> tuple[str, Any, Any] | None:
-    """Find the first difference between two configurations of the same type.
+def first_difference(config: Any, other: Any) -> tuple[str, Any, Any] | None:
+    """Find the first difference between two configurations.
 
     :param config: configuration, a dataclass
     :param other: configuration to compare with
-    :param key: prefix of the fields' names
     :return: the key and both values; ``None`` if the configurations are equal
     """
-    for item in dataclasses.fields(config):
-        value, there = getattr(config, item.name), getattr(other, item.name)
-        if value == there:
-            continue
-        if dataclasses.is_dataclass(value) and type(value) is type(there):
-            return first_difference(value, there, f"{key}{item.name}.")
-        return key + item.name, value, there
+    here, there = settings_by_key(config), settings_by_key(other)
+    for key in here:
+        if here[key] != there.get(key):
+            return key, here[key], there.get(key)
     return None
 
 

@@ -5,8 +5,7 @@ training runs again from its beginning, but takes the outcomes that the journal 
 That costs only the learner's share of the time, a few per cent. It restores random generators, replay buffer, optimiser
 and schedules of any algorithm, because they go through the same states again.
 
-The first row says what all others depend on: the training's settings, this package's code, and the versions of others.
-A training in which one of these differs would not go on exactly, so it is refused.
+The first row says what all others depend on: :mod:`sarah.runs.origin`.
 
 A row is a checksum and a JSON object, and is on the disk before the training goes on. A damaged row is ignored, and its
 episode is simulated again. Checksums begin from the hash of the first row, so rows of other trainings count as damaged.
@@ -15,7 +14,6 @@ episode is simulated again. Checksums begin from the hash of the first row, so r
 from __future__ import annotations
 
 import fcntl
-import hashlib
 import json
 import logging
 import os
@@ -26,19 +24,17 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO
 
+from sarah.episode.ending import TERMINATIONS
 from sarah.episode.episode import simulate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Executor, Job, Outcome, begin_episode, finish_episode
-from sarah.errors import ResumeError, RunFolderError, SarahError, TrainingInterruptedError
+from sarah.errors import ResumeError, SarahError, TrainingInterruptedError
 from sarah.files import open_regular
 from sarah.robot.reading import SensorReading
 from sarah.runs.config import TrainingConfig
-from sarah.runs.config_files import settings_by_key
-from sarah.versions import differences, versions
+from sarah.runs.origin import LONGEST_ROW, check_first_row, checksum_seed, compact_json, first_row
 
-LONGEST_ROW = 100_000
-"""Largest number of bytes in a row; an episode's has some 1500."""
 ROOM_PER_EPISODE = 10_000
 """Largest number of bytes for each episode in a journal that is read."""
 EPISODES_BESIDE = 1000
@@ -64,7 +60,13 @@ def _reading(plain: Any) -> SensorReading:
 
 
 def _result(plain: Any) -> EpisodeResult:
-    return EpisodeResult(**{**plain, "final_position": tuple(plain["final_position"])})
+    x, y, z = plain["final_position"]
+    if plain["termination"] not in TERMINATIONS:
+        raise ValueError(f"no episode ends as {plain['termination']!r}")
+    numbers = {name: value for name, value in plain.items() if name not in ("termination", "final_position")}
+    if any(type(value) not in (int, float) for value in (x, y, z, *numbers.values())):
+        raise TypeError("a number of an episode is none")
+    return EpisodeResult(termination=plain["termination"], final_position=(x, y, z), **numbers)
 
 
 _KINDS = {
@@ -103,8 +105,8 @@ class Journal(Executor):
     :param config: settings of the training
     :param executor: executor that simulates episodes
     :param interrupted: function that says after every episode whether the training is to stop
-    :raises RunFolderError: on entering, if the file is missing or another training uses it
-    :raises ResumeError: on entering, if the file was begun with other settings, code or versions
+    :raises ResumeError: on entering, if the file is missing, if another training uses it, or if it was begun with other
+        settings, code or versions
     """
 
     def __init__(
@@ -118,6 +120,8 @@ class Journal(Executor):
         self._known: dict[int, _Row] = {}
         self._seed = 0
         self._file: BinaryIO
+        self.is_new = False
+        """Whether the training begins with this journal, in its context."""
 
     @property
     def replaying(self) -> bool:
@@ -130,7 +134,7 @@ class Journal(Executor):
             self._file = open_regular(self._path, os.O_RDWR | os.O_APPEND)  # closed on leaving
         except OSError as error:
             reason = f"it has no {self._path.name}" if isinstance(error, FileNotFoundError) else str(error)
-            raise RunFolderError(f"{self._path.parent} cannot be resumed: {reason}") from error
+            raise ResumeError(f"{self._path.parent} cannot be resumed: {reason}") from error
         try:
             # The system releases the lock when the process ends, however it ends.
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -138,7 +142,7 @@ class Journal(Executor):
         except BaseException as error:
             self._file.close()
             if isinstance(error, BlockingIOError):
-                raise RunFolderError(f"run folder {self._path.parent} is in use by another training") from None
+                raise ResumeError(f"run folder {self._path.parent} is in use by another training") from None
             raise
         return self
 
@@ -153,28 +157,19 @@ class Journal(Executor):
         limit = ROOM_PER_EPISODE * (self._config.episodes + EPISODES_BESIDE)
         if (size := os.fstat(self._file.fileno()).st_size) > limit:
             raise ResumeError(f"{self._path} has {size} bytes, but such a training writes at most {limit}")
-        origin = _origin_of(self._config)
-        expected = _first_row(origin)
+        expected = first_row(self._config)
         with open(self._path, "rb") as reader:
             first = reader.readline(LONGEST_ROW)
             if not expected.startswith(first) or first == expected:
-                self._check_origin(_read_origin(first), origin)
-                self._seed = _seed_of(first)
+                check_first_row(self._path, first, self._config)
+                self._seed = checksum_seed(first)
                 self._read_rows(reader)
                 return
+        self.is_new = True
         self._file.truncate(0)
         self._append(expected)
         os.fsync(self._file.fileno())
-        self._seed = _seed_of(expected)
-
-    def _check_origin(self, there: dict[str, Any] | None, here: dict[str, Any]) -> None:
-        if there is None:
-            raise ResumeError(
-                f"{self._path.parent} cannot be resumed: the first row of {self._path.name}, which says with what the "
-                "training was begun, is damaged or missing"
-            )
-        if different := differences(here, there, "in this training"):
-            raise ResumeError(f"{self._path.parent} cannot be resumed: {different}")
+        self._seed = checksum_seed(expected)
 
     def _read_rows(self, reader: BinaryIO) -> None:
         damaged, whole = 0, reader.tell()
@@ -216,7 +211,7 @@ class Journal(Executor):
         :param request: number, kind, seed and parameters of the episode
         :param value: outcome of the episode
         """
-        text = _as_json({**request, "outcome": _KINDS[request["kind"]].plain(value)})
+        text = compact_json({**request, "outcome": _KINDS[request["kind"]].plain(value)})
         self._append(b"%08x %s\n" % (zlib.crc32(text, self._seed), text))
         if request["kind"] != "begin":  # standing is cheap to simulate again
             os.fsync(self._file.fileno())
@@ -268,40 +263,5 @@ def _read_row(line: bytes, seed: int) -> _Row | None:
         request = json.loads(text)
         value = _KINDS[request["kind"]].value(request.pop("outcome"))
         return _Row({"index": int(request["index"]), **request}, value)
-    except (ValueError, TypeError, LookupError, SarahError, RecursionError):
+    except (ValueError, TypeError, LookupError, ArithmeticError, SarahError, RecursionError):
         return None
-
-
-def _origin_of(config: TrainingConfig) -> dict[str, Any]:
-    """All that the rows of a training depend on, by name."""
-    settings = settings_by_key(config)
-    del settings["pictures"]  # they change no result
-    return {**settings, **versions()}
-
-
-def _first_row(origin: dict[str, Any]) -> bytes:
-    text = _as_json(origin)
-    return b"%s %s\n" % (_digest(text), text)
-
-
-def _read_origin(first: bytes) -> dict[str, Any] | None:
-    """Read the first row of the journal; return ``None`` if it is damaged."""
-    digest, _, text = first.rstrip(b"\n").partition(b" ")
-    try:
-        origin = json.loads(text) if digest == _digest(text) else None
-    except (ValueError, RecursionError):
-        return None
-    return origin if isinstance(origin, dict) else None
-
-
-def _seed_of(first: bytes) -> int:
-    """Where the checksums of the rows begin, from the hash in the first row."""
-    return int(first[:8], 16)
-
-
-def _digest(text: bytes) -> bytes:
-    return hashlib.sha256(text).hexdigest()[:16].encode()
-
-
-def _as_json(row: dict[str, Any]) -> bytes:
-    return json.dumps(row, allow_nan=False, separators=(",", ":")).encode()

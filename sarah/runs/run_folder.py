@@ -82,10 +82,11 @@ class RunFolder:
             path.mkdir(parents=True, exist_ok=True)
             run = cls(path)
             if any(path.iterdir()) or not run._claim():
-                raise RunFolderError(f"run folder {path} is not empty: name another with --run-dir")
+                can_go_on = run._config_path.is_file() and run.journal_path.is_file() and not run.is_finished
+                go_on = f", or go on with sarah-train --resume {shlex.quote(str(path))}" if can_go_on else ""
+                raise RunFolderError(f"run folder {path} is not empty: name another with --run-dir{go_on}")
             replace_text(path / "command.txt", shlex.join(sys.argv) + "\n")
-            lines = (f"{name} {version}\n" for name, version in versions().items())
-            replace_text(run._versions_path, "".join(lines))
+            run.write_versions()
             write_config(config, run._config_path)  # last, because a folder that has it can be resumed
         except RunFolderError:
             raise
@@ -137,6 +138,11 @@ class RunFolder:
     def is_finished(self) -> bool:
         """Whether the training has finished, with learned parameters."""
         return self._parameters_path.is_file()
+
+    def write_versions(self) -> None:
+        """Write with which code and versions the training begins."""
+        lines = (f"{name} {version}\n" for name, version in versions().items())
+        replace_text(self._versions_path, "".join(lines))
 
     def versions(self) -> dict[str, str]:
         """Read the versions with which the training began, by name of the package."""

@@ -124,21 +124,6 @@ def squared_lengths(differences: np.ndarray) -> np.ndarray:
     return lengths
 
 
-def candidates(
-    task: Task, choice: Parameters, tried: Tried | Iterable[tuple[Parameters, float]], count: int
-) -> list[Parameters]:
-    """Choose the candidates: parameters whose neighbourhoods have the highest merit, not too close together.
-
-    :param task: task that owns the parameters
-    :param choice: parameters that the algorithm itself would choose
-    :param tried: parameters and merit of every episode so far; asked again and again, a :class:`Tried` is quicker
-    :param count: number of candidates
-    :return: candidates among the algorithm's choice and the tried parameters, the best one first
-    """
-    known = tried if isinstance(tried, Tried) else Tried(task, tried)
-    return known.best(choice, count)
-
-
 def rank(results: Sequence[EpisodeResult], baseline: Evaluation | None) -> tuple[bool, float]:
     """Rank a candidate: valid gaits that do not chatter rank first, and among equals the best mean merit.
 

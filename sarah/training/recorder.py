@@ -21,7 +21,7 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 from sarah.training.learning_curves import LEARNED, CurveWriter, kept_pictures, summary_of
-from sarah.training.recommendation import Parameters, Tried, candidates, merit
+from sarah.training.recommendation import Parameters, Tried, merit
 
 EPISODES_PER_RECOMMENDATION = 5
 """Number of episodes after which the recommendation is recorded again."""
@@ -104,7 +104,7 @@ class EpisodeRecorder(BaseCallback):
         drawn = episodes in self._kept or (interval and episodes % interval == 0)
         if not noted and not drawn:
             return
-        (recommended,) = candidates(self._task, choose(), self.tried, 1)
+        (recommended,) = self.tried.best(choose(), 1)
         if noted:
             named = dict(zip(self._task.parameter_names, recommended, strict=True))
             self._write(partial(self._run.append_recommendation, episodes, named))

@@ -20,7 +20,7 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 from sarah.training.learners import learn
-from sarah.training.recommendation import Parameters, candidates, rank
+from sarah.training.recommendation import Parameters, rank
 from sarah.training.recorder import EpisodeRecorder
 from sarah.training.seeds import seeds_of
 
@@ -65,6 +65,8 @@ def train(
     :raises TrainingInterruptedError: if ``interrupted`` asks to stop
     """
     with Journal(run.journal_path, config, workers or Workers(), interrupted) as journal:
+        if journal.is_new:
+            run.write_versions()  # they may not be those that the folder was made with
         return _train(config, run, journal, progress_bar)
 
 
@@ -77,7 +79,7 @@ def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_ba
         recorder = EpisodeRecorder(run, config, journal, progress)
         choice = learn(config, config.episodes - config.compared_episodes, run, recorder, journal)
         recorder.choose = None
-        best = candidates(task, choice, recorder.tried, config.candidate_count)
+        best = recorder.tried.best(choice, config.candidate_count)
         parameters = _compare(best, config, recorder, journal)
     evaluation = evaluate(config.task, parameters, config.episode, seeds, journal)
     baseline = None

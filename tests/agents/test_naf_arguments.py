@@ -12,6 +12,8 @@ from sarah.agents import NAF, LocalNAF
 
 SMALL = {"net_arch": [8]}
 BAD = [
+    (NAF, "gamma", [math.nan, -0.1, 2.0]),
+    (NAF, "tau", [math.nan, -0.1, 2.0]),
     (NAF, "max_grad_norm", [0.0, -1.0, math.nan, "1", None]),
     (NAF, "exploration_std", [-0.1, math.inf, math.nan, "0.1", None]),
     (LocalNAF, "elite_share", [-0.1, 1.5, math.nan, None]),
@@ -54,7 +56,7 @@ def test_bad_values_at_load(tmp_path):
 
 
 def test_ends_of_the_ranges_are_allowed():
-    LocalNAF(
+    model = LocalNAF(
         "MlpPolicy",
         "Pendulum-v1",
         max_grad_norm=math.inf,
@@ -65,3 +67,5 @@ def test_ends_of_the_ranges_are_allowed():
         replay_buffer_kwargs={"temperature": 0},
         policy_kwargs={**SMALL, "min_curvature": 0},
     )
+    schedules = (model.elite_share_schedule, model.elite_std_schedule, model.exploration_schedule)
+    assert [schedule(0.5) for schedule in schedules] == [1.0, 0.0, 0.0]

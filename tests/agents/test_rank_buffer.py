@@ -68,6 +68,10 @@ def test_uniform_when_nothing_distinguishes(rewards, temperature):
     np.testing.assert_allclose(frequencies(fill(rewards, temperature=temperature), 8), 1 / 8, atol=0.005)
 
 
+def test_at_any_temperature_the_best_are_drawn():
+    np.testing.assert_allclose(frequencies(fill(range(8), temperature=1e5), 8), [0.0] * 7 + [1.0])
+
+
 def test_only_ranks_count():
     """Scale, offset and outliers of the reward change nothing."""
     draws = []

@@ -96,7 +96,7 @@ EXPLAINED: dict[str, dict[str, str]] = {
     "agents/buffers.py": {
         "n_envs: int = 2,": ONE_ROW,
         "n_envs: int = 0,": ONE_ROW,
-        "weights = np.exp(self.temperature * average_ranks(self.rewards[: self.size(), -1]))": ONE_ROW,
+        "weights = np.exp(self.temperature * (average_ranks(self.rewards[: self.size(), -1]) - 1))": ONE_ROW,
         "return self.actions[newest, -1], average_ranks(self.rewards[newest, 0])": ONE_ROW,
         "return self.actions[newest, 0], average_ranks(self.rewards[newest, -1])": ONE_ROW,
         "MOST_JUDGED = 10001": ROUND,

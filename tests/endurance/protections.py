@@ -65,23 +65,23 @@ PROTECTIONS = (
     ),
     Protection(
         "a training whose settings were edited is refused",
-        "runs/journal.py",
-        'if different := differences(here, there, "in this training"):',
+        "runs/origin.py",
+        'if different := differences(_origin_of(config), there, "in this training"):',
         "if False:",
         "test_every_setting_edited_in_turn_is_refused",
     ),
     Protection(
         "a training that was begun with other versions is refused",
-        "runs/journal.py",
+        "runs/origin.py",
         "return {**settings, **versions()}",
         "return settings",
         "test_other_versions_are_refused",
     ),
     Protection(
         "a journal without its first row is refused",
-        "runs/journal.py",
+        "runs/origin.py",
         "if there is None:",
-        "if there is None and not (there := here):",
+        "if there is None and not (there := _origin_of(config)):",
         "test_without_the_first_row_nothing_goes_on",
     ),
     Protection(
@@ -216,6 +216,13 @@ PROTECTIONS = (
         "with locked(entry.folder / LOCK_FILE):",
         "with suppress(ZeroDivisionError):",
         "test_a_killed_race_resumes_and_two_races_at_once_share_the_work",
+    ),
+    Protection(
+        "a race does not mix states of the code",
+        "reports/race.py",
+        "check_origin(RunFolder(entry.folder).journal_path, entry.config)",
+        "pass",
+        "test_a_race_does_not_mix_states_of_the_code",
     ),
     Protection(
         "no random stream is used twice",

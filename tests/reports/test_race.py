@@ -18,10 +18,11 @@ from sarah.episode.evaluation import Evaluation
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Workers
-from sarah.errors import RunFolderError
+from sarah.errors import ResumeError, RunFolderError
 from sarah.reports import race as race_module
 from sarah.reports.race import RaceCurve, entries_of, is_run, race, read_curve, run_entry
 from sarah.reports.rankings import as_markdown, episodes_until, interquartile_mean, rankings
+from sarah.runs import origin as origin_module
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
@@ -84,8 +85,20 @@ def test_a_race_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert 3 * more.scores[-1] == pytest.approx(2 * curves[0].scores[-1] + simulate(third).score)
 
     other = [dataclasses.replace(entries[0], config=dataclasses.replace(TINY, episodes=11))]
-    with pytest.raises(RunFolderError, match="other settings"):
+    with pytest.raises(RunFolderError, match="naf-s0 is a training with episodes 10, not 11: name another folder"):
         race(other, Workers())
+
+
+def test_a_race_does_not_mix_states_of_the_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (first, second) = entries_of(("random",), range(2), TINY, 2, tmp_path)
+    monkeypatch.setattr(origin_module, "versions", lambda: {"sarah-sources": "another state"})
+    finished = race([first], Workers())
+    monkeypatch.undo()
+    assert race([first], Workers()) == finished  # nothing new comes into the table
+    for entries in ([first, second], [dataclasses.replace(first, evaluations=3)]):
+        with pytest.raises(ResumeError, match=r"random-s0 cannot be resumed: .*sarah-sources is \w+ here, and another"):
+            race(entries, Workers())
+    assert not second.folder.exists()
 
 
 def test_a_race_removes_nobody_elses_run(tmp_path: Path) -> None:

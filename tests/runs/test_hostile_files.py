@@ -16,6 +16,7 @@ from sarah.files import read_lines, read_text, replace_text
 from sarah.reports.race import entries_of, race
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
+from sarah.simulation.engines import is_installed
 from sarah.simulation.physics import Physics
 from sarah.training import train as training
 
@@ -144,6 +145,8 @@ def test_hostile_files_are_refused_within_seconds(
     for line in READERS[name][: None if harm in (laughs, fifo) else 1]:
         if line in (VIDEO, VIEW, COMPARE) and not is_finished:
             continue  # they take a training that is not finished as it is
+        if line in (VIDEO, TRANSFER) and not is_installed("pybullet"):
+            continue  # they miss it before they read
         monkeypatch.setattr("sys.argv", line.split())
         signal.alarm(SECONDS)
         try:

@@ -12,7 +12,7 @@ from laboratory import RESULT
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.tasks import STEPPING
 from sarah.runs.config import TrainingConfig
-from sarah.training.recommendation import DISTINCT, Tried, candidates, merit, rank
+from sarah.training.recommendation import DISTINCT, Tried, merit, rank
 
 CHOICE = (1.0, 1.0, 1.0, 1.0, 1.0)
 WIDTH = 2.0
@@ -23,41 +23,41 @@ def around(*centre: float, offset: float = 0.0) -> tuple[float, ...]:
 
 
 def test_the_choice_is_judged_by_the_episodes_around_it() -> None:
-    assert candidates(STEPPING, CHOICE, [], 3) == [CHOICE]
+    assert Tried(STEPPING, []).best(CHOICE, 3) == [CHOICE]
     elsewhere, beside = around(0.5, 0.5, 0.5, 0.5, 0.5), around(*CHOICE, offset=0.01)
-    assert candidates(STEPPING, CHOICE, [(elsewhere, 0.9)], 2) == [elsewhere, CHOICE]
+    assert Tried(STEPPING, [(elsewhere, 0.9)]).best(CHOICE, 2) == [elsewhere, CHOICE]
     tried = [(elsewhere, 0.5), (beside, 0.9), (around(*CHOICE, offset=-0.01), 0.9)]
-    assert candidates(STEPPING, CHOICE, tried, 2) == [CHOICE, elsewhere]
+    assert Tried(STEPPING, tried).best(CHOICE, 2) == [CHOICE, elsewhere]
 
 
 def test_a_good_neighbourhood_beats_one_lucky_episode() -> None:
     lucky = (around(0.2, 0.2, 0.2, 0.2, 0.2), 0.92)
     good = [(around(1.6, 1.6, 1.6, 1.6, 1.6, offset=0.01 * step), 0.85) for step in range(5)]
     unlucky = (around(0.2, 0.2, 0.2, 0.2, 0.25), 0.1)
-    (best,) = candidates(STEPPING, CHOICE, [lucky, unlucky, *good], 1)
+    (best,) = Tried(STEPPING, [lucky, unlucky, *good]).best(CHOICE, 1)
     assert best in [parameters for parameters, _ in good]
 
 
 def test_candidates_keep_their_distance() -> None:
     near = [(around(1.6, 1.6, 1.6, 1.6, 1.6, offset=0.001 * step), 0.9) for step in range(5)]
     far = (around(0.3, 0.3, 0.3, 0.3, 0.3), 0.5)
-    assert candidates(STEPPING, CHOICE, [*near, far], 2)[1] == far[0]
+    assert Tried(STEPPING, [*near, far]).best(CHOICE, 2)[1] == far[0]
 
 
 def test_distances_are_shares_of_the_box() -> None:
     tried = [(around(0.2, 0.5, 1.1, 0.3, 1.6, offset=0.02 * step), 0.1 * step) for step in range(8)]
     wider = [(tuple(2.0 * value for value in parameters), merit) for parameters, merit in tried]
-    chosen = candidates(STEPPING, CHOICE, tried, 4)
+    chosen = Tried(STEPPING, tried).best(CHOICE, 4)
     twice = tuple(dataclasses.replace(parameter, high=2.0 * parameter.high) for parameter in STEPPING.parameters)
     task = dataclasses.replace(STEPPING, parameters=twice)
-    assert candidates(task, tuple(2.0 * value for value in CHOICE), wider, 4) == [
+    assert Tried(task, wider).best(tuple(2.0 * value for value in CHOICE), 4) == [
         tuple(2.0 * value for value in parameters) for parameters in chosen
     ]
 
 
 @given(st.lists(st.tuples(st.tuples(*[st.floats(0, 2)] * 5), st.floats(0, 1)), max_size=20), st.integers(1, 6))
 def test_there_are_never_more_than_asked_for(tried: list[tuple[tuple[float, ...], float]], count: int) -> None:
-    chosen = candidates(STEPPING, CHOICE, tried, count)
+    chosen = Tried(STEPPING, tried).best(CHOICE, count)
     assert 1 <= len(chosen) <= count
     assert all(
         sum((a - b) ** 2 for a, b in zip(first, second, strict=True)) >= (DISTINCT * WIDTH) ** 2 - 1e-9
@@ -83,9 +83,9 @@ def test_candidates_are_those_of_the_definition() -> None:
         distances = np.linalg.norm(places[:, None] - places[1:], axis=2)
         weights = np.exp(-0.5 * (distances / 0.075) ** 2)
         means = weights @ [merit for _, merit in episodes[:count]] / (weights.sum(axis=1) + 0.25)
-        (best,) = candidates(STEPPING, CHOICE, tried, 1)
+        (best,) = tried.best(CHOICE, 1)
         assert best == tuple(places[np.argmax(means)] * WIDTH)
-        assert candidates(STEPPING, CHOICE, tried, 4) == candidates(STEPPING, CHOICE, episodes[:count], 4)
+        assert tried.best(CHOICE, 4) == Tried(STEPPING, episodes[:count]).best(CHOICE, 4)
         assert len(tried) == count
 
 
@@ -94,7 +94,7 @@ def test_memory_grows_no_faster_than_the_episodes() -> None:
     for count in (800, 4000):
         episodes = random_episodes(count)
         tracemalloc.start()
-        candidates(STEPPING, CHOICE, episodes, 3)
+        Tried(STEPPING, episodes).best(CHOICE, 3)
         _, peaks[count] = tracemalloc.get_traced_memory()
         tracemalloc.stop()
     assert peaks[4000] < 8 * peaks[800]  # a matrix of all with all would take 25 times as much

@@ -22,7 +22,7 @@ from sarah.errors import RunFolderError
 from sarah.runs.agent_settings import settings_of
 from sarah.runs.config import OPTIMISERS, TrainingConfig
 from sarah.runs.run_folder import RunFolder, new_run_path
-from sarah.training.recommendation import candidates, merit
+from sarah.training.recommendation import Tried, merit
 from sarah.training.train import SUMMARY_EPISODES, train
 
 # Longer than the warm-up, on episodes of one second of stepping.
@@ -80,7 +80,7 @@ def test_what_would_be_recommended_is_noted_every_five_episodes(run: RunFolder) 
     for row in recommendations[:-1]:  # the last ones may be the agent's own
         recommended = tuple(float(row[name]) for name in STEPPING.parameter_names)
         centre = (1.0,) * 5  # the agent's own choice until it has learned
-        assert [recommended] == candidates(STEPPING, centre, tried[: int(row["episodes"])], 1)
+        assert [recommended] == Tried(STEPPING, tried[: int(row["episodes"])]).best(centre, 1)
 
 
 def test_tensorboard_shows_the_episodes_the_parameters_and_the_learning(run: RunFolder) -> None:

@@ -1,11 +1,13 @@
 """A training goes on only with the settings, the code and the versions that it was begun with."""
 
 import dataclasses
+import hashlib
 import os
 import re
 import shutil
 import subprocess
 import sys
+import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -17,14 +19,15 @@ from tensorboard.backend.event_processing.event_accumulator import EventAccumula
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS
 from sarah.episode.workers import Workers
-from sarah.errors import ConfigurationError, ResumeError, TrainingInterruptedError
+from sarah.errors import ConfigurationError, ResumeError, RunFolderError, TrainingInterruptedError
 from sarah.pictures import gait_snapshot
 from sarah.pictures.gait_snapshot import Picture
-from sarah.runs import journal as journal_module
+from sarah.runs import origin as origin_module
 from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.config_files import read_config, settings_by_key
 from sarah.runs.journal import Journal
+from sarah.runs.origin import compact_json
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
 from sarah.training import train as training
@@ -152,7 +155,7 @@ def test_every_setting_edited_in_turn_is_refused(task: str, algo: str, tmp_path:
 
 @pytest.mark.parametrize("name", ["python", "sarah", "sarah-sources", *LEARNING])
 def test_other_versions_are_refused(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(journal_module, "versions", lambda: {**versions(), name: "0.0.7"})
+    monkeypatch.setattr(origin_module, "versions", lambda: {**versions(), name: "0.0.7"})
     run = interrupted(tmp_path / "run", TrainingConfig(algo="random", episodes=5, episode=EPISODE))
     go_on(run, INTERRUPTED)
     monkeypatch.undo()
@@ -171,9 +174,9 @@ def test_the_command_names_what_was_edited_and_changes_nothing(tmp_path: Path) -
     before = content(run)
     resumed = subprocess.run([COMMAND, "--resume", "run"], cwd=tmp_path, capture_output=True, text=True)
     assert resumed.returncode != 0
-    assert resumed.stderr == (
-        "sarah-train: error: run cannot be resumed: seed is 1 here, and 0 in this training; "
-        "episode.time_limit is 2.4 here, and 1.2 in this training\n"
+    assert resumed.stderr.splitlines()[-1] == (
+        "sarah-train: error: run cannot be resumed: seed is 1 here, and 0 in this training; episode.time_limit is 2.4 "
+        "here, and 1.2 in this training: put that back, or train anew with --config run/config.yaml"
     )
     assert content(run) == before
 
@@ -220,8 +223,47 @@ def test_a_journal_larger_than_any_such_training_is_not_read(tmp_path: Path) -> 
 
 
 def test_a_run_folder_says_with_what_it_was_begun(tmp_path: Path) -> None:
-    run = begun(tmp_path / "run", TrainingConfig())
+    config = TrainingConfig(algo="random", episodes=5, episode=EPISODE)
+    run = RunFolder.create(tmp_path / "run", config)
     assert run.versions() == versions() and run.versions()["sarah-sources"] == source_hash()
+    (run.path / "versions.txt").write_text("torch 1.0\n")  # as of another installation, cut before its first episode
+    go_on(run, INTERRUPTED)
+    assert run.versions() == versions()
+
+
+def test_what_others_wrote_is_printed_without_control_characters(tmp_path: Path) -> None:
+    run = begun(tmp_path / "run", TrainingConfig(algo="random", episodes=5, episode=EPISODE))
+    origin = compact_json({"torch": "\x1b[31m" * 3000, "\x1b[2J": 1})
+    run.journal_path.write_bytes(hashlib.sha256(origin).hexdigest()[:16].encode() + b" " + origin + b"\n")
+    with pytest.raises(ResumeError) as refused:
+        train(run.config(), run)
+    assert str(refused.value).isprintable() and "not known" in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        (r'"index":\d+', b'"index":Infinity'),
+        (r'"episode_return":[^,]+', b'"episode_return":1' + b"0" * 400),
+        (r'"score":[^,]+', b'"score":"abc"'),
+        (r'"steps":[^,]+', b'"steps":true'),
+        (r'"final_position":\[[^]]+\]', b'"final_position":[1.0]'),
+        (r'"termination":"\w+"', b'"termination":5'),
+        (r'"termination":"\w+"', b'"termination":"flown\\naway"'),
+    ],
+)
+def test_rows_that_no_episode_writes_are_simulated_again(
+    before: str, after: bytes, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Also if somebody has computed their checksums."""
+    run = interrupted(tmp_path / "run", TrainingConfig(algo="random", episodes=5, slots=1, episode=EPISODE))
+    expected = list(run.episodes())
+    first, row, *rows = run.journal_path.read_bytes().splitlines(keepends=True)
+    text = re.sub(before.encode(), after.replace(b"\\", b"\\\\"), row.rstrip(b"\n").partition(b" ")[2], count=1)
+    forged = b"%08x %s\n" % (zlib.crc32(text, int(first[:8], 16)), text)
+    run.journal_path.write_bytes(b"".join([first, forged, *rows]))
+    train(run.config(), run)
+    assert list(run.episodes())[:3] == expected[:3] and "damaged rows: 1" in caplog.text
 
 
 PACKAGE = Path(training.__file__).parents[1]
@@ -243,6 +285,12 @@ def test_the_hash_of_the_sources_tells_states_of_the_code_apart(tmp_path: Path) 
     described = copy("described")
     (described / "notes.txt").write_text("no source")
     assert source_hash(described) == source_hash()
+
+
+def test_who_begins_in_the_folder_of_an_interrupted_training_is_told_how_to_go_on(tmp_path: Path) -> None:
+    run = begun(tmp_path / "run", TrainingConfig())
+    with pytest.raises(RunFolderError, match=r"run is not empty: .*, or go on with sarah-train --resume \S+run$"):
+        RunFolder.create(run.path, TrainingConfig())
 
 
 class Artist:
