@@ -3,8 +3,8 @@
     >>> import sarah
     >>> result = sarah.simulate(sarah.EpisodeSpec(parameters=(0.4, 1.3, 0.1, 1.0, 1.0), seed=0))
 
-Importing it registers ``SarahStepping-v0`` and ``SarahBalance-v0`` with gymnasium. The names below are loaded when they
-are first used, so that importing the package is fast.
+Importing it registers ``SarahStepping-v0``, ``SarahBalance-v0`` and ``SarahEpisode-v0`` with gymnasium. The names below
+are loaded when they are first used, so that importing the package is fast.
 """
 
 from __future__ import annotations
@@ -16,48 +16,82 @@ from sarah.envs.registration import register_environments
 
 if TYPE_CHECKING:
     from sarah.control.constants import ControllerConstants
+    from sarah.control.hip_law import BalanceParameters
+    from sarah.control.parameters import BALANCE_PARAMETERS, STEPPING_PARAMETERS, Parameter
+    from sarah.control.pattern_generator import SteppingParameters
+    from sarah.episode.ending import paper_ending
     from sarah.episode.episode import simulate
     from sarah.episode.evaluation import Evaluation, evaluate
-    from sarah.episode.push import Push
+    from sarah.episode.push import DrawnPush, Push, PushedConfig
     from sarah.episode.result import EpisodeResult
+    from sarah.episode.reward import equation_2
     from sarah.episode.settings import EpisodeConfig
     from sarah.episode.spec import EpisodeSpec
-    from sarah.episode.tasks import BalanceConfig
+    from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, Task, load_task
+    from sarah.episode.tick import Tick
     from sarah.errors import SarahError
     from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
     from sarah.simulation.randomisation import Randomisation
 
 _HOMES = {
+    "BALANCE": "episode.tasks",
+    "BALANCE_PARAMETERS": "control.parameters",
     "PHYSICS": "simulation.physics",
+    "STEPPING": "episode.tasks",
+    "STEPPING_PARAMETERS": "control.parameters",
     "BalanceConfig": "episode.tasks",
+    "BalanceParameters": "control.hip_law",
     "ControllerConstants": "control.constants",
+    "DrawnPush": "episode.push",
     "EpisodeConfig": "episode.settings",
     "EpisodeResult": "episode.result",
     "EpisodeSpec": "episode.spec",
     "Evaluation": "episode.evaluation",
+    "Parameter": "control.parameters",
     "Physics": "simulation.physics",
     "Push": "episode.push",
+    "PushedConfig": "episode.push",
     "PyBulletPhysics": "simulation.physics",
     "Randomisation": "simulation.randomisation",
     "SarahError": "errors",
+    "SteppingParameters": "control.pattern_generator",
+    "Task": "episode.tasks",
+    "Tick": "episode.tick",
+    "equation_2": "episode.reward",
     "evaluate": "episode.evaluation",
+    "load_task": "episode.tasks",
+    "paper_ending": "episode.ending",
     "simulate": "episode.episode",
 }
 
 __all__ = [
+    "BALANCE",
+    "BALANCE_PARAMETERS",
     "PHYSICS",
+    "STEPPING",
+    "STEPPING_PARAMETERS",
     "BalanceConfig",
+    "BalanceParameters",
     "ControllerConstants",
+    "DrawnPush",
     "EpisodeConfig",
     "EpisodeResult",
     "EpisodeSpec",
     "Evaluation",
+    "Parameter",
     "Physics",
     "Push",
+    "PushedConfig",
     "PyBulletPhysics",
     "Randomisation",
     "SarahError",
+    "SteppingParameters",
+    "Task",
+    "Tick",
+    "equation_2",
     "evaluate",
+    "load_task",
+    "paper_ending",
     "simulate",
 ]
 

@@ -64,6 +64,19 @@ def check_range(key: str, value: float | tuple[float, float], low: float, high: 
         )
 
 
+def to_ranges(config: object, *names: str) -> None:
+    """Make ranges of fields of a frozen configuration: one number means both ends.
+
+    :param config: configuration to change, while it is made
+    :param names: names of the fields
+    """
+    for name in names:
+        value = getattr(config, name)
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        if is_number or isinstance(value, list):
+            object.__setattr__(config, name, (value, value) if is_number else tuple(value))
+
+
 def check_fields(key: str, config: object, plausible: Mapping[str, tuple[float, float, str]]) -> None:
     """Refuse a configuration if one of its fields is outside its range.
 

@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).parent.parent
 
 
-def test_importing_sarah_registers_both_environments_and_patches_nothing() -> None:
+def test_importing_sarah_registers_the_environments_and_patches_nothing() -> None:
     program = (
         "import sys\n"
         "before = list(sys.meta_path), list(sys.path_hooks), sys.excepthook, __import__\n"
@@ -21,7 +21,7 @@ def test_importing_sarah_registers_both_environments_and_patches_nothing() -> No
         "print(*sorted({'mujoco', 'pybullet', 'torch', 'stable_baselines3', 'matplotlib'} & set(sys.modules)))\n"
     )
     process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert process.stdout.splitlines() == ["SarahBalance-v0 SarahStepping-v0", ""]
+    assert process.stdout.splitlines() == ["SarahBalance-v0 SarahEpisode-v0 SarahStepping-v0", ""]
 
 
 @pytest.mark.parametrize("package", sorted(path.parent.name for path in (ROOT / "sarah").glob("*/__init__.py")))

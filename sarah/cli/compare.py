@@ -6,20 +6,14 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import tyro
 
-from sarah.cli.options import (
-    check_episode_options,
-    episode_of,
-    given_options,
-    parse_options,
-    run_command,
-    say_engine,
-    with_engine,
-)
+from sarah.cli.episode_options import check_episode_options, given_options, with_engine, with_given_engine
+from sarah.cli.options import parse_options, run_command, say_engine
 from sarah.episode.settings import EpisodeConfig
+from sarah.episode.tasks import STEPPING, Task, load_task
 from sarah.errors import ConfigurationError, check_range
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 
@@ -43,7 +37,7 @@ class CompareOptions:
     :param algorithms: names of the algorithms
     :param seeds: number of trainings of each algorithm
     :param first_seed: seed of the first training of each algorithm; the others follow
-    :param task: task to learn, ``stepping`` or ``balance``
+    :param task: task to learn: ``stepping``, ``balance``, or that of a file of yours, such as my_task.py:JUMP
     :param episodes: budget of each training, in episodes
     :param slots: number of episodes in flight in each training
     :param episode: settings of the episodes
@@ -60,7 +54,7 @@ class CompareOptions:
     algorithms: tuple[str, ...] = ALGORITHMS
     seeds: int = 5
     first_seed: int = 0
-    task: str = "stepping"
+    task: Task[Any] = STEPPING
     episodes: Annotated[int, tyro.conf.arg(aliases=["--simulations"])] = 100
     slots: int = 1
     episode: EpisodeConfig = EpisodeConfig()
@@ -79,8 +73,8 @@ def main() -> None:
 def _defaults(arguments: Sequence[str]) -> CompareOptions:
     """Default options, of the type that task and engine take."""
     given = given_options(arguments, "task", "engine", "episode.engine")
-    task = given.get("task", CompareOptions.task)
-    episode = episode_of(task, given)
+    task = load_task(given["task"]) if "task" in given else STEPPING
+    episode = with_given_engine(task.episode, given)
     check_episode_options(arguments, episode)
     return CompareOptions(task=task, episode=episode)
 

@@ -1,29 +1,22 @@
-"""Parts that all commands share: options, settings of episodes, and one line for a user's mistake."""
+"""Parts that all commands share: parsing of options, and one line for a user's mistake."""
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import dataclasses
 import io
 import os
 import re
 import sys
-from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, TypeVar, get_args
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NoReturn, TypeVar, get_type_hints
 
 import tyro
 
-from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
-from sarah.episode.tasks import STEPPING, TASKS
-from sarah.errors import ConfigurationError, SarahError, unknown_name
-from sarah.simulation.engines import Engine, default_engine
-from sarah.simulation.physics import PHYSICS
-
-if TYPE_CHECKING:
-    from sarah.runs.run_episodes import RunEpisode
+from sarah.episode.tasks import Task, load_task
+from sarah.errors import SarahError
+from sarah.simulation.engines import default_engine
 
 OptionsType = TypeVar("OptionsType")
 USAGE_ERROR = 2
@@ -40,6 +33,23 @@ PYTHON_WORDS = {
 """Python's messages about bad values, and the messages that a user gets instead."""
 
 
+def _task_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
+    """How tyro reads a task from the command line, and shows one."""
+    if Task not in (info.type, info.type_origin):
+        return None
+    return tyro.constructors.PrimitiveConstructorSpec(
+        nargs=1,
+        metavar="TASK",
+        instance_from_str=lambda words: load_task(words[0]),
+        is_instance=lambda value: isinstance(value, Task),
+        str_from_instance=lambda task: [task.reference],
+    )
+
+
+_REGISTRY = tyro.constructors.ConstructorRegistry()
+_REGISTRY.primitive_rule(_task_rule)
+
+
 def fail(command: str, message: str) -> NoReturn:
     """Print one line that says what is wrong, and exit.
 
@@ -48,6 +58,36 @@ def fail(command: str, message: str) -> NoReturn:
     """
     print(f"{command}: error: {' '.join(message.split())}", file=sys.stderr)
     raise SystemExit(USAGE_ERROR)
+
+
+def _with_both_ends(arguments: Sequence[str], config: Any) -> list[str]:
+    """Arguments in which a range has both its ends, also where one number was given for both."""
+    ranges = {f"--{name}" for name in _ranges_of(config)}
+    completed: list[str] = []
+    for argument, following in zip(arguments, [*arguments[1:], ""], strict=False):
+        completed.append(argument)
+        if len(completed) >= 2 and completed[-2] in ranges and _is_number(argument) and not _is_number(following):
+            completed.append(argument)
+    return completed
+
+
+def _ranges_of(config: Any) -> Iterator[str]:
+    """Names of the options of some settings that are ranges."""
+    types = get_type_hints(type(config))
+    for item in dataclasses.fields(config):
+        value, name = getattr(config, item.name), item.name.replace("_", "-")
+        if dataclasses.is_dataclass(value) and not isinstance(value, Task):
+            yield from (f"{name}.{inner}" if name != "training" else inner for inner in _ranges_of(value))
+        elif types[item.name] == tuple[float, float]:
+            yield name
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def parse_options(
@@ -66,9 +106,10 @@ def parse_options(
             return tyro.cli(
                 options_type,
                 prog=command,
-                args=list(arguments),
+                args=_with_both_ends(arguments, default),
                 config=(tyro.conf.FlagCreatePairsOff,),
                 default=default,
+                registry=_REGISTRY,
             )
     except SystemExit as exit_request:
         if not exit_request.code:
@@ -85,15 +126,6 @@ def _one_line(box: str) -> str:
         message = re.sub(pattern, words, message)
     meant = re.search(r"Perhaps you meant:\s+(--[\w.-]+)", text)
     return f"{message}, did you mean {meant[1]}?" if meant else message
-
-
-def with_engine(episode: EpisodeConfig, engine: str | None) -> EpisodeConfig:
-    """Episode settings with the physics engine that a command was given.
-
-    :param episode: settings of episodes
-    :param engine: value of --engine; if ``None``, the settings keep their engine
-    """
-    return episode if engine is None else dataclasses.replace(episode, engine=engine)  # type: ignore[arg-type]  # checked
 
 
 def say_engine(config: EpisodeConfig, asked: str | None) -> None:
@@ -124,140 +156,3 @@ def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
     except KeyboardInterrupt:
         print(f"\n{command}: interrupted", file=sys.stderr)
         raise SystemExit(130) from None
-
-
-def numbers(name: str, text: str) -> tuple[float, ...]:
-    """Read numbers that are separated by commas.
-
-    :param name: name of the option in messages
-    :param text: text that a user gave
-    :raises ConfigurationError: if one of them is not a number
-    """
-    try:
-        return tuple(float(value) for value in text.split(","))
-    except ValueError:
-        raise ConfigurationError(f"{name} must be numbers separated by commas, not {text!r}") from None
-
-
-def episodes_of(subject: str, episode: str | None) -> tuple[list[RunEpisode], RunEpisode]:
-    """Episodes of a run folder or of parameters, and the one to show.
-
-    :param subject: path of a run folder, or parameters separated by commas
-    :param episode: episode of the run folder: ``learned``, ``best`` or an index; ``None`` for the first of these that
-        exists
-    :raises ConfigurationError: if there is no such run folder or episode
-    """
-    from sarah.runs.run_episodes import choose_episode, episode_of_parameters, episodes_of_run
-
-    if Path(subject).is_dir():
-        from sarah.runs.run_folder import RunFolder
-
-        episodes = episodes_of_run(RunFolder.open(Path(subject), unfinished=True))
-        return episodes, choose_episode(episodes, episode)
-    if not subject.strip("+-.")[:1].isdigit():
-        raise ConfigurationError(f"{subject} is neither a run folder nor numbers separated by commas")
-    if episode is not None:
-        raise ConfigurationError("--episode is for a run folder")
-    given = episode_of_parameters(numbers("parameters", subject))
-    return [given], given
-
-
-def changed_episodes(
-    config: EpisodeConfig,
-    stepping: str | None,
-    push_newtons: float | None,
-    physics: str | None,
-    randomisation: bool,
-    engine: str | None = None,
-) -> EpisodeConfig:
-    """Episode settings with the changes that options ask for.
-
-    :param config: settings of the episodes
-    :param stepping: P1 to P5 for the task balance, separated by commas
-    :param push_newtons: force of every push, in N
-    :param physics: name of a setting in :data:`~sarah.simulation.physics.PHYSICS`
-    :param randomisation: whether to keep the randomisation
-    :param engine: name of the physics engine
-    :raises ConfigurationError: if a value is not allowed, or if the task does not have the setting
-    """
-    config = with_engine(config, engine)
-    changes: dict[str, Any] = {}
-    if physics is not None:
-        if physics not in PHYSICS:
-            raise ConfigurationError(unknown_name("physics", physics, PHYSICS))
-        changes["physics"] = PHYSICS[physics].at_control_rate(config.physics.control_rate)
-    if not randomisation:
-        changes["randomisation"] = dataclasses.replace(config.randomisation, enabled=False)
-    if stepping is not None:
-        check_has(config, "stepping", "stepping")
-        changes["stepping"] = STEPPING.checked(numbers("stepping", stepping), "stepping")
-    if push_newtons is not None:
-        changes["push"] = pushed_by(config, push_newtons)
-    return dataclasses.replace(config, **changes)
-
-
-def pushed_by(config: EpisodeConfig, newtons: float) -> Push:
-    """Push of some episode settings, with a fixed force.
-
-    :param config: settings of the episodes
-    :param newtons: force of every push, in N
-    :raises ConfigurationError: if the task has no push
-    """
-    check_has(config, "push", "push-newtons")
-    push: Push = getattr(config, "push")  # noqa: B009  # only some tasks' settings have it
-    return dataclasses.replace(push, newtons=(newtons, newtons))
-
-
-def check_has(config: EpisodeConfig, name: str, option: str) -> None:
-    """Refuse an option whose setting a task does not have.
-
-    :param config: settings of the task's episodes
-    :param name: name of the setting
-    :param option: name of the option, without dashes
-    """
-    if not hasattr(config, name):
-        tasks = " or ".join(task.name for task in TASKS.values() if hasattr(task.episode, name))
-        raise ConfigurationError(f"--{option} is for --task {tasks}")
-
-
-def check_episode_options(arguments: Sequence[str], config: EpisodeConfig) -> None:
-    """Refuse ``--episode.…`` options whose settings only another task has.
-
-    :param arguments: all arguments of a command
-    :param config: settings of the task's episodes
-    """
-    for argument in arguments:
-        name = argument.removeprefix("--episode.").split(".")[0].replace("-", "_")
-        if argument.startswith("--episode.") and any(hasattr(task.episode, name) for task in TASKS.values()):
-            check_has(config, name, argument.removeprefix("--").split("=")[0])
-
-
-def given_options(arguments: Sequence[str], *names: str) -> dict[str, str]:
-    """Values of some options, which are needed before all options can be parsed.
-
-    :param arguments: arguments of the command
-    :param names: names of the options, without dashes
-    :return: values by name; an option without its value is left out, for the real parser to report
-    """
-    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
-    for name in names:
-        parser.add_argument(f"--{name}", dest=name, default=argparse.SUPPRESS)
-    try:
-        return vars(parser.parse_known_args(arguments)[0])
-    except argparse.ArgumentError:
-        return {}
-
-
-def episode_of(task: str, given: Mapping[str, str], episode: EpisodeConfig | None = None) -> EpisodeConfig:
-    """Episode settings of the type that a task and an engine take.
-
-    :param task: name of the task; an unknown one is ignored here, for the caller to report
-    :param given: values of the options that were given, by name; ``engine`` and ``episode.engine`` are used
-    :param episode: settings of any task's episodes; by default the task's own
-    """
-    if episode is None:
-        episode = TASKS.get(task, STEPPING).episode
-    elif task in TASKS and type(episode) is not type(TASKS[task].episode):
-        episode = TASKS[task].config_of(episode)
-    engine = given.get("engine", given.get("episode.engine"))
-    return with_engine(episode, engine if engine in get_args(Engine) else None)

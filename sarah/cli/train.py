@@ -10,22 +10,15 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
+from sarah.cli.episode_options import check_episode_options, given_options, with_engine, with_given_engine
 from sarah.cli.interruption import Interruption
-from sarah.cli.options import (
-    check_episode_options,
-    episode_of,
-    given_options,
-    parse_options,
-    run_command,
-    say_engine,
-    with_engine,
-)
+from sarah.cli.options import parse_options, run_command, say_engine
 from sarah.episode.settings import EpisodeConfig
-from sarah.episode.tasks import BALANCE, STEPPING, TASKS
+from sarah.episode.tasks import BALANCE, STEPPING, Task, load_task
 from sarah.errors import ConfigurationError, ResumeError, RunFolderError, SarahError, TrainingInterruptedError
 from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import TrainingConfig
@@ -53,7 +46,7 @@ class TrainOptions:
     :param run_dir: run folder to write, new or empty; by default a new one, runs/<task>/<algo>-s<seed>
     :param config: YAML file of settings, like the config.yaml of any run folder
     :param resume: run folder of an interrupted training to go on with, with its settings; the result is the same as
-        without the interruption
+        without the interruption. A finished training goes on if --episodes is larger than its budget
     :param from_run: run folder of a First Training, for --task balance: its P1 to P5 and its robot are used
     :param workers: number of processes on this machine that simulate; with 0, this process does. It changes no result
     :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
@@ -79,8 +72,8 @@ def _train(arguments: Sequence[str]) -> None:
     options = parse_options(TrainOptions, COMMAND, arguments, _defaults(arguments))
     config = options.training
     config = dataclasses.replace(config, episode=with_engine(config.episode, options.engine))
-    if options.from_run is not None and config.task != BALANCE.name:
-        raise ConfigurationError(f"--from is for --task {BALANCE.name}, not {config.task!r}")
+    if options.from_run is not None and config.task is not BALANCE:
+        raise ConfigurationError(f"--from is for --task {BALANCE.name}, not {config.task.reference!r}")
     from sarah.robot.description import describe_robot
 
     describe_robot(config.episode.dimensions)  # a bad dimension is refused before anything is written
@@ -95,17 +88,21 @@ def _train(arguments: Sequence[str]) -> None:
         from sarah.simulation.renderer import check_renderer
 
         check_renderer()
-    if options.resume is not None and _resumed(options.resume, options, config).is_finished:
-        print(f"{options.resume} is finished: there is nothing to resume")
-        return
+    if options.resume is not None:
+        run = _resumed(options.resume, options, config)
+        if run.is_finished and config.episodes > run.config().episodes:
+            config = _extended(run, config)
+        elif run.is_finished:
+            print(f"{options.resume} is finished: to go on, add --episodes with more than its {config.episodes}")
+            return
 
     with Workers(options.workers, options.scheduler) as workers:
         if options.resume is not None:
-            run = RunFolder.resumable(options.resume)
+            run = RunFolder.resumable(options.resume, config.task)
         else:
-            run = RunFolder.create(options.run_dir or new_run_path(config.task, config.algo, config.seed), config)
+            run = RunFolder.create(options.run_dir or new_run_path(config.task.name, config.algo, config.seed), config)
         say_engine(config.episode, options.engine)
-        print(f"training {config.algo} on {config.task}: {config.episodes} episodes into {run.path}", flush=True)
+        print(f"training {config.algo} on {config.task.name}: {config.episodes} episodes into {run.path}", flush=True)
         learned = _learned(config, run, workers)
     _summarise(config.task, learned, run.path)
 
@@ -114,14 +111,37 @@ def _resumed(path: Path, options: TrainOptions, config: TrainingConfig) -> RunFo
     """Open the run folder to go on with."""
     from sarah.runs.run_folder import RunFolder
 
-    run = RunFolder.resumable(path)
+    run = RunFolder.resumable(path, config.task)
     if options.run_dir is not None or options.config is not None or options.from_run is not None:
         raise ConfigurationError("--resume goes on with a training as it is: leave --run-dir, --config and --from out")
     there = dataclasses.replace(run.config(), pictures=config.pictures)  # they change no result
+    if config.episodes > there.episodes and config.extended_from == there.extended_from:
+        if not run.is_finished:
+            raise ConfigurationError(f"--resume {path}: it can be extended once it is finished: leave --episodes out")
+        config = dataclasses.replace(config, episodes=there.episodes)
     if difference := first_difference(config, there):
         key, given, recorded = difference
         _check_same(path, key, recorded, given)
     return run
+
+
+def _extended(run: RunFolder, config: TrainingConfig) -> TrainingConfig:
+    """Extend a finished training, and say what that means.
+
+    :param run: run folder of the training
+    :param config: settings with the larger budget
+    """
+    from sarah.runs.origin import check_origin
+
+    before = run.config()
+    check_origin(run.journal_path, before)
+    extended = dataclasses.replace(before.extended_to(config.episodes), pictures=config.pictures)
+    run.extend(extended)
+    print(
+        f"extending {before.episodes} to {extended.episodes} episodes: what changes in the course of a training, such "
+        f"as NAF's exploration, is from now on as in the last {extended.stage_episodes} of {extended.episodes} episodes"
+    )
+    return extended
 
 
 def _check_same(path: Path, key: str, there: object, given: object) -> None:
@@ -162,16 +182,28 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
     given = given_options(arguments, *names)
     if "resume" in given:
         return _resumed_defaults(Path(given["resume"]), given)
-    training = read_config(TrainingConfig, Path(given["config"])) if "config" in given else TrainingConfig()
+    task = load_task(given["task"]) if "task" in given else None
+    training = _of_file(Path(given["config"]), task) if "config" in given else TrainingConfig()
     training = _with_agent(training, given.get("algo"), given.get("agent.preset"))
-    task = given.get("task", training.task)
-    if task not in TASKS:  # the real parser reports it
-        return TrainOptions(training)
-    episode = episode_of(task, given, training.episode if "config" in given else None)
+    task = task or training.task
+    episode = task.config_of(training.episode) if "config" in given else task.episode
+    episode = with_given_engine(episode, given)
     check_episode_options(arguments, episode)
-    if "from" in given and task == BALANCE.name:
+    if "from" in given and task is BALANCE:
         episode = _on_learned_stepping(Path(given["from"]), episode)
     return TrainOptions(dataclasses.replace(training, task=task, episode=episode))
+
+
+def _of_file(path: Path, task: Task[Any] | None) -> TrainingConfig:
+    """Settings of a file, with its own task unless another one is given.
+
+    :param path: path of the YAML file
+    :param task: task of --task
+    """
+    if task is None:
+        return read_config(TrainingConfig, path)
+    own = read_config(TrainingConfig, path, task if task.file is not None else None)
+    return dataclasses.replace(own, task=task, episode=task.config_of(own.episode))
 
 
 def _resumed_defaults(path: Path, given: Mapping[str, str]) -> TrainOptions:
@@ -180,11 +212,19 @@ def _resumed_defaults(path: Path, given: Mapping[str, str]) -> TrainOptions:
     :param path: path of its run folder
     :param given: values of the options that were given, by name
     """
+    from sarah.runs.recorded_task import RecordedTask
     from sarah.runs.run_folder import RunFolder
 
-    training = RunFolder.resumable(path).config()
+    task, training = None, RunFolder.resumable(path).config()
+    if "task" in given:
+        task = load_task(given["task"])
+        _check_same(
+            path, "task", training.task.reference, task.reference if task.file is None else training.task.reference
+        )
+        training = RunFolder.resumable(path, task).config()
+    if isinstance(training.task, RecordedTask):
+        raise ConfigurationError(f"--resume {path}: its task is that of a file: add --task {training.task.reference}")
     engine = given.get("engine", given.get("episode.engine", training.episode.engine))
-    _check_same(path, "task", training.task, given.get("task", training.task))
     _check_same(path, "algo", training.algo, given.get("algo", training.algo))
     _check_same(path, "episode.engine", training.episode.engine, engine)
     return TrainOptions(training)
@@ -209,16 +249,16 @@ def _on_learned_stepping(path: Path, episode: EpisodeConfig) -> EpisodeConfig:
 
     run = RunFolder.open(path)
     learned = run.config()
-    if learned.task != STEPPING.name:
+    if learned.task is not STEPPING:
         raise ConfigurationError(
-            f"{path} learned {learned.task!r}, but --from needs the run folder of a training of {STEPPING.name!r}"
+            f"{path} learned {learned.task.name!r}, but --from needs the run folder of a training of {STEPPING.name!r}"
         )
     return BALANCE.config_of(episode, stepping=run.parameters(), dimensions=learned.episode.dimensions)
 
 
-def _summarise(task: str, learned: Learned, path: Path) -> None:
+def _summarise(task: Task[Any], learned: Learned, path: Path) -> None:
     evaluation, baseline = learned.evaluation, learned.baseline
-    named = zip(TASKS[task].parameter_names, learned.parameters, strict=True)
+    named = zip(task.parameter_names, learned.parameters, strict=True)
     print("\nlearned     " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
     score = f"{evaluation.median('score'):.3f}"
     print(f"score       {score} (median of {evaluation.episodes} unseen seeds; 1 is the ceiling)")
@@ -230,7 +270,7 @@ def _summarise(task: str, learned: Learned, path: Path) -> None:
     print(f"by sensors  {shifts:.0%} of shifts, {lifts:.0%} of lifts; sole clearance {clearance:.0f} mm")
     if learned.diverged:
         print(f"diverged    {learned.diverged} episodes: their simulation gave no finite state")
-    if not evaluation.is_gait:
+    if task.must_step and not evaluation.is_gait:
         print("            no valid gait: the robot steps to a clock, or does not lift its feet")
     if baseline is not None and evaluation.chatters(baseline):
         print("            the hips chatter: no real actuator could follow that")

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.options import changed_episodes, episodes_of, parse_options, run_command
-from sarah.episode.tasks import TASKS
+from sarah.cli.episode_options import METAVAR, EpisodeOptions, episode_of, parse_episode_options
+from sarah.cli.options import run_command
+from sarah.episode.tasks import load_task
 from sarah.errors import ConfigurationError
 
 if TYPE_CHECKING:
@@ -22,37 +23,27 @@ COMMAND = "sarah-video"
 
 
 @dataclass(frozen=True)
-class VideoOptions:
+class VideoOptions(EpisodeOptions):
     """Film an episode: the robot from its front, a close view of its feet, phase, steps per second, score and push.
 
-    :param subject: run folder, or numbers separated by commas: P1 to P5 for stepping, or V1 to V4 for the task balance
+    :param subject: run folder, numbers separated by commas (P1 to P5 for stepping, or V1 to V4 for the task balance),
+        or the name of shipped parameters: ``paper``, ``stepping`` or ``balance``
     :param out: file to write: MP4, which needs the extra ``video``, or GIF, which is smaller
-    :param episode: episode of a run folder: ``learned`` for the learned parameters, ``best``, or an index of its
+    :param which: episode of a run folder: ``learned`` for the learned parameters, ``best``, or an index of its
         episodes.csv; by default ``learned``, or ``best`` if the training is not finished
     :param seed: seed of the episode, by which robot, sensors and push vary; by default the episode's own, or 0
-    :param stepping: P1 to P5 for the task balance, separated by commas; by default those of the run folder, or trained
-        ones
-    :param push_newtons: force of the push, in N; by default as in the training, or 0 to 100 N
-    :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default as in the training
-    :param engine: physics engine, ``pybullet`` or ``mujoco``; by default as in the training
-    :param randomisation: friction, masses, sensors and so on stay as designed, instead of varying by seed
     :param seconds: simulated times at which the video begins and ends, in s; by default those of the episode
     :param speed: speed of the video; 0.25 shows everything four times as slow
     """
 
     subject: Annotated[
-        str | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN|NUMBERS", help_behavior_hint="(required)")
+        str | None, tyro.conf.Positional, tyro.conf.arg(metavar=METAVAR, help_behavior_hint="(required)")
     ] = None
     out: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="OUT", help_behavior_hint="(required)")] = (
         None
     )
-    episode: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
+    which: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
     seed: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
-    stepping: Annotated[str | None, tyro.conf.arg(metavar="P1,P2,P3,P4,P5")] = None
-    push_newtons: Annotated[float | None, tyro.conf.arg(metavar="FLOAT")] = None
-    physics: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
-    engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
-    randomisation: Annotated[bool, tyro.conf.arg(help_behavior_hint="(default: they vary)")] = True
     seconds: Annotated[tuple[float, float] | None, tyro.conf.arg(metavar="BEGIN END")] = None
     speed: float = 1.0
 
@@ -70,9 +61,9 @@ def main() -> None:
 
 
 def _film(arguments: Sequence[str]) -> None:
-    options = parse_options(VideoOptions, COMMAND, arguments, VideoOptions())
+    options = parse_episode_options(COMMAND, arguments, VideoOptions())
     if options.subject is None or options.out is None:
-        raise ConfigurationError("give a run folder or parameters, and the file to write")
+        raise ConfigurationError("give a run folder, numbers or a name, and the file to write")
     from sarah.pictures.video import FRAMES_PER_SECOND, check_path, frame_times, frames, write_video
     from sarah.simulation.renderer import check_renderer
 
@@ -99,18 +90,16 @@ def _film(arguments: Sequence[str]) -> None:
 
 def _spec(options: VideoOptions, subject: str) -> EpisodeSpec:
     """Specification of the episode to film."""
-    spec = episodes_of(subject, options.episode)[1].spec
-    config = changed_episodes(
-        spec.config, options.stepping, options.push_newtons, options.physics, options.randomisation, options.engine
-    )
-    return dataclasses.replace(spec, config=config, seed=spec.seed if options.seed is None else options.seed)
+    task = None if options.task is None else load_task(options.task)
+    spec = episode_of(subject, options.which, task).spec
+    return dataclasses.replace(options.applied_to(spec), seed=spec.seed if options.seed is None else options.seed)
 
 
 def _caption(spec: EpisodeSpec, result: EpisodeResult) -> str:
     """Line about the filmed episode."""
-    from sarah.episode.ending import TERMINATIONS
+    from sarah.episode.ending import ending_words
 
-    names = TASKS[spec.task].parameter_names
+    names = spec.task.parameter_names
     learned = ", ".join(f"{name} {value:.2f}" for name, value in zip(names, spec.parameters, strict=True))
-    ending = TERMINATIONS[result.termination]
-    return f"{spec.task}: {learned}   ·   seed {spec.seed}   ·   score {result.score:.2f}, {ending}"
+    ending = ending_words(result.termination)
+    return f"{spec.task.name}: {learned}   ·   seed {spec.seed}   ·   score {result.score:.2f}, {ending}"

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.options import episodes_of, parse_options, run_command, say_engine
-from sarah.episode.tasks.balance import TRAINED_STEPPING
+from sarah.cli.episode_options import METAVAR, EpisodeOptions, episodes_of, parse_episode_options
+from sarah.cli.options import run_command, say_engine
+from sarah.episode.tasks import load_task
 from sarah.errors import ConfigurationError
 
 if TYPE_CHECKING:
@@ -26,27 +27,24 @@ DEFAULT_PORT = 8080
 
 
 @dataclass(frozen=True)
-class ViewOptions:
+class ViewOptions(EpisodeOptions):
     """Play episodes on a page in the browser, where sliders change all parameters and a button pushes the robot.
 
-    :param subject: run folder, of a training that need not be finished, or numbers separated by commas: P1 to P5 for
-        stepping, or V1 to V4 for the task balance; by default P1 to P5 that NAF learned in one training
-    :param episode: episode of a run folder: ``learned`` for the learned parameters, ``best``, or an index of its
+    :param subject: run folder, of a training that need not be finished; numbers separated by commas, P1 to P5 for
+        stepping, or V1 to V4 for the task balance; or the name of shipped parameters: ``paper``, ``stepping`` (the
+        default) or ``balance``
+    :param which: episode of a run folder: ``learned`` for the learned parameters, ``best``, or an index of its
         episodes.csv; by default ``learned``, or ``best`` if the training is not finished
     :param seed: seed of the episode, by which robot, sensors and push vary; by default the episode's own, or 0
-    :param engine: physics engine, ``pybullet`` or ``mujoco``; by default as in the training
     :param export: HTML file to write the episode to, instead of showing a page; the file needs no server
     :param host: address to serve the page at. Everyone who can reach another address than 127.0.0.1 can use the page,
         as there is no password
     :param port: port to serve the page at; the next free one if it is taken
     """
 
-    subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS]")] = ",".join(
-        map(str, TRAINED_STEPPING)
-    )
-    episode: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
+    subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar=f"[{METAVAR}]")] = "stepping"
+    which: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
     seed: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
-    engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
     export: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     host: str = "127.0.0.1"
     port: int = DEFAULT_PORT
@@ -63,19 +61,19 @@ def main() -> None:
 
 
 def _view(arguments: Sequence[str]) -> None:
-    options = parse_options(ViewOptions, COMMAND, arguments, ViewOptions())
+    options = parse_episode_options(COMMAND, arguments, ViewOptions())
     if find_spec("viser") is None:
         raise ConfigurationError("this needs the extra view: pip install 'sarah[view]'")
-    choices, chosen = episodes_of(options.subject, options.episode)
-    if options.engine is not None:
-        choices = [choice.in_engine(options.engine) for choice in choices]
-        chosen = chosen.in_engine(options.engine)
+    task = None if options.task is None else load_task(options.task)
+    choices, chosen = episodes_of(options.subject, options.which, task)
+    choices = [choice.of(options.applied_to(choice.spec)) for choice in choices]
+    chosen = chosen.of(options.applied_to(chosen.spec))
     from sarah.simulation.engines import check_engine
 
     check_engine(chosen.spec.config.engine)
     if options.seed is not None:
-        spec = dataclasses.replace(chosen.spec, seed=options.seed)
-        chosen = dataclasses.replace(chosen, label=f"{chosen.label}, with seed {spec.seed}", spec=spec, score=None)
+        chosen = chosen.of(dataclasses.replace(chosen.spec, seed=options.seed))
+        chosen = dataclasses.replace(chosen, label=f"{chosen.label}, with seed {options.seed}")
         choices.insert(0, chosen)
     if options.export is not None:
         _export(options.export, chosen)

@@ -21,7 +21,7 @@ from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices
 from sarah.envs.sarah_env import SarahEnv, draw_seed, observation_from, parameters_from
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import TASKS
+from sarah.episode.tasks import Task
 from sarah.episode.workers import Executor, Job, begin_episode, finish_episode
 from sarah.robot.reading import SensorReading
 
@@ -40,21 +40,26 @@ class EpisodeVecEnv(VecEnv):
     Step k submits the episode of its action and returns the outcome of step ``k - slots + 1``: the reward is that
     episode's return, and ``info`` contains its ``spec``, ``result`` and ``transition`` (observation, action, last
     observation). The first ``slots - 1`` steps have no outcome, which ``info["transition"] = None`` says. The last
-    ``slots - 1`` steps submit nothing.
+    ``slots - 1`` steps submit nothing. So :attr:`episodes` take ``episodes + slots - 1`` steps.
 
-    :param task: name of the task, ``"stepping"`` or ``"balance"``
+    :param task: task, or the name of one of this package
     :param config: settings of the episodes
-    :param episodes: number of episodes; they take ``episodes + slots - 1`` steps
+    :param episodes: number of episodes
     :param slots: number of episodes in flight
     :param workers: executor that simulates the episodes
     """
 
-    def __init__(self, task: str, config: EpisodeConfig, episodes: int, slots: int, workers: Executor) -> None:
+    episodes: int
+    """Number of episodes that the environment has after the next :meth:`reset`."""
+
+    def __init__(
+        self, task: str | Task[Any], config: EpisodeConfig, episodes: int, slots: int, workers: Executor
+    ) -> None:
         self._env = SarahEnv(task, config)
         super().__init__(1, self._env.observation_space, self._env.action_space)
-        self._task = task
+        self._task = self._env.task
         self._config = config
-        self._episodes = episodes
+        self.episodes = episodes
         self._slots = slots
         self._workers = workers
         self._running: deque[_Running] = deque()
@@ -71,7 +76,7 @@ class EpisodeVecEnv(VecEnv):
         self._running.clear()
         self._waiting.clear()
         self._steps = self._begun = 0
-        for _ in range(min(self._slots, self._episodes)):
+        for _ in range(min(self._slots, self.episodes)):
             spec = self._next_spec()
             self._waiting.append((spec, self._workers.submit(begin_episode, spec).result))
         self._observe()
@@ -83,12 +88,12 @@ class EpisodeVecEnv(VecEnv):
         :param actions: one action in [-1, 1], of shape (1, number of parameters)
         """
         self._steps += 1
-        if self._steps > self._episodes:
+        if self._steps > self.episodes:
             return
         spec, _ = self._waiting.popleft()
-        spec = replace(spec, parameters=parameters_from(actions[0], TASKS[self._task]))
+        spec = replace(spec, parameters=parameters_from(actions[0], self._task))
         # The worker then lets another episode stand, which the agent acts on when it knows this one's outcome.
-        following = self._next_spec() if self._begun < self._episodes else None
+        following = self._next_spec() if self._begun < self.episodes else None
         job = self._workers.submit(finish_episode, spec, following)
         self._running.append(_Running(spec, following, self._observation, actions[0].copy(), job))
 
@@ -103,8 +108,7 @@ class EpisodeVecEnv(VecEnv):
     def _next_spec(self) -> EpisodeSpec:
         """Specification of the next episode, with the baseline's parameters until its own are known."""
         self._begun += 1
-        anything = TASKS[self._task].baseline
-        return EpisodeSpec(anything, draw_seed(self._env.np_random), self._task, self._config)
+        return EpisodeSpec(self._task.baseline, draw_seed(self._env.np_random), self._task, self._config)
 
     def _observe(self) -> None:
         """Wait for the observation of the next episode; after the last episode the observation stays."""

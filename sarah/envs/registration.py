@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import gymnasium
 
-ENVIRONMENTS = {"SarahStepping-v0": "stepping", "SarahBalance-v0": "balance"}
-"""Task of each registered environment, by the environment's name."""
+ENVIRONMENTS = {
+    "SarahStepping-v0": {"task": "stepping"},
+    "SarahBalance-v0": {"task": "balance"},
+    "SarahEpisode-v0": {},
+}
+"""Keywords of each registered environment, by its name; ``SarahEpisode-v0`` is given its task."""
 
 
 def register_environments() -> None:
     """Register the package's environments, which ``import sarah`` does."""
-    for name, task in ENVIRONMENTS.items():
-        gymnasium.register(name, entry_point="sarah.envs.sarah_env:SarahEnv", kwargs={"task": task})
+    for name, keywords in ENVIRONMENTS.items():
+        gymnasium.register(name, entry_point="sarah.envs.sarah_env:SarahEnv", kwargs=keywords)

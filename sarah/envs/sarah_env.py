@@ -8,6 +8,7 @@ import gymnasium
 import numpy as np
 
 from sarah.episode.episode import Episode
+from sarah.episode.from_mapping import from_mapping
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED
 from sarah.episode.tasks import Task, task_named
@@ -32,20 +33,28 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
     contains the episode's ``seed``, and after the step the ``parameters`` and the ``result``, an
     :class:`~sarah.episode.result.EpisodeResult`.
 
-    :param task: name of the task: ``"stepping"`` to choose P1 to P5, ``"balance"`` to choose V1 to V4 and be pushed
+    :param task: task, or the name of one of this package: ``"stepping"`` to choose P1 to P5, ``"balance"`` to choose
+        V1 to V4 and be pushed
     :param config: settings of the episodes; by default the task's own
     :param render_mode: ``"rgb_array"`` for pictures, or ``None``
+    :param settings: settings to change, by name: ``engine="mujoco"``, ``time_limit=10``, ``push={"newtons": 80}``
+    :raises ConfigurationError: naming the setting and its nearest valid name, if one is not allowed
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 1}
 
     def __init__(
-        self, task: str = "stepping", config: EpisodeConfig | None = None, render_mode: str | None = None
+        self,
+        task: str | Task[Any] = "stepping",
+        config: EpisodeConfig | None = None,
+        render_mode: str | None = None,
+        **settings: Any,
     ) -> None:
         self.task = task_named(task)
         self.observation_space = gymnasium.spaces.Box(-OBSERVATION_BOUND, OBSERVATION_BOUND, (16,), np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(self.task.parameters),), np.float32)
-        self.config = self.task.episode if config is None else self.task.checked_config(config)
+        config = self.task.episode if config is None else self.task.checked_config(config, True)
+        self.config = from_mapping(config, settings)
         self.render_mode = render_mode
         self._episode: Episode | None = None
         self._renderer: Renderer | None = None

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from sarah.robot.reading import Vector
-from sarah.simulation.simulator import TorsoState
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.tick import Tick
 
 BOX_HALF_WIDTH = 0.25
 """Displacement of the torso along any axis at which an episode ends, in m; the paper's second criterion."""
@@ -23,30 +23,30 @@ TERMINATIONS = {
     "diverged": "diverged",
 }
 """Ways in which an episode can end, with the words of the pages for each: the paper's three criteria, a tilt beyond 45
-degrees, and a state or signal that is not finite or far beyond what a robot can have."""
+degrees, and a state or signal that is not finite or far beyond what a robot can have. A task can add its own."""
 
 
-def termination(
-    torso: TorsoState, start: Vector, steps: int, time: float, time_limit: float, control_dt: float
-) -> str | None:
-    """Check whether an episode ends, and how.
+def paper_ending(tick: Tick, config: EpisodeConfig) -> str | None:
+    """Check the paper's second and third criterion, and whether the robot has fallen: the endings of both its tasks.
 
-    :param torso: state of the torso
-    :param start: position of the torso's centre when the episode began, in m
-    :param steps: number of completed steps
-    :param time: simulated time, in s
-    :param time_limit: time limit of the episode, in s
-    :param control_dt: duration of a control tick, in s; half of it is the tolerance for rounding
+    :param tick: what is known at the end of a control tick
+    :param config: settings of the episode
     :return: one of :data:`TERMINATIONS`; ``None`` if the episode goes on
     """
-    if not torso.is_finite:
-        return "diverged"
-    (x, y, z), (start_x, start_y, start_z) = torso.position, start
+    (x, y, z), (start_x, start_y, start_z) = tick.torso.position, tick.start
     if max(abs(x - start_x), abs(y - start_y), abs(z - start_z)) > BOX_HALF_WIDTH:
         return "left_box"
-    if torso.upright < LEAST_UPRIGHT:
+    if tick.torso.upright < LEAST_UPRIGHT:
         return "fell"
-    half_tick = control_dt / 2
-    if steps < OSCILLATION_STEPS and time > OSCILLATION_SECONDS - half_tick:
+    half_tick = config.physics.control_dt / 2  # the tolerance for rounding
+    if tick.steps < OSCILLATION_STEPS and tick.time > OSCILLATION_SECONDS - half_tick:
         return "no_oscillation"
-    return "time_limit" if time > time_limit - half_tick else None
+    return None
+
+
+def ending_words(termination: str) -> str:
+    """Words for the way in which an episode ended: those of the table, or the name that a task of your own gave.
+
+    :param termination: name of the ending
+    """
+    return TERMINATIONS.get(termination, termination.replace("_", " "))

@@ -6,21 +6,25 @@ from typing import Any
 
 from sarah.control.hip_law import HipLaw
 from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, Phase
-from sarah.episode.ending import termination
 from sarah.episode.gait import GaitRecord
 from sarah.episode.motion import MotionRecord
 from sarah.episode.result import EpisodeResult
-from sarah.episode.reward import highest_return, reward_rate
+from sarah.episode.reward import highest_return
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import STEPPING, TASKS, Task
+from sarah.episode.tasks import STEPPING, Task, mistake
+from sarah.episode.tick import Tick
 from sarah.episode.trace import Trace
+from sarah.errors import ConfigurationError, SarahError, shortened
 from sarah.robot.description import ANKLE_JOINTS, describe_robot
 from sarah.robot.reading import SensorReading, Vector
 from sarah.simulation.build import BuildSimulator, simulator_of
 from sarah.simulation.randomisation import draw_conditions
 from sarah.simulation.sensors import ImperfectSensors
 from sarah.simulation.simulator import TorsoState
+
+LONGEST_ENDING = 40
+"""Longest name of a way in which a task ends an episode, in characters."""
 
 
 class Episode:
@@ -52,7 +56,7 @@ class Episode:
     ) -> None:
         self.config = config
         self.task = task
-        self.push = task.draw_push(task.checked_config(config), seed)
+        self.push = task.draw_push(task.checked_config(config, True), seed)
         self.termination: str | None = None
         self.robot = describe_robot(config.dimensions)
         conditions = draw_conditions(config.randomisation, seed)
@@ -75,7 +79,12 @@ class Episode:
         self._motion = MotionRecord(config.physics.control_rate)
         self._ticks = 0
         self._return = 0.0
-        self._highest_return = highest_return(self.robot.standing_height, config.time_limit - STAND_SECONDS)
+        seconds = config.time_limit - STAND_SECONDS
+        self._highest_return = (
+            highest_return(self.robot.standing_height, seconds)
+            if task.best_reward is None
+            else task.best_reward * seconds
+        )
         self._trace: list[dict[str, Any]] | None = [] if record_trace else None
 
     def stand(self) -> SensorReading:
@@ -170,16 +179,43 @@ class Episode:
 
     def _judge(self) -> None:
         """Add this tick's reward, and check whether the episode ends."""
-        elapsed = self._ticks * self._dt
         torso = self.simulation.torso_state()
-        self.termination = termination(
-            torso, self._first.position, self._gait.steps, STAND_SECONDS + elapsed, self.config.time_limit, self._dt
-        )
-        if self.termination == "diverged":  # the result is that of the last finite state
+        if not torso.is_finite:  # the result is that of the last finite state
+            self.termination = "diverged"
             return
         self._last = torso
-        frequency = self._gait.steps_per_second(self._ticks)
-        self._return += reward_rate(*self._displacement(torso), frequency, self.config.reward_form) * self._dt
+        tick = Tick(
+            STAND_SECONDS + self._ticks * self._dt,
+            self._first.position,
+            torso,
+            self._gait.steps,
+            self._gait.steps_per_second(self._ticks),
+            self.generator.phase,
+            self.generator.stance,
+            self._truth,
+            self.last_reading,
+            self.simulation,
+        )
+        try:
+            self._return += self.task.reward(tick, self.config) * self._dt
+            self.termination = self._ended(tick)
+        except SarahError:
+            raise
+        except Exception as error:
+            if self.task.file is None:
+                raise
+            raise ConfigurationError(mistake(self.task.file.name, error)) from error
+
+    def _ended(self, tick: Tick) -> str | None:
+        """Name of the way in which the episode ends now; ``None`` if it goes on."""
+        ending = self.task.ending(tick, self.config)
+        if ending is None:
+            return "time_limit" if tick.time > self.config.time_limit - self._dt / 2 else None
+        if not isinstance(ending, str) or not ending.isidentifier() or len(ending) > LONGEST_ENDING:
+            raise ConfigurationError(
+                f"task {self.task.name!r}: an ending must be a short name such as 'jumped', not {shortened(ending)}"
+            )
+        return ending
 
     def _displacement(self, torso: TorsoState) -> tuple[float, float, float]:
         """Torso position as in equation 2: x and y from the start, z over the floor, in m."""
@@ -220,7 +256,7 @@ def simulate(spec: EpisodeSpec, record_trace: bool = False) -> EpisodeResult:
     :return: the result
     :raises SimulationError: if there is nothing to trace, because the simulation diverged while the robot stood
     """
-    episode = Episode(spec.config, spec.seed, TASKS[spec.task], record_trace)
+    episode = Episode(spec.config, spec.seed, spec.task, record_trace)
     try:
         episode.stand()
         return episode.run(spec.parameters)

@@ -10,6 +10,7 @@ from typing import Any
 from sarah.episode.result import METRICS, EpisodeResult
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import Task, task_named
 from sarah.episode.workers import Executor, Workers
 from sarah.errors import ConfigurationError, unknown_name
 
@@ -113,7 +114,7 @@ class Evaluation:
 
 
 def evaluate(
-    task: str,
+    task: str | Task[Any],
     parameters: tuple[float, ...],
     config: EpisodeConfig,
     seeds: Iterable[int],
@@ -121,11 +122,11 @@ def evaluate(
 ) -> Evaluation:
     """Simulate the same parameters on several seeds.
 
-    :param task: name of the task
+    :param task: task, or the name of one of this package
     :param parameters: values of the task's parameters, in order
     :param config: settings of the episodes
     :param seeds: seeds of the episodes; no training uses those below 2^31
     :param workers: executor that simulates the episodes; by default this process does
     """
-    specs = [EpisodeSpec(parameters, seed, task, config) for seed in seeds]
+    specs = [EpisodeSpec(parameters, seed, task_named(task), config) for seed in seeds]
     return Evaluation(tuple((workers or Workers()).simulate_all(specs)))

@@ -1,4 +1,4 @@
-"""The push of the balance task: its ranges, and one episode's draw."""
+"""The push: its ranges, the settings that have it, and one episode's draw."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import random
 from dataclasses import dataclass
 
 from sarah.control.pattern_generator import STAND_SECONDS
-from sarah.episode.settings import LONGEST_EPISODE
-from sarah.errors import check_fields
+from sarah.episode.settings import LONGEST_EPISODE, EpisodeConfig
+from sarah.errors import ConfigurationError, check_fields, to_ranges
 from sarah.robot.reading import Vector
 
 PLAUSIBLE = {
@@ -22,7 +22,7 @@ PLAUSIBLE = {
 
 @dataclass(frozen=True)
 class Push:
-    """The push of the balance task, drawn for each episode from its seed. Equal ends of a range fix the value.
+    """The push, drawn for each episode from its seed. One number for a range, or equal ends, fix the value.
 
     It acts horizontally on the torso's centre, with constant force.
 
@@ -40,6 +40,7 @@ class Push:
 
     def __post_init__(self) -> None:
         """Refuse impossible pushes, and pushes that begin while the robot stands."""
+        to_ranges(self, "newtons", "degrees", "at_seconds")
         check_fields("push", self, PLAUSIBLE)
 
 
@@ -68,3 +69,37 @@ def draw_push(ranges: Push, seed: int) -> DrawnPush:
     direction = math.radians(generator.uniform(*ranges.degrees))
     begin = generator.uniform(*ranges.at_seconds)
     return DrawnPush((newtons * math.cos(direction), newtons * math.sin(direction), 0.0), begin, ranges.duration)
+
+
+@dataclass(frozen=True)
+class PushedConfig(EpisodeConfig):
+    """Settings that all episodes of an experiment share when the robot is pushed.
+
+    :param push: ranges that each episode's push is drawn from
+    """
+
+    push: Push = Push()
+
+    def __post_init__(self) -> None:
+        """Refuse settings that cannot be simulated, and a push shorter than a control tick."""
+        super().__post_init__()
+        if self.push.duration < self.physics.control_dt:
+            tick = f"a control tick, {self.physics.control_dt:g} s"
+            raise ConfigurationError(f"push.duration must be at least {tick}, not {self.push.duration!r}")
+
+    def check_for_training(self) -> None:
+        """Refuse a push that begins after the end of every episode."""
+        begin, limit = self.push.at_seconds, self.time_limit
+        if begin[0] >= limit:
+            raise ConfigurationError(
+                f"episode.push.at_seconds must begin before the time_limit of {limit:g} s, not {begin!r}"
+            )
+
+
+def push_of_settings(config: EpisodeConfig, seed: int) -> DrawnPush | None:
+    """Draw the push of an episode, if its settings have one.
+
+    :param config: settings of the episode
+    :param seed: seed of the episode
+    """
+    return draw_push(config.push, seed) if isinstance(config, PushedConfig) else None

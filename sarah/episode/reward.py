@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from sarah.episode.settings import EpisodeConfig
+    from sarah.episode.tick import Tick
 
 RewardForm = Literal["symmetric", "printed"]
 
@@ -27,6 +31,15 @@ def reward_rate(x: float, y: float, height: float, steps_per_second: float, form
     if form == "printed":
         return (HALF_WIDTH - x) * (HALF_WIDTH - y) * frequency_factor * height
     return max(HALF_WIDTH - abs(x), 0.0) * max(HALF_WIDTH - abs(y), 0.0) * frequency_factor * height
+
+
+def equation_2(tick: Tick, config: EpisodeConfig) -> float:
+    """Reward of both tasks of the paper, per second: equation 2 at the end of a control tick.
+
+    :param tick: what is known at the end of the tick
+    :param config: settings of the episode, which name the form of the equation
+    """
+    return reward_rate(tick.x, tick.y, tick.height, tick.steps_per_second, config.reward_form)
 
 
 def highest_return(standing_height: float, seconds: float) -> float:

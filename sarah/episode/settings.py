@@ -11,7 +11,7 @@ from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.reward import RewardForm
 from sarah.errors import ConfigurationError, check_range, unknown_name
 from sarah.simulation.engines import Engine, default_engine
-from sarah.simulation.physics import PHYSICS, Physics, physics_for, physics_type
+from sarah.simulation.physics import PHYSICS, Physics, physics_for
 from sarah.simulation.randomisation import Randomisation
 
 LONGEST_EPISODE = 3600.0
@@ -61,10 +61,9 @@ class EpisodeConfig:
         :raises ConfigurationError: naming the setting
         """
 
-    @classmethod
-    def field_types(cls, content: Mapping[str, Any]) -> dict[str, type]:
-        """Types of fields that depend on other fields.
+    def dependent_defaults(self, content: Mapping[str, Any]) -> dict[str, Any]:
+        """Values of fields that depend on other fields: the physics, on its engine.
 
-        :param content: values of some fields, as a file gives them
+        :param content: new values of some fields, as a file gives them
         """
-        return {"physics": physics_type(content.get("engine", default_engine()))}
+        return {"physics": physics_for(content.get("engine", self.engine), self.physics)}

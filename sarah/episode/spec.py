@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from sarah.episode.settings import EpisodeConfig
-from sarah.episode.tasks import task_named
+from sarah.episode.tasks import STEPPING, Task, task_named
 from sarah.errors import ConfigurationError
 
 FIRST_TRAINING_SEED = 2**31
 """First seed that trainings draw for their episodes; no training uses a smaller one."""
+FIRST_EVALUATION_SEED = 1000
+"""First seed of evaluations: the summary at the end of a training has those from 0."""
 
 
 @dataclass(frozen=True)
@@ -18,7 +21,7 @@ class EpisodeSpec:
 
     :param parameters: values of the task's parameters, in order: P1 to P5, or V1 to V4
     :param seed: seed of the conditions, the push and the sensor noise; a whole number, not negative
-    :param task: name of the task: ``"stepping"`` or ``"balance"``
+    :param task: task, or the name of one of this package: ``"stepping"`` or ``"balance"``
     :param config: settings that all episodes of an experiment share; by default the task's own
     :raises ConfigurationError: for an unknown task, another task's settings, parameters out of their box, or an
         invalid seed
@@ -26,13 +29,16 @@ class EpisodeSpec:
 
     parameters: tuple[float, ...]
     seed: int
-    task: str = "stepping"
+    task: Task[Any] = STEPPING
     config: EpisodeConfig = None  # type: ignore[assignment]  # the task's own
 
     def __post_init__(self) -> None:
         """Refuse invalid specifications, and convert the parameters to floats."""
         task = task_named(self.task)
+        object.__setattr__(self, "task", task)
         object.__setattr__(self, "parameters", task.checked(self.parameters))
-        object.__setattr__(self, "config", task.episode if self.config is None else task.checked_config(self.config))
+        object.__setattr__(
+            self, "config", task.episode if self.config is None else task.checked_config(self.config, True)
+        )
         if not isinstance(self.seed, int) or isinstance(self.seed, bool) or self.seed < 0:
             raise ConfigurationError(f"seed must be a whole number from 0, not {self.seed!r}")

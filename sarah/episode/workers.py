@@ -18,7 +18,6 @@ from sarah.episode.cluster import RemoteJob, connect, start
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import TASKS
 from sarah.errors import ConfigurationError, check_range
 from sarah.robot.reading import SensorReading
 from sarah.versions import LEARNING, SIMULATING
@@ -89,7 +88,7 @@ def finish_episode(spec: EpisodeSpec, following: EpisodeSpec | None = None) -> O
 
 
 def _standing(spec: EpisodeSpec) -> Episode:
-    episode = Episode(spec.config, spec.seed, TASKS[spec.task])
+    episode = Episode(spec.config, spec.seed, spec.task)
     try:
         episode.stand()
     except BaseException:
@@ -105,7 +104,7 @@ def close_waiting_episodes() -> None:
 
 
 def _key(spec: EpisodeSpec) -> tuple[Any, ...]:
-    return (spec.task, spec.seed, repr(spec.config))
+    return (spec.task.identity, spec.seed, repr(spec.config))
 
 
 _EPISODES = (begin_episode, finish_episode, simulate)
@@ -187,9 +186,16 @@ class Workers(Executor):
         :param function: function to call: :func:`begin_episode`, :func:`finish_episode`, :func:`sarah.simulate`, or
             one of another module
         :param subjects: arguments of the function, such as specifications of episodes
+        :raises ConfigurationError: if other processes simulate, and the task is that of a script
         """
         if self.client is None:
             return _LocalJob(function, *subjects)
+        for subject in subjects:
+            if isinstance(subject, EpisodeSpec) and not subject.task.is_portable:
+                raise ConfigurationError(
+                    f"task {subject.task.name!r} is not that of a file, so worker processes cannot have it: put it "
+                    "into one, and use sarah.load_task"
+                )
         packages = SIMULATING if function in _EPISODES else LEARNING
         return RemoteJob(self.client, packages, function, *subjects)
 

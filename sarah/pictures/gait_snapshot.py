@@ -6,13 +6,14 @@ import dataclasses
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from PIL import Image
 
 from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import TASKS
+from sarah.episode.tasks import Task
 from sarah.errors import ConfigurationError, SimulationError
 from sarah.pictures.gait_figure import draw_gait_cycle
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
@@ -40,11 +41,11 @@ class Picture:
     content: bytes
 
 
-def draw_gait(parameters: tuple[float, ...], task: str, config: EpisodeConfig) -> list[Picture]:
+def draw_gait(parameters: tuple[float, ...], task: Task[Any], config: EpisodeConfig) -> list[Picture]:
     """Simulate an episode with seed 0, and draw its gait.
 
     :param parameters: values of the task's parameters, in order
-    :param task: name of the task
+    :param task: task that owns the parameters
     :param config: settings of the episode
     :return: a video, and a gait cycle if the robot completes one; nothing if the robot cannot even stand
     """
@@ -54,7 +55,7 @@ def draw_gait(parameters: tuple[float, ...], task: str, config: EpisodeConfig) -
     except SimulationError:  # the simulation diverges, which the learning curves show
         return []
     assert trace is not None
-    stepping, _ = TASKS[task].controller_parameters(parameters, config)
+    stepping, _ = task.controller_parameters(parameters, config)
     end = trace.time[-1]
     times = frame_times(max(trace.time[0], end - VIDEO_SECONDS), end, FRAMES_PER_SECOND[".gif"])
     with tempfile.TemporaryDirectory() as name:

@@ -8,13 +8,13 @@ from pathlib import Path
 
 from sarah.episode.episode import simulate
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import TASKS
 from sarah.errors import ConfigurationError
 from sarah.pictures.gait_figure import draw_gait_cycle
 from sarah.pictures.robot_figure import draw_robot
 from sarah.pictures.state_machine_figure import draw_state_machine
 from sarah.reports.training_figures import draw_figures
 from sarah.robot.description import describe_robot
+from sarah.runs.recorded_task import RecordedTask
 from sarah.runs.run_folder import RunFolder
 
 _log = logging.getLogger(__name__)
@@ -31,9 +31,10 @@ def draw_all_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
     files = draw_figures(runs, folder)
     files += _draw_robot(runs[0], folder / "figure_2_robot")
     files += draw_state_machine(folder / "figure_3_pattern_generator", runs[0].config().episode.controller)
-    first_of_task = {run.config().task: run for run in reversed(runs)}
-    for task, run in first_of_task.items():
-        files += _draw_cycle(run, folder / f"gait_cycle_{task}")
+    first_of_task = {run.config().task.name: run for run in reversed(runs)}
+    for name, run in first_of_task.items():
+        if not isinstance(run.config().task, RecordedTask):  # which cannot simulate
+            files += _draw_cycle(run, folder / f"gait_cycle_{name}")
     return files
 
 
@@ -51,7 +52,7 @@ def _draw_cycle(run: RunFolder, path: Path) -> list[Path]:
     config, learned = run.config(), run.parameters()
     trace = simulate(EpisodeSpec(learned, 0, config.task, config.episode), record_trace=True).trace
     assert trace is not None
-    stepping, _ = TASKS[config.task].controller_parameters(learned, config.episode)
+    stepping, _ = config.task.controller_parameters(learned, config.episode)
     try:
         return draw_gait_cycle(trace, stepping, path, config.episode.controller)
     except ConfigurationError as error:

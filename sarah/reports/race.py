@@ -20,7 +20,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sarah.episode.evaluation import evaluate
-from sarah.episode.tasks import TASKS
 from sarah.episode.workers import Workers
 from sarah.errors import RunFolderError
 from sarah.files import locked, read_lines, read_text, replace_text
@@ -95,7 +94,7 @@ def race(entries: Sequence[Entry], workers: Workers) -> list[RaceCurve]:
 def _check_settings(entry: Entry) -> None:
     """Refuse a folder that this training did not make."""
     try:
-        there = RunFolder.resumable(entry.folder).config()
+        there = RunFolder.resumable(entry.folder, entry.config.task).config()
     except RunFolderError as error:
         raise RunFolderError(f"{entry.folder} is not of a race: name another folder") from error
     if difference := first_difference(entry.config, there):
@@ -146,7 +145,7 @@ def _run_folder(entry: Entry) -> RunFolder:
             with suppress(OSError):  # another race was quicker
                 os.rename(Path(begun) / "run", entry.folder)
     _check_settings(entry)
-    return RunFolder(entry.folder)
+    return RunFolder(entry.folder, entry.config.task)
 
 
 def _train(entry: Entry, run: RunFolder) -> None:
@@ -174,7 +173,7 @@ def _seconds(path: Path) -> float:
 
 def _evaluate_recommendations(entry: Entry, run: RunFolder) -> None:
     """Write the scores of all recommendations, during the training and at its end."""
-    config, names = entry.config, TASKS[entry.config.task].parameter_names
+    config, names = entry.config, entry.config.task.parameter_names
     seconds = read_curve(entry).seconds if is_run(entry) else _seconds(entry.folder / TIME_FILE)
     try:
         along = [(int(row["episodes"]), tuple(float(row[name]) for name in names)) for row in run.recommendations()]

@@ -17,7 +17,7 @@ from sarah.episode.episode import simulate
 from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.result import METRICS
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, TASKS, Task
+from sarah.episode.tasks import BALANCE, Task
 from sarah.episode.workers import Executor
 from sarah.errors import ConfigurationError
 from sarah.files import replace_text
@@ -68,7 +68,7 @@ def write_report(
     :raises RunFolderError: if a file in the run folder is missing or damaged
     """
     config, learned = run.config(), run.parameters()
-    task = TASKS[config.task]
+    task = config.task
     ours, theirs = (
         evaluate(config.task, parameters, config.episode, range(episodes), executor)
         for parameters in (learned, task.baseline)
@@ -93,7 +93,7 @@ def write_report(
         episodes=episodes,
         rows=_parameter_rows(task, learned) + _result_rows(config, ours, theirs),
         baseline=task.baseline_label,
-        warnings=_warnings(ours, None if task.neutral is None else theirs),
+        warnings=_warnings(task, ours, theirs),
         figures=figures,
         film=film,
         film_caption=caption,
@@ -134,11 +134,11 @@ def _result_rows(config: TrainingConfig, learned: Evaluation, baseline: Evaluati
     return rows
 
 
-def _warnings(learned: Evaluation, baseline: Evaluation | None) -> list[str]:
+def _warnings(task: Task, learned: Evaluation, baseline: Evaluation) -> list[str]:
     found = []
-    if not learned.is_gait:
+    if task.must_step and not learned.is_gait:
         found.append("This is not a valid gait: the robot steps to a clock, or does not lift its feet.")
-    if baseline is not None and learned.chatters(baseline):
+    if task.neutral is not None and learned.chatters(baseline):
         found.append("The hips chatter: no real actuator could follow that.")
     return found
 
@@ -165,7 +165,7 @@ def _film(spec: EpisodeSpec, folder: Path, seconds: tuple[float, float]) -> tupl
 
 def _commands(run: RunFolder, config: TrainingConfig) -> list[str]:
     again = f"{config.algo}-s{config.seed}-again"
-    extra = ["sarah-eval RUN --robustness tables"] if config.task == BALANCE.name else ["sarah-video RUN out.mp4"]
+    extra = ["sarah-eval RUN --robustness tables"] if config.task is BALANCE else ["sarah-video RUN out.mp4"]
     commands = [f"sarah-train --config config.yaml --run-dir {again}", "sarah-eval RUN", "sarah-figures RUN", *extra]
     return [command.replace("RUN", shlex.quote(again)) for command in [*commands, "sarah-report RUN"]]
 

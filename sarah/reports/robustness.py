@@ -101,7 +101,7 @@ def push_many(
         settings[newtons] = dataclasses.replace(config, push=push, time_limit=limit)
     pushes = [(newtons, first_seed + index) for newtons in forces for index in range(episodes)]
     results = workers.simulate_all(
-        [EpisodeSpec(v, seed, BALANCE.name, settings[newtons]) for v in controllers for newtons, seed in pushes]
+        [EpisodeSpec(v, seed, BALANCE, settings[newtons]) for v in controllers for newtons, seed in pushes]
     )
     pushed = []
     for (newtons, seed), result in zip(pushes * len(controllers), results, strict=True):

@@ -22,7 +22,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.patheffects import withStroke
 
 from sarah.control.parameters import PAPER_STEPPING
-from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
+from sarah.episode.tasks import BALANCE, STEPPING, Task
 from sarah.errors import RunFolderError
 from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
 from sarah.reports.robustness import PushedEpisode, finest_sectors, survival_by_direction
@@ -98,12 +98,17 @@ def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
     :return: the files
     :raises RunFolderError: if a run folder has no episodes, or damaged ones; nothing is drawn then
     """
-    curves = {task: _curves([run for run in runs if run.config().task == task.name], task) for task in TASKS.values()}
+    tasks = [run.config().task for run in runs]
+    of_task = {task.identity: task for task in tasks}
+    curves = {
+        task: _curves([run for run, its in zip(runs, tasks, strict=True) if its.identity == identity], task)
+        for identity, task in of_task.items()
+    }
     folder.mkdir(parents=True, exist_ok=True)
     files = []
     with plt.rc_context(STYLE):
         for task, drawn in curves.items():
-            for name, panels in figures_of(task).items() if drawn else ():
+            for name, panels in figures_of(task).items():
                 files += _draw(drawn, panels, folder / name)
     return files
 

@@ -6,11 +6,12 @@ import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice, product
-from typing import get_args
+from typing import Any, get_args
 
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import Task
 from sarah.episode.workers import Workers
 from sarah.simulation.engines import Engine
 
@@ -21,14 +22,14 @@ ENGINES: tuple[Engine, ...] = get_args(Engine)
 class LearnedParameters:
     """Learned parameters of a training.
 
-    :param name: name of the run folder
-    :param task: name of the task, ``"stepping"`` or ``"balance"``
+    :param name: name of the run folder, or the parameters themselves
+    :param task: task that owns the parameters
     :param parameters: values of P1 to P5, or of V1 to V4
     :param config: settings of the episodes; its engine is the one that they were learned in
     """
 
     name: str
-    task: str
+    task: Task[Any]
     parameters: tuple[float, ...]
     config: EpisodeConfig
 
@@ -85,6 +86,6 @@ def as_markdown(transfers: Sequence[Transfer]) -> str:
         ]
         learned = one.learned
         lines.append(
-            f"| {learned.name} | {learned.task} | {learned.config.engine} | {' | '.join(cells)} | {one.kept:.0%} |"
+            f"| {learned.name} | {learned.task.name} | {learned.config.engine} | {' | '.join(cells)} | {one.kept:.0%} |"
         )
     return "\n".join(lines)

@@ -13,7 +13,8 @@ from sarah.reports.transfer import Transfer
 
 ENGINE_COLOURS = {"pybullet": "#0072B2", "mujoco": "#D55E00"}
 """Colours of the engines, which colour-blind people can tell apart (Okabe and Ito)."""
-TASK_MARKERS = {"stepping": "o", "balance": "^"}
+TASK_MARKERS = "o^sDvP"
+"""Markers of the tasks, in the order of the runs."""
 
 
 def draw_transfer(transfers: Sequence[Transfer], path: Path) -> list[Path]:
@@ -31,11 +32,13 @@ def draw_transfer(transfers: Sequence[Transfer], path: Path) -> list[Path]:
         axis.axline((0.0, 0.0), slope=1.0, color="grey", linewidth=0.8)
         for slope, label in ((0.9, "90 % kept"), (1.0 / 0.9, None)):
             axis.axline((0.0, 0.0), slope=slope, color="grey", linewidth=0.8, linestyle=":", label=label)
-        for (engine, colour), (task, marker) in itertools.product(ENGINE_COLOURS.items(), TASK_MARKERS.items()):
+        names = dict.fromkeys(one.learned.task.name for one in transfers)
+        markers = zip(names, itertools.cycle(TASK_MARKERS))
+        for (engine, colour), (task, marker) in itertools.product(ENGINE_COLOURS.items(), markers):
             runs = [
                 [one.evaluations[name].mean("score") for name in (across, up)]  # type: ignore[index]
                 for one in transfers
-                if (one.learned.config.engine, one.learned.task) == (engine, task)
+                if (one.learned.config.engine, one.learned.task.name) == (engine, task)
             ]
             if runs:
                 label = f"{task}, learned in {engine} ({len(runs)})"

@@ -9,7 +9,7 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, get_args
 
-from sarah.errors import ConfigurationError, check_range, shortened, unknown_name
+from sarah.errors import ConfigurationError, check_range, shortened, to_ranges, unknown_name
 
 Preset = Literal["one-step", "paper"]
 Activation = Literal["tanh", "relu", "sigmoid"]
@@ -170,6 +170,7 @@ class NAFSettings(LearnerSettings):
                 object.__setattr__(self, name, value)
         if self.activation not in get_args(Activation):
             raise ConfigurationError(unknown_name("agent.activation", self.activation, get_args(Activation)))
+        to_ranges(self, "exploration_std", "elite_std")
         super().__post_init__()
         if self.gamma > 0 and (self.temperature > 0 or self.elite_share > 0):
             raise ConfigurationError(

@@ -6,14 +6,15 @@ The module imports nothing slow, because every command imports it first.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED
-from sarah.episode.tasks import task_named
+from sarah.episode.tasks import STEPPING, Task, task_named
 from sarah.errors import ConfigurationError, check_range, shortened
-from sarah.runs.agent_settings import AGENT_SETTINGS, AgentSettings, LearnerSettings, settings_of
+from sarah.runs.agent_settings import AGENT_SETTINGS, AgentSettings, LearnerSettings, NAFSettings, settings_of
 
 MOST_EPISODES = 1_000_000
 MOST_SLOTS = 10_000
@@ -35,7 +36,8 @@ class TrainingConfig:
     """The settings of a training.
 
     :param task: task: ``stepping`` learns P1 to P5 of the pattern generator, as the paper's First Training; ``balance``
-        learns V1 to V4 of the hip law under pushes, as its Second Training
+        learns V1 to V4 of the hip law under pushes, as its Second Training; ``my_task.py:JUMP`` is the task JUMP of a
+        file of yours
     :param algo: algorithm: ``naf``, stable-baselines3's ``td3``, ``sac`` or ``ddpg``, or an optimiser that sees returns
         only: ``cma-es``, ``gp`` (Gaussian process), ``tpe`` or ``random``
     :param episodes: budget of the training; an episode is one action of the agent, and up to 30 s of the robot
@@ -44,22 +46,26 @@ class TrainingConfig:
         the slots - 1 episodes before it. It changes the result of a training; the number of workers does not
     :param agent: settings of the algorithm; by default the algorithm's own
     :param episode: settings of the episodes; by default the task's own
+    :param extended_from: budgets with which the training had ended before it went on, in rising order; --resume with
+        more episodes adds one
     :param pictures: number of episodes between pictures of the recommendation for TensorBoard: a gait cycle, and a
         video of 3 s. Each takes some seconds, and changes no result; 0 for none
     """
 
-    task: str = "stepping"
+    task: Task[Any] = STEPPING
     algo: str = "naf"
     episodes: int = 100
     seed: int = 0
     slots: int = 4
     agent: AgentSettings = None  # type: ignore[assignment]  # the algorithm's own
     episode: EpisodeConfig = None  # type: ignore[assignment]  # the task's own
+    extended_from: tuple[int, ...] = ()
     pictures: int = 0
 
     def __post_init__(self) -> None:
         """Refuse unknown names and impossible budgets."""
         task, settings = task_named(self.task), settings_of(self.algo)
+        object.__setattr__(self, "task", task)
         object.__setattr__(self, "episode", task.episode if self.episode is None else task.checked_config(self.episode))
         object.__setattr__(self, "agent", settings() if self.agent is None else self.agent)
         if type(self.agent) is not settings:
@@ -67,6 +73,11 @@ class TrainingConfig:
                 f"agent must be the {settings.__name__} of algo {self.algo!r}, not {type(self.agent).__name__}"
             )
         check_range("episodes", self.episodes, 1, MOST_EPISODES)
+        for earlier, later in pairwise((0, *self.stages)):
+            if not earlier < later:
+                raise ConfigurationError(
+                    f"extended_from must be in rising order and below episodes, not {shortened(self.extended_from)}"
+                )
         check_range("slots", self.slots, 1, MOST_SLOTS)
         check_range("pictures", self.pictures, 0, MOST_EPISODES)
         if not 0 <= self.seed < FIRST_TRAINING_SEED:
@@ -74,25 +85,50 @@ class TrainingConfig:
             raise ConfigurationError(f"seed must be between 0 and {last}, not {shortened(self.seed)}")
         self.episode.check_for_training()
 
-    @classmethod
-    def field_types(cls, content: Mapping[str, Any]) -> dict[str, type]:
-        """Types of fields that depend on other fields.
+    def dependent_defaults(self, content: Mapping[str, Any]) -> dict[str, Any]:
+        """Values of fields that depend on other fields: the settings of the task's episodes, and of the algorithm.
 
-        :param content: values of some fields, as a file gives them
+        :param content: new values of some fields, as a file gives them
         :raises ConfigurationError: if they name no task or no algorithm
         """
-        task, algo = content.get("task", cls.task), content.get("algo", cls.algo)
-        types: dict[str, type] = {}
-        if isinstance(task, str):  # otherwise its own type is refused
-            types["episode"] = type(task_named(task).episode)
+        task, algo, agent = content.get("task", self.task), content.get("algo", self.algo), content.get("agent")
+        defaults: dict[str, Any] = {}
+        if isinstance(task, (str, Task)):  # otherwise its own type is refused
+            defaults["episode"] = task_named(task).episode
         if isinstance(algo, str):
-            types["agent"] = settings_of(algo)
-        return types
+            settings = settings_of(algo)()
+            preset = agent.get("preset") if isinstance(agent, Mapping) else None
+            if isinstance(settings, NAFSettings) and isinstance(preset, str):
+                settings = settings.with_preset(preset)
+            defaults["agent"] = settings
+        return defaults
+
+    @property
+    def stages(self) -> tuple[int, ...]:
+        """Budgets at which the training ends, or has ended before it was extended."""
+        return (*self.extended_from, self.episodes)
+
+    @property
+    def stage_episodes(self) -> int:
+        """Number of episodes since the training was extended, or since it began."""
+        return self.episodes - (self.extended_from[-1] if self.extended_from else 0)
 
     @property
     def candidate_count(self) -> int:
         """Number of candidates that the budget allows to compare at the end; with one there is no comparison."""
-        return max(1, self.episodes // BUDGET_PER_CANDIDATE)
+        return max(1, self.stage_episodes // BUDGET_PER_CANDIDATE)
+
+    def by_stage(self) -> tuple[TrainingConfig, ...]:
+        """The training as it was begun, and then as every extension made it."""
+        ends = range(len(self.stages))
+        return tuple(replace(self, episodes=self.stages[i], extended_from=self.stages[:i]) for i in ends)
+
+    def extended_to(self, episodes: int) -> TrainingConfig:
+        """The training with a larger budget: it goes on from where it ended.
+
+        :param episodes: the larger budget, earlier episodes included
+        """
+        return replace(self, episodes=episodes, extended_from=self.stages)
 
     @property
     def compared_episodes(self) -> int:

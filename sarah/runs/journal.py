@@ -24,8 +24,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO
 
-from sarah.episode.ending import TERMINATIONS
-from sarah.episode.episode import simulate
+from sarah.episode.episode import LONGEST_ENDING, simulate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Executor, Job, Outcome, begin_episode, finish_episode
@@ -61,12 +60,13 @@ def _reading(plain: Any) -> SensorReading:
 
 def _result(plain: Any) -> EpisodeResult:
     x, y, z = plain["final_position"]
-    if plain["termination"] not in TERMINATIONS:
-        raise ValueError(f"no episode ends as {plain['termination']!r}")
+    termination = plain["termination"]
+    if not isinstance(termination, str) or not termination.isidentifier() or len(termination) > LONGEST_ENDING:
+        raise ValueError("the way in which an episode ended is no name")
     numbers = {name: value for name, value in plain.items() if name not in ("termination", "final_position")}
     if any(type(value) not in (int, float) for value in (x, y, z, *numbers.values())):
         raise TypeError("a number of an episode is none")
-    return EpisodeResult(termination=plain["termination"], final_position=(x, y, z), **numbers)
+    return EpisodeResult(termination=termination, final_position=(x, y, z), **numbers)
 
 
 _KINDS = {
@@ -76,6 +76,7 @@ _KINDS = {
         lambda p: Outcome(_result(p[0]), _reading(p[1]), p[2] and _reading(p[2])),
     ),
     "simulate": _Kind(lambda result: result.fields(), _result),
+    "extend": _Kind(lambda nothing: nothing, lambda nothing: nothing),
 }
 _NAMES: dict[Callable[..., Any], str] = {
     begin_episode: "begin",
@@ -204,6 +205,20 @@ class Journal(Executor):
                 "as the kind of processor differs, or something else that arithmetic depends on"
             )
         return _KnownJob(self, row.value)
+
+    def extend(self, episodes: int) -> None:
+        """Note that the training goes on to a larger budget, or check that it did so before.
+
+        :param episodes: the larger budget
+        :raises ResumeError: if the training was extended to another one
+        """
+        request = {"index": self._submitted, "kind": "extend", "seed": 0, "parameters": [episodes]}
+        row = self._known.pop(self._submitted, None)
+        self._submitted += 1
+        if row is None:
+            self.add(request, None)
+        elif row.request != request:
+            raise ResumeError(f"{self._path.parent} cannot be resumed: it was not extended to {episodes} episodes")
 
     def add(self, request: dict[str, Any], value: Any) -> None:
         """Write the outcome of an episode.

@@ -85,8 +85,9 @@ def compact_json(row: dict[str, Any]) -> bytes:
 
 
 def _origin_of(config: TrainingConfig) -> dict[str, Any]:
-    settings = settings_by_key(config)
-    del settings["pictures"]  # they change no result
+    settings = settings_by_key(config.by_stage()[0])  # the journal has a row for each extension
+    for name in ("pictures", "extended_from"):  # pictures change no result
+        del settings[name]
     return {**settings, **versions()}
 
 

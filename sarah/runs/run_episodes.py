@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
-from sarah.episode.ending import TERMINATIONS
+from sarah.episode.ending import ending_words
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import TASKS
+from sarah.episode.tasks import TASKS, Task
 from sarah.errors import ConfigurationError, RunFolderError
 from sarah.runs.run_folder import RunFolder
 
@@ -30,15 +32,23 @@ class RunEpisode:
     spec: EpisodeSpec
     score: float | None = None
 
-    def in_engine(self, engine: str) -> RunEpisode:
-        """Make the same episode in a physics engine; it has no score if that is not the run folder's engine.
+    def of(self, spec: EpisodeSpec) -> RunEpisode:
+        """Make the same choice of another specification; it has no score if that is not the run folder's.
 
-        :param engine: name of the engine
-        :raises ConfigurationError: if there is no such engine
+        :param spec: specification of the episode
         """
-        config = replace(self.spec.config, engine=engine)  # type: ignore[arg-type]  # checked
-        spec = replace(self.spec, config=config)
         return replace(self, spec=spec, score=self.score if spec == self.spec else None)
+
+
+def learned_episode(run: RunFolder) -> RunEpisode:
+    """Episode of a training's learned parameters, with seed 0.
+
+    :param run: run folder of the training, which is finished
+    :raises RunFolderError: if the learned parameters cannot be read
+    """
+    training = run.config()
+    spec = EpisodeSpec(run.parameters(), 0, training.task, training.episode)
+    return RunEpisode("learned", "learned parameters · seed 0", spec)
 
 
 def episodes_of_run(run: RunFolder) -> list[RunEpisode]:
@@ -48,43 +58,42 @@ def episodes_of_run(run: RunFolder) -> list[RunEpisode]:
     :raises RunFolderError: if a row of ``episodes.csv`` cannot be read, or if there is no episode
     """
     training = run.config()
-    task = TASKS[training.task]
+    task = training.task
+    shown = [learned_episode(run)] if run.is_finished else []
     simulated = []
     for row in run.episodes():
         try:
             parameters = tuple(float(row[name]) for name in task.parameter_names)
-            spec = EpisodeSpec(parameters, int(row["seed"]), task.name, training.episode)
-            score, ending = float(row["score"]), TERMINATIONS[row["termination"]]
+            spec = EpisodeSpec(parameters, int(row["seed"]), task, training.episode)
+            score, ending = float(row["score"]), ending_words(row["termination"])
             label = f"episode {row['index']} · score {score:.2f} · {ending}"
             simulated.append(RunEpisode(row["index"], label, spec, score))
         except (KeyError, TypeError, ValueError) as error:
             reason = repr(error)[:LONGEST_REASON]
             raise RunFolderError(f"the episodes of {run.path} cannot be read: {reason}") from error
-    shown = []
-    if run.is_finished:
-        spec = EpisodeSpec(run.parameters(), 0, task.name, training.episode)
-        shown.append(RunEpisode("learned", "learned parameters · seed 0", spec))
     if simulated:
-        best = max(simulated, key=lambda episode: episode.score or 0.0)
+        best = max(simulated, key=lambda episode: -math.inf if episode.score is None else episode.score)
         shown.append(RunEpisode("best", f"best: {best.label}", best.spec, best.score))
     if not shown:
         raise RunFolderError(f"{run.path} has no episodes to show yet")
     return shown + simulated
 
 
-def episode_of_parameters(parameters: Sequence[float]) -> RunEpisode:
+def episode_of_parameters(parameters: Sequence[float], task: Task[Any] | None = None) -> RunEpisode:
     """Episode of given parameters, with seed 0.
 
-    :param parameters: values of P1 to P5, or of V1 to V4 for the task balance
-    :raises ConfigurationError: if there are not five or four of them, or if one is not allowed
+    :param parameters: values of a task's parameters
+    :param task: task of the parameters; by default that of this package which has so many
+    :raises ConfigurationError: if the number of parameters is that of no task, or if one is not allowed
     """
-    for task in TASKS.values():
+    tasks = TASKS.values() if task is None else (task,)
+    for task in tasks:
         if len(parameters) == len(task.parameter_names):
             label = f"{task.parameter_names[0][0]} = {', '.join(f'{value:g}' for value in parameters)} · seed 0"
-            return RunEpisode("given", label, EpisodeSpec(tuple(parameters), 0, task.name))
+            return RunEpisode("given", label, EpisodeSpec(tuple(parameters), 0, task))
     counts = " or ".join(
         f"{len(task.parameter_names)} numbers ({task.parameter_names[0]} to {task.parameter_names[-1]})"
-        for task in TASKS.values()
+        for task in tasks
     )
     raise ConfigurationError(f"parameters must be {counts}, not {len(parameters)}")
 

@@ -1,6 +1,7 @@
 """The run folder: only this module knows its layout.
 
     config.yaml  command.txt  versions.txt     the settings, the command and the versions of the training
+    task.py  task.json                         the task, if it is that of a file of the user's
     journal.jsonl                              the outcome of every episode in full, from which a training is resumed
     episodes.csv                               one row per episode; any row can be simulated again
     recommendations.csv                        the recommendation after every five episodes
@@ -9,8 +10,8 @@
     parameters.json                            the learned parameters, which a robot would be given
     figures/  report.html                      the products of sarah-figures and sarah-report
 
-Every file but the model is read without unpickling, and no command reads the model. So opening somebody's run folder
-executes none of its code.
+Every file but the model is read without unpickling, and no command reads the model or runs ``task.py``. So opening
+somebody's run folder executes none of its code.
 """
 
 from __future__ import annotations
@@ -21,16 +22,18 @@ import json
 import shlex
 import sys
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import TASKS
-from sarah.errors import RunFolderError, shortened
+from sarah.episode.tasks import Task
+from sarah.errors import ConfigurationError, RunFolderError, shortened
 from sarah.files import read_lines, read_text, replace_text
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import read_config, write_config
+from sarah.runs.recorded_task import SOURCE, record_task, recorded_task
 from sarah.versions import versions
 
 EVENTS = "events.out.tfevents."
@@ -55,10 +58,12 @@ class RunFolder:
     """The files of a training.
 
     :param path: path of the folder; :meth:`create` makes a new folder, :meth:`open` checks an existing one
+    :param task: task of the training, if it is loaded; a task of a file is otherwise read, but not run
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, task: Task[Any] | None = None) -> None:
         self.path = path
+        self._task = task
         self.model_path = path / "model.zip"
         self.figures_path = path / "figures"
         self.report_path = path / "report.html"
@@ -77,16 +82,22 @@ class RunFolder:
         :param path: path of the folder, which must be new or empty
         :param config: settings of the training
         :raises RunFolderError: if the folder is not empty or cannot be written
+        :raises ConfigurationError: if the task is that of a script, which the folder could not record
         """
+        if not config.task.is_portable:
+            raise ConfigurationError(
+                f"a run folder records tasks of files: put {config.task.name!r} into one, and use sarah.load_task"
+            )
         try:
             path.mkdir(parents=True, exist_ok=True)
-            run = cls(path)
+            run = cls(path, config.task if config.task.file is not None else None)
             if any(path.iterdir()) or not run._claim():
                 can_go_on = run._config_path.is_file() and run.journal_path.is_file() and not run.is_finished
                 go_on = f", or go on with sarah-train --resume {shlex.quote(str(path))}" if can_go_on else ""
                 raise RunFolderError(f"run folder {path} is not empty: name another with --run-dir{go_on}")
             replace_text(path / "command.txt", shlex.join(sys.argv) + "\n")
             run.write_versions()
+            record_task(config.task, path)
             write_config(config, run._config_path)  # last, because a folder that has it can be resumed
         except RunFolderError:
             raise
@@ -103,14 +114,15 @@ class RunFolder:
         return True
 
     @classmethod
-    def open(cls, path: Path, unfinished: bool = False) -> RunFolder:
+    def open(cls, path: Path, unfinished: bool = False, task: Task[Any] | None = None) -> RunFolder:
         """Open the folder of a training.
 
         :param path: path of the folder
         :param unfinished: whether to accept a training without learned parameters
-        :raises RunFolderError: if the folder does not exist, or has no learned parameters
+        :param task: task of the training, which only a task of a file needs
+        :raises RunFolderError: if the folder does not exist, has no learned parameters, or is another task's
         """
-        run = cls(path)
+        run = cls(path, task)
         if not path.is_dir():
             raise RunFolderError(f"run folder {path} does not exist")
         kind = "training" if unfinished else "finished training"
@@ -120,13 +132,14 @@ class RunFolder:
         return run
 
     @classmethod
-    def resumable(cls, path: Path) -> RunFolder:
+    def resumable(cls, path: Path, task: Task[Any] | None = None) -> RunFolder:
         """Open the folder of a training that was interrupted, or is finished.
 
         :param path: path of the folder
+        :param task: task of the training, which only a task of a file needs
         :raises RunFolderError: if the folder does not exist, or lacks a file that a training is resumed from
         """
-        run = cls(path)
+        run = cls(path, task)
         if not path.is_dir():
             raise RunFolderError(f"run folder {path} does not exist")
         for file in (run._config_path, run.journal_path):
@@ -138,6 +151,14 @@ class RunFolder:
     def is_finished(self) -> bool:
         """Whether the training has finished, with learned parameters."""
         return self._parameters_path.is_file()
+
+    def extend(self, config: TrainingConfig) -> None:
+        """Make a finished training an unfinished one with a larger budget.
+
+        :param config: settings with the larger budget
+        """
+        self._parameters_path.unlink()  # first: without it, the training of before would only be finished again
+        write_config(config, self._config_path)
 
     def write_versions(self) -> None:
         """Write with which code and versions the training begins."""
@@ -153,8 +174,18 @@ class RunFolder:
         return {name: version for name, _, version in (line.partition(" ") for line in lines)}
 
     def config(self) -> TrainingConfig:
-        """Read the training's configuration."""
-        return read_config(TrainingConfig, self._config_path)
+        """Read the training's configuration.
+
+        :raises RunFolderError: if the run folder was given a task that it was not made with
+        """
+        recorded = recorded_task(self.path)
+        config = read_config(TrainingConfig, self._config_path, recorded)
+        if self._task is None:
+            return config
+        if self._task.identity != config.task.identity:
+            kept = "" if config.task.file is None else f": the file as it was is {self.path / SOURCE}"
+            raise RunFolderError(f"{self.path} is of task {config.task.identity}, not {self._task.identity}{kept}")
+        return replace(config, task=self._task)
 
     def config_text(self) -> str:
         """Read the text of ``config.yaml``."""
@@ -170,7 +201,7 @@ class RunFolder:
         :param spec: specification of the episode
         :param result: result of the episode
         """
-        parameters = dict(zip(TASKS[spec.task].parameter_names, spec.parameters, strict=True))
+        parameters = dict(zip(spec.task.parameter_names, spec.parameters, strict=True))
         row = {"index": index, "seed": spec.seed, **parameters, **result.columns()}
         _append_row(self._episodes_path, tuple(row), row)
 
@@ -232,7 +263,7 @@ class RunFolder:
 
         :raises RunFolderError: if the file does not contain exactly the task's parameters
         """
-        task = TASKS[self.config().task]
+        task = self.config().task
         names = task.parameter_names
         try:
             learned = json.loads(read_text(self._parameters_path))["parameters"]

@@ -7,7 +7,7 @@ import random
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from sarah.errors import ConfigurationError, check_fields
+from sarah.errors import ConfigurationError, check_fields, to_ranges
 from sarah.robot.description import GROUPS
 
 LINKS = tuple(link for group in GROUPS.values() for link in group)
@@ -31,7 +31,7 @@ class Randomisation:
     """Uncertain properties of the robot and its world, drawn for each episode from its seed.
 
     Parameters learned on one exact robot exploit it, so they must hold under a little of everything. The ranges are
-    reconstructed, as the paper gives none. A pair is a uniform range; equal ends fix the value.
+    reconstructed, as the paper gives none. A pair is a uniform range; one number, or equal ends, fix the value.
 
     :param enabled: whether to randomise; if not, the robot is as designed, except for a random start velocity
     :param friction: range of the Coulomb friction coefficient between sole and floor
@@ -60,6 +60,7 @@ class Randomisation:
 
     def __post_init__(self) -> None:
         """Refuse ranges that no robot has."""
+        to_ranges(self, "friction", "actuator_bandwidth", "pad_threshold")
         check_fields("randomisation", self, PLAUSIBLE)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections import deque
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import torch
@@ -20,7 +20,7 @@ from sarah.envs.episode_vec_env import EpisodeVecEnv
 from sarah.envs.sarah_env import draw_seed, observation_from, parameters_from
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import TASKS, Task
+from sarah.episode.tasks import Task
 from sarah.episode.workers import Executor, Job
 from sarah.errors import ConfigurationError
 from sarah.files import replacing
@@ -37,7 +37,7 @@ from sarah.runs.config import OPTIMISERS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.randomisation import Randomisation
 from sarah.training.beginnings import BeginningDDPG, BeginningSAC, BeginningTD3
-from sarah.training.optimisers import Optimiser, Start, make_optimiser
+from sarah.training.optimisers import Start, make_optimiser
 from sarah.training.recommendation import Parameters
 from sarah.training.recorder import EpisodeRecorder, check_weights
 from sarah.training.replay import LateRankReplayBuffer, LateReplayBuffer
@@ -48,39 +48,57 @@ SCHEDULED_SHARE = 0.8
 ACTIVATIONS = {"tanh": nn.Tanh, "relu": nn.ReLU, "sigmoid": nn.Sigmoid}
 
 
-def learn(
-    config: TrainingConfig,
-    episodes: int,
-    run: RunFolder,
-    recorder: EpisodeRecorder,
-    workers: Executor,
-) -> Parameters:
-    """Learn by what the configuration names.
+class Learner(Protocol):
+    """Something that learns a task's parameters from episodes, and can go on."""
+
+    def learn(self, episodes: int) -> Parameters:
+        """Learn from more episodes.
+
+        :param episodes: number of episodes
+        :return: what the algorithm itself would choose now
+        """
+
+
+def make_learner(config: TrainingConfig, run: RunFolder, recorder: EpisodeRecorder, workers: Executor) -> Learner:
+    """Make what the configuration names.
 
     :param config: settings of the training
-    :param episodes: number of episodes to learn from
     :param run: run folder, in which an agent is saved
     :param recorder: recorder of the episodes
     :param workers: who simulates
-    :return: what the algorithm itself would choose in the end
     """
     if config.algo in OPTIMISERS:
-        return _search(config, episodes, recorder, workers)
-    env = EpisodeVecEnv(config.task, config.episode, episodes, config.slots, workers)
-    model = make_agent(config, env)
-    model.set_logger(recorder.log)
-    nominal = nominal_observation(config)
-    recorder.choose = lambda: chosen_parameters(model, nominal, TASKS[config.task])
-    # The recorder logs every episode; stable-baselines3's own averages are left out.
-    model.learn(
-        episodes + config.slots - 1,
-        callback=recorder,
-        log_interval=None,  # type: ignore[arg-type]
-    )
-    check_weights(model)
-    with replacing(run.model_path) as file:
-        model.save(file)  # type: ignore[arg-type]  # any file will do
-    return recorder.choose()
+        return _Search(config, recorder, workers)
+    return _Agent(config, run, recorder, workers)
+
+
+class _Agent:
+    """An agent of stable-baselines3's kind."""
+
+    def __init__(self, config: TrainingConfig, run: RunFolder, recorder: EpisodeRecorder, workers: Executor) -> None:
+        self._config, self._run, self._recorder = config, run, recorder
+        self._env = EpisodeVecEnv(config.task, config.episode, 0, config.slots, workers)
+        self._model = make_agent(config, self._env)
+        self._model.set_logger(recorder.log)
+        self._nominal = nominal_observation(config)
+
+    def learn(self, episodes: int) -> Parameters:
+        """Learn, and save the agent. When it goes on, its schedules are those of all its episodes together."""
+        model = self._model
+        self._recorder.choose = lambda: chosen_parameters(model, self._nominal, self._config.task)
+        self._env.episodes = episodes
+        model.set_env(self._env)  # which is reset for the new episodes
+        # The recorder logs every episode; stable-baselines3's own averages are left out.
+        model.learn(
+            episodes + self._config.slots - 1,
+            callback=self._recorder,
+            log_interval=None,  # type: ignore[arg-type]
+            reset_num_timesteps=False,
+        )
+        check_weights(model)
+        with replacing(self._run.model_path) as file:
+            model.save(file)  # type: ignore[arg-type]  # any file will do
+        return self._recorder.choose()
 
 
 def warm_up(config: TrainingConfig) -> int:
@@ -104,7 +122,7 @@ def make_agent(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
     common = {item.name: getattr(settings, item.name) for item in dataclasses.fields(LearnerSettings)}
     common["learning_starts"] = warm_up(config)
     algorithm, own_arguments = LEARNERS[type(settings)]
-    task = TASKS[config.task]
+    task = config.task
     own = own_arguments(settings, task) | {"first_action_centre": begins_at_centre(task)}
     seeds = seeds_of(config.seed)
     model = algorithm("MlpPolicy", env, seed=seeds.algorithm, **common, **own)
@@ -194,7 +212,7 @@ def nominal_observation(config: TrainingConfig) -> np.ndarray:
     :param config: settings of the training; the randomisation is left out
     """
     nominal = dataclasses.replace(config.episode, randomisation=Randomisation(enabled=False, start_speed=0.0))
-    episode = Episode(nominal, 0, TASKS[config.task])
+    episode = Episode(nominal, 0, config.task)
     try:
         return observation_from(episode.stand())
     finally:
@@ -212,30 +230,34 @@ def chosen_parameters(model: OffPolicyAlgorithm, observation: np.ndarray, task: 
     return parameters_from(action, task)
 
 
-def _search(config: TrainingConfig, episodes: int, recorder: EpisodeRecorder, workers: Executor) -> Parameters:
-    """Let a black-box optimiser try parameters, as many in flight as there are slots; its choice is returned."""
-    task = TASKS[config.task]
-    seeds, dimensions = seeds_of(config.seed), len(task.parameter_names)
-    start = Start(begins_at_centre(task), warm_up(config), config.slots)
-    optimiser = make_optimiser(config.algo, config.agent, dimensions, seeds.algorithm, start)
-    generator = np.random.default_rng(seeds.episodes)
-    recorder.choose = lambda: parameters_from(optimiser.choice(), task)
-    running: deque[tuple[np.ndarray, EpisodeSpec, Job]] = deque()
-    for _ in range(episodes):
-        while len(running) == config.slots or not optimiser.ready():
-            _tell_oldest(running, optimiser, recorder)
-        action = optimiser.ask()
-        spec = EpisodeSpec(parameters_from(action, task), draw_seed(generator), config.task, config.episode)
-        running.append((action, spec, workers.submit(simulate, spec)))
-    while running:
-        _tell_oldest(running, optimiser, recorder)
-    return recorder.choose()
+class _Search:
+    """A black-box optimiser, which tries parameters, as many in flight as there are slots."""
 
+    def __init__(self, config: TrainingConfig, recorder: EpisodeRecorder, workers: Executor) -> None:
+        self._config, self._recorder, self._workers = config, recorder, workers
+        seeds, dimensions = seeds_of(config.seed), len(config.task.parameter_names)
+        start = Start(begins_at_centre(config.task), warm_up(config), config.slots)
+        self._optimiser = make_optimiser(config.algo, config.agent, dimensions, seeds.algorithm, start)
+        self._generator = np.random.default_rng(seeds.episodes)
+        self._running: deque[tuple[np.ndarray, EpisodeSpec, Job]] = deque()
 
-def _tell_oldest(
-    running: deque[tuple[np.ndarray, EpisodeSpec, Job]], optimiser: Optimiser, recorder: EpisodeRecorder
-) -> None:
-    action, spec, job = running.popleft()
-    result = job.result()
-    optimiser.tell(action, result.episode_return)
-    recorder.record(spec, result)
+    def learn(self, episodes: int) -> Parameters:
+        """Try parameters, and learn from the returns."""
+        config, optimiser = self._config, self._optimiser
+        self._recorder.choose = lambda: parameters_from(optimiser.choice(), config.task)
+        for _ in range(episodes):
+            while len(self._running) == config.slots or not optimiser.ready():
+                self._tell_oldest()
+            action = optimiser.ask()
+            parameters = parameters_from(action, config.task)
+            spec = EpisodeSpec(parameters, draw_seed(self._generator), config.task, config.episode)
+            self._running.append((action, spec, self._workers.submit(simulate, spec)))
+        while self._running:
+            self._tell_oldest()
+        return self._recorder.choose()
+
+    def _tell_oldest(self) -> None:
+        action, spec, job = self._running.popleft()
+        result = job.result()
+        self._optimiser.tell(action, result.episode_return)
+        self._recorder.record(spec, result)

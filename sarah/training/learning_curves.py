@@ -130,7 +130,7 @@ def hyper_parameters(config: TrainingConfig) -> dict[str, str | int | float]:
     """
     episode = config.episode
     return {
-        "task": config.task,
+        "task": config.task.name,
         "algorithm": config.algo,
         "episodes": config.episodes,
         "seed": config.seed,

@@ -8,6 +8,7 @@ budget compare the best candidates, all on the same new seeds.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from statistics import mean
 
@@ -28,14 +29,22 @@ SMALLEST_ROOM = 64
 """Number of rows for episodes at first. It doubles whenever they are full."""
 
 
-def merit(result: EpisodeResult) -> float:
+def merit(result: EpisodeResult, must_step: bool = True) -> float:
     """Merit of an episode: its score, reduced in proportion to what its gait lacks to be valid.
 
     :param result: result of the episode
+    :param must_step: whether the task wants a gait; otherwise the merit is the score
     """
-    merit = result.score * min(1.0, result.sole_clearance / SMALLEST_CLEARANCE)
-    for share in (result.shifts_by_sensors, result.lifts_by_sensors):
-        merit *= min(1.0, share / SMALLEST_SENSOR_SHARE)
+    merit = result.score
+    if not must_step:
+        return merit
+    for share in (
+        result.sole_clearance / SMALLEST_CLEARANCE,
+        result.shifts_by_sensors / SMALLEST_SENSOR_SHARE,
+        result.lifts_by_sensors / SMALLEST_SENSOR_SHARE,
+    ):
+        share = min(1.0, share)
+        merit *= share if merit > 0.0 else 2.0 - share  # a reward of your own can be negative
     return merit
 
 
@@ -86,7 +95,10 @@ class Tried:
         self._put(0, choice)
         rows = slice(0, len(self) + 1)
         places = self._places[rows]
-        means = self._weighted_merits[rows] / (self._weights[rows] + DOUBT)
+        # Doubt draws towards 0, or towards the worst of a reward that can be negative.
+        worst = min(0.0, float(self._merits[1 : len(self) + 1].min(initial=0.0)))
+        weights = self._weights[rows]
+        means = (self._weighted_merits[rows] - worst * weights) / (weights + DOUBT)
         chosen: list[Parameters] = []
         while True:
             index = int(np.argmax(means))
@@ -124,15 +136,17 @@ def squared_lengths(differences: np.ndarray) -> np.ndarray:
     return lengths
 
 
-def rank(results: Sequence[EpisodeResult], baseline: Evaluation | None) -> tuple[bool, float]:
+def rank(results: Sequence[EpisodeResult], baseline: Evaluation | None, must_step: bool = True) -> tuple[bool, float]:
     """Rank a candidate: valid gaits that do not chatter rank first, and among equals the best mean merit.
 
     :param results: results of the candidate's episodes
     :param baseline: evaluation that chatter is judged against; without one nothing chatters
+    :param must_step: whether the task wants a gait; otherwise every gait is valid
     :return: what is larger for the better candidate
     """
     if not results:
-        return (False, 0.0)
+        return (False, -math.inf)
     evaluation = Evaluation(tuple(results))
     chatters = baseline is not None and evaluation.chatters(baseline)
-    return (evaluation.is_gait and not chatters, mean(merit(result) for result in results))
+    is_valid = evaluation.is_gait or not must_step
+    return (is_valid and not chatters, mean(merit(result, must_step) for result in results))

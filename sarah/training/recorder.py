@@ -15,7 +15,6 @@ from tqdm import tqdm
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.result import METRICS, EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import TASKS
 from sarah.errors import LearningError
 from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
@@ -56,7 +55,7 @@ class EpisodeRecorder(BaseCallback):
         self.diverged = 0
         self.choose = None
         self._config = config
-        self._task = TASKS[config.task]
+        self._task = config.task
         self.tried = Tried(self._task)
         self._run = run
         self._journal = journal
@@ -81,7 +80,7 @@ class EpisodeRecorder(BaseCallback):
         :param result: result of the episode
         """
         self._write(partial(self._run.append_episode, len(self.tried), spec, result))
-        self.tried.append((spec.parameters, merit(result)))
+        self.tried.append((spec.parameters, merit(result, self._task.must_step)))
         self.diverged += result.termination == "diverged"
         x, y, _ = result.final_position
         for name, value in {"return": result.episode_return, "x": x, "y": y}.items():

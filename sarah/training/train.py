@@ -14,12 +14,11 @@ from sarah.envs.sarah_env import draw_seed
 from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import TASKS
 from sarah.episode.workers import Executor, Workers
 from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
-from sarah.training.learners import learn
+from sarah.training.learners import make_learner
 from sarah.training.recommendation import Parameters, rank
 from sarah.training.recorder import EpisodeRecorder
 from sarah.training.seeds import seeds_of
@@ -73,38 +72,55 @@ def train(
 def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_bar: bool) -> Learned:
     # The networks are small, so more threads would only wait for each other.
     torch.set_num_threads(1)
-    task = TASKS[config.task]
-    seeds = range(SUMMARY_EPISODES)
+    comparison = np.random.default_rng(seeds_of(config.seed).comparison)
     with tqdm(total=config.episodes, unit=" episodes", disable=not progress_bar) as progress:
         recorder = EpisodeRecorder(run, config, journal, progress)
-        choice = learn(config, config.episodes - config.compared_episodes, run, recorder, journal)
-        recorder.choose = None
-        best = recorder.tried.best(choice, config.candidate_count)
-        parameters = _compare(best, config, recorder, journal)
-    evaluation = evaluate(config.task, parameters, config.episode, seeds, journal)
-    baseline = None
-    if task.neutral is not None:
-        baseline = evaluate(config.task, task.neutral, config.episode, seeds, journal)
-    recorder.close(evaluation)
+        learner = make_learner(config, run, recorder, journal)
+        for stage in config.by_stage():
+            if stage.extended_from:
+                journal.extend(stage.episodes)
+            choice = learner.learn(stage.stage_episodes - stage.compared_episodes)
+            recorder.choose = None
+            best = recorder.tried.best(choice, stage.candidate_count)
+            parameters = _compare(best, stage, recorder, comparison, journal)
+            learned = _evaluated(parameters, stage, recorder, journal)
+    recorder.close(learned.evaluation)
+    _write_parameters(learned, config, run)
+    return learned
+
+
+def _evaluated(parameters: Parameters, config: TrainingConfig, recorder: EpisodeRecorder, workers: Executor) -> Learned:
+    """Evaluate learned parameters, and what they are compared with, on seeds that no training has seen."""
+    seeds, neutral = range(SUMMARY_EPISODES), config.task.neutral
+    evaluation = evaluate(config.task, parameters, config.episode, seeds, workers)
+    baseline = None if neutral is None else evaluate(config.task, neutral, config.episode, seeds, workers)
+    return Learned(parameters, evaluation, baseline, recorder.diverged)
+
+
+def _write_parameters(learned: Learned, config: TrainingConfig, run: RunFolder) -> None:
+    evaluation, baseline = learned.evaluation, learned.baseline
     run.write_parameters(
         {
-            "task": config.task,
+            "task": config.task.reference,
             "algorithm": config.algo,
             "seed": config.seed,
             "episodes": config.episodes,
-            "diverged": recorder.diverged,
-            "parameters": dict(zip(task.parameter_names, parameters, strict=True)),
+            "diverged": learned.diverged,
+            "parameters": dict(zip(config.task.parameter_names, learned.parameters, strict=True)),
             "stepping": getattr(config.episode, "stepping", None),
             "evaluation": evaluation.summary(),
             "baseline": baseline and baseline.summary(),
             "chatters": baseline and evaluation.chatters(baseline),
         }
     )
-    return Learned(parameters, evaluation, baseline, recorder.diverged)
 
 
 def _compare(
-    best: list[Parameters], config: TrainingConfig, recorder: EpisodeRecorder, workers: Executor
+    best: list[Parameters],
+    config: TrainingConfig,
+    recorder: EpisodeRecorder,
+    generator: np.random.Generator,
+    workers: Executor,
 ) -> Parameters:
     """Simulate the candidates in turn, all on the same seed in each round, and return the best candidate.
 
@@ -112,7 +128,6 @@ def _compare(
     """
     if not config.compared_episodes:
         return best[0]
-    generator = np.random.default_rng(seeds_of(config.seed).comparison)
     seeds = [draw_seed(generator) for _ in range(ceil(config.compared_episodes / len(best)))]
     specs = [EpisodeSpec(candidate, seed, config.task, config.episode) for seed in seeds for candidate in best]
     results: dict[Parameters, list[EpisodeResult]] = {candidate: [] for candidate in best}
@@ -120,6 +135,6 @@ def _compare(
     for spec, result in zip(specs, workers.simulate_all(specs), strict=True):
         recorder.record(spec, result)
         results[spec.parameters].append(result)
-    neutral = TASKS[config.task].neutral
+    neutral, must_step = config.task.neutral, config.task.must_step
     baseline = None if neutral is None else evaluate(config.task, neutral, config.episode, seeds, workers)
-    return max(best, key=lambda candidate: rank(results[candidate], baseline))
+    return max(best, key=lambda candidate: rank(results[candidate], baseline, must_step))

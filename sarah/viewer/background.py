@@ -9,7 +9,6 @@ from typing import NamedTuple
 from sarah.episode.episode import Episode
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import TASKS
 from sarah.errors import SarahError
 
 TICKS_BETWEEN_LOOKS = 50
@@ -66,7 +65,7 @@ class BackgroundSimulation:
 
     def _simulate(self, spec: EpisodeSpec) -> EpisodeResult | None:
         """Simulate an episode; return ``None`` if there is a newer request."""
-        episode = Episode(spec.config, spec.seed, TASKS[spec.task], record_trace=True)
+        episode = Episode(spec.config, spec.seed, spec.task, record_trace=True)
         try:
             episode.stand()
             episode.start(spec.parameters)

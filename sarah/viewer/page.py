@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import viser
 
-from sarah.episode.ending import TERMINATIONS
+from sarah.episode.ending import ending_words
 from sarah.episode.result import METRICS, EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, Task
@@ -243,7 +243,7 @@ def _on_user(handle: Any, do: Callable[[Any], None]) -> None:
 
 def _ending(result: EpisodeResult) -> str:
     """Way in which an episode ended, and the time if it ended early."""
-    return TERMINATIONS[result.termination] + ("" if result.survived else f" at {result.duration:.1f} s")
+    return ending_words(result.termination) + ("" if result.survived else f" at {result.duration:.1f} s")
 
 
 def _comparison(shown: Shown, before: Shown | None, noted_score: float | None) -> str:

@@ -7,7 +7,7 @@ from dataclasses import astuple, dataclass
 
 from sarah.episode.push import Push
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, TASKS, BalanceConfig
+from sarah.episode.tasks import BALANCE, BalanceConfig
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Scenario:
 
         :param spec: specification of any task; a push that its seed draws becomes a given push
         """
-        task = TASKS[spec.task]
+        task = spec.task
         stepping, balance = task.controller_parameters(spec.parameters, spec.config)
         drawn, push = task.draw_push(spec.config, spec.seed), NO_PUSH
         if drawn is not None:
@@ -68,4 +68,4 @@ class Scenario:
             duration=self.config.push.duration,
         )
         config = BALANCE.config_of(self.config, stepping=self.stepping, push=given)
-        return EpisodeSpec(self.balance, self.seed, BALANCE.name, config)
+        return EpisodeSpec(self.balance, self.seed, BALANCE, config)

@@ -7,10 +7,14 @@ from pathlib import Path
 from laboratory import NEEDS_PYBULLET, need
 from terminal import BIN, SHORT, run
 
-from sarah.cli.options import changed_episodes
-from sarah.episode.tasks import BalanceConfig
+import sarah
+from sarah.cli.episode_options import EpisodeOptions
+from sarah.episode.spec import FIRST_EVALUATION_SEED, FIRST_TRAINING_SEED, EpisodeSpec
+from sarah.episode.tasks import BALANCE, BalanceConfig
+from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.simulation.engines import default_engine, is_installed
-from sarah.simulation.physics import Physics, PyBulletPhysics
+from sarah.simulation.physics import PyBulletPhysics
+from sarah.training.train import SUMMARY_EPISODES
 
 
 def test_eval_summarises_a_run(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
@@ -34,7 +38,7 @@ def test_eval_prints_one_json_object(trained: tuple[Path, subprocess.CompletedPr
 
 
 def test_eval_of_a_second_training_compares_with_v_at_zero(balanced: Path) -> None:
-    arguments = ("second", "--episodes", "2", "--push-newtons", "60")
+    arguments = ("second", "--episodes", "2", "--episode.push.newtons", "60")
     content = json.loads(run("sarah-eval", *arguments, "--json", cwd=balanced.parent).stdout)
     assert content["task"] == "balance" and list(content["parameters"]) == ["V1", "V2", "V3", "V4"]
     assert content["chatters"] is False and content["baseline"]["episodes"] == 2
@@ -44,15 +48,32 @@ def test_eval_of_a_second_training_compares_with_v_at_zero(balanced: Path) -> No
 
 
 def test_options_reach_the_episodes() -> None:
-    trained_at_200_hz = BalanceConfig(engine="pybullet", physics=Physics(rate=400, control_rate=200))
-    config = changed_episodes(trained_at_200_hz, "0.1,0.2,0.3,0.4,0.5", 60.0, "reference", randomisation=False)
-    assert isinstance(config, BalanceConfig)
-    assert config.push.newtons == (60.0, 60.0) and config.stepping == (0.1, 0.2, 0.3, 0.4, 0.5)
+    own = BalanceConfig(engine="pybullet", physics=PyBulletPhysics(rate=400, control_rate=200))
+    options = EpisodeOptions(physics="reference", randomisation=False, episode=own)
+    config = options.applied_to(EpisodeSpec((0.0,) * 4, 0, BALANCE)).config
     assert config.physics == PyBulletPhysics(1000, 100, 200, 0.0) and not config.randomisation.enabled
 
 
+def test_any_robot_can_be_pushed(tmp_path: Path) -> None:
+    """A First Training has no push, but its parameters can meet one."""
+    arguments = ("stepping", "--episodes", "2", "--json", "--episode.time-limit", "4")
+    alone = json.loads(run("sarah-eval", *arguments, cwd=tmp_path).stdout)
+    pushed = json.loads(run("sarah-eval", *arguments, "--episode.push.newtons", "400", cwd=tmp_path).stdout)
+    assert alone["survival_rate"] == 1.0 and pushed["survival_rate"] == 0.0
+    plain = sarah.simulate(sarah.EpisodeSpec(TRAINED_STEPPING, 1000, config=sarah.EpisodeConfig(time_limit=4.0)))
+    assert (
+        json.loads(run("sarah-eval", *arguments, "--episodes", "1", cwd=tmp_path).stdout)["score_mean"] == plain.score
+    )
+
+
+def test_evaluations_use_seeds_that_nothing_has_seen(tmp_path: Path) -> None:
+    process = run("sarah-eval", "stepping", "--episodes", "3", "--episode.time-limit", "2", cwd=tmp_path)
+    assert "seeds            1000 to 1002, which no training has seen" in process.stdout
+    assert max(range(SUMMARY_EPISODES)) < FIRST_EVALUATION_SEED < FIRST_TRAINING_SEED
+
+
 def test_eval_takes_parameters_without_a_run(tmp_path: Path) -> None:
-    arguments = ("--task", "stepping", "--parameters", "0.4,1.3,0.1,1,1", "--episodes", "2", "--json")
+    arguments = ("0.4,1.3,0.1,1,1", "--episodes", "2", "--json")
     first, second = (json.loads(run("sarah-eval", *arguments, cwd=tmp_path).stdout) for _ in range(2))
     assert first == second
     assert first["algorithm"] is None and list(first["parameters"].values()) == [0.4, 1.3, 0.1, 1.0, 1.0]
@@ -106,6 +127,6 @@ def test_figures_of_both_trainings(balanced: Path) -> None:
 
 
 def test_a_reader_who_has_had_enough_is_no_error(tmp_path: Path) -> None:
-    command = f"{BIN / 'sarah-eval'} --parameters 1,1,1,1,1 --episodes 1 --engine {default_engine()} | true"
+    command = f"{BIN / 'sarah-eval'} 1,1,1,1,1 --episodes 1 --engine {default_engine()} | true"
     process = subprocess.run(["bash", "-c", command], capture_output=True, text=True, cwd=tmp_path)
     assert process.stderr == ""

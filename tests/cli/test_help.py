@@ -16,10 +16,25 @@ from terminal import run
             ("--task", "--algo", "--episodes", "--seed", "--run-dir", "--config", "--workers", "--scheduler"),
         ),
         ("sarah-figures", ("RUN", "--out")),
-        ("sarah-view", ("RUN|NUMBERS", "--episode", "--seed", "--export", "--host", "--port", "no password")),
-        ("sarah-video", ("RUN|NUMBERS", "OUT", "--episode", "--seed", "--push-newtons", "--seconds", "--speed")),
+        (
+            "sarah-view",
+            (
+                "RUN|NUMBERS|NAME",
+                "--which",
+                "--seed",
+                "--episode.push.newtons",
+                "--export",
+                "--host",
+                "--port",
+                "no password",
+            ),
+        ),
+        (
+            "sarah-video",
+            ("RUN|NUMBERS|NAME", "OUT", "--which", "--episode.push.newtons", "--seconds", "--speed"),
+        ),
         ("sarah-compare", ("DIR", "--algorithms", "--seeds", "--episodes", "--best-known", "--workers")),
-        ("sarah-eval", ("RUN", "--episodes", "--first-seed", "--json", "--parameters", "--task")),
+        ("sarah-eval", ("RUN|NUMBERS|NAME", "--episodes", "--first-seed", "--json", "--episode.engine", "--task")),
     ],
 )
 def test_help_names_the_options(command: str, options: tuple[str, ...], tmp_path: Path) -> None:

@@ -93,7 +93,11 @@ def test_killed_locked_stopped_and_resumed(expected: dict[str, bytes], tmp_path:
 
     process = begin(tmp_path, "--resume", "run")
     output, errors = process.communicate(timeout=400)
-    assert (process.returncode, output, errors) == (0, "run is finished: there is nothing to resume\n", "")
+    assert (process.returncode, output, errors) == (
+        0,
+        "run is finished: to go on, add --episodes with more than its 60\n",
+        "",
+    )
     assert {name: (run / name).read_bytes() for name in RECORDS} == expected
 
 

@@ -1,69 +1,150 @@
-"""A third task is a task like the others: the commands take its settings from its entry in TASKS."""
+"""A task of a file: every command takes it when it is named, and nothing that opens a run folder runs it."""
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+import json
+import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from terminal import run, tree
 
-from sarah.cli import compare, eval, train
-from sarah.control.parameters import PAPER_STEPPING, STEPPING_PARAMETERS
-from sarah.control.pattern_generator import SteppingParameters
-from sarah.episode.settings import EpisodeConfig
-from sarah.episode.tasks import BALANCE, TASKS, Task
 from sarah.runs.run_folder import RunFolder
-from sarah.training import train as training
+
+FILE = """
+import dataclasses
+from pathlib import Path
+
+import sarah
+
+Path("it_ran").touch()
 
 
-@dataclass(frozen=True)
-class ShortConfig(EpisodeConfig):
-    """Settings with another time limit."""
-
-    time_limit: float = 1.3
+def reward(tick, config):
+    return sarah.equation_2(tick, config) - 0.01 * tick.power
 
 
-@pytest.fixture
-def command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., None]]:
-    """Runs a command in this process, which knows a task of P1 to P3."""
-    task = Task(
-        name="three",
-        title="P1 to P3",
-        parameters=STEPPING_PARAMETERS[:3],
-        episode=ShortConfig(),
-        controller_parameters=lambda chosen, config: (SteppingParameters(*chosen, 1.0, 1.0), None),
-        baseline=PAPER_STEPPING[:3],
-        baseline_label="paper",
-    )
-    monkeypatch.setitem(TASKS, task.name, task)
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(training, "SUMMARY_EPISODES", 1)
-
-    def run(*arguments: str) -> None:
-        name, *others = arguments
-        monkeypatch.setattr("sys.argv", [name, *others])
-        {"sarah-train": train, "sarah-eval": eval, "sarah-compare": compare}[name].main()
-
-    yield run
+THRIFTY = dataclasses.replace(
+    sarah.STEPPING, name="thrifty", reward=reward, episode=sarah.PushedConfig(time_limit=2.0, push=sarah.Push(30))
+)
+"""
+TASK = ("--task", "my_task.py:THRIFTY")
 
 
-def test_its_own_settings_are_the_defaults(command: Callable[..., None]) -> None:
-    command("sarah-train", "--task", "three", "--algo", "random", "--episodes", "2", "--run-dir", "run")
-    assert RunFolder.open(Path("run")).config().episode == ShortConfig()
-    command("sarah-compare", "race", "--task", "three", "--algorithms", "random", "--seeds", "1", "--episodes", "5")
-    (raced,) = Path("race").glob("*/config.yaml")
-    assert RunFolder.open(raced.parent).config().episode == ShortConfig()
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the file, and with a training of its task in ``run``."""
+    path = tmp_path_factory.mktemp("own")
+    (path / "my_task.py").write_text(FILE)
+    process = run("sarah-train", *TASK, "--episodes", "10", "--workers", "2", "--run-dir", "run", cwd=path)
+    assert process.returncode == 0, process.stderr
+    assert "score       -" in process.stdout  # its power costs more than the paper's reward gives
+    (path / "it_ran").unlink()
+    return path
 
 
-def test_a_file_of_settings_keeps_what_it_says(command: Callable[..., None]) -> None:
-    Path("mine.yaml").write_text("task: three\nepisodes: 2\nalgo: random\nepisode: {reward_form: printed}\n")
-    command("sarah-train", "--config", "mine.yaml", "--run-dir", "run")
-    assert RunFolder.open(Path("run")).config().episode == ShortConfig(reward_form="printed")
+def test_the_run_records_the_file(folder: Path) -> None:
+    assert (folder / "run" / "task.py").read_text() == FILE
+    config = RunFolder.open(folder / "run").config()
+    assert config.task.reference == "my_task.py:THRIFTY" and config.episode.time_limit == 2.0
+    assert config.task.parameter_names == ("P1", "P2", "P3", "P4", "P5")
+    assert not (folder / "it_ran").exists()
 
 
-def test_only_the_balance_task_has_a_table_of_robustness(
-    command: Callable[..., None], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setitem(TASKS, "three", BALANCE)  # pushed, and yet another task
-    with pytest.raises(SystemExit):
-        command("sarah-eval", "--task", "three", "--parameters", "0,0,0,0", "--robustness", "table")
-    assert "--robustness is for --task balance" in capsys.readouterr().err
+@pytest.mark.parametrize(
+    "command",
+    [
+        "sarah-figures run --out out",
+        "sarah-eval run",
+        "sarah-video run out.gif",
+        "sarah-view run --export out.html",
+        "sarah-report run --out report.html",
+        "sarah-train --resume run",
+        "sarah-train --resume run --episodes 20",
+        "sarah-train --config run/config.yaml",
+        "sarah-transfer run",
+    ],
+)
+def test_nothing_that_opens_a_run_runs_the_file(folder: Path, command: str) -> None:
+    name, *arguments = command.split()
+    process = run(name, *arguments, cwd=folder)
+    assert not (folder / "it_ran").exists()
+    if name == "sarah-figures":  # which needs only its tables
+        assert process.returncode == 0 and (folder / "out" / "thrifty_parameters.png").exists()
+    else:
+        assert process.returncode == 2 and process.stderr.count("\n") == 1
+        assert "--task my_task.py:THRIFTY" in process.stderr
+
+
+def test_every_command_takes_it_when_it_is_named(folder: Path) -> None:
+    process = run("sarah-eval", "run", *TASK, "--episodes", "2", "--json", cwd=folder)
+    assert json.loads(process.stdout)["score_mean"] < 0.0
+    kept = ("--task", "run/task.py:THRIFTY")  # the copy is the same file
+    again = run("sarah-eval", "run", *kept, "--episodes", "2", "--json", cwd=folder)
+    assert json.loads(again.stdout) | {"task": "my_task.py:THRIFTY"} == json.loads(process.stdout)
+    assert run("sarah-video", "run", "a.gif", *TASK, "--seconds", "1", "1.1", cwd=folder).returncode == 0
+    numbers = run("sarah-eval", "0.4,0.5,0.6,1,1", *TASK, "--episodes", "1", "--json", cwd=folder)
+    assert json.loads(numbers.stdout)["task"] == "my_task.py:THRIFTY"
+    finished = run("sarah-train", "--resume", "run", *TASK, cwd=folder)
+    assert finished.returncode == 0 and "run is finished" in finished.stdout
+
+
+def test_another_file_is_refused(folder: Path, tmp_path: Path) -> None:
+    (tmp_path / "my_task.py").write_text(FILE.replace("0.01", "0.02"))
+    before = tree(folder)
+    for command in ("sarah-train --resume", "sarah-eval"):
+        name, *arguments = command.split()
+        task = ("--task", f"{tmp_path / 'my_task.py'}:THRIFTY")
+        process = run(name, *arguments, str(folder / "run"), *task, cwd=tmp_path)
+        assert process.returncode == 2 and process.stderr.count("\n") == 1
+        assert "is of task THRIFTY (" in process.stderr and "the file as it was is" in process.stderr
+    assert tree(folder) == before
+
+
+def test_a_file_of_settings_keeps_what_it_says(folder: Path) -> None:
+    """What it does not say is the task's own: a time limit of 2 s, and 30 N."""
+    (folder / "mine.yaml").write_text("algo: random\nepisodes: 2\nepisode: {push: {degrees: 90}}\n")
+    process = run("sarah-train", "--config", "mine.yaml", *TASK, "--run-dir", "mine", cwd=folder)
+    assert process.returncode == 0, process.stderr
+    episode = RunFolder.open(folder / "mine").config().episode
+    assert episode.time_limit == 2.0
+    assert episode.push.newtons == (30.0, 30.0) and episode.push.degrees == (90.0, 90.0)  # type: ignore[attr-defined]
+
+
+def test_a_race_of_it_goes_on(folder: Path) -> None:
+    race = ("race", *TASK, "--algorithms", "random", "--seeds", "1", "--episodes", "5", "--evaluations", "1")
+    process = run("sarah-compare", *race, cwd=folder)
+    assert process.returncode == 0 and "| random | 1 |" in process.stdout, process.stderr
+    again = run("sarah-compare", *race, cwd=folder)
+    assert again.stdout == process.stdout
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        ("sarah-train --task my_task.py:THIFTY", "unknown task in my_task.py 'THIFTY', did you mean 'THRIFTY'?"),
+        ("sarah-train --task my_task.py", "name the task in my_task.py too, as in my_task.py:TASK"),
+        ("sarah-train --task nowhere.py:JUMP", "cannot read nowhere.py: No such file or directory"),
+        ("sarah-eval 1,0,1,0 --robustness out --task my_task.py:THRIFTY", "must be 5 numbers (P1 to P5), not 4"),
+        ("sarah-eval 1,1,1,1,1 --robustness out --task my_task.py:THRIFTY", "--robustness is for --task balance"),
+    ],
+)
+def test_mistakes(folder: Path, command: str, words: str) -> None:
+    name, *arguments = command.split()
+    process = run(name, *arguments, cwd=folder)
+    assert process.returncode == 2 and words in process.stderr and process.stderr.count("\n") == 1
+
+
+def test_a_mistake_in_the_reward_names_file_and_line(folder: Path) -> None:
+    (folder / "wrong.py").write_text(FILE.replace("tick.power", "tick.pover"))
+    task = ("--task", "wrong.py:THRIFTY", "--run-dir", "wrong")
+    process = run("sarah-train", *task, "--episodes", "2", "--workers", "1", cwd=folder)
+    assert process.returncode == 2 and "Traceback" not in process.stderr
+    assert "wrong.py, line 11: AttributeError: 'Tick' object has no attribute 'pover'" in process.stderr
+
+
+def test_a_damaged_description_is_one_line(folder: Path, answer: Callable[[str], str], tmp_path: Path) -> None:
+
+    shutil.copytree(folder / "run", tmp_path / "run")
+    for text in ("{", "[]", '{"file": 1}', (folder / "run" / "task.json").read_text().replace("EpisodeConfig", "Path")):
+        (tmp_path / "run" / "task.json").write_text(text.replace("PushedConfig", "Path"))
+        assert "the task of run cannot be read" in answer("sarah-eval run")

@@ -59,9 +59,38 @@ PROTECTIONS = (
     Protection(
         "a training that does not repeat is refused",
         "runs/journal.py",
-        "if row.request != request:",
-        "if False:",
+        "*subjects))\n        if row.request != request:",
+        "*subjects))\n        if False:",
         "test_a_training_that_does_not_repeat_is_not_resumed",
+    ),
+    Protection(
+        "a training that was extended otherwise is refused",
+        "runs/journal.py",
+        "elif row.request != request:",
+        "elif False:",
+        "test_it_cannot_be_extended_to_two_budgets",
+    ),
+    Protection(
+        "the file of somebody's task is not run",
+        "runs/recorded_task.py",
+        "        task = RecordedTask(",
+        "        from sarah.episode.tasks import task_of_text\n\n"
+        "        task_of_text(file.name, file.attribute, file.text)\n        task = RecordedTask(",
+        "test_nothing_that_opens_a_run_runs_the_file",
+    ),
+    Protection(
+        "another file than the training's is refused",
+        "runs/run_folder.py",
+        "if self._task.identity != config.task.identity:",
+        "if False:",
+        "test_another_file_is_refused",
+    ),
+    Protection(
+        "workers refuse the task of a script",
+        "episode/workers.py",
+        "not subject.task.is_portable:",
+        "False:",
+        "test_workers_refuse_the_task_of_a_script",
     ),
     Protection(
         "a training whose settings were edited is refused",
@@ -234,8 +263,8 @@ PROTECTIONS = (
     Protection(
         "commands do not load models",
         "runs/run_folder.py",
-        "task = TASKS[self.config().task]",
-        "task = TASKS[self.config().task]; import torch; torch.load(self.model_path, weights_only=False)",
+        "task = self.config().task",
+        "task = self.config().task; import torch; torch.load(self.model_path, weights_only=False)",
         "test_no_file_of_a_run_is_unpickled",
     ),
     Protection(

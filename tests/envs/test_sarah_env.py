@@ -5,24 +5,26 @@ import math
 import subprocess
 import sys
 import warnings
+from typing import Any
 
 import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
-from laboratory import NEEDS_PYBULLET
+from laboratory import NEEDS_PYBULLET, need
 from stable_baselines3.common.env_checker import check_env as sb3_check_env
 
 import sarah
 from sarah.control.parameters import PAPER_STEPPING, Parameter
-from sarah.envs.registration import ENVIRONMENTS
 from sarah.envs.sarah_env import SarahEnv, observation_from, parameters_from
+from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED
-from sarah.episode.tasks import BALANCE, STEPPING, TASKS, BalanceConfig
+from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, Task
 from sarah.errors import ConfigurationError, SimulationError
 from sarah.robot.reading import SensorReading
 from sarah.simulation.engines import is_installed
+from sarah.simulation.randomisation import Randomisation
 
 SHORT, SHORT_BALANCE = EpisodeConfig(time_limit=4.0), BalanceConfig(time_limit=4.0)
 PAPER_ACTION = np.array(PAPER_STEPPING, dtype=np.float32) - 1.0
@@ -45,13 +47,52 @@ def test_environments_do_not_share_their_spaces() -> None:
     assert (second.action_space.sample() == again.action_space.sample()).all()
 
 
-@pytest.mark.parametrize(("name", "task"), ENVIRONMENTS.items())
-def test_gymnasium_knows_them_by_name(name: str, task: str) -> None:
+@pytest.mark.parametrize(("name", "task"), [("SarahStepping-v0", STEPPING), ("SarahBalance-v0", BALANCE)])
+def test_gymnasium_knows_them_by_name(name: str, task: Task) -> None:
     env = gymnasium.make(name)
-    assert isinstance(env.unwrapped, SarahEnv) and env.unwrapped.task is TASKS[task]
-    assert env.unwrapped.config == TASKS[task].episode
-    assert env.action_space.shape == (len(TASKS[task].parameter_names),)
+    assert isinstance(env.unwrapped, SarahEnv) and env.unwrapped.task is task
+    assert env.unwrapped.config == task.episode
+    assert env.action_space.shape == (len(task.parameter_names),)
     env.close()
+
+
+def test_a_task_of_your_own_is_an_environment() -> None:
+    task = dataclasses.replace(STEPPING, name="mine", episode=SHORT, reward=lambda tick, config: tick.height)
+    env = gymnasium.make("SarahEpisode-v0", task=task)
+    sb3_check_env(env.unwrapped)
+    env.reset(seed=0)
+    _, reward, *_ = env.step(PAPER_ACTION)
+    assert 2.0 < reward < 2.6  # three seconds of some 0.8 m
+    env.close()
+
+
+def test_settings_are_keywords() -> None:
+    need("mujoco")
+    env = gymnasium.make("SarahBalance-v0", engine="mujoco", time_limit=10, push={"newtons": 80, "degrees": [0, 90]})
+    config = env.unwrapped.config  # type: ignore[attr-defined]
+    assert config == BalanceConfig(engine="mujoco", time_limit=10.0, push=Push((80.0, 80.0), (0.0, 90.0)))
+    again = gymnasium.make("SarahBalance-v0", config=config, randomisation=Randomisation(enabled=False))
+    assert again.unwrapped.config == dataclasses.replace(  # type: ignore[attr-defined]
+        config, randomisation=Randomisation(enabled=False)
+    )
+
+
+@pytest.mark.parametrize(
+    ("keywords", "words"),
+    [
+        ({"engin": "mujoco"}, "unknown key 'engin', did you mean 'engine'?"),
+        ({"engine": "bullet"}, "unknown engine 'bullet', did you mean 'pybullet'?"),
+        ({"time_limit": "10"}, "time_limit must be a number, not '10'"),
+        ({"time_limit": 0.5}, "time_limit must be between 1 and 3600 s, not 0.5"),
+        ({"push": {"newton": 1}}, "unknown key 'push.newton', did you mean 'push.newtons'?"),
+        ({"push": {"newtons": [1, 2, 3]}}, r"push.newtons must be a list of 2 values, not \[1, 2, 3\]"),
+        ({"physics": {"rate": 0}}, "physics.rate must be"),
+    ],
+)
+def test_mistakes_in_keywords_are_one_line(keywords: dict[str, Any], words: str) -> None:
+    with pytest.raises(ConfigurationError, match=words) as caught:
+        gymnasium.make("SarahBalance-v0", **keywords)
+    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize(("name", "config"), [("SarahStepping-v0", SHORT), ("SarahBalance-v0", SHORT_BALANCE)])
@@ -136,7 +177,7 @@ def test_impossible_actions_are_refused(action: np.ndarray) -> None:
 @pytest.mark.parametrize(("low", "high"), [(-0.1, 0.2), (-1.0, -0.45), (-1.0, 0.1), (0.0, 2.0)])
 def test_the_ends_of_an_action_are_the_ends_of_the_range(low: float, high: float) -> None:
     """Rounded, -0.1 + 0.3 is more than 0.2, which the task would refuse."""
-    task = dataclasses.replace(STEPPING, parameters=(Parameter("odd", low, high, "", "a range", ""),))
+    task = dataclasses.replace(STEPPING, parameters=(Parameter("odd", low, high, "", "a range", ""),), baseline=(low,))
     assert parameters_from(np.array([-1.0]), task) == (low,)
     assert parameters_from(np.array([1.0]), task)[0] <= high
     assert task.checked(parameters_from(np.array([1.0]), task))[0] == pytest.approx(high)

@@ -104,7 +104,7 @@ def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_command_films_any_episode_of_a_run(run_folder: Path, tmp_path: Path) -> None:
     pictures = {}
     for episode in ("learned", "2"):
-        process = run(str(run_folder), "a.gif", "--episode", episode, "--seconds", "1.2", "1.3", cwd=tmp_path)
+        process = run(str(run_folder), "a.gif", "--which", episode, "--seconds", "1.2", "1.3", cwd=tmp_path)
         assert process.returncode == 0, process.stderr
         with Image.open(tmp_path / "a.gif") as film:
             assert film.size == GIF_SIZE and film.n_frames == 3 and film.info["loop"] == 0

@@ -37,7 +37,7 @@ COMPARE = (
 READERS = {
     "config.yaml": (EVAL, FIGURES, VIDEO, VIEW, REPORT, TRANSFER, RESUME, FROM, COMPARE),
     "parameters.json": (EVAL, FIGURES, VIDEO, VIEW, REPORT, TRANSFER, FROM, COMPARE),
-    "episodes.csv": (FIGURES, VIDEO, VIEW, REPORT),
+    "episodes.csv": (FIGURES, VIEW, REPORT),
     "versions.txt": (REPORT,),
     "journal.jsonl": (RESUME,),
     "race.csv": (COMPARE,),

@@ -37,8 +37,8 @@ COARSE = "--episode.time-limit 1.2 --episode.push.at-seconds 1 1 --episode.physi
 COMMANDS = (
     "sarah-eval {run} --episodes 1",
     "sarah-figures {run} --out figures",
-    "sarah-video {run} out.gif --episode best --seconds 1 1.05",
-    "sarah-view {run} --episode best --export out.html",
+    "sarah-video {run} out.gif --which best --seconds 1 1.05",
+    "sarah-view {run} --which best --export out.html",
     "sarah-report {run} --episodes 1 --out report.html",
     "sarah-transfer {run} --episodes 1 --out transfer",
     "sarah-train --resume {run}",
@@ -190,11 +190,11 @@ def test_dimensions_are_numbers_and_nothing_else(
 
 
 def test_no_setting_is_a_path() -> None:
-    """So none leads out of the run folder. A device is one of a few names."""
+    """So none leads out of the run folder. A device is one of a few names, and no file's task is loaded by its name."""
     texts = set()
     for config_type in (TrainingConfig, EpisodeConfig, Physics, Randomisation, Push, *AGENT_SETTINGS.values()):
         for name, kind in get_type_hints(config_type).items():
             assert kind is not Path
             if kind is str or (str in get_args(kind)[:1] and not hasattr(kind, "__origin__")):
                 texts.add(name)
-    assert texts == {"task", "algo", "device"}
+    assert texts == {"algo", "device"}

@@ -120,7 +120,7 @@ def test_physics_that_diverges_ends_the_episode_and_writes_no_file(
     ("command", "arguments"),
     [
         ("train", ["--engine", "mujoco"]),
-        ("eval", ["--parameters", "0.4,1.3,0.1,1,1", "--engine", "mujoco"]),
+        ("eval", ["0.4,1.3,0.1,1,1", "--engine", "mujoco"]),
         ("compare", ["race", "--engine", "mujoco"]),
         pytest.param("transfer", ["run"], marks=NEEDS_PYBULLET),
     ],

@@ -44,7 +44,7 @@ def trained(path: Path, config: TrainingConfig) -> tuple[np.ndarray, list[int], 
     """Actions within -1 and 1 and seeds of a training's episodes, and all episodes that it has simulated."""
     run, recording = RunFolder.create(path, config), Recording()
     train(config, run, recording)
-    rows, parameters = list(run.episodes()), TASKS[config.task].parameters
+    rows, parameters = list(run.episodes()), TASKS[config.task.name].parameters
     actions = [[2 * (float(row[one.name]) - one.low) / one.width - 1 for one in parameters] for row in rows]
     return np.array(actions), [int(row["seed"]) for row in rows], recording.specs
 

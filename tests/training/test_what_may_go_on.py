@@ -127,7 +127,8 @@ DECIDING = {"task": "episode", "algo": "agent", "episode.engine": "physics"}
 
 
 def keys_of(config: TrainingConfig) -> set[str]:
-    return settings_by_key(config).keys() - {"pictures"}
+    # An extension is in the journal: tests/training/test_extension.py.
+    return settings_by_key(config).keys() - {"pictures", "extended_from"}
 
 
 @pytest.mark.parametrize(

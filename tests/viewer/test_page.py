@@ -225,7 +225,7 @@ def test_a_push_is_simulated_and_drawn_as_an_arrow(page: Any, run: RunFolder) ->
 
 def test_an_exported_episode_plays_without_server_and_network(browser: Any, run: RunFolder, tmp_path: Path) -> None:
     file = tmp_path / "scene.html"
-    command = [BIN / "sarah-view", run.path, "--episode", "best", "--export", file]
+    command = [BIN / "sarah-view", run.path, "--which", "best", "--export", file]
     process = subprocess.run(command, capture_output=True, text=True, check=True)
     assert process.stdout.strip() == str(file)
     context = browser.new_context(viewport={"width": 500, "height": 400}, offline=True)

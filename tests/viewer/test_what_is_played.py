@@ -1,5 +1,6 @@
 """Episodes that the viewer can show, and what its sliders make of them."""
 
+import dataclasses
 import shutil
 from pathlib import Path
 
@@ -42,9 +43,10 @@ def test_an_episode_in_the_other_engine_has_no_noted_score(run: RunFolder) -> No
     choice = episodes_of_run(run)[2]
     own = default_engine()
     (another,) = {"pybullet", "mujoco"} - {own}
-    other = choice.in_engine(another)
+    config = dataclasses.replace(choice.spec.config, engine=another)
+    other = choice.of(dataclasses.replace(choice.spec, config=config))
     assert other.spec.config.engine == another and other.spec.seed == choice.spec.seed and other.score is None
-    assert choice.in_engine(own) == choice
+    assert choice.of(choice.spec) == choice and choice.spec.config.engine == own
 
 
 def test_an_unfinished_run_can_be_played_and_a_damaged_one_is_named(run: RunFolder, tmp_path: Path) -> None:

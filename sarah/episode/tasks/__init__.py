@@ -1,28 +1,63 @@
-"""The tasks: one file each, and an entry here.
+"""The tasks: one file each, and an entry here. A task of your own needs no entry: it is a file of yours.
 
-A task may import errors, robot, control, and from the episode its settings, push and reward.
+A task may import errors, robot, control, and from the episode its settings, push, ending, reward and tick.
 """
 
+from pathlib import Path
 from typing import Any
 
 from sarah.episode.tasks.balance import BALANCE, BalanceConfig
 from sarah.episode.tasks.stepping import STEPPING
-from sarah.episode.tasks.task import Task
+from sarah.episode.tasks.task import Task, TaskFile
+from sarah.episode.tasks.task_file import SETTINGS_TYPES, mistake, read_task, task_of_text
 from sarah.errors import ConfigurationError, unknown_name
 
 TASKS: dict[str, Task[Any]] = {task.name: task for task in (STEPPING, BALANCE)}
-"""Tasks by name."""
+"""Tasks of this package, by name."""
 
 
-def task_named(name: str) -> Task[Any]:
-    """Find a task.
+def task_named(task: str | Task[Any]) -> Task[Any]:
+    """Find a task of this package.
 
-    :param name: name of the task
+    :param task: name of the task; a task is returned as it is
     :raises ConfigurationError: if there is no such task; the message names all tasks
     """
-    if name not in TASKS:
-        raise ConfigurationError(unknown_name("task", name, TASKS))
-    return TASKS[name]
+    if isinstance(task, Task):
+        return task
+    if task not in TASKS:
+        hint = f"; that of a file is loaded by --task {task} or sarah.load_task" if ".py:" in str(task) else ""
+        raise ConfigurationError(unknown_name("task", str(task), TASKS) + hint)
+    return TASKS[task]
 
 
-__all__ = ["BALANCE", "STEPPING", "TASKS", "BalanceConfig", "Task", "task_named"]
+def load_task(reference: str) -> Task[Any]:
+    """Find a task of this package by its name, or load one from a file of yours, which runs the file.
+
+    :param reference: name of a task, such as ``"stepping"``; or path of a file and name of the task in it, such as
+        ``"my_task.py:JUMP"``
+    :raises ConfigurationError: if there is no such task, or if the file has a mistake
+    """
+    path, colon, attribute = reference.rpartition(":")
+    if colon and path.endswith(".py"):
+        task = read_task(Path(path), attribute)
+        if task.name in TASKS:
+            raise ConfigurationError(f"{reference}: the name {task.name!r} is that of a task of this package")
+        return task
+    if reference.endswith(".py"):
+        raise ConfigurationError(f"name the task in {reference} too, as in {reference}:TASK")
+    return task_named(reference)
+
+
+__all__ = [
+    "BALANCE",
+    "SETTINGS_TYPES",
+    "STEPPING",
+    "TASKS",
+    "BalanceConfig",
+    "Task",
+    "TaskFile",
+    "load_task",
+    "mistake",
+    "task_named",
+    "task_of_text",
+]

@@ -2,46 +2,78 @@
 
 from __future__ import annotations
 
+import hashlib
+import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from numbers import Real
 from typing import Any, Generic, TypeVar
 
 from sarah.control.hip_law import BalanceParameters
 from sarah.control.parameters import Parameter
 from sarah.control.pattern_generator import SteppingParameters
-from sarah.episode.push import DrawnPush
+from sarah.episode.ending import paper_ending
+from sarah.episode.push import DrawnPush, PushedConfig, push_of_settings
+from sarah.episode.result import EpisodeResult
+from sarah.episode.reward import equation_2
 from sarah.episode.settings import EpisodeConfig
+from sarah.episode.tick import Tick
 from sarah.errors import ConfigurationError, shortened
 
 ConfigType = TypeVar("ConfigType", bound=EpisodeConfig)
 ControllerParameters = tuple[SteppingParameters, BalanceParameters | None]
 """P1 to P5, and V1 to V4 unless the hips are locked."""
+RESERVED = frozenset({"index", "seed", "episodes", "return", "x", "y", *EpisodeResult.__dataclass_fields__})
+"""Names of columns in the tables of a run folder, which no parameter may have."""
+LARGEST = 1e6
+"""Largest end of a parameter's range."""
 
 
-def no_push(config: Any, seed: int) -> DrawnPush | None:
-    """Draw no push.
+@dataclass(frozen=True)
+class TaskFile:
+    """A file that a task was loaded from.
 
-    :param config: settings of the episode
-    :param seed: seed of the episode
+    :param name: name of the file, without its folder
+    :param attribute: name of the task in the file
+    :param text: text of the file
     """
-    return None
+
+    name: str
+    attribute: str
+    text: str
+
+    @property
+    def reference(self) -> str:
+        """How the command line names the task, such as ``my_task.py:JUMP``."""
+        return f"{self.name}:{self.attribute}"
+
+    @property
+    def digest(self) -> str:
+        """First twelve hexadecimal digits of the text's SHA-256, which tell it from any other text."""
+        return hashlib.sha256(self.text.encode()).hexdigest()[:12]
 
 
 @dataclass(frozen=True, eq=False)
 class Task(Generic[ConfigType]):
-    """A task: what is learned.
+    """A task: what is learned, and how it is judged. All its functions are pure: they depend on their arguments only.
 
-    :param name: name on the command line, for ``--task``
+    :param name: name, for pages and run folders: letters, digits, ``-`` and ``_``
     :param title: title of its training
     :param parameters: parameters that the agent chooses, in order
-    :param episode: default settings of its episodes; their class adds the settings that only this task has
+    :param episode: default settings of its episodes; their class adds settings, such as those of a push
     :param controller_parameters: function that makes the controller's parameters from the chosen ones and the
         settings of the episode
     :param baseline: values of the parameters that learned ones are compared with
     :param baseline_label: name of the baseline on pages
     :param neutral: values of the parameters that do nothing, if there are any; chatter is judged against them
+    :param reward: function that returns the reward per second, from a :class:`~sarah.episode.tick.Tick` and the
+        settings of the episode; by default the paper's equation 2
+    :param best_reward: reward per second whose score is 1; by default the highest that equation 2 gives
+    :param ending: function that returns how the episode ends now, or ``None`` if it goes on, from the same arguments;
+        by default the paper's box and oscillation, and a fall. The time limit always ends an episode
+    :param must_step: whether a training recommends only robots that step by their sensors
     :param draw_push: function that draws an episode's push from its settings and its seed
+    :param file: file that it was loaded from; nothing for a task of this package or of a script
     """
 
     name: str
@@ -50,9 +82,72 @@ class Task(Generic[ConfigType]):
     episode: ConfigType
     controller_parameters: Callable[[tuple[float, ...], Any], ControllerParameters]
     baseline: tuple[float, ...]
-    baseline_label: str
+    baseline_label: str = "baseline"
     neutral: tuple[float, ...] | None = None
-    draw_push: Callable[[Any, int], DrawnPush | None] = no_push
+    reward: Callable[[Tick, Any], float] = equation_2
+    best_reward: float | None = None
+    ending: Callable[[Tick, Any], str | None] = paper_ending
+    must_step: bool = True
+    draw_push: Callable[[Any, int], DrawnPush | None] = push_of_settings
+    file: TaskFile | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse names and boxes that cannot be used.
+
+        :raises ConfigurationError: naming what is not allowed
+        """
+        if not re.fullmatch(r"[A-Za-z][\w-]{0,39}", str(self.name), re.ASCII):
+            raise ConfigurationError(f"a task's name must be letters, digits, - and _, not {shortened(self.name)}")
+        if not isinstance(self.episode, EpisodeConfig):
+            raise ConfigurationError(f"episode of task {self.name!r} must be settings of episodes")
+        names = self.parameter_names
+        for name, parameter in zip(names, self.parameters, strict=True):
+            if not re.fullmatch(r"[A-Za-z]\w{0,39}", str(name), re.ASCII) or name in RESERVED or names.count(name) > 1:
+                raise ConfigurationError(
+                    f"parameter {shortened(name)} of task {self.name!r} must have a name of its own: letters and "
+                    f"digits, and none of {', '.join(sorted(RESERVED))}"
+                )
+            if not -LARGEST <= parameter.low < parameter.high <= LARGEST:
+                ends = f"{shortened(parameter.low)} and {shortened(parameter.high)}"
+                raise ConfigurationError(f"ends of parameter {name} must be in rising order, not {ends}")
+        if not names:
+            raise ConfigurationError(f"task {self.name!r} needs at least one parameter")
+        object.__setattr__(self, "baseline", self.checked(self.baseline, "baseline"))
+        if self.neutral is not None:
+            object.__setattr__(self, "neutral", self.checked(self.neutral, "neutral"))
+        if self.best_reward is not None and not 0.0 < self.best_reward <= LARGEST:
+            raise ConfigurationError(f"best_reward must be above 0, not {shortened(self.best_reward)}")
+
+    def __repr__(self) -> str:
+        """Name and origin, in short."""
+        return f"Task({self.identity})"
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """Pickle a task of this package by its name, and one of a file by its text: workers need nothing else."""
+        from sarah.episode import tasks  # which imports this module
+
+        if self.file is not None:
+            return tasks.task_of_text, (self.file.name, self.file.attribute, self.file.text)
+        if self.is_portable:
+            return tasks.task_named, (self.name,)
+        return type(self), tuple(getattr(self, item.name) for item in fields(self))
+
+    @property
+    def is_portable(self) -> bool:
+        """Whether any process can have the same task: it is this package's, or a file's; a script's own is not."""
+        from sarah.episode.tasks import TASKS  # which imports this module
+
+        return self.file is not None or TASKS.get(self.name) is self
+
+    @property
+    def reference(self) -> str:
+        """How the command line names the task: its name, or file and name such as ``my_task.py:JUMP``."""
+        return self.name if self.file is None else self.file.reference
+
+    @property
+    def identity(self) -> str:
+        """What tells this task from any other: its name, and a hash of the file that it was loaded from."""
+        return self.name if self.file is None else f"{self.file.attribute} ({self.file.digest})"
 
     @property
     def parameter_names(self) -> tuple[str, ...]:
@@ -62,7 +157,7 @@ class Task(Generic[ConfigType]):
     @property
     def has_push(self) -> bool:
         """Whether the episodes have a push."""
-        return self.draw_push is not no_push
+        return isinstance(self.episode, PushedConfig) or self.draw_push is not push_of_settings
 
     def checked(self, values: Sequence[float], name: str = "parameters") -> tuple[float, ...]:
         """Check one value for every parameter, and convert them to floats.
@@ -84,13 +179,15 @@ class Task(Generic[ConfigType]):
                 )
         return tuple(map(float, values))
 
-    def checked_config(self, config: EpisodeConfig) -> EpisodeConfig:
+    def checked_config(self, config: EpisodeConfig, may_be_pushed: bool = False) -> EpisodeConfig:
         """Check that settings are of this task's type, and return them.
 
         :param config: settings of episodes
+        :param may_be_pushed: whether to accept a push where the task itself has none
         :raises ConfigurationError: if they are another task's settings
         """
-        if type(config) is not type(self.episode):
+        own = type(self.episode)
+        if type(config) is not own and not (may_be_pushed and (own, type(config)) == (EpisodeConfig, PushedConfig)):
             raise ConfigurationError(
                 f"task {self.name!r} takes settings of type {type(self.episode).__name__}, not {type(config).__name__}"
             )

@@ -1,0 +1,224 @@
+"""What a command looks at: a run folder, numbers, or the name of shipped parameters; and the settings of its episodes.
+
+``--episode.…`` options begin from the settings of the subject. Which options there are depends on its task and engine,
+so the subject is looked up before the options are parsed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args
+
+import tyro
+
+from sarah.cli.options import parse_options
+from sarah.episode.push import Push, PushedConfig
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import STEPPING, TASKS, Task, load_task
+from sarah.errors import ConfigurationError, shortened, unknown_name
+from sarah.simulation.engines import Engine
+from sarah.simulation.physics import PHYSICS
+
+if TYPE_CHECKING:
+    from sarah.runs.run_episodes import RunEpisode
+
+NOBODY = Push(newtons=(0.0, 0.0))
+"""Push of nobody, where a task has none."""
+METAVAR = "RUN|NUMBERS|NAME"
+"""Word for a subject in a command's help."""
+
+
+@dataclass(frozen=True)
+class EpisodeOptions:
+    """Options of every command that simulates what it looks at.
+
+    :param task: task of the numbers, or of a run folder whose task is that of a file, such as my_task.py:JUMP. By
+        default five numbers are P1 to P5, and four are V1 to V4
+    :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
+    :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default as in the training
+    :param randomisation: friction, masses, sensors and so on stay as designed, instead of varying by seed: short for
+        --episode.randomisation.enabled
+    :param episode: settings of the episodes; by default those of the run folder, or the task's own
+    """
+
+    task: Annotated[str | None, tyro.conf.arg(metavar="TASK")] = None
+    engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
+    physics: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
+    randomisation: Annotated[bool, tyro.conf.arg(help_behavior_hint="(default: they vary)")] = True
+    episode: EpisodeConfig = EpisodeConfig()
+
+    def applied_to(self, spec: EpisodeSpec) -> EpisodeSpec:
+        """Specification of an episode with the settings that the options ask for.
+
+        :param spec: specification of the episode
+        :raises ConfigurationError: if there is no such physics
+        """
+        config = with_engine(self.episode, self.engine)
+        if self.physics is not None:
+            if self.physics not in PHYSICS:
+                raise ConfigurationError(unknown_name("physics", self.physics, PHYSICS))
+            chosen = PHYSICS[self.physics].at_control_rate(config.physics.control_rate)
+            config = dataclasses.replace(config, physics=chosen)
+        if not self.randomisation:
+            config = dataclasses.replace(config, randomisation=dataclasses.replace(config.randomisation, enabled=False))
+        if isinstance(config, PushedConfig) and not spec.task.has_push and config.push.newtons == NOBODY.newtons:
+            config = spec.task.config_of(config)
+        return dataclasses.replace(spec, config=config)
+
+
+OptionsType = TypeVar("OptionsType", bound=EpisodeOptions)
+
+
+def with_engine(episode: EpisodeConfig, engine: str | None) -> EpisodeConfig:
+    """Episode settings with the physics engine that a command was given.
+
+    :param episode: settings of episodes
+    :param engine: value of --engine; if ``None``, the settings keep their engine
+    """
+    return episode if engine is None else dataclasses.replace(episode, engine=engine)  # type: ignore[arg-type]  # checked
+
+
+def parse_episode_options(
+    command: str, arguments: Sequence[str], default: OptionsType, subject: str | None = None
+) -> OptionsType:
+    """Make a command's options, whose settings of episodes are those of its subject unless an option changes them.
+
+    :param command: name of the command
+    :param arguments: arguments after the command's name
+    :param default: options with their default values
+    :param subject: what to look at, if the arguments name several
+    """
+    given = given_options(arguments, "task", "which", "engine", "episode.engine")
+    task = load_task(given["task"]) if "task" in given else None
+    named = [argument for argument in arguments if _is_subject(argument)] if subject is None else [subject]
+    own = episode_of(named[0], given.get("which"), task).spec.config if named else (task or STEPPING).episode
+    if type(own) is EpisodeConfig:  # any robot can be pushed, whether its task has a push or not
+        own = PushedConfig(**vars(own), push=NOBODY)
+    episode = with_given_engine(own, given)
+    check_episode_options(arguments, episode)
+    return parse_options(type(default), command, arguments, dataclasses.replace(default, episode=episode))
+
+
+def _is_subject(argument: str) -> bool:
+    from sarah.episode.parameter_sets import PARAMETER_SETS
+
+    is_run = Path(argument).joinpath("config.yaml").is_file()
+    return argument in PARAMETER_SETS or is_run or re.fullmatch(r"[-+.\de,]*\d,[-+.\de,]*\d", argument) is not None
+
+
+def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tuple[list[RunEpisode], RunEpisode]:
+    """Episodes of what a command looks at, and the one to show.
+
+    :param subject: path of a run folder, numbers separated by commas, or the name of shipped parameters
+    :param which: episode of the run folder: ``learned``, ``best`` or an index; ``None`` for the first of these that
+        exists
+    :param task: task of the numbers, or of a run folder whose task is that of a file
+    :raises ConfigurationError: if there is no such subject or episode
+    """
+    from sarah.episode.parameter_sets import PARAMETER_SETS
+    from sarah.runs.run_episodes import RunEpisode, choose_episode, episode_of_parameters, episodes_of_run
+
+    if Path(subject).is_dir():
+        from sarah.runs.run_folder import RunFolder
+
+        episodes = episodes_of_run(RunFolder.open(Path(subject), unfinished=True, task=task))
+        return episodes, choose_episode(episodes, which)
+    if which is not None:
+        raise ConfigurationError("--which is for a run folder")
+    if subject in PARAMETER_SETS:
+        given = RunEpisode(subject, f"{subject} · seed 0", PARAMETER_SETS[subject].spec)
+    elif subject.strip("+-.")[:1].isdigit():
+        given = episode_of_parameters(numbers("parameters", subject), task)
+    else:
+        names = unknown_name("name of parameters", subject, PARAMETER_SETS)
+        raise ConfigurationError(
+            f"{shortened(subject)} is neither a run folder, nor numbers separated by commas: {names}"
+        )
+    return [given], given
+
+
+def episode_of(subject: str, which: str | None, task: Task[Any] | None) -> RunEpisode:
+    """What :func:`episodes_of` would show, found without reading the other episodes of a run folder if possible.
+
+    :param subject: path of a run folder, numbers separated by commas, or the name of shipped parameters
+    :param which: episode of the run folder, as there
+    :param task: task, as there
+    :raises ConfigurationError: if there is no such subject or episode
+    """
+    from sarah.runs.run_episodes import learned_episode
+    from sarah.runs.run_folder import RunFolder
+
+    if Path(subject).is_dir() and which in (None, "learned"):
+        run = RunFolder.open(Path(subject), unfinished=True, task=task)
+        if run.is_finished:
+            return learned_episode(run)
+    return episodes_of(subject, which, task)[1]
+
+
+def numbers(name: str, text: str) -> tuple[float, ...]:
+    """Read numbers that are separated by commas.
+
+    :param name: name of the option in messages
+    :param text: text that a user gave
+    :raises ConfigurationError: if one of them is not a number
+    """
+    try:
+        return tuple(float(value) for value in text.split(","))
+    except ValueError:
+        raise ConfigurationError(f"{name} must be numbers separated by commas, not {text!r}") from None
+
+
+def check_has(config: EpisodeConfig, name: str, option: str) -> None:
+    """Refuse an option whose setting a task does not have.
+
+    :param config: settings of the task's episodes
+    :param name: name of the setting
+    :param option: name of the option, without dashes
+    """
+    if not hasattr(config, name):
+        tasks = " or ".join(task.name for task in TASKS.values() if hasattr(task.episode, name))
+        raise ConfigurationError(f"--{option} is for --task {tasks}")
+
+
+def check_episode_options(arguments: Sequence[str], config: EpisodeConfig) -> None:
+    """Refuse ``--episode.…`` options whose settings only another task has.
+
+    :param arguments: all arguments of a command
+    :param config: settings of the task's episodes
+    """
+    for argument in arguments:
+        name = argument.removeprefix("--episode.").split(".")[0].replace("-", "_")
+        if argument.startswith("--episode.") and any(hasattr(task.episode, name) for task in TASKS.values()):
+            check_has(config, name, argument.removeprefix("--").split("=")[0])
+
+
+def given_options(arguments: Sequence[str], *names: str) -> dict[str, str]:
+    """Values of some options, which are needed before all options can be parsed.
+
+    :param arguments: arguments of the command
+    :param names: names of the options, without dashes
+    :return: values by name; an option without its value is left out, for the real parser to report
+    """
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
+    for name in names:
+        parser.add_argument(f"--{name}", dest=name, default=argparse.SUPPRESS)
+    try:
+        return vars(parser.parse_known_args(arguments)[0])
+    except argparse.ArgumentError:
+        return {}
+
+
+def with_given_engine(episode: EpisodeConfig, given: Mapping[str, str]) -> EpisodeConfig:
+    """Episode settings of the type that the engine takes which a command was given.
+
+    :param episode: settings of episodes
+    :param given: values of the options that were given, by name; ``engine`` and ``episode.engine`` are used
+    """
+    engine = given.get("engine", given.get("episode.engine"))
+    return with_engine(episode, engine if engine in get_args(Engine) else None)  # the real parser reports others

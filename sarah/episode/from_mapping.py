@@ -1,0 +1,87 @@
+"""Settings from names and values, as YAML or keywords give them: every mistake is named."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Mapping
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+
+from sarah.episode.tasks import Task, task_named
+from sarah.errors import LONGEST_NAME, ConfigurationError, shortened, unknown_name
+
+ConfigType = TypeVar("ConfigType")
+EXPONENT = re.compile(r"[-+]?\d+[eE][-+]?\d+")
+"""Numbers such as 3e-4, which YAML 1.1 takes for texts as they have no decimal point."""
+RANGE = tuple[float, float]
+
+
+def from_mapping(default: ConfigType, content: Any, key: str = "") -> ConfigType:
+    """Change some settings.
+
+    :param default: settings whose values stay where no others are given, a dataclass
+    :param content: new values by name; settings within settings are mappings or dataclasses
+    :param key: prefix of the names in messages
+    :raises ConfigurationError: naming key and value, if a value is not allowed
+    """
+    if isinstance(content, type(default)):
+        return content
+    if not isinstance(content, Mapping):
+        raise ConfigurationError(f"{key.rstrip('.') or 'the file'} must hold keys and values, not {shortened(content)}")
+    types = get_type_hints(type(default))
+    dependent: dict[str, Any] = getattr(default, "dependent_defaults", lambda _: {})(content)
+    values = dict(dependent)
+    for name, value in content.items():
+        if name not in types:
+            raise ConfigurationError(unknown_name("key", f"{key}{name}", (key + allowed for allowed in types)))
+        inner = dependent.get(name, getattr(default, name))
+        if dataclasses.is_dataclass(inner) and not isinstance(inner, Task):
+            values[name] = from_mapping(inner, value, f"{key}{name}.")
+        else:
+            values[name] = _converted(types[name], value, key + name)
+    return dataclasses.replace(default, **values)  # type: ignore[type-var]  # a dataclass
+
+
+def _converted(expected: Any, value: Any, key: str) -> Any:
+    """Convert a value to the expected type, or raise an error that names the key."""
+    if get_origin(expected) is Task:
+        return value if isinstance(value, Task) else task_named(_converted(str, value, key))
+    if get_origin(expected) is tuple:
+        return _converted_tuple(get_args(expected), value, key)
+    if get_origin(expected) is Union:
+        number, names = get_args(expected)
+        return _converted(names if isinstance(value, str) else number, value, key)
+    if get_origin(expected) is Mapping:
+        if not isinstance(value, Mapping):
+            raise ConfigurationError(f"{key} must hold names and values, not {shortened(value)}")
+        return {name: _converted(get_args(expected)[1], item, f"{key}.{_short(name)}") for name, item in value.items()}
+    if expected is float and isinstance(value, str) and EXPONENT.fullmatch(value):
+        value = float(value)
+    allowed = {float: (float, int), int: (int,), bool: (bool,)}.get(expected, (str,))
+    if not isinstance(value, allowed) or (isinstance(value, bool) and expected is not bool):
+        kind = {float: "a number", int: "a whole number", bool: "true or false"}.get(expected, "a text")
+        raise ConfigurationError(f"{key} must be {kind}, not {shortened(value)}")
+    if get_origin(expected) is Literal and value not in get_args(expected):
+        raise ConfigurationError(unknown_name(key, str(value), get_args(expected)))
+    try:
+        return float(value) if expected is float else value
+    except OverflowError:
+        raise ConfigurationError(f"{key} must be a number that a float can hold, not {shortened(value)}") from None
+
+
+def _short(name: Any) -> str:
+    """A key as it stands in the file, unless a line cannot hold it."""
+    return name if isinstance(name, str) and name.isidentifier() and len(name) <= LONGEST_NAME else shortened(name)
+
+
+def _converted_tuple(parts: tuple[Any, ...], value: Any, key: str) -> tuple[Any, ...]:
+    """A tuple of the expected parts, of which an ellipsis stands for as many as there are of the one before it."""
+    if parts == get_args(RANGE) and isinstance(value, (int, float)) and not isinstance(value, bool):
+        value = (value, value)  # one number is both ends of a range
+    is_list = isinstance(value, (list, tuple))
+    if Ellipsis in parts:
+        parts = (parts[0],) * len(value) if is_list else ()
+    if not is_list or len(value) != len(parts):
+        values = f"a list of {len(parts)} values" if parts else "a list"
+        raise ConfigurationError(f"{key} must be {values}, not {shortened(value)}")
+    return tuple(_converted(part, item, key) for part, item in zip(parts, value, strict=True))

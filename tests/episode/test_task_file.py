@@ -1,0 +1,144 @@
+"""A task of a file of the user's is the whole of what is judged, in any process, and its mistakes are one line."""
+
+import dataclasses
+import pickle
+from pathlib import Path
+
+import pytest
+
+import sarah
+from sarah.episode.workers import Workers
+from sarah.errors import ConfigurationError, SarahError
+
+THRIFTY = """
+import dataclasses
+import sarah
+
+def reward(tick, config):
+    return sarah.equation_2(tick, config) - 0.01 * tick.power
+
+def ending(tick, config):
+    return "far_away" if abs(tick.x) > 0.02 else sarah.paper_ending(tick, config)
+
+THRIFTY = dataclasses.replace(sarah.STEPPING, name="thrifty", reward=reward)
+NARROW = dataclasses.replace(sarah.STEPPING, name="narrow", ending=ending)
+"""
+PARAMETERS = (0.41, 0.52, 0.62, 1.17, 1.37)
+SHORT = sarah.EpisodeConfig(time_limit=3.0)
+
+
+def written(folder: Path, text: str = THRIFTY) -> str:
+    path = folder / "my_task.py"
+    path.write_text(text)
+    return str(path)
+
+
+def test_reward_is_that_of_the_file(tmp_path: Path) -> None:
+    task = sarah.load_task(f"{written(tmp_path)}:THRIFTY")
+    own = sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT))
+    paper = sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, config=SHORT))
+    # The mean power over the ticks is the metric's, but for the tick at which each is read.
+    assert own.episode_return == pytest.approx(paper.episode_return - 0.01 * paper.actuator_power * 2.0, rel=0.02)
+    assert own.steps == paper.steps
+
+
+def test_ending_is_that_of_the_file(tmp_path: Path) -> None:
+    task = sarah.load_task(f"{written(tmp_path)}:NARROW")
+    result = sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task))
+    assert result.termination == "far_away" and not result.survived
+    assert 0.02 < abs(result.final_position[0]) < 0.03
+
+
+def test_same_bytes_in_another_process(tmp_path: Path) -> None:
+    task = sarah.load_task(f"{written(tmp_path)}:THRIFTY")
+    specs = [sarah.EpisodeSpec(PARAMETERS, seed, task, SHORT) for seed in range(2)]
+    here = [sarah.simulate(spec) for spec in specs]
+    Path(tmp_path, "my_task.py").unlink()  # workers have the text, and need no file
+    with Workers(1) as workers:
+        assert list(workers.simulate_all(specs)) == here
+
+
+def test_workers_refuse_the_task_of_a_script() -> None:
+    task = dataclasses.replace(sarah.STEPPING, name="mine", reward=lambda tick, config: 1.0)
+    with Workers(1) as workers, pytest.raises(ConfigurationError, match="load_task"):
+        list(workers.simulate_all([sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT)]))
+
+
+def test_a_task_of_this_package_is_the_same_object_after_a_journey() -> None:
+    assert pickle.loads(pickle.dumps(sarah.BALANCE)) is sarah.BALANCE
+    assert sarah.load_task("balance") is sarah.BALANCE
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("JUMP = 1\n", "unknown task in my_task.py 'JUMP'"),
+        ("import sarah\nJUMP = sarah.STEPPING\nJUMB = nothing\n", "my_task.py, line 3: NameError: name 'nothing'"),
+        ("def (:\n", "my_task.py, line 1: SyntaxError"),
+        ("import not_installed_anywhere\n", "my_task.py, line 1: ModuleNotFoundError"),
+        ("import sarah\nJUMP = sarah.STEPPING\n", "is that of a task of this package"),
+        (
+            "import dataclasses, sarah\nJUMP = dataclasses.replace(sarah.STEPPING, name='a b')\n",
+            "a task's name must be letters, digits, - and _, not 'a b'",
+        ),
+        (
+            "import dataclasses, sarah\nJUMP = dataclasses.replace(sarah.STEPPING, name='j', baseline=(1, 1))\n",
+            r"baseline must be 5 numbers \(P1 to P5\), not 2",
+        ),
+        (
+            "import dataclasses, sarah\n"
+            "class Own(sarah.EpisodeConfig): pass\n"
+            "JUMP = dataclasses.replace(sarah.STEPPING, name='j', episode=Own())\n",
+            "its episode must be one of EpisodeConfig, PushedConfig, BalanceConfig, not Own",
+        ),
+    ],
+)
+def test_mistakes_of_a_file_are_one_line(tmp_path: Path, text: str, words: str) -> None:
+    with pytest.raises(ConfigurationError, match=words) as caught:
+        sarah.load_task(f"{written(tmp_path, text)}:JUMP")
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        ("return tick.powr", r"my_task.py, line 3: AttributeError: 'Tick' object has no attribute 'powr'"),
+        ("return float('nan')", "must be finite"),
+        ("return None", "my_task.py: TypeError"),
+        ("return 1 / 0", "my_task.py, line 3: ZeroDivisionError"),
+    ],
+)
+def test_mistakes_of_a_reward_name_the_file(tmp_path: Path, body: str, words: str) -> None:
+    text = f"import dataclasses, sarah\ndef reward(tick, config):\n    {body}\n"
+    text += "JUMP = dataclasses.replace(sarah.STEPPING, name='jump', reward=reward)\n"
+    task = sarah.load_task(f"{written(tmp_path, text)}:JUMP")
+    with pytest.raises(SarahError, match=words):
+        sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT))
+
+
+def test_an_ending_needs_a_name(tmp_path: Path) -> None:
+    text = "import dataclasses, sarah\n"
+    text += "JUMP = dataclasses.replace(sarah.STEPPING, name='jump', ending=lambda tick, config: 'it fell')\n"
+    task = sarah.load_task(f"{written(tmp_path, text)}:JUMP")
+    with pytest.raises(ConfigurationError, match="an ending must be a short name such as 'jumped', not 'it fell'"):
+        sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT))
+
+
+def test_everything_that_a_tick_knows(tmp_path: Path) -> None:
+    seen: list[sarah.Tick] = []
+
+    def reward(tick: sarah.Tick, config: sarah.EpisodeConfig) -> float:
+        assert len(tick.joint_speeds) == len(tick.efforts) == 6 and tick.power >= 0.0
+        assert len(tick.pads) == 4 and len(tick.velocity) == 3
+        seen.append(tick)
+        return 1.0
+
+    task = dataclasses.replace(sarah.STEPPING, name="watched", reward=reward, best_reward=1.0)
+    result = sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT), record_trace=True)
+    assert result.score == pytest.approx(1.0)  # one per second is the best
+    assert result.trace is not None
+    assert [tick.time for tick in seen] == pytest.approx([time + 0.01 for time in result.trace.time])
+    assert {tick.phase.value for tick in seen} == set(result.trace.phase) | {seen[-1].phase.value}
+    assert seen[-1].steps == result.steps
+    assert (seen[-1].x, seen[-1].y, seen[-1].height) == pytest.approx(result.final_position)
+    assert all(tick.tilt < 0.3 for tick in seen)
