@@ -19,6 +19,8 @@ from sarah.robot.reading import Side
 from sarah.simulation.scenery import View
 
 INK, PALE_INK = "#1B1F24", "#5A6470"
+OUTLINE: dict[str, Any] = {"stroke_width": 2, "stroke_fill": "white"}
+"""Outline of words that may stand before the robot."""
 METRES_PER_NEWTON = 0.005
 """Length of a push's arrow per force, in m/N, beside the standard robot; in proportion for other sizes."""
 LONGEST_ARROW = 1.0
@@ -84,7 +86,7 @@ class Overlay:
             y += 3.6 * unit
         size, bottom = _font(0.85 * unit), self._view.height - 1.2 * unit
         for line in reversed(self._caption):
-            pen.text((1.5 * unit, bottom), line, font=size, fill=PALE_INK, anchor="ld")
+            pen.text((1.5 * unit, bottom), line, font=size, fill=PALE_INK, anchor="ld", **OUTLINE)
             bottom -= 1.2 * unit
 
     def _draw_phases(self, pen: ImageDraw.ImageDraw, tick: int) -> None:
@@ -139,7 +141,7 @@ class Overlay:
         left, top, right, bottom = pen.multiline_textbbox(tuple(label), text, **style)
         for low, high, axis, end in ((left, right, 0, self._view.width), (top, bottom, 1, self._view.height)):
             label[axis] += max(0.0, unit - low) - max(0.0, high + unit - end)  # it stays in the picture
-        pen.multiline_text(tuple(label), text, fill=PUSH, **style)
+        pen.multiline_text(tuple(label), text, fill=PUSH, **style, **OUTLINE)
 
 
 def arrow(head: np.ndarray, force: np.ndarray, size: float = 1.0) -> np.ndarray:

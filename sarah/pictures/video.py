@@ -29,6 +29,8 @@ FRAMES_PER_SECOND = {".mp4": 25.0, ".gif": 20.0}
 GIF_SIZE = (640, 360)
 """Size of a GIF, in pixels: smaller than a video, because GIF files are large."""
 GIF_COLOURS = 200
+TEXT_WIDTH = 228
+"""Width of the column of text on the left, in pixels, which the robot leaves free, and as much on the right."""
 Pose = tuple[Vector, tuple[float, float, float, float], dict[str, float]]
 POSES_PER_SECOND = 25.0
 """Number of poses in a second of an episode that the cameras are chosen for."""
@@ -91,15 +93,14 @@ def cameras(trace: Trace, robot: RobotDescription, renderer: Renderer) -> tuple[
         tick = trace.tick_at(time)
         seen.append(renderer.corners(*_pose(trace, tick)))
         feet.append(renderer.soles())
+    camera = renderer.camera.seeing(np.concatenate(seen), WIDTH - 2 * TEXT_WIDTH, HEIGHT)
     forces = np.linalg.norm(trace.push, axis=1)
     if forces.any():
         begin = int(np.argmax(forces > 0.0))
         shown = (trace.time >= trace.time[begin]) & (trace.time < trace.time[begin] + PUSH_SHOWN_SECONDS)
-        seen += [arrow(position, trace.push[begin], size) for position in trace.position[shown]]
-    return (
-        renderer.camera.seeing(np.concatenate(seen), WIDTH, HEIGHT),
-        FEET_CAMERA.scaled(size).seeing(np.concatenate(feet), FEET_WIDTH, FEET_HEIGHT),
-    )
+        arrows = [arrow(position, trace.push[begin], size) for position in trace.position[shown]]
+        camera = camera.seeing(np.concatenate(arrows), WIDTH, HEIGHT)
+    return camera, FEET_CAMERA.scaled(size).seeing(np.concatenate(feet), FEET_WIDTH, FEET_HEIGHT)
 
 
 def _pose(trace: Trace, tick: int) -> Pose:

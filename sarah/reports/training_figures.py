@@ -11,6 +11,7 @@ through them.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -39,6 +40,8 @@ CHORDS = 8
 WARM_UP_LABEL = "random warm-up"
 LEAST_IN_ROWS = 4
 """Least number of entries for which a figure's legend has rows of two: more in a row would leave the picture."""
+LEGEND_ROW = 0.17
+"""Height of a row of a legend, in inches."""
 
 Panels = list[tuple[str, str]]
 """Column of ``episodes.csv`` and label of each panel, from top to bottom."""
@@ -96,38 +99,40 @@ def _draw(curves: Sequence[RunCurves], panels: Panels, path: Path) -> list[Path]
         layout="constrained",
     )
     colours = algorithm_colours(curve.algorithm for curve in curves)
-    for axis, (column, label) in zip(axes[:, 0], panels, strict=True):
+    for axis, (column, quantity) in zip(axes[:, 0], panels, strict=True):
         _mark_warm_up(axis, curves)
         for curve in curves:
-            _draw_panel(axis, curve, column, colours[curve.algorithm])
-        if len(curves) == 1 and len(curves[0].recommended.get(column, ())):
-            _draw_recommended(axis, curves[0], column)
+            label = algorithm_label(curve.algorithm)
+            if len(curves) == 1 and len(curve.recommended.get(column, ())):
+                label += ", tried"
+                _draw_recommended(axis, curve, column)
+            _draw_panel(axis, curve, column, label, colours[curve.algorithm])
         if column in PAPER:
             axis.axhline(PAPER[column], color="black", linewidth=0.8, linestyle=":", label="paper")
-        axis.set_ylabel(label)
+        axis.set_ylabel(quantity)
     axes[-1, 0].set_xlabel("training steps (episodes)")
     figure.align_ylabels()
     handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper right", ncols=len(labels) if len(labels) < LEAST_IN_ROWS else 2)
+    columns = len(labels) if len(labels) < LEAST_IN_ROWS else 2
+    figure.set_figheight(figure.get_figheight() + LEGEND_ROW * (math.ceil(len(labels) / columns) - 1))
+    figure.legend(handles, labels, loc="outside upper right", ncols=columns, columnspacing=1.2, handlelength=1.5)
     return save(figure, path)
 
 
 def _mark_warm_up(axis: Axes, curves: Sequence[RunCurves]) -> None:
-    """Shade the random episodes, and name the algorithms that have them if not all have as many."""
+    """Shade the random episodes. Of algorithms with fewer of them, a line goes through the shade."""
     longest = max(curve.warm_up for curve in curves)
     if longest == 0:
         return
-    label = WARM_UP_LABEL
-    if any(curve.warm_up != longest for curve in curves):
-        label += f" ({', '.join(algorithm_label(curve.algorithm) for curve in curves if curve.warm_up)})"
+    is_shared = all(curve.warm_up == longest for curve in curves)
+    label = WARM_UP_LABEL if is_shared else f"{WARM_UP_LABEL} of some"
     axis.axvspan(0.5, longest + 0.5, color="0.88", linewidth=0, label=label, zorder=0)
 
 
-def _draw_panel(axis: Axes, curves: RunCurves, column: str, colour: str) -> None:
+def _draw_panel(axis: Axes, curves: RunCurves, column: str, label: str, colour: str) -> None:
     values, learned = curves.columns[column], slice(curves.warm_up, curves.learning)
     steps = np.arange(1, values.shape[1] + 1)
     smooth = np.array([running_median(run) for run in values[:, learned]])
-    label = f"{algorithm_label(curves.algorithm)}, tried"
     if len(values) == 1:
         dots: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 1.6, "color": colour, "alpha": 0.5}
         axis.plot(steps[learned], values[0, learned], markeredgewidth=0, **dots)

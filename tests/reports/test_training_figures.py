@@ -6,12 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from laboratory import RESULT
+from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING, TASKS
 from sarah.errors import RunFolderError
 from sarah.pictures.colours import algorithm_colours
+from sarah.reports import training_figures
 from sarah.reports.race import RaceCurve
 from sarah.reports.training_curves import read_curves
 from sarah.reports.training_figures import draw_figures, draw_race, running_median
@@ -74,6 +76,25 @@ def test_running_median_ignores_single_outliers() -> None:
     assert (running_median(values) == 0.0).all()
 
 
+def test_axes_and_lines_have_their_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run = run_with_episodes(tmp_path / "run", "stepping", 20, "td3")
+    run.append_recommendation(5, dict.fromkeys(STEPPING.parameter_names, 0.3))
+    drawn: dict[str, list[str]] = {}
+
+    def look(figure: Figure, path: Path) -> list[Path]:
+        (legend,) = figure.legends
+        names = [axis.get_ylabel() for axis in figure.axes]
+        drawn[path.name] = [*names, *sorted(text.get_text() for text in legend.get_texts())]
+        return []
+
+    monkeypatch.setattr(training_figures, "save", look)
+    draw_figures([run], tmp_path / "out")
+    assert drawn["figure_4_reward_and_frequency"] == ["return (m³ s)", "steps per second", "TD3", "random warm-up"]
+    labels = [parameter.label for parameter in STEPPING.parameters]
+    words = ["TD3, tried", "paper", "random warm-up", "recommended"]
+    assert drawn["figure_5_parameters"] == [*labels, *words]
+
+
 def colour_share(picture: Path, colour: str) -> float:
     wanted = np.array([int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)])
     return float((np.abs(imread(picture)[..., :3] - wanted).max(axis=-1) < 0.02).mean())
@@ -122,6 +143,14 @@ def test_algorithms_without_a_colour_of_their_own_are_told_apart(tmp_path: Path)
     curves = [RaceCurve(algo, (5, 10), (0.2, 0.8), 1.0) for algo in ("naf", "mine")]
     picture, _ = draw_race(curves, tmp_path / "race")
     assert colour_share(picture, algorithm_colours(["mine"])["mine"]) > 0.0005
+
+
+def test_a_figure_of_all_algorithms_has_room_for_its_legend(tmp_path: Path) -> None:
+    runs = [run_with_episodes(tmp_path / f"{algo}{i}", "stepping", 20, algo) for algo in ALGORITHMS for i in range(2)]
+    for file in draw_figures(runs, tmp_path / "out")[::2]:
+        pixels = imread(file)[..., :3]
+        for border in (pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]):
+            assert (border == 1.0).all()
 
 
 def test_a_race_of_all_algorithms_has_room_for_its_legend(tmp_path: Path) -> None:
