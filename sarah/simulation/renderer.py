@@ -83,15 +83,15 @@ class Renderer:
         if camera is None:
             camera = self.camera.seeing(corners, width, height)
         view = View(width, height, camera)
-        soles = np.split(self.soles(), len(Side))
+        shadows = [view.pixels(outline * (1.0, 1.0, 0.0)) for outline in np.split(self.soles(), len(Side))]
+        picture = shaded(floor(width, height, camera), shadows).copy()
         margin = MARGIN * self._robot.standing_height
-        left, top, right, bottom = rectangle = view.rectangle(np.concatenate((corners, *soles)), margin)
-        picture = floor(width, height, camera).copy()
+        left, top, right, bottom = rectangle = view.rectangle(corners, margin)
         if left < right and top < bottom:
-            shadows = [view.pixels(outline * (1.0, 1.0, 0.0)) - (left, top) for outline in soles]
-            behind = shaded(picture[top:bottom, left:right], shadows)
             depths = (corners - view.position) @ view.axes[2]
-            picture[top:bottom, left:right] = self._over(behind, view, rectangle, (depths.min(), depths.max()))
+            picture[top:bottom, left:right] = self._over(
+                picture[top:bottom, left:right], view, rectangle, (depths.min(), depths.max())
+            )
         return picture
 
     def corners(

@@ -80,6 +80,19 @@ def still(robot: RobotDescription, force: np.ndarray, drift: tuple[float, float]
     )
 
 
+def test_shadows_are_whole(robot: RobotDescription, renderer: Renderer) -> None:
+    """Far above the floor, a robot and its shadows are apart."""
+    high = (0.0, 0.0, 1.8 * robot.standing_height)
+    corners = renderer.corners(high, (0.0, 0.0, 0.0, 1.0), {})
+    shadows = renderer.soles() * (1.0, 1.0, 0.0)
+    camera = renderer.camera.seeing(np.concatenate((corners, shadows)), *SIZE)
+    picture = renderer.draw(high, (0.0, 0.0, 0.0, 1.0), {}, *SIZE, camera)
+    pixels = View(*SIZE, camera).pixels(shadows)
+    for column, row in (pixels[:4].mean(axis=0), pixels[4:].mean(axis=0)):
+        place = (int(row), int(column))
+        assert picture[place].sum() < floor(*SIZE, camera)[place].sum() - 60
+
+
 def pushes(newtons: float, count: int) -> Iterator[np.ndarray]:
     for angle in np.linspace(0.0, 2 * math.pi, count, endpoint=False):
         yield newtons * np.array((math.cos(angle), math.sin(angle), 0.0))
