@@ -164,7 +164,7 @@ def running_median(values: np.ndarray) -> np.ndarray:
 def draw_race(curves: Sequence[RaceCurve], path: Path) -> list[Path]:
     """Draw the score of each algorithm's recommendations against episodes: median and quartiles over its runs.
 
-    Steps show that a recommendation counts until the next one: nothing is known in between.
+    Steps show that a recommendation counts until the next one: nothing is known in between. Dots are final scores.
 
     :param curves: scores of all trainings
     :param path: path of the picture, without suffix
@@ -180,6 +180,7 @@ def draw_race(curves: Sequence[RaceCurve], path: Path) -> list[Path]:
             axis.fill_between(episodes, low, high, step="post", color=colours[algo], alpha=0.15, linewidth=0)
             label = f"{algorithm_label(algo)} ({len(runs)})"
             axis.plot(episodes, middle, drawstyle="steps-post", color=colours[algo], linewidth=1.2, label=label)
+            axis.plot(episodes[-1:], middle[-1:], "o", markersize=2.5, color=colours[algo])
         axis.set_xlabel("episodes")
         axis.set_ylabel("score on unseen seeds")
         figure.legend(loc="outside upper center", ncols=2)  # three columns would not fit for eight algorithms
