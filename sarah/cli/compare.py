@@ -29,12 +29,12 @@ class CompareOptions:
     """Train several algorithms with several seeds each, and see which one needs the fewest episodes.
 
     The recommendation after every five episodes of a training is evaluated on unseen seeds. The table says after how
-    many episodes 90 % and 95 % of the best known score are reached and held over three evaluations, and gives the
-    final score. It is printed, and written to the folder with a plot. The same command continues a race that was
-    interrupted.
+    many episodes more than half of the seeds have reached 90 % and 95 % of the best known score, and held it over three
+    evaluations: a multiple of five, or "not reached". It gives the final score as well. It is printed, and written to
+    the folder with a plot. The same command continues a race that was interrupted.
 
     :param out: folder of the race, which also holds its run folders
-    :param algorithms: names of the algorithms
+    :param algorithms: names of different algorithms: {algorithms}
     :param seeds: number of trainings of each algorithm
     :param first_seed: seed of the first training of each algorithm; the others follow
     :param task: task to learn: ``stepping``, ``balance``, or that of a file of yours, such as my_task.py:JUMP
@@ -63,6 +63,9 @@ class CompareOptions:
     best_known: Annotated[float | None, tyro.conf.arg(metavar="FLOAT")] = None
     workers: int = 0
     scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
+
+
+CompareOptions.__doc__ = str(CompareOptions.__doc__).replace("{algorithms}", ", ".join(ALGORITHMS))  # read by the help
 
 
 def main() -> None:

@@ -257,9 +257,13 @@ def _on_learned_stepping(path: Path, episode: EpisodeConfig) -> EpisodeConfig:
 
 
 def _summarise(task: Task[Any], learned: Learned, path: Path) -> None:
+    from sarah.runs.run_folder import RunFolder
+    from sarah.training.warm_up import describe_warm_up
+
     evaluation, baseline = learned.evaluation, learned.baseline
     named = zip(task.parameter_names, learned.parameters, strict=True)
     print("\nlearned     " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
+    print(f"warm-up     {describe_warm_up(RunFolder.open(path).config())}")
     score = f"{evaluation.median('score'):.3f}"
     print(f"score       {score} (median of {evaluation.episodes} unseen seeds; 1 is the ceiling)")
     print(f"steps       {evaluation.mean('steps_per_second'):.2f} per second")

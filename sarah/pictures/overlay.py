@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
@@ -17,13 +19,19 @@ from sarah.robot.reading import Side
 from sarah.simulation.scenery import View
 
 INK, PALE_INK = "#1B1F24", "#5A6470"
+OUTLINE: dict[str, Any] = {"stroke_width": 2, "stroke_fill": "white"}
+"""Outline of words that may stand before the robot."""
 METRES_PER_NEWTON = 0.005
-"""Length of a push's arrow per force, in m/N."""
+"""Length of a push's arrow per force, in m/N, beside the standard robot; in proportion for other sizes."""
+LONGEST_ARROW = 1.0
+"""Length of the longest arrow, in m, beside the standard robot: a force above 200 N is told by its label alone."""
 PUSH_SHOWN_SECONDS = 0.6
 """Time for which the arrow is shown, in s: the push itself is over before a viewer has noticed it."""
 LABEL_OFFSET = np.array((0.26, 0.20, 0.0))
 """Position of the arrow's label from the torso's centre: to the right, upward and ahead in the picture, in m."""
 DIRECTIONS = ("to its right", "forward", "to its left", "backward")
+MOST_LINES = 6
+"""Largest number of a caption's lines, above which it would reach the strip of phases."""
 STRIP_SECONDS = 2.0
 """Length of the past that the strip of phases shows, in s."""
 
@@ -33,14 +41,17 @@ class Overlay:
 
     :param trace: trace of the episode
     :param view: view of the camera
-    :param caption: text below the robot, one line or more
+    :param caption: text below the robot, of any length
+    :param caption_end: pixels from the picture's left edge at which the caption must end
+    :param size: size of the robot, as a multiple of the standard robot's
     """
 
-    def __init__(self, trace: Trace, view: View, caption: str) -> None:
+    def __init__(self, trace: Trace, view: View, caption: str, caption_end: float, size: float = 1.0) -> None:
         self._trace = trace
         self._view = view
-        self._caption = caption
         self._unit = view.height / 40
+        self._size = size
+        self._caption = wrapped(caption, _font(0.85 * self._unit), caption_end - 1.5 * self._unit)
         forces = np.linalg.norm(trace.push, axis=1)
         self._push_tick = int(np.argmax(forces > 0.0)) if forces.any() else None
 
@@ -56,7 +67,7 @@ class Overlay:
         if self._push_tick is not None:
             since_push = self._trace.time[tick] - self._trace.time[self._push_tick]
             if 0.0 <= since_push < PUSH_SHOWN_SECONDS:
-                self._draw_push(pen, tick, self._trace.push[self._push_tick])
+                self._draw_push(pen, tick)
 
     def _write(self, pen: ImageDraw.ImageDraw, tick: int) -> None:
         trace, unit = self._trace, self._unit
@@ -73,8 +84,10 @@ class Overlay:
             pen.text((1.5 * unit, y), label, font=_font(0.85 * unit), fill=PALE_INK)
             pen.text((1.5 * unit, y + 1.0 * unit), value, font=_font(1.7 * unit, bold=True), fill=colour)
             y += 3.6 * unit
-        size = _font(0.85 * unit)
-        pen.text((1.5 * unit, self._view.height - 1.2 * unit), self._caption, font=size, fill=PALE_INK, anchor="ld")
+        size, bottom = _font(0.85 * unit), self._view.height - 1.2 * unit
+        for line in reversed(self._caption):
+            pen.text((1.5 * unit, bottom), line, font=size, fill=PALE_INK, anchor="ld", **OUTLINE)
+            bottom -= 1.2 * unit
 
     def _draw_phases(self, pen: ImageDraw.ImageDraw, tick: int) -> None:
         """Draw the phases of the last seconds, each in the row of its swing leg, and the names of their colours."""
@@ -108,12 +121,12 @@ class Overlay:
             began = min(STRIP_SECONDS, ages[begin])
             yield (began, ages[end]), str(phase[begin]), Side(int(stance[begin])).other
 
-    def _draw_push(self, pen: ImageDraw.ImageDraw, tick: int, force: np.ndarray) -> None:
-        """Draw an arrow that ends at the torso's centre, and the force in newtons."""
+    def _draw_push(self, pen: ImageDraw.ImageDraw, tick: int) -> None:
+        """Draw the push's arrow, and the force in newtons."""
         unit = self._unit
-        head = self._trace.position[tick]
-        tail = head - METRES_PER_NEWTON * force
-        tip, end = self._view.pixels(np.array((head, tail)))
+        force = self._trace.push[self._push_tick]
+        ends = arrow(self._trace.position[tick], force, self._size)
+        tip, end = self._view.pixels(ends)
         along = tip - end
         length = max(1.0, float(np.hypot(*along)))
         along = along / length
@@ -121,10 +134,54 @@ class Overlay:
         neck = tip - min(1.6 * unit, 0.7 * length) * along
         pen.line((*end, *neck), fill=PUSH, width=round(0.6 * unit))
         pen.polygon([tuple(tip), tuple(neck + 0.9 * unit * across), tuple(neck - 0.9 * unit * across)], fill=PUSH)
-        label = self._view.pixels(head + (LABEL_OFFSET @ self._view.axes)[None])[0]
+        label = self._view.pixels(ends[:1] + self._size * LABEL_OFFSET @ self._view.axes)[0]
         where = DIRECTIONS[round(math.atan2(force[1], force[0]) / (math.pi / 2)) % 4]
         text = f"push of {math.hypot(*force):.0f} N\n{where}"
-        pen.multiline_text(tuple(label), text, font=_font(1.2 * unit, bold=True), fill=PUSH, spacing=0.3 * unit)
+        style: dict[str, Any] = {"font": _font(1.2 * unit, bold=True), "spacing": 0.3 * unit}
+        left, top, right, bottom = pen.multiline_textbbox(tuple(label), text, **style)
+        for low, high, axis, end in ((left, right, 0, self._view.width), (top, bottom, 1, self._view.height)):
+            label[axis] += max(0.0, unit - low) - max(0.0, high + unit - end)  # it stays in the picture
+        pen.multiline_text(tuple(label), text, fill=PUSH, **style, **OUTLINE)
+
+
+def arrow(head: np.ndarray, force: np.ndarray, size: float = 1.0) -> np.ndarray:
+    """Head and tail of a push's arrow, as rows.
+
+    :param head: position of the torso's centre, where the arrow ends, in m; shape (3,)
+    :param force: force of the push, in N; shape (3,)
+    :param size: size of the robot, as a multiple of the standard robot's
+    """
+    newtons = max(float(np.linalg.norm(force)), 1e-9)
+    length = size * min(METRES_PER_NEWTON * newtons, LONGEST_ARROW)
+    return np.array((head, head - length / newtons * force))
+
+
+def wrapped(text: str, font: ImageFont.FreeTypeFont, width: float) -> list[str]:
+    """Lines of a text that are not too wide; what does not fit in :data:`MOST_LINES` is left out.
+
+    :param text: text of any length
+    :param font: font of the text
+    :param width: largest width of a line, in pixels
+    """
+    lines: list[str] = []
+    for paragraph in text.splitlines():
+        line = ""
+        for word in re.findall(r"\s*\S+", paragraph):
+            if line and font.getlength(line + word) > width:
+                lines.append(line)
+                line, word = "", word.lstrip()
+            for character in word:  # a word that is too wide is broken
+                if line and font.getlength(line + character) > width:
+                    lines.append(line)
+                    line = ""
+                line += character
+        lines.append(line)
+    if len(lines) <= MOST_LINES:
+        return lines
+    last = lines[MOST_LINES - 1]
+    while font.getlength(last + "…") > width:
+        last = last[:-1]
+    return [*lines[: MOST_LINES - 1], last + "…"]
 
 
 @lru_cache(maxsize=16)

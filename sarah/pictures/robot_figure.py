@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import io
 import xml.etree.ElementTree as ElementTree
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -16,14 +18,15 @@ from sarah.pictures.colours import LEFT, RIGHT
 from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
 from sarah.robot.description import ANKLE_JOINTS, GROUPS, JOINT_AXES, JOINT_TYPES, RobotDescription
 from sarah.simulation.renderer import Renderer
-from sarah.simulation.scenery import Camera, View
+from sarah.simulation.scenery import Camera, View, size_of
 
 CAMERA = Camera(height=0.46, distance=2.3, yaw=152.0, pitch=-9.0)
 HEIGHT = 1.3 * COLUMN_WIDTH
 PIXELS_PER_INCH = 300
 TRIAD = (0.07, 0.50, 0.0)
-"""Place of the origin of the drawn axes, on the floor, in m."""
-TRIAD_LENGTH = 0.10
+"""Place of the origin of the drawn axes, on the floor, in m, beside the standard robot."""
+TRIAD_LENGTH, TRIAD_NAMES = 0.10, 0.135
+"""Distances of the axes' tips and of their names from the origin, in m, beside the standard robot."""
 UP_AXIS = 2
 
 
@@ -56,8 +59,9 @@ def labels_of(robot: RobotDescription) -> list[Label]:
     torso = np.array((0.0, 0.0, robot.standing_height))
 
     def at(link: str, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> np.ndarray:
-        """Point of a link's frame, in the world's frame."""
-        point = model.get_transform(link, "torso") @ (x, y, z, 1.0)
+        """Point of a link's frame, or the nearest in the box around the link's shapes, in the world's frame."""
+        nearest = np.clip((x, y, z), *_box(model.link_map[link].visuals))
+        point = model.get_transform(link, "torso") @ (*nearest, 1.0)
         return np.asarray(torso + point[:3])
 
     masses = {
@@ -67,7 +71,7 @@ def labels_of(robot: RobotDescription) -> list[Label]:
     }
     kilograms = {group: f"{sum(masses[link] for link in links):.0f} kg" for group, links in GROUPS.items()}
     (_, sole_y, sole_z), (outer, _, _) = robot.soles["right_forefoot"][0], max(robot.soles["right_forefoot"])
-    thigh = at("left_shank")[UP_AXIS] - at("left_thigh")[UP_AXIS]
+    thigh = model.get_transform("left_shank", "left_thigh")[UP_AXIS, 3]
     return [
         Label(f"(a) top group\n{kilograms['top']}", at("torso", -0.02, 0.1, 0.13), 0.93, True, "#5A6470"),
         Label("inertial\nmeasurement unit", at("torso", 0.0, 0.03), 0.79, True),
@@ -83,6 +87,22 @@ def labels_of(robot: RobotDescription) -> list[Label]:
         Label(_joint(robot, "left_hindfoot"), at("left_hindfoot", 0.03, -0.65 * sole_y), 0.28, False),
         Label(_joint(robot, "left_forefoot"), at("left_forefoot", 0.03, 0.75 * sole_y), 0.16, False),
     ]
+
+
+def _box(shapes: Sequence[Any]) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest and highest corner of a box around a link's shapes, in its frame."""
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for shape in shapes:
+        if shape.geometry.box is not None:
+            half = np.array(shape.geometry.box.size) / 2
+        elif shape.geometry.cylinder is not None:
+            half = np.array((*2 * (shape.geometry.cylinder.radius,), shape.geometry.cylinder.length / 2))
+        else:
+            half = np.full(3, shape.geometry.sphere.radius)
+        place = shape.origin if shape.origin is not None else np.eye(4)
+        reach = np.abs(place[:3, :3]) @ half
+        low, high = np.minimum(low, place[:3, 3] - reach), np.maximum(high, place[:3, 3] + reach)
+    return low, high
 
 
 def _joint(robot: RobotDescription, joint: str) -> str:
@@ -105,12 +125,16 @@ def draw_robot(robot: RobotDescription, path: Path) -> list[Path]:
     :return: the files, PNG and PDF
     """
     width, height = round(COLUMN_WIDTH * PIXELS_PER_INCH), round(HEIGHT * PIXELS_PER_INCH)
+    pose = ((0.0, 0.0, robot.standing_height), (0.0, 0.0, 0.0, 1.0), dict.fromkeys(robot.limits, 0.0))
+    triad = size_of(robot) * (TRIAD + np.vstack((np.zeros(3), TRIAD_LENGTH * np.eye(3), TRIAD_NAMES * np.eye(3))))
     renderer = Renderer(robot)
     try:
-        picture = renderer.draw((0.0, 0.0, robot.standing_height), (0.0, 0.0, 0.0, 1.0), {}, width, height, CAMERA)
+        seen = np.concatenate((renderer.corners(*pose), triad))
+        camera = CAMERA.scaled(size_of(robot)).seeing(seen, width, height)
+        picture = renderer.draw(*pose, width, height, camera)
     finally:
         renderer.close()
-    view = View(width, height, CAMERA)
+    view = View(width, height, camera)
     with plt.rc_context({**STYLE, "axes.grid": False}):
         figure = plt.figure(figsize=(COLUMN_WIDTH, HEIGHT))
         axis = figure.add_axes((0.0, 0.0, 1.0, 1.0))
@@ -118,7 +142,7 @@ def draw_robot(robot: RobotDescription, path: Path) -> list[Path]:
         axis.imshow(picture)
         for label in labels_of(robot):
             _draw_label(axis, view, label)
-        _draw_triad(axis, view)
+        _draw_triad(axis, view.pixels(triad))
         return save(figure, path)
 
 
@@ -145,11 +169,9 @@ def _draw_label(axis: Axes, view: View, label: Label) -> None:
     axis.plot(*view.pixels(label.point[None])[0], "o", markersize=2.5, color="black", markeredgecolor="white", mew=0.5)
 
 
-def _draw_triad(axis: Axes, view: View) -> None:
+def _draw_triad(axis: Axes, pixels: np.ndarray) -> None:
     """Draw the axes of torso and world: x to the robot's right, y forward, z up."""
-    origin = np.array(TRIAD)
-    for index, name in enumerate("xyz"):
-        tip = origin + TRIAD_LENGTH * np.eye(3)[index]
-        begin, end, text = view.pixels(np.array((origin, tip, tip + 0.035 * np.eye(3)[index])))
-        axis.annotate("", end, begin, arrowprops={"arrowstyle": "->", "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0})
+    origin, *ends = pixels
+    for name, tip, text in zip("xyz", ends[:3], ends[3:], strict=True):
+        axis.annotate("", tip, origin, arrowprops={"arrowstyle": "->", "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0})
         axis.text(text[0], text[1], name, ha="center", va="center", fontsize=7)

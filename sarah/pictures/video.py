@@ -12,10 +12,11 @@ from PIL import Image, ImageColor
 from sarah.episode.trace import Trace
 from sarah.errors import ConfigurationError
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
-from sarah.pictures.overlay import Overlay
+from sarah.pictures.overlay import PUSH_SHOWN_SECONDS, Overlay, arrow
 from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, RobotDescription
+from sarah.robot.reading import Vector
 from sarah.simulation.renderer import Renderer
-from sarah.simulation.scenery import STANDARD_CAMERA, Camera, View
+from sarah.simulation.scenery import Camera, View, size_of
 
 SUFFIXES = (".mp4", ".gif")
 WIDTH, HEIGHT = 1024, 576
@@ -28,6 +29,11 @@ FRAMES_PER_SECOND = {".mp4": 25.0, ".gif": 20.0}
 GIF_SIZE = (640, 360)
 """Size of a GIF, in pixels: smaller than a video, because GIF files are large."""
 GIF_COLOURS = 200
+TEXT_WIDTH = 228
+"""Width of the column of text on the left, in pixels, which the robot leaves free, and as much on the right."""
+Pose = tuple[Vector, tuple[float, float, float, float], dict[str, float]]
+POSES_PER_SECOND = 25.0
+"""Number of poses in a second of an episode that the cameras are chosen for."""
 
 
 def frame_times(begin: float, end: float, frames_per_second: float, speed: float = 1.0) -> np.ndarray:
@@ -53,13 +59,14 @@ def frames(trace: Trace, robot: RobotDescription, times: Iterable[float], captio
     """
     renderer = Renderer(robot, SAMPLES)
     try:
-        overlay = Overlay(trace, View(WIDTH, HEIGHT, STANDARD_CAMERA), caption)
+        camera, feet_camera = cameras(trace, robot, renderer)
+        caption_end = WIDTH - FEET_WIDTH - 2 * FEET_MARGIN
+        overlay = Overlay(trace, View(WIDTH, HEIGHT, camera), caption, caption_end, size_of(robot))
         for time in times:
             tick = trace.tick_at(time)
-            joints = dict(zip(ACTUATED_JOINTS + ANKLE_JOINTS, (*trace.joints[tick], *trace.ankles[tick]), strict=True))
-            pose = (tuple(trace.position[tick]), tuple(trace.orientation[tick]), joints)
-            picture = renderer.draw(*pose, WIDTH, HEIGHT)
-            feet = renderer.draw(*pose, FEET_WIDTH, FEET_HEIGHT, FEET_CAMERA)
+            pose = _pose(trace, tick)
+            picture = renderer.draw(*pose, WIDTH, HEIGHT, camera)
+            feet = renderer.draw(*pose, FEET_WIDTH, FEET_HEIGHT, feet_camera)
             bottom, right = HEIGHT - FEET_MARGIN, WIDTH - FEET_MARGIN
             top, left = bottom - FEET_HEIGHT, right - FEET_WIDTH
             picture[top - 2 : bottom + 2, left - 2 : right + 2] = 170
@@ -69,6 +76,37 @@ def frames(trace: Trace, robot: RobotDescription, times: Iterable[float], captio
             yield frame
     finally:
         renderer.close()
+
+
+def cameras(trace: Trace, robot: RobotDescription, renderer: Renderer) -> tuple[Camera, Camera]:
+    """Cameras of an episode's frames: one sees the robot and its push the whole time, the other one its feet.
+
+    Both stand still. They stand farther away than usual only if the episode needs it.
+
+    :param trace: trace of the episode
+    :param robot: robot of the episode
+    :param renderer: renderer of the robot
+    """
+    size = size_of(robot)
+    seen, feet = [], []
+    for time in frame_times(trace.time[0], trace.time[-1], POSES_PER_SECOND):
+        tick = trace.tick_at(time)
+        seen.append(renderer.corners(*_pose(trace, tick)))
+        feet.append(renderer.soles())
+    camera = renderer.camera.seeing(np.concatenate(seen), WIDTH - 2 * TEXT_WIDTH, HEIGHT)
+    forces = np.linalg.norm(trace.push, axis=1)
+    if forces.any():
+        begin = int(np.argmax(forces > 0.0))
+        shown = (trace.time >= trace.time[begin]) & (trace.time < trace.time[begin] + PUSH_SHOWN_SECONDS)
+        arrows = [arrow(position, trace.push[begin], size) for position in trace.position[shown]]
+        camera = camera.seeing(np.concatenate(arrows), WIDTH, HEIGHT)
+    return camera, FEET_CAMERA.scaled(size).seeing(np.concatenate(feet), FEET_WIDTH, FEET_HEIGHT)
+
+
+def _pose(trace: Trace, tick: int) -> Pose:
+    """Position, orientation and joints at a tick."""
+    joints = dict(zip(ACTUATED_JOINTS + ANKLE_JOINTS, (*trace.joints[tick], *trace.ankles[tick]), strict=True))
+    return tuple(trace.position[tick]), tuple(trace.orientation[tick]), joints
 
 
 def check_path(path: Path) -> None:

@@ -1,12 +1,17 @@
-"""The table of a race: after how many episodes each algorithm gets where, and how far."""
+"""The table of a race: after how many episodes each algorithm gets where, and how far.
+
+A race knows recommendations after every five episodes only. So all counts of episodes are ones at which there was a
+recommendation, also the median of an even number of trainings, which is the higher one of the two in the middle.
+"""
 
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from statistics import median
+from statistics import median, median_high
 
 import numpy as np
 
@@ -30,6 +35,7 @@ ORIGINS = {
     "random": "it has none",
 }
 """Origin of each algorithm's settings: one that was tuned on the raced task has an advantage over the others."""
+UNKNOWN_ORIGIN = "nobody has said where they come from"
 
 
 @dataclass(frozen=True)
@@ -39,8 +45,8 @@ class Ranking:
     :param algo: name of the algorithm
     :param runs: number of trainings, one for each seed
     :param reached: number of trainings that reached a share of the best known score, by share
-    :param episodes: median number of episodes until a share is reached, by share; trainings that did not reach it count
-        as infinite
+    :param episodes: median number of episodes until a share is reached, by share, after which more than half of the
+        trainings have reached it; infinite if they never have
     :param final: interquartile mean of the final scores, and the ends of its 95 % bootstrap interval
     :param seconds: median wall time of a training, in s
     """
@@ -56,14 +62,16 @@ class Ranking:
 def episodes_until(curve: RaceCurve, score: float) -> float:
     """Number of episodes until a score is reached and held over :data:`HELD` evaluations; infinite if it never is.
 
-    :param curve: scores of a training
+    :param curve: scores of a training; of two after the same number of episodes, the later one counts
     :param score: score to reach
     """
-    reached = [value >= score for value in curve.scores]
-    for index in range(len(reached) - HELD + 1):
-        if all(reached[index : index + HELD]):
-            return float(curve.episodes[index])
-    return float("inf")
+    evaluated = dict(zip(curve.episodes, curve.scores, strict=True))
+    reached = [value >= score for value in evaluated.values()]
+    for index, episodes in enumerate(evaluated):
+        held = reached[index : index + HELD]
+        if len(held) == HELD and all(held):
+            return float(episodes)
+    return math.inf
 
 
 def rankings(curves: Sequence[RaceCurve], best_known: float | None = None) -> list[Ranking]:
@@ -83,7 +91,7 @@ def rankings(curves: Sequence[RaceCurve], best_known: float | None = None) -> li
                 algo,
                 len(runs),
                 {share: sum(np.isfinite(counts).tolist()) for share, counts in until.items()},
-                {share: median(counts) for share, counts in until.items()},
+                {share: median_high(counts) for share, counts in until.items()},
                 interquartile_mean([curve.scores[-1] for curve in runs]),
                 median(curve.seconds for curve in runs),
             )
@@ -113,18 +121,24 @@ def as_markdown(table: Sequence[Ranking]) -> str:
     shares = "".join(f" {share:.0%} of the best after | reached by |" for share in SHARES)
     lines = [f"| algorithm | runs |{shares} final score | wall time |", "|---" * (4 + 2 * len(SHARES)) + "|"]
     for row in table:
-        cells = "".join(f" {row.episodes[share]:g} | {row.reached[share]} |" for share in SHARES)
+        cells = "".join(f" {_count(row.episodes[share])} | {row.reached[share]} |" for share in SHARES)
         score, low, high = row.final
         lines.append(
             f"| {row.algo} | {row.runs} |{cells} {score:.3f} ({low:.3f} to {high:.3f}) | {row.seconds:.0f} s |"
         )
-    origins = dict.fromkeys(ORIGINS[row.algo] for row in table)
-    named = {origin: ", ".join(row.algo for row in table if ORIGINS[row.algo] == origin) for origin in origins}
-    return "\n".join([*lines, "", "Settings:", "", *(f"- {names}: {origin}" for origin, names in named.items())])
+    named: dict[str, list[str]] = {}
+    for row in table:
+        named.setdefault(ORIGINS.get(row.algo, UNKNOWN_ORIGIN), []).append(row.algo)
+    settings = (f"- {', '.join(names)}: {origin}" for origin, names in named.items())
+    return "\n".join([*lines, "", "Settings:", "", *settings])
+
+
+def _count(episodes: float) -> str:
+    return f"{episodes:.0f}" if math.isfinite(episodes) else "not reached"
 
 
 def write_csv(table: Sequence[Ranking], path: Path) -> None:
-    """Write the rankings as CSV.
+    """Write the rankings as CSV. Counts of episodes that were never reached are ``inf``.
 
     :param table: rankings from :func:`rankings`
     :param path: path of the file
@@ -134,5 +148,5 @@ def write_csv(table: Sequence[Ranking], path: Path) -> None:
         counted = [f"{name}_{share:.0%}" for share in SHARES for name in ("episodes", "reached")]
         writer.writerow(("algorithm", "runs", *counted, "final_score", "final_low", "final_high", "seconds"))
         for row in table:
-            counts = [value for share in SHARES for value in (row.episodes[share], row.reached[share])]
+            counts = [value for share in SHARES for value in (f"{row.episodes[share]:.0f}", row.reached[share])]
             writer.writerow((row.algo, row.runs, *counts, *row.final, row.seconds))

@@ -21,9 +21,10 @@ from sarah.episode.tasks import BALANCE, Task
 from sarah.episode.workers import Executor
 from sarah.errors import ConfigurationError
 from sarah.files import replace_text
+from sarah.pictures.colours import algorithm_label
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
 from sarah.reports.all_figures import draw_all_figures
-from sarah.reports.training_figures import ALGORITHM_LABELS, figures_of
+from sarah.reports.training_figures import figures_of
 from sarah.robot.description import describe_robot
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
@@ -89,7 +90,7 @@ def write_report(
         title=task.title,
         run=str(run.path),
         config=config,
-        algorithm=ALGORITHM_LABELS[config.algo],
+        algorithm=algorithm_label(config.algo),
         episodes=episodes,
         rows=_parameter_rows(task, learned) + _result_rows(config, ours, theirs),
         baseline=task.baseline_label,

@@ -2,8 +2,10 @@
 
 Figures 4 to 7 show parameters and results against training steps; a training step is one episode. A single run shows
 its episodes as dots, and their running median as a line. Several runs of an algorithm show the median of those lines
-over the runs, and the band between their quartiles. The episodes that compare the candidates at the end are no steps
-of learning: a single run shows them as hollow dots, and no line goes through them.
+over the runs, and the band between their quartiles. Dots and lines show what was tried, with exploration noise; a
+single run's parameters come with what was recommended. The random warm-up is shaded. Its episodes, and those that
+compare the candidates at the end, are no steps of learning: a single run shows them as hollow dots, and no line goes
+through them.
 """
 
 from __future__ import annotations
@@ -11,7 +13,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,10 +24,10 @@ from matplotlib.patheffects import withStroke
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.tasks import BALANCE, STEPPING, Task
-from sarah.errors import RunFolderError
+from sarah.pictures.colours import algorithm_colours, algorithm_label
 from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
 from sarah.reports.robustness import PushedEpisode, finest_sectors, survival_by_direction
-from sarah.runs.run_episodes import LONGEST_REASON
+from sarah.reports.training_curves import RunCurves, read_curves
 from sarah.runs.run_folder import RunFolder
 
 if TYPE_CHECKING:  # the import would load the learning algorithms
@@ -36,19 +37,11 @@ WINDOW = 15
 """Number of episodes in the window of the running median."""
 CHORDS = 8
 """Number of straight lines that make the arc of a sector."""
-COLOURS = {
-    "naf": "#0072B2",
-    "td3": "#D55E00",
-    "sac": "#009E73",
-    "ddpg": "#CC79A7",
-    "cma-es": "#E69F00",
-    "gp": "#56B4E9",
-    "tpe": "#F0E442",
-    "random": "#000000",
-}
-"""Colour of each algorithm, which colour-blind people can tell apart (Okabe and Ito)."""
-ALGORITHM_LABELS = {algo: algo.upper() for algo in COLOURS} | {"random": "random search"}
-"""Name of each algorithm in pictures and on pages."""
+WARM_UP_LABEL = "random warm-up"
+LEAST_IN_ROWS = 4
+"""Least number of entries for which a figure's legend has rows of two: more in a row would leave the picture."""
+LEGEND_ROW = 0.17
+"""Height of a row of a legend, in inches."""
 
 Panels = list[tuple[str, str]]
 """Column of ``episodes.csv`` and label of each panel, from top to bottom."""
@@ -64,20 +57,6 @@ PAPER_FIGURES: dict[str, tuple[str, Panels, str]] = {
 """Figures of the paper, by task: name and panels of the outcome, and name of the parameters."""
 PAPER = dict(zip(STEPPING.parameter_names[:3], PAPER_STEPPING[:3], strict=True))
 """Values of P1 to P3 that the paper's training found."""
-
-
-@dataclass(frozen=True)
-class RunCurves:
-    """The episodes of all runs of one algorithm.
-
-    :param algorithm: name of the algorithm
-    :param columns: columns of ``episodes.csv`` as numbers, each of shape (runs, episodes)
-    :param learning: number of episodes before the comparison of candidates
-    """
-
-    algorithm: str
-    columns: dict[str, np.ndarray]
-    learning: int
 
 
 def figures_of(task: Task) -> dict[str, Panels]:
@@ -101,7 +80,7 @@ def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
     tasks = [run.config().task for run in runs]
     of_task = {task.identity: task for task in tasks}
     curves = {
-        task: _curves([run for run, its in zip(runs, tasks, strict=True) if its.identity == identity], task)
+        task: read_curves([run for run, its in zip(runs, tasks, strict=True) if its.identity == identity], task)
         for identity, task in of_task.items()
     }
     folder.mkdir(parents=True, exist_ok=True)
@@ -113,41 +92,6 @@ def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
     return files
 
 
-def _curves(runs: Sequence[RunFolder], task: Task) -> list[RunCurves]:
-    by_algorithm: dict[str, list[dict[str, list[float]]]] = {}
-    learning: dict[str, int] = {}
-    names = ("return", "steps_per_second", "x", "y", *task.parameter_names)
-    for run in runs:
-        columns: dict[str, list[float]] = {name: [] for name in names}
-        try:
-            for row in run.episodes():
-                for name in names:
-                    columns[name].append(_number(row[name]))
-        except (KeyError, TypeError, ValueError) as error:
-            reason = repr(error)[:LONGEST_REASON]
-            raise RunFolderError(f"the episodes of {run.path} cannot be read: {reason}") from error
-        episodes = len(columns["return"])
-        if not episodes:
-            raise RunFolderError(f"{run.path} has no episodes to draw")
-        config = run.config()
-        by_algorithm.setdefault(config.algo, []).append(columns)
-        before_comparison = min(episodes, config.episodes - config.compared_episodes)
-        learning[config.algo] = min(learning.get(config.algo, before_comparison), before_comparison)
-    curves = []
-    for algorithm, tables in by_algorithm.items():
-        shortest = min(len(table["return"]) for table in tables)
-        stacked = {name: np.array([table[name][:shortest] for table in tables]) for name in names}
-        curves.append(RunCurves(algorithm, stacked, learning[algorithm]))
-    return curves
-
-
-def _number(text: str) -> float:
-    number = float(text)
-    if not math.isfinite(number):
-        raise ValueError(f"{text} where a number must be")
-    return number
-
-
 def _draw(curves: Sequence[RunCurves], panels: Panels, path: Path) -> list[Path]:
     figure, axes = plt.subplots(
         len(panels),
@@ -157,32 +101,57 @@ def _draw(curves: Sequence[RunCurves], panels: Panels, path: Path) -> list[Path]
         figsize=(COLUMN_WIDTH, 0.6 + 1.1 * len(panels)),
         layout="constrained",
     )
-    for axis, (column, label) in zip(axes[:, 0], panels, strict=True):
+    colours = algorithm_colours(curve.algorithm for curve in curves)
+    for axis, (column, quantity) in zip(axes[:, 0], panels, strict=True):
+        _mark_warm_up(axis, curves)
         for curve in curves:
-            _draw_panel(axis, curve, column)
+            label = algorithm_label(curve.algorithm)
+            if len(curves) == 1 and len(curve.recommended.get(column, ())):
+                label += ", tried"
+                _draw_recommended(axis, curve, column)
+            _draw_panel(axis, curve, column, label, colours[curve.algorithm])
         if column in PAPER:
             axis.axhline(PAPER[column], color="black", linewidth=0.8, linestyle=":", label="paper")
-        axis.set_ylabel(label)
+        axis.set_ylabel(quantity)
     axes[-1, 0].set_xlabel("training steps (episodes)")
     figure.align_ylabels()
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper right", ncols=len(curves) + 1)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    columns = len(labels) if len(labels) < LEAST_IN_ROWS else 2
+    figure.set_figheight(figure.get_figheight() + LEGEND_ROW * (math.ceil(len(labels) / columns) - 1))
+    figure.legend(handles, labels, loc="outside upper right", ncols=columns, columnspacing=1.2, handlelength=1.5)
     return save(figure, path)
 
 
-def _draw_panel(axis: Axes, curves: RunCurves, column: str) -> None:
-    values, learning, colour = curves.columns[column], curves.learning, COLOURS[curves.algorithm]
+def _mark_warm_up(axis: Axes, curves: Sequence[RunCurves]) -> None:
+    """Shade the random episodes. Of algorithms with fewer of them, a line goes through the shade."""
+    longest = max(curve.warm_up for curve in curves)
+    if longest == 0:
+        return
+    is_shared = all(curve.warm_up == longest for curve in curves)
+    label = WARM_UP_LABEL if is_shared else f"{WARM_UP_LABEL} of some"
+    axis.axvspan(0.5, longest + 0.5, color="0.88", linewidth=0, label=label, zorder=0)
+
+
+def _draw_panel(axis: Axes, curves: RunCurves, column: str, label: str, colour: str) -> None:
+    values, learned = curves.columns[column], slice(curves.warm_up, curves.learning)
     steps = np.arange(1, values.shape[1] + 1)
-    smooth = np.array([running_median(run) for run in values[:, :learning]])
-    label = ALGORITHM_LABELS[curves.algorithm]
+    smooth = np.array([running_median(run) for run in values[:, learned]])
     if len(values) == 1:
         dots: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 1.6, "color": colour, "alpha": 0.5}
-        axis.plot(steps[:learning], values[0, :learning], markeredgewidth=0, **dots)
-        axis.plot(steps[learning:], values[0, learning:], markerfacecolor="none", markeredgewidth=0.4, **dots)
+        axis.plot(steps[learned], values[0, learned], markeredgewidth=0, **dots)
+        for others in (slice(curves.warm_up), slice(curves.learning, None)):
+            axis.plot(steps[others], values[0, others], markerfacecolor="none", markeredgewidth=0.4, **dots)
     else:
         low, high = np.quantile(smooth, (0.25, 0.75), axis=0)
-        axis.fill_between(steps[:learning], low, high, color=colour, alpha=0.25, linewidth=0)
+        axis.fill_between(steps[learned], low, high, color=colour, alpha=0.25, linewidth=0)
         label += f", {len(values)} runs"
-    axis.plot(steps[:learning], np.median(smooth, axis=0), color=colour, linewidth=1.2, label=label)
+    axis.plot(steps[learned], np.median(smooth, axis=0), color=colour, linewidth=1.2, label=label)
+
+
+def _draw_recommended(axis: Axes, curves: RunCurves, column: str) -> None:
+    """Draw what the training would have recommended, each time until it was asked again."""
+    episodes, values = curves.recommended["episodes"], curves.recommended[column]
+    axis.plot(episodes, values, color="0.25", linewidth=0.9, drawstyle="steps-post", label="recommended")
 
 
 def running_median(values: np.ndarray) -> np.ndarray:
@@ -198,19 +167,23 @@ def running_median(values: np.ndarray) -> np.ndarray:
 def draw_race(curves: Sequence[RaceCurve], path: Path) -> list[Path]:
     """Draw the score of each algorithm's recommendations against episodes: median and quartiles over its runs.
 
+    Steps show that a recommendation counts until the next one: nothing is known in between. Dots are final scores.
+
     :param curves: scores of all trainings
     :param path: path of the picture, without suffix
     :return: the files, PNG and PDF
     """
     with plt.rc_context(STYLE):
         figure, axis = plt.subplots(figsize=(COLUMN_WIDTH, 0.9 * COLUMN_WIDTH), layout="constrained")
+        colours = algorithm_colours(curve.algo for curve in curves)
         for algo in dict.fromkeys(curve.algo for curve in curves):
             runs = [curve for curve in curves if curve.algo == algo]
             episodes = runs[0].episodes
             low, middle, high = np.quantile([run.scores for run in runs], (0.25, 0.5, 0.75), axis=0)
-            axis.fill_between(episodes, low, high, color=COLOURS[algo], alpha=0.15, linewidth=0)
-            label = f"{ALGORITHM_LABELS[algo]} ({len(runs)})"
-            axis.plot(episodes, middle, color=COLOURS[algo], linewidth=1.2, label=label)
+            axis.fill_between(episodes, low, high, step="post", color=colours[algo], alpha=0.15, linewidth=0)
+            label = f"{algorithm_label(algo)} ({len(runs)})"
+            axis.plot(episodes, middle, drawstyle="steps-post", color=colours[algo], linewidth=1.2, label=label)
+            axis.plot(episodes[-1:], middle[-1:], "o", markersize=2.5, color=colours[algo])
         axis.set_xlabel("episodes")
         axis.set_ylabel("score on unseen seeds")
         figure.legend(loc="outside upper center", ncols=2)  # three columns would not fit for eight algorithms

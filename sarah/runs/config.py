@@ -38,8 +38,7 @@ class TrainingConfig:
     :param task: task: ``stepping`` learns P1 to P5 of the pattern generator, as the paper's First Training; ``balance``
         learns V1 to V4 of the hip law under pushes, as its Second Training; ``my_task.py:JUMP`` is the task JUMP of a
         file of yours
-    :param algo: algorithm: ``naf``, stable-baselines3's ``td3``, ``sac`` or ``ddpg``, or an optimiser that sees returns
-        only: ``cma-es``, ``gp`` (Gaussian process), ``tpe`` or ``random``
+    :param algo: algorithm: {agents}, which learn with networks, or an optimiser that sees returns only: {optimisers}
     :param episodes: budget of the training; an episode is one action of the agent, and up to 30 s of the robot
     :param seed: seed of the training and of all its episodes
     :param slots: number of episodes that are simulated at the same time: an action is chosen without the outcomes of
@@ -134,3 +133,10 @@ class TrainingConfig:
     def compared_episodes(self) -> int:
         """Number of episodes in the comparison of candidates, which are the last of the budget."""
         return self.candidate_count * EPISODES_PER_CANDIDATE if self.candidate_count > 1 else 0
+
+
+TrainingConfig.__doc__ = (  # the help of the commands and the page of settings read it
+    str(TrainingConfig.__doc__)
+    .replace("{agents}", ", ".join(f"``{algo}``" for algo in AGENTS))
+    .replace("{optimisers}", ", ".join(f"``{algo}``" for algo in OPTIMISERS))
+)

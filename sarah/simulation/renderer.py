@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import product
+from typing import Any
 
 import numpy as np
 from PIL import Image
@@ -13,14 +14,16 @@ from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, PLATES, Robot
 from sarah.robot.reading import Side, Vector
 from sarah.simulation.engines import INSTALLATION, is_installed
 from sarah.simulation.pybullet_client import give_back_client, load_robot, pybullet, take_client
-from sarah.simulation.scenery import STANDARD_CAMERA, Camera, View, floor, shaded
+from sarah.simulation.scenery import STANDARD_CAMERA, Camera, View, floor, shaded, size_of
 from sarah.simulation.simulator import Simulator
 
-MARGIN = 0.05
-"""Distance around the corners of torso and feet, in m, that contains the whole robot; nothing else is drawn."""
+MARGIN = 0.01
+"""Margin around the robot's corners, as a share of its height; nothing else is drawn."""
 SHOE_MARGIN = 1.2
 """Length and width of a shoe, as multiples of those between its sole contacts."""
-NEAR, FAR = 0.05, 10.0
+NEAREST = 0.01
+"""Smallest distance from the camera at which anything is drawn, in m."""
+CUBE = np.array(list(product((-1.0, 1.0), repeat=3)))
 LIGHT = (-1.5, 2.5, 3.0)
 """Direction towards the light, in the world's frame."""
 
@@ -47,10 +50,12 @@ class Renderer:
         check_renderer()
         self._robot = robot
         self._samples = samples
+        self.camera = STANDARD_CAMERA.scaled(size_of(robot))
+        """Camera for the standing robot, whatever its dimensions."""
         self._client = take_client()
         try:
             self._body, self._indices = load_robot(self._client, robot.urdf, robot.standing_height, flags=0)
-            self._torso = self._torso_corners()
+            self._boxes = self._boxes_around_links()
         except BaseException:
             self.close()
             raise
@@ -62,7 +67,7 @@ class Renderer:
         joints: Mapping[str, float],
         width: int = 640,
         height: int = 480,
-        camera: Camera = STANDARD_CAMERA,
+        camera: Camera | None = None,
     ) -> np.ndarray:
         """Draw one pose.
 
@@ -71,59 +76,100 @@ class Renderer:
         :param joints: positions by joint, in rad and m; other joints stay where they were, at first at zero
         :param width: width of the picture, in pixels
         :param height: height of the picture, in pixels
-        :param camera: place and direction of the camera
+        :param camera: place and direction of the camera; by default the renderer's, stepped back if the pose needs it
         :return: uint8 array of shape (height, width, 3)
+        """
+        corners = self.corners(position, orientation, joints)
+        if camera is None:
+            camera = self.camera.seeing(corners, width, height)
+        view = View(width, height, camera)
+        shadows = [view.pixels(outline * (1.0, 1.0, 0.0)) for outline in np.split(self.soles(), len(Side))]
+        picture = shaded(floor(width, height, camera), shadows).copy()
+        margin = MARGIN * self._robot.standing_height
+        left, top, right, bottom = rectangle = view.rectangle(corners, margin)
+        if left < right and top < bottom:
+            depths = (corners - view.position) @ view.axes[2]
+            picture[top:bottom, left:right] = self._over(
+                picture[top:bottom, left:right], view, rectangle, (depths.min(), depths.max())
+            )
+        return picture
+
+    def corners(
+        self, position: Vector, orientation: tuple[float, float, float, float], joints: Mapping[str, float]
+    ) -> np.ndarray:
+        """Corners of boxes around all links in a pose: the robot is between them.
+
+        :param position: position of the torso's centre, in m
+        :param orientation: orientation of the torso, as a unit quaternion (x, y, z, w)
+        :param joints: positions by joint, in rad and m; other joints stay where they were, at first at zero
+        :return: points in the world's frame, in m, of shape (8 times the links, 3)
         """
         client = self._client
         pybullet.resetBasePositionAndOrientation(self._body, position, orientation, physicsClientId=client)
         for name, value in joints.items():
             pybullet.resetJointState(self._body, self._indices[name], value, physicsClientId=client)
-        view = View(width, height, camera)
-        soles = [self._soles(side) for side in Side]
-        torso = [pybullet.multiplyTransforms(position, orientation, corner, (0, 0, 0, 1))[0] for corner in self._torso]
-        left, top, right, bottom = rectangle = view.rectangle(np.concatenate((torso, *soles)), MARGIN)
-        picture = floor(width, height, camera).copy()
-        if left < right and top < bottom:
-            shadows = [view.pixels(outline * (1.0, 1.0, 0.0)) - (left, top) for outline in soles]
-            behind = shaded(picture[top:bottom, left:right], shadows)
-            picture[top:bottom, left:right] = self._over(behind, view, rectangle)
-        return picture
-
-    def _torso_corners(self) -> np.ndarray:
-        """Corners of a box around the torso, in its frame."""
-        shapes = pybullet.getVisualShapeData(self._body, physicsClientId=self._client)
-        boxes = [shape for shape in shapes if shape[1] == -1 and shape[2] == pybullet.GEOM_BOX]
-        reach = np.max([np.abs(box[5]) + np.array(box[3]) / 2 for box in boxes], axis=0)
-        return np.array(list(product((-1, 1), repeat=3))) * reach
-
-    def _soles(self, side: Side) -> np.ndarray:
-        """Corners of a foot's sole in the world, in order around it."""
         corners = []
-        for plate, order in zip(PLATES, (1, -1), strict=True):
-            name = f"{side}_{plate}"
-            state = pybullet.getLinkState(
-                self._body, self._indices[name], computeForwardKinematics=1, physicsClientId=self._client
-            )
-            for sole in self._robot.soles[name][::order]:
-                corners.append(pybullet.multiplyTransforms(state[4], state[5], sole, (0, 0, 0, 1))[0])
-        contacts = np.array(corners)
-        middle = contacts.mean(axis=0)
-        return np.asarray(middle + SHOE_MARGIN * (contacts - middle))
+        for link, box in self._boxes.items():
+            if link < 0:
+                place, turn = position, orientation
+            else:
+                state = pybullet.getLinkState(self._body, link, computeForwardKinematics=1, physicsClientId=client)
+                place, turn = state[4], state[5]
+            corners.append(_moved(box, place, turn))
+        return np.concatenate(corners)
 
-    def _over(self, behind: np.ndarray, view: View, rectangle: tuple[int, int, int, int]) -> np.ndarray:
-        """Draw the robot over a part of the picture."""
+    def _boxes_around_links(self) -> dict[int, np.ndarray]:
+        """Corners of a box around the shapes of each link, in the link's frame."""
+        shapes: dict[int, list[np.ndarray]] = {}
+        for _, link, kind, size, _, place, turn, *_ in pybullet.getVisualShapeData(
+            self._body, physicsClientId=self._client
+        ):
+            half = np.array(size) / 2
+            if kind == pybullet.GEOM_CYLINDER:  # length, radius
+                half = np.array((size[1], size[1], size[0] / 2))
+            elif kind == pybullet.GEOM_SPHERE:
+                half = np.full(3, size[0])
+            shapes.setdefault(link, []).append(_moved(CUBE * half, place, turn))
+        boxes = {}
+        for link, corners in shapes.items():
+            points = np.concatenate(corners)
+            low, high = points.min(axis=0), points.max(axis=0)
+            boxes[link] = (low + high) / 2 + CUBE * (high - low) / 2
+        return boxes
+
+    def soles(self) -> np.ndarray:
+        """Corners of both soles in the last pose, in order around each, in m, of shape (8, 3)."""
+        outlines = []
+        for side in Side:
+            corners = []
+            for plate, order in zip(PLATES, (1, -1), strict=True):
+                name = f"{side}_{plate}"
+                state = pybullet.getLinkState(
+                    self._body, self._indices[name], computeForwardKinematics=1, physicsClientId=self._client
+                )
+                corners.append(_moved(np.array(self._robot.soles[name][::order]), state[4], state[5]))
+            contacts = np.concatenate(corners)
+            middle = contacts.mean(axis=0)
+            outlines.append(middle + SHOE_MARGIN * (contacts - middle))
+        return np.concatenate(outlines)
+
+    def _over(
+        self, behind: np.ndarray, view: View, rectangle: tuple[int, int, int, int], depths: tuple[float, float]
+    ) -> np.ndarray:
+        """Draw the robot, which lies between two distances from the camera, over a part of the picture."""
         left, top, right, bottom = rectangle
+        near, far = max(NEAREST, 0.9 * depths[0]), max(2 * NEAREST, 1.1 * depths[1])
         rotation = view.axes * [[1], [1], [-1]]  # OpenGL looks along its negative z axis
         matrix = np.eye(4)
         matrix[:3, :3], matrix[:3, 3] = rotation, -rotation @ view.position
-        scale = NEAR / view.focal_length
+        scale = near / view.focal_length
         projection = pybullet.computeProjectionMatrix(
             scale * (left - view.width / 2),
             scale * (right - view.width / 2),
             scale * (view.height / 2 - bottom),
             scale * (view.height / 2 - top),
-            NEAR,
-            FAR,
+            near,
+            far,
         )
         columns, rows = round(self._samples * (right - left)), round(self._samples * (bottom - top))
         image = pybullet.getCameraImage(
@@ -147,14 +193,14 @@ class Renderer:
         return np.asarray(picture)
 
     def draw_simulator(
-        self, simulator: Simulator, width: int = 640, height: int = 480, camera: Camera = STANDARD_CAMERA
+        self, simulator: Simulator, width: int = 640, height: int = 480, camera: Camera | None = None
     ) -> np.ndarray:
         """Draw a simulator's robot as it stands.
 
         :param simulator: simulator of any engine
         :param width: width of the picture, in pixels
         :param height: height of the picture, in pixels
-        :param camera: place and direction of the camera
+        :param camera: place and direction of the camera; by default the renderer's, stepped back if the pose needs it
         :return: uint8 array of shape (height, width, 3)
         """
         names = ACTUATED_JOINTS + ANKLE_JOINTS
@@ -167,3 +213,9 @@ class Renderer:
         if self._client >= 0:
             give_back_client(self._client)
             self._client = -1
+
+
+def _moved(points: np.ndarray, place: Any, turn: Any) -> np.ndarray:
+    """Points in another frame, whose place and orientation are given."""
+    rotation = np.reshape(pybullet.getMatrixFromQuaternion(turn), (3, 3))
+    return np.asarray(points @ rotation.T + place)

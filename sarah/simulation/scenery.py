@@ -9,20 +9,26 @@ from typing import NamedTuple
 import numpy as np
 from PIL import Image, ImageDraw, ImageFilter
 
-FIELD_OF_VIEW = math.radians(35.0)
-"""Angle of the camera's view from the lower to the upper edge of the picture, in rad."""
+from sarah.robot.description import RobotDescription, describe_robot
+
 TILE = 0.25
 """Length of the floor's tiles, in m; a torso that moves by one tile from its start has left the episode's box."""
 LIGHT_TILE, DARK_TILE = np.array((243.0, 245.0, 247.0)), np.array((214.0, 221.0, 229.0))
 SKY = np.array((252.0, 252.0, 253.0))
 FADING_DISTANCE = 3.0
-"""Distance from the camera over which the floor fades to 1/e into the sky, in m."""
+"""Distance from the camera over which the floor fades to 1/e into the sky, in m; larger for cameras far away."""
+FADING_SHARE = 1.3
+"""Least fading distance, as a multiple of the camera's distance."""
 SHADOW = 0.45
 """Share of the light that a shadow takes."""
 SHADOW_BLUR = 0.004
 """Blur of the shadows, as a share of the picture's height."""
 SAMPLES = 2
 """Samples of the floor along each side of a pixel."""
+BORDER = 0.03
+"""Width of the border that a camera leaves around what it must see, as a share of the picture's height."""
+NEAREST = 0.2
+"""Smallest distance to what a camera must see, as a share of its distance."""
 
 
 class Camera(NamedTuple):
@@ -32,15 +38,46 @@ class Camera(NamedTuple):
     :param distance: distance of the camera from that point, in m
     :param yaw: direction of the view about the vertical, in degrees; 180 looks at the robot from its front
     :param pitch: direction of the view over the horizon, in degrees; negative looks down
+    :param field_of_view: angle of the view from the lower to the upper edge of the picture, in degrees
     """
 
     height: float = 0.48
     distance: float = 2.0
     yaw: float = 162.0
     pitch: float = -7.0
+    field_of_view: float = 35.0
+
+    def scaled(self, factor: float) -> Camera:
+        """Camera that sees a robot of another size in the same way.
+
+        :param factor: size of the robot, as a multiple of the standard robot's
+        """
+        return self._replace(height=factor * self.height, distance=factor * self.distance)
+
+    def seeing(self, points: np.ndarray, width: int, height: int) -> Camera:
+        """Camera that sees points: this one, or one that has stepped back in the direction of the view.
+
+        :param points: points in the world's frame, in m, of shape (n, 3)
+        :param width: width of the picture, in pixels
+        :param height: height of the picture, in pixels
+        """
+        view = View(width, height, self)
+        right, up, ahead = view.axes @ (np.asarray(points) - (0.0, 0.0, self.height)).T
+        reach = np.array((width / 2, height / 2)) - BORDER * height
+        depth = view.focal_length * np.maximum(np.abs(right) / reach[0], np.abs(up) / reach[1])
+        needed = np.maximum(depth, NEAREST * self.distance) - ahead
+        return self._replace(distance=max(self.distance, float(needed.max())))
 
 
 STANDARD_CAMERA = Camera()
+
+
+def size_of(robot: RobotDescription) -> float:
+    """Size of a robot, as a multiple of the standard robot's.
+
+    :param robot: checked robot
+    """
+    return robot.standing_height / describe_robot().standing_height
 
 
 class View:
@@ -53,7 +90,7 @@ class View:
 
     def __init__(self, width: int, height: int, camera: Camera) -> None:
         self.width, self.height = width, height
-        self.focal_length = height / 2 / math.tan(FIELD_OF_VIEW / 2)
+        self.focal_length = height / 2 / math.tan(math.radians(camera.field_of_view) / 2)
         """Focal length, in pixels."""
         yaw, pitch = math.radians(camera.yaw), math.radians(camera.pitch)
         right = (math.cos(yaw), math.sin(yaw), 0.0)
@@ -101,7 +138,7 @@ def floor(width: int, height: int, camera: Camera) -> np.ndarray:
     ray_x, ray_y, ray_z = (right * view.axes[0, i] + up * view.axes[1, i] + view.axes[2, i] for i in range(3))
     length = view.position[2] / np.maximum(-ray_z, 1e-6)  # length of the ray down to the floor
     x, y = length * ray_x, length * ray_y
-    nearness = np.exp(-(x**2 + y**2) / FADING_DISTANCE**2)
+    nearness = np.exp(-(x**2 + y**2) / max(FADING_DISTANCE, FADING_SHARE * camera.distance) ** 2)
     is_dark = (np.floor((view.position[0] + x) / TILE) + np.floor((view.position[1] + y) / TILE)) % 2
     shape = (height, SAMPLES, width, SAMPLES)
     light, dark = ((nearness * tile).reshape(shape).mean(axis=(1, 3))[..., None] for tile in (1.0 - is_dark, is_dark))

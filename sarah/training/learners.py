@@ -25,7 +25,6 @@ from sarah.episode.workers import Executor, Job
 from sarah.errors import ConfigurationError
 from sarah.files import replacing
 from sarah.runs.agent_settings import (
-    WARM_UP,
     AgentSettings,
     DDPGSettings,
     LearnerSettings,
@@ -42,6 +41,7 @@ from sarah.training.recommendation import Parameters
 from sarah.training.recorder import EpisodeRecorder, check_weights
 from sarah.training.replay import LateRankReplayBuffer, LateReplayBuffer
 from sarah.training.seeds import seeds_of
+from sarah.training.warm_up import warm_up
 
 SCHEDULED_SHARE = 0.8
 """Share of a training after which what NAF's settings change in its course has its last value."""
@@ -99,14 +99,6 @@ class _Agent:
         with replacing(self._run.model_path) as file:
             model.save(file)  # type: ignore[arg-type]  # any file will do
         return self._recorder.choose()
-
-
-def warm_up(config: TrainingConfig) -> int:
-    """Number of episodes before an algorithm uses what it knows: at least as many outcomes as are in flight.
-
-    :param config: settings of the training
-    """
-    return max(getattr(config.agent, "learning_starts", WARM_UP), 2 * config.slots)
 
 
 def make_agent(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:

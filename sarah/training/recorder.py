@@ -21,6 +21,7 @@ from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 from sarah.training.learning_curves import LEARNED, CurveWriter, kept_pictures, summary_of
 from sarah.training.recommendation import Parameters, Tried, merit
+from sarah.training.warm_up import warm_up_episodes
 
 EPISODES_PER_RECOMMENDATION = 5
 """Number of episodes after which the recommendation is recorded again."""
@@ -56,6 +57,7 @@ class EpisodeRecorder(BaseCallback):
         self.choose = None
         self._config = config
         self._task = config.task
+        self._warm_up = warm_up_episodes(config)
         self.tried = Tried(self._task)
         self._run = run
         self._journal = journal
@@ -79,12 +81,14 @@ class EpisodeRecorder(BaseCallback):
         :param spec: specification of the episode
         :param result: result of the episode
         """
-        self._write(partial(self._run.append_episode, len(self.tried), spec, result))
+        index = len(self.tried)
+        self._write(partial(self._run.append_episode, index, spec, result))
         self.tried.append((spec.parameters, merit(result, self._task.must_step)))
         self.diverged += result.termination == "diverged"
         x, y, _ = result.final_position
         for name, value in {"return": result.episode_return, "x": x, "y": y}.items():
             self.log.record(f"episode/{name}", value)
+        self.log.record("episode/is_warm_up", int(index < self._warm_up))
         for name, metric in METRICS.items():
             if metric.group:
                 self.log.record(f"{metric.group}/{name}", getattr(result, name))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import itertools
+import math
 
 import numpy as np
 import trimesh
@@ -13,6 +15,7 @@ from viser.extras import ViserUrdf
 from sarah.episode.trace import Trace
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, RobotDescription
+from sarah.simulation.scenery import Camera, View, size_of
 
 Colour = tuple[int, int, int]
 
@@ -29,6 +32,19 @@ PAD_COLOURS = (LEFT, "#7CBBE6", RIGHT, "#F5B183")
 """Colours of left fore, left hind, right fore and right hind, in the scene and in the plots."""
 METRES_PER_NEWTON_OF_LOAD = 0.0008
 METRES_PER_NEWTON_OF_PUSH = 0.005
+"""Length of a push's arrow per force, in m/N, beside the standard robot; in proportion for other sizes."""
+LONGEST_ARROW = 1.0
+"""Length of the longest arrow, in m, beside the standard robot."""
+ARROW_GAP = 0.2
+"""Distance from the torso's centre at which an arrow ends, in m, beside the standard robot: not inside the torso."""
+STATUS_GAP = 0.15
+"""Distance of the words above the robot, in m, beside the standard robot."""
+FIRST_CAMERA = Camera(height=0.6, distance=2.1, yaw=150.9, pitch=-11.0, field_of_view=45.8)
+"""Camera that a page begins with, for the standard robot."""
+WINDOW = (400, 300)
+"""Shape of the narrowest window in which all that the first camera must see is seen."""
+DRIFT, PUSH_SEEN = 0.25, 150.0
+"""Drift of the robot in m, and force of a push in N, that the first camera must see."""
 PUSH_SHOWN_SECONDS = 0.6
 """Time for which a push's arrow is shown, in s: the push itself is over before a viewer has noticed it."""
 
@@ -45,6 +61,7 @@ class RobotScene:
         self._scene = server.scene
         self._model = yourdfpy.URDF.load(io.StringIO(robot.urdf), load_meshes=False)
         self._order = [(*ACTUATED_JOINTS, *ANKLE_JOINTS).index(name) for name in self._model.actuated_joint_names]
+        self._size = size_of(robot)
         self._torso = self._scene.add_frame("/robot", show_axes=False, position=(0.0, 0.0, robot.standing_height))
         self._robot = ViserUrdf(server, self._model, root_node_name="/robot")
         self._loads = [self._add_load(robot, *pad) for pad in zip(ANKLE_JOINTS, PAD_COLOURS, strict=True)]
@@ -52,10 +69,10 @@ class RobotScene:
             "/stance", radius=0.17, height=0.004, color=channels(PHASE_COLOURS["shift"]), opacity=0.7, visible=False
         )
         self._status = self._scene.add_label(
-            "/status", "", position=(0.0, 0.0, robot.standing_height + 0.3), anchor="bottom-center"
+            "/status", "", position=status_place(robot, self._model), anchor="bottom-center"
         )
         self._arrow: viser.ArrowsHandle | None = None
-        self._add_surroundings()
+        self._add_surroundings(first_camera(robot, self._model))
         self._trace: Trace | None = None
 
     def load(self, trace: Trace) -> None:
@@ -70,11 +87,13 @@ class RobotScene:
         self._pushed = np.flatnonzero(trace.push.any(axis=1))
         if len(self._pushed):
             force = trace.push[self._pushed[0]]
-            direction = force / np.linalg.norm(force)
-            tip = -0.2 * direction  # at the surface of the torso, not inside it
-            tail = tip - METRES_PER_NEWTON_OF_PUSH * force
             self._arrow = self._scene.add_arrows(
-                "/push", np.array([[tail, tip]]), channels(PUSH), shaft_radius=0.015, head_radius=0.04, visible=False
+                "/push",
+                arrow(force, self._size)[None],
+                channels(PUSH),
+                shaft_radius=0.015 * self._size,
+                head_radius=0.04 * self._size,
+                visible=False,
             )
         self._support.visible = True
 
@@ -123,7 +142,7 @@ class RobotScene:
             position=hinge + np.array([0.0, robot.soles[plate][0][1], 0.0]),
         )
 
-    def _add_surroundings(self) -> None:
+    def _add_surroundings(self, view: Camera) -> None:
         scene = self._scene
         scene.add_grid(
             "/floor",
@@ -140,7 +159,48 @@ class RobotScene:
         scene.add_light_ambient("/daylight", intensity=1.5)
         scene.add_light_directional("/sun", position=(2.0, 3.0, 4.0), intensity=2.5, cast_shadow=False)
         camera = self._server.initial_camera
-        camera.position, camera.look_at, camera.fov = (1.0, 1.8, 1.0), (0.0, 0.0, 0.6), 0.8
+        camera.position, camera.look_at = View(*WINDOW, view).position, (0.0, 0.0, view.height)
+        camera.fov = math.radians(view.field_of_view)
+
+
+def arrow(force: np.ndarray, size: float = 1.0) -> np.ndarray:
+    """Tail and tip of a push's arrow from the torso's centre, as rows.
+
+    :param force: force of the push, in N; shape (3,)
+    :param size: size of the robot, as a multiple of the standard robot's
+    """
+    newtons = float(np.linalg.norm(force))
+    direction = force / newtons
+    length = min(METRES_PER_NEWTON_OF_PUSH * newtons, LONGEST_ARROW)
+    return -size * np.array(((ARROW_GAP + length) * direction, ARROW_GAP * direction))
+
+
+def first_camera(robot: RobotDescription, model: yourdfpy.URDF) -> Camera:
+    """Camera that a page begins with: it sees the robot, the words above it and pushes from all sides.
+
+    :param robot: robot to show
+    :param model: model of the robot, with all joints at zero
+    """
+    size = size_of(robot)
+    torso = np.array((0.0, 0.0, robot.standing_height))
+    x, y, z = (model.scene.bounds + torso).T
+    corners = np.array(list(itertools.product(x, y, z)))
+    drifted = [corners + offset for offset in itertools.product((-DRIFT, DRIFT), (-DRIFT, DRIFT), (0.0,))]
+    turns = np.linspace(0.0, 2 * np.pi, 36, endpoint=False)
+    forces = PUSH_SEEN * np.stack((np.cos(turns), np.sin(turns), np.zeros_like(turns)), axis=1)
+    arrows = [torso + arrow(force, size) for force in forces]
+    seen = np.concatenate((*drifted, *arrows, status_place(robot, model)[None]))
+    return FIRST_CAMERA.scaled(size).seeing(seen, *WINDOW)
+
+
+def status_place(robot: RobotDescription, model: yourdfpy.URDF) -> np.ndarray:
+    """Place of the words above a robot, in m; shape (3,).
+
+    :param robot: robot to show
+    :param model: model of the robot, with all joints at zero
+    """
+    top = robot.standing_height + model.scene.bounds[1, 2]
+    return np.array((0.0, 0.0, top + STATUS_GAP * size_of(robot)))
 
 
 def describe_tick(trace: Trace, tick: int) -> tuple[str, str]:

@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 from terminal import run
 
+from sarah.runs.agent_settings import AGENT_SETTINGS
+
 
 @pytest.mark.parametrize(
     ("command", "options"),
@@ -42,6 +44,20 @@ def test_help_names_the_options(command: str, options: tuple[str, ...], tmp_path
     assert process.returncode == 0
     text = " ".join(process.stdout.replace("│", " ").split())
     assert [option for option in options if option not in text] == []
+
+
+@pytest.mark.parametrize(("command", "option"), [("train", "--algo STR"), ("compare", "--algorithms [STR")])
+def test_help_lists_every_algorithm_of_the_table(command: str, option: str) -> None:
+    """Also one that is new in the table of settings."""
+    program = (
+        "import sys\nfrom sarah.runs import agent_settings\n"
+        "agent_settings.AGENT_SETTINGS['ninth'] = agent_settings.AgentSettings\n"
+        f"from sarah.cli.{command} import main\nsys.argv = ['command', '--help']\nmain()"
+    )
+    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    text = " ".join(process.stdout.replace("│", " ").replace("``", "").split())
+    described = text.partition(option)[2].partition("(default:")[0]
+    assert [algo for algo in (*AGENT_SETTINGS, "ninth") if algo not in described] == []
 
 
 @pytest.mark.parametrize("command", ["train", "eval", "figures", "compare", "transfer", "video", "view"])

@@ -21,7 +21,7 @@ from sarah.episode.workers import Workers
 from sarah.errors import ResumeError, RunFolderError
 from sarah.reports import race as race_module
 from sarah.reports.race import RaceCurve, entries_of, is_run, race, read_curve, run_entry
-from sarah.reports.rankings import as_markdown, episodes_until, interquartile_mean, rankings
+from sarah.reports.rankings import as_markdown, episodes_until, interquartile_mean, rankings, write_csv
 from sarah.runs import origin as origin_module
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.journal import Journal
@@ -38,6 +38,34 @@ def test_a_score_counts_once_it_is_held() -> None:
     assert episodes_until(curve("naf", 0.2, 0.9, 0.3, 0.9, 0.9, 0.9), 0.8) == 20
     assert episodes_until(curve("naf", 0.9, 0.9, 0.9), 0.8) == 5
     assert math.isinf(episodes_until(curve("naf", 0.2, 0.9, 0.9), 0.8))
+
+
+def test_two_evaluations_after_the_same_episodes_are_one() -> None:
+    """Without a comparison of candidates, the last recommendation is what was learned, and is evaluated twice."""
+    assert math.isinf(episodes_until(RaceCurve("naf", (5, 10, 15, 15), (0.2, 0.9, 0.9, 0.9), 1.0), 0.8))
+
+
+def test_counts_are_ones_after_which_there_was_a_recommendation(tmp_path: Path) -> None:
+    early, late = curve("naf", 1, 1, 1, 1, 1, 1), curve("naf", 0, 0, 0, 1, 1, 1)
+    (row,) = rankings([early, late])
+    assert row.episodes == {0.9: 20.0, 0.95: 20.0}  # not 12.5, after which nobody was asked
+    (row,) = rankings([early, late, early])
+    assert row.episodes[0.9] == 5.0
+    write_csv([row], tmp_path / "race.csv")
+    assert (tmp_path / "race.csv").read_text().splitlines()[1].startswith("naf,3,5,3,5,3,")
+
+
+def test_what_half_of_the_trainings_never_reach_is_not_reached(tmp_path: Path) -> None:
+    good, bad = curve("naf", 1, 1, 1), curve("naf", 0, 0, 0)
+    (row,) = rankings([good, bad])
+    assert math.isinf(row.episodes[0.9]) and row.reached[0.9] == 1
+    assert "| naf | 2 | not reached | 1 | not reached | 1 |" in as_markdown([row])
+    write_csv([row], tmp_path / "race.csv")
+    assert (tmp_path / "race.csv").read_text().splitlines()[1].startswith("naf,2,inf,1,inf,1,")
+
+
+def test_an_algorithm_that_nobody_described_has_its_row() -> None:
+    assert "- mine: nobody has said" in as_markdown(rankings([curve("mine", 0.1, 0.2)]))
 
 
 def test_interquartile_mean_leaves_the_quarters_out() -> None:

@@ -6,12 +6,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from laboratory import RESULT
+from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING, TASKS
 from sarah.errors import RunFolderError
+from sarah.pictures.colours import algorithm_colours
+from sarah.reports import training_figures
 from sarah.reports.race import RaceCurve
+from sarah.reports.training_curves import read_curves
 from sarah.reports.training_figures import draw_figures, draw_race, running_median
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
@@ -70,6 +74,83 @@ def test_running_median_ignores_single_outliers() -> None:
     values = np.zeros(40)
     values[20] = 100.0
     assert (running_median(values) == 0.0).all()
+
+
+def test_axes_and_lines_have_their_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run = run_with_episodes(tmp_path / "run", "stepping", 20, "td3")
+    run.append_recommendation(5, dict.fromkeys(STEPPING.parameter_names, 0.3))
+    drawn: dict[str, list[str]] = {}
+
+    def look(figure: Figure, path: Path) -> list[Path]:
+        (legend,) = figure.legends
+        names = [axis.get_ylabel() for axis in figure.axes]
+        drawn[path.name] = [*names, *sorted(text.get_text() for text in legend.get_texts())]
+        return []
+
+    monkeypatch.setattr(training_figures, "save", look)
+    draw_figures([run], tmp_path / "out")
+    assert drawn["figure_4_reward_and_frequency"] == ["return (m³ s)", "steps per second", "TD3", "random warm-up"]
+    labels = [parameter.label for parameter in STEPPING.parameters]
+    words = ["TD3, tried", "paper", "random warm-up", "recommended"]
+    assert drawn["figure_5_parameters"] == [*labels, *words]
+
+
+def colour_share(picture: Path, colour: str) -> float:
+    wanted = np.array([int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)])
+    return float((np.abs(imread(picture)[..., :3] - wanted).max(axis=-1) < 0.02).mean())
+
+
+@pytest.mark.parametrize(("algo", "shaded"), [("naf", True), ("td3", True), ("gp", True), ("cma-es", False)])
+def test_the_random_warm_up_is_shaded(algo: str, shaded: bool, tmp_path: Path) -> None:
+    for file in draw_figures([run_with_episodes(tmp_path / "run", "stepping", 40, algo)], tmp_path / "out"):
+        if file.suffix == ".png":
+            assert (colour_share(file, "#E0E0E0") > 0.05) == shaded
+
+
+def test_no_line_goes_through_the_warm_up(tmp_path: Path) -> None:
+    """What the eight random episodes gave changes dots, and not the line of what was learned."""
+    pictures = []
+    for shift in (0.0, 0.9):
+        run = run_with_episodes(tmp_path / f"run{shift}", "stepping", 0)
+        for index in range(40):
+            result = dataclasses.replace(RESULT, episode_return=shift * (index % 3) / 2 if index < 8 else index / 40)
+            run.append_episode(index, EpisodeSpec((0.5,) * 5, index), result)
+        (curves,) = read_curves([run], STEPPING)
+        assert (curves.warm_up, curves.learning) == (8, 40)
+        pictures.append(imread(draw_figures([run], tmp_path / f"out{shift}")[0]))
+    line = [(np.abs(picture[..., :3] - (0.0, 114 / 255, 178 / 255)).max(axis=-1) < 0.05) for picture in pictures]
+    assert line[0].sum() > 100 and (line[0] == line[1]).mean() > 0.999
+
+
+def test_parameters_show_what_was_recommended_beside_what_was_tried(tmp_path: Path) -> None:
+    run = run_with_episodes(tmp_path / "run", "stepping", 30)
+    before = draw_figures([run], tmp_path / "before")
+    for episodes in range(5, 31, 5):
+        run.append_recommendation(episodes, dict.fromkeys(STEPPING.parameter_names, 0.3))
+    after = draw_figures([run], tmp_path / "after")
+    outcome, parameters = (
+        (imread(one) != imread(other)).any() if imread(one).shape == imread(other).shape else True
+        for one, other in zip(before[::2], after[::2], strict=True)
+    )
+    assert parameters and not outcome
+
+
+def test_algorithms_without_a_colour_of_their_own_are_told_apart(tmp_path: Path) -> None:
+    names = [*ALGORITHMS, "mine", "yours", "theirs"]
+    colours = algorithm_colours(names)
+    assert len(set(colours.values())) == len(names) and colours == algorithm_colours(reversed(names))
+    assert algorithm_colours(["naf"])["naf"] == colours["naf"]
+    curves = [RaceCurve(algo, (5, 10), (0.2, 0.8), 1.0) for algo in ("naf", "mine")]
+    picture, _ = draw_race(curves, tmp_path / "race")
+    assert colour_share(picture, algorithm_colours(["mine"])["mine"]) > 0.0005
+
+
+def test_a_figure_of_all_algorithms_has_room_for_its_legend(tmp_path: Path) -> None:
+    runs = [run_with_episodes(tmp_path / f"{algo}{i}", "stepping", 20, algo) for algo in ALGORITHMS for i in range(2)]
+    for file in draw_figures(runs, tmp_path / "out")[::2]:
+        pixels = imread(file)[..., :3]
+        for border in (pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]):
+            assert (border == 1.0).all()
 
 
 def test_a_race_of_all_algorithms_has_room_for_its_legend(tmp_path: Path) -> None:

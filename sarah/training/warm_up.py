@@ -1,0 +1,46 @@
+"""The warm-up of a training: its first episodes, whose parameters are drawn at random and not learned.
+
+Learners, records and figures take the number from here. The module imports nothing slow.
+"""
+
+from __future__ import annotations
+
+from sarah.runs.agent_settings import WARM_UP
+from sarah.runs.config import TrainingConfig
+
+WITHOUT_WARM_UP = ("cma-es", "random")
+"""Algorithms without a warm-up: CMA-ES draws from its own distribution at once, and random search never learns."""
+
+
+def warm_up(config: TrainingConfig) -> int:
+    """Number of episodes before an algorithm uses what it knows: at least twice as many as are in flight.
+
+    :param config: settings of the training
+    """
+    if config.algo in WITHOUT_WARM_UP:
+        return 0
+    return max(getattr(config.agent, "learning_starts", WARM_UP), 2 * config.slots)
+
+
+def warm_up_episodes(config: TrainingConfig) -> int:
+    """Number of a training's episodes that its warm-up takes: no more than there are before candidates are compared.
+
+    :param config: settings of the training
+    """
+    begun = config.by_stage()[0]
+    return min(warm_up(begun), begun.episodes - begun.compared_episodes)
+
+
+def describe_warm_up(config: TrainingConfig) -> str:
+    """Words for a training's warm-up, such as "8 of the 100 episodes were random".
+
+    :param config: settings of the training
+    """
+    count = warm_up_episodes(config)
+    if count == 0:
+        return "none: every episode was random" if config.algo == "random" else "none"
+    text = f"{count} of the {config.episodes} episodes were random"
+    if config.task.neutral is None:
+        return text
+    near_best = ", and some drawn around the best so far" if getattr(config.agent, "elite_share", 0.0) > 0.0 else ""
+    return f"{text}, the first neutral{near_best}"

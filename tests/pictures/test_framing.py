@@ -1,0 +1,180 @@
+"""The robot, its push and the words are within the picture, whatever the robot's dimensions."""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from laboratory import NEEDS_PYBULLET, turned
+from matplotlib.image import imread
+from PIL import Image
+
+from sarah.episode.trace import Trace
+from sarah.pictures.overlay import arrow
+from sarah.pictures.robot_figure import draw_robot
+from sarah.pictures.video import FEET_HEIGHT, FEET_MARGIN, FEET_WIDTH, HEIGHT, WIDTH, cameras, frames
+from sarah.robot.description import RobotDescription, describe_robot
+from sarah.robot.reading import Vector
+from sarah.simulation.renderer import Renderer
+from sarah.simulation.scenery import STANDARD_CAMERA, View, floor, size_of
+
+pytestmark = NEEDS_PYBULLET
+
+LENGTHS = {"torso_height": 0.3, "torso_width": 0.36, "thigh_length": 0.33, "shank_length": 0.31, "hip_offset": 0.13}
+DIMENSIONS = [
+    {},
+    {"thigh_length": 0.6},
+    {"thigh_length": 3.3},
+    {"shank_length": 0.031},
+    {"torso_height": 3.0},
+    {"torso_width": 3.59},
+    {"torso_depth": 2.0},
+    {"hip_offset": 1.3},
+    {"hip_size": 0.8},
+    {"thigh_width": 1.0},
+    {"forefoot_contact": 1.4, "sole_half_width": 0.5},
+    {name: 9.9 * value for name, value in LENGTHS.items()},
+    {name: 0.11 * value for name, value in LENGTHS.items()},
+]
+DRIFTS = [(0.0, 0.0), (0.25, 0.0), (-0.25, 0.0), (0.0, 0.25), (0.0, -0.25)]
+FALLS = [(math.pi / 2, 0.0), (-math.pi / 2, 0.0), (0.0, math.pi / 2), (0.0, -math.pi / 2)]
+SIZE = (320, 180)
+
+
+@pytest.fixture(scope="module", params=DIMENSIONS, ids=str)
+def robot(request: pytest.FixtureRequest) -> RobotDescription:
+    return describe_robot(request.param)
+
+
+@pytest.fixture(scope="module")
+def renderer(robot: RobotDescription) -> Iterator[Renderer]:
+    renderer = Renderer(robot)
+    yield renderer
+    renderer.close()
+
+
+def poses(robot: RobotDescription) -> Iterator[tuple[Vector, tuple[float, float, float, float]]]:
+    """Standing, drifted and fallen."""
+    for x, y in DRIFTS:
+        yield (x, y, robot.standing_height), (0.0, 0.0, 0.0, 1.0)
+    for roll, pitch in FALLS:
+        yield (0.2, 0.1, 0.2 * size_of(robot)), turned(roll, pitch)
+
+
+def still(robot: RobotDescription, force: np.ndarray, drift: tuple[float, float] = (0.0, 0.0)) -> Trace:
+    """Trace of a robot that stands still while it is pushed."""
+    ticks = 4
+    rows = {name: np.zeros(ticks) for name in ("rate", "tilt", "stable_x", "score", "steps_per_second")}
+    rows |= {name: np.zeros((ticks, 3)) for name in ("acceleration", "angular_rate")}
+    rows |= {name: np.zeros((ticks, 6)) for name in ("joints", "targets")}
+    rows |= {name: np.zeros((ticks, 4)) for name in ("ankles", "pressures")}
+    return Trace(
+        time=np.arange(ticks) / 10,
+        position=np.tile((*drift, robot.standing_height), (ticks, 1)),
+        orientation=np.tile((0.0, 0.0, 0.0, 1.0), (ticks, 1)),
+        phase=np.full(ticks, "shift"),
+        stance=np.ones(ticks),
+        push=np.tile(force, (ticks, 1)),
+        **rows,
+    )
+
+
+def test_shadows_are_whole(robot: RobotDescription, renderer: Renderer) -> None:
+    """Far above the floor, a robot and its shadows are apart."""
+    high = (0.0, 0.0, 1.8 * robot.standing_height)
+    corners = renderer.corners(high, (0.0, 0.0, 0.0, 1.0), {})
+    shadows = renderer.soles() * (1.0, 1.0, 0.0)
+    camera = renderer.camera.seeing(np.concatenate((corners, shadows)), *SIZE)
+    picture = renderer.draw(high, (0.0, 0.0, 0.0, 1.0), {}, *SIZE, camera)
+    pixels = View(*SIZE, camera).pixels(shadows)
+    for column, row in (pixels[:4].mean(axis=0), pixels[4:].mean(axis=0)):
+        place = (int(row), int(column))
+        assert picture[place].sum() < floor(*SIZE, camera)[place].sum() - 60
+
+
+def pushes(newtons: float, count: int) -> Iterator[np.ndarray]:
+    for angle in np.linspace(0.0, 2 * math.pi, count, endpoint=False):
+        yield newtons * np.array((math.cos(angle), math.sin(angle), 0.0))
+
+
+def is_within(pixels: np.ndarray, width: int, height: int) -> bool:
+    return bool((pixels > 0.0).all() and (pixels < (width, height)).all())
+
+
+def test_the_whole_robot_is_in_the_picture(robot: RobotDescription, renderer: Renderer) -> None:
+    for position, orientation in poses(robot):
+        corners = renderer.corners(position, orientation, dict.fromkeys(robot.limits, 0.0))
+        camera = renderer.camera.seeing(corners, *SIZE)
+        view = View(*SIZE, camera)
+        assert is_within(view.pixels(corners), *SIZE)
+        picture = renderer.draw(position, orientation, {}, *SIZE)
+        rows, columns = np.nonzero(np.abs(picture.astype(int) - floor(*SIZE, camera)).sum(axis=-1) > 60)
+        assert len(rows) > 50
+        # What is drawn is between the corners and the feet's shadows: nothing is cut off where they end.
+        pixels = view.pixels(np.concatenate((corners, renderer.soles() * (1.0, 1.0, 0.0))))
+        assert columns.min() >= pixels[:, 0].min() - 1.5 and columns.max() <= pixels[:, 0].max() + 1.5
+        assert rows.min() >= pixels[:, 1].min() - 1.5 and rows.max() <= pixels[:, 1].max() + 1.5
+
+
+def test_pushes_from_all_sides_are_in_the_picture(robot: RobotDescription, renderer: Renderer) -> None:
+    for drift in DRIFTS:
+        for force in pushes(150.0, 8):
+            trace = still(robot, force, drift)
+            camera, feet = cameras(trace, robot, renderer)
+            view = View(WIDTH, HEIGHT, camera)
+            seen = renderer.corners(tuple(trace.position[0]), (0.0, 0.0, 0.0, 1.0), {})
+            ends = arrow(trace.position[0], force, size_of(robot))
+            assert is_within(view.pixels(np.concatenate((seen, ends))), WIDTH, HEIGHT)
+            assert is_within(View(FEET_WIDTH, FEET_HEIGHT, feet).pixels(renderer.soles()), FEET_WIDTH, FEET_HEIGHT)
+
+
+def test_a_standing_robot_of_standard_size_is_seen_as_ever() -> None:
+    robot = describe_robot()
+    renderer = Renderer(robot)
+    try:
+        for force in pushes(100.0, 12):
+            assert cameras(still(robot, force), robot, renderer)[0] == STANDARD_CAMERA
+    finally:
+        renderer.close()
+
+
+def purple(picture: Image.Image) -> np.ndarray:
+    red, green, blue = np.moveaxis(np.asarray(picture).astype(int), -1, 0)
+    return (red > green + 60) & (blue > green + 60)
+
+
+@pytest.mark.parametrize("dimensions", DIMENSIONS[::5], ids=str)
+def test_no_arrow_and_no_label_touches_the_edge(dimensions: dict[str, float]) -> None:
+    robot = describe_robot(dimensions)
+    for force in pushes(150.0, 4):
+        (picture,) = frames(still(robot, force, (-0.25, 0.25)), robot, (0.0,))
+        marks = purple(picture)
+        assert marks.sum() > 1000
+        assert not (marks[:5].any() or marks[-5:].any() or marks[:, :5].any() or marks[:, -5:].any())
+
+
+@pytest.mark.parametrize(
+    "caption",
+    [
+        ", ".join(f"P{index} = {index / 7:.2f}" for index in range(60)),
+        "a_task_with_a_name_" + 20 * "without_end_" + ": P1 0.40",
+        "one\ntwo\nthree",
+    ],
+)
+def test_long_captions_stay_clear_of_edges_and_of_the_feet(caption: str) -> None:
+    robot = describe_robot()
+    trace = still(robot, np.zeros(3))
+    (with_caption,), (without,) = (frames(trace, robot, (0.0,), text) for text in (caption, ""))
+    rows, columns = np.nonzero((np.asarray(with_caption) != np.asarray(without)).any(axis=-1))
+    assert rows.min() > 0.75 * HEIGHT and rows.max() < HEIGHT - 5
+    assert columns.min() > 5 and columns.max() < WIDTH - FEET_WIDTH - FEET_MARGIN - 5
+
+
+@pytest.mark.parametrize("dimensions", [{"thigh_length": 3.3}, {"torso_height": 0.03, "shank_length": 0.031}], ids=str)
+def test_the_labelled_figure_shows_all_groups(dimensions: dict[str, float], tmp_path: Path) -> None:
+    files = draw_robot(describe_robot(dimensions), tmp_path / "robot")
+    picture = imread(files[0])[..., :3]
+    assert picture.shape[:2] == (910, 700)
+    for colour in ((0.0, 0.45, 0.7), (0.84, 0.3, 0.05), (0.95, 0.7, 0.1)):
+        assert (np.abs(picture - colour).max(axis=-1) < 0.2).sum() > 100

@@ -1,0 +1,70 @@
+"""The random warm-up of a training: how long it is, and where it is said."""
+
+import csv
+from pathlib import Path
+
+import pytest
+from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+
+from sarah.episode.settings import EpisodeConfig
+from sarah.runs.agent_settings import NAFSettings, TD3Settings
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.training.train import train
+from sarah.training.warm_up import describe_warm_up, warm_up, warm_up_episodes
+
+SHORT = EpisodeConfig(time_limit=1.2)
+
+
+def trained(folder: Path, config: TrainingConfig) -> RunFolder:
+    run = RunFolder.create(folder, config)
+    train(config, run)
+    return run
+
+
+def rows(run: RunFolder) -> list[dict[str, str]]:
+    with (run.path / "progress.csv").open() as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.mark.parametrize(
+    ("config", "words"),
+    [
+        (TrainingConfig(), "8 of the 100 episodes were random"),
+        (TrainingConfig(algo="gp", slots=1), "5 of the 100 episodes were random"),
+        (TrainingConfig(algo="td3", agent=TD3Settings(learning_starts=30)), "30 of the 100 episodes were random"),
+        (TrainingConfig(episodes=6), "6 of the 6 episodes were random"),
+        (TrainingConfig(agent=NAFSettings(learning_starts=999)), "90 of the 100 episodes were random"),
+        (TrainingConfig("balance", "td3"), "8 of the 100 episodes were random, the first neutral"),
+        (
+            TrainingConfig("balance"),
+            "8 of the 100 episodes were random, the first neutral, and some drawn around the best so far",
+        ),
+        (TrainingConfig(algo="cma-es"), "none"),
+        (TrainingConfig(algo="random"), "none: every episode was random"),
+    ],
+)
+def test_the_warm_up_is_said_in_words(config: TrainingConfig, words: str) -> None:
+    assert describe_warm_up(config) == words
+
+
+def test_curves_say_which_episodes_were_random(tmp_path: Path) -> None:
+    """A noise that moves every learned action shows from which episode on the agent acts."""
+    columns: list[list[str]] = []
+    for noise in (0.0, 1.0):
+        settings = TD3Settings(action_noise_std=noise)
+        config = TrainingConfig(algo="td3", episodes=12, slots=2, agent=settings, episode=SHORT)
+        run = trained(tmp_path / str(noise), config)
+        columns.append([row["P1"] for row in run.episodes()])
+        marks = [float(row["episode/is_warm_up"]) for row in rows(run)]
+        assert marks == [1.0] * warm_up(config) + [0.0] * (12 - warm_up(config))
+        events = EventAccumulator(str(run.path)).Reload()
+        assert [event.value for event in events.Scalars("episode/is_warm_up")] == marks
+    alike = [one == other for one, other in zip(*columns, strict=True)]
+    assert alike == [mark == 1.0 for mark in marks]
+
+
+def test_a_strategy_without_warm_up_has_no_random_episodes(tmp_path: Path) -> None:
+    config = TrainingConfig(algo="cma-es", episodes=5, episode=SHORT)
+    assert warm_up_episodes(config) == 0
+    assert {float(row["episode/is_warm_up"]) for row in rows(trained(tmp_path / "run", config))} == {0.0}
