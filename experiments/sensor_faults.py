@@ -1,0 +1,208 @@
+"""What becomes of a stepping robot whose sensors or control loop fail: faults begin at 3 s, and stay unless they say.
+
+The controller stands behind the fault, which decides what it reads and whether its tick takes place. The simulated robot
+and the judgement of the episode are not touched.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from statistics import mean
+from typing import Any, NamedTuple
+
+from experiments.experiment import OnWorkers
+from experiments.record import Row
+from sarah.control.pattern_generator import PatternGenerator, PhaseChange
+from sarah.episode.episode import Episode
+from sarah.episode.push import Push
+from sarah.episode.tasks import BALANCE, BalanceConfig
+from sarah.episode.workers import Workers
+from sarah.robot.reading import SensorReading
+
+BEGIN_TICKS = 200
+"""Ticks of stepping before the fault begins."""
+STUCK_PAD = 300.0
+"""Load that a stuck pad reports, in N: about the weight of the robot."""
+HIPS = {"locked": (0.0, 0.0, 0.0, 0.0), "V1 = 0.8, V3 = 0.2": (0.8, 0.0, 0.2, 0.0)}
+"""Values of V1 to V4."""
+
+Heard = SensorReading | None
+Change = Callable[[SensorReading, SensorReading, int], Heard]
+"""What the controller hears, of the reading, of the last one before the fault, and of the ticks since the fault began;
+None if its tick does not take place."""
+
+
+def exact(reading: SensorReading, before: SensorReading, ticks: int) -> Heard:
+    """No fault."""
+    return reading
+
+
+def signal(field: str, elements: tuple[int, ...], value: float | None = None, added: float = 0.0) -> Change:
+    """A fault of some elements of a signal.
+
+    :param field: name of the signal
+    :param elements: indices of the elements that fail
+    :param value: value that they are stuck at; by default the last one before the fault, unless something is added
+    :param added: constant that is added to them instead
+    """
+
+    def change(reading: SensorReading, before: SensorReading, ticks: int) -> Heard:
+        stuck = getattr(before, field)
+        values = [
+            x if k not in elements else x + added if added else stuck[k] if value is None else value
+            for k, x in enumerate(getattr(reading, field))
+        ]
+        return reading._replace(**{field: tuple(values)})
+
+    return change
+
+
+def at_times(fails: Callable[[int], bool], change: Change) -> Change:
+    """A fault that comes and goes.
+
+    :param fails: whether it is there, by the ticks since it began
+    :param change: the fault
+    """
+    return lambda reading, before, ticks: change(reading, before, ticks) if fails(ticks) else reading
+
+
+def repeated(reading: SensorReading, before: SensorReading, ticks: int) -> Heard:
+    """The last reading before the fault again."""
+    return before
+
+
+def missed(reading: SensorReading, before: SensorReading, ticks: int) -> Heard:
+    """No tick: the targets stay."""
+    return None
+
+
+class Fault(NamedTuple):
+    """A fault.
+
+    :param change: what it does to readings
+    :param delay_ticks: delay of all readings, in control ticks
+    """
+
+    change: Change = exact
+    delay_ticks: int = 1
+
+
+NOT_FINITE = signal("joints", (0,), math.nan)
+FAULTS = {
+    "none": Fault(),
+    "one reading in ten is not finite": Fault(at_times(lambda ticks: ticks % 10 == 0, NOT_FINITE)),
+    "every second reading is not finite": Fault(at_times(lambda ticks: ticks % 2 == 0, NOT_FINITE)),
+    "no reading is finite for 0.5 s": Fault(at_times(lambda ticks: ticks < 50, NOT_FINITE)),
+    "no reading is finite any more": Fault(NOT_FINITE),
+    "the same reading comes for 0.1 s": Fault(at_times(lambda ticks: ticks < 10, repeated)),
+    "the same reading comes for 0.5 s": Fault(at_times(lambda ticks: ticks < 50, repeated)),
+    "the same reading comes for ever": Fault(repeated),
+    "lateral acceleration: 0": Fault(signal("acceleration", (0,), 0.0)),
+    "lateral acceleration: 0.2 m/s² too high": Fault(signal("acceleration", (0,), added=0.2)),
+    "lateral acceleration: 0.5 m/s² too high": Fault(signal("acceleration", (0,), added=0.5)),
+    "rate about y: 0": Fault(signal("angular_rate", (1,), 0.0)),
+    "rate about y: stuck": Fault(signal("angular_rate", (1,))),
+    "rate about y: 0.1 rad/s too high": Fault(signal("angular_rate", (1,), added=0.1)),
+    "rate about x: 0": Fault(signal("angular_rate", (0,), 0.0)),
+    "rate about x: 0.1 rad/s too high": Fault(signal("angular_rate", (0,), added=0.1)),
+    "one pad: 0 N": Fault(signal("pressures", (0,), 0.0)),
+    "both pads of a foot: 0 N": Fault(signal("pressures", (0, 1), 0.0)),
+    "all pads: 0 N": Fault(signal("pressures", (0, 1, 2, 3), 0.0)),
+    "one pad: stuck at 300 N": Fault(signal("pressures", (0,), STUCK_PAD)),
+    "one tick in ten is missed": Fault(at_times(lambda ticks: ticks % 10 == 0, missed)),
+    "every second tick is missed": Fault(at_times(lambda ticks: ticks % 2 == 0, missed)),
+    "ten ticks are missed, once": Fault(at_times(lambda ticks: ticks < 10, missed)),
+    "delay of 2 ticks": Fault(delay_ticks=2),
+    "delay of 3 ticks": Fault(delay_ticks=3),
+    "delay of 5 ticks": Fault(delay_ticks=5),
+}
+"""Faults, by what happens; a delay is there from the beginning."""
+
+
+class BehindFault:
+    """A pattern generator that hears its sensors through a fault.
+
+    :param generator: pattern generator
+    :param fault: fault
+    """
+
+    def __init__(self, generator: PatternGenerator, fault: Fault) -> None:
+        self.ticks = self.steps = 0
+        self._generator = generator
+        self._change = fault.change
+        self._before: SensorReading | None = None
+
+    def __getattr__(self, name: str) -> Any:
+        """Anything else is the pattern generator's."""
+        return getattr(self._generator, name)
+
+    def tick(self, reading: SensorReading) -> PhaseChange | None:
+        """Advance by one control tick, unless the fault is that it does not take place.
+
+        :param reading: sensor reading of this tick, without the fault
+        """
+        since, heard = self.ticks - BEGIN_TICKS, reading
+        self.ticks += 1
+        if since < 0 or self._before is None:
+            self._before = reading
+        else:
+            changed = self._change(reading, self._before, since)
+            if changed is None:
+                return None
+            heard = changed
+        change = self._generator.tick(heard)
+        self.steps += since >= 0 and change is not None and change.is_step
+        return change
+
+
+def simulate(name: str, hips: str, seed: int, time_limit: float) -> tuple[bool, float]:
+    """Whether a robot with a fault stays in its place to the end, and its steps per second from the fault on.
+
+    :param name: name of the fault
+    :param hips: name of V1 to V4
+    :param seed: seed of the episode
+    :param time_limit: time limit of the episode, in s
+    """
+    fault = FAULTS[name]
+    config = BalanceConfig(engine="pybullet", push=Push(newtons=(0.0, 0.0)), time_limit=time_limit)
+    config = replace(config, randomisation=replace(config.randomisation, delay_ticks=fault.delay_ticks))
+    episode = Episode(config, seed, BALANCE)
+    try:
+        episode.stand()
+        episode.start(HIPS[hips])
+        generator = BehindFault(episode.generator, fault)
+        episode.generator = generator  # type: ignore[assignment]  # whatever an episode asks of it, it has
+        while episode.termination is None:
+            episode.tick()
+        seconds = (generator.ticks - BEGIN_TICKS) * config.physics.control_dt
+        return episode.termination == "time_limit", generator.steps / seconds if seconds > 0 else 0.0
+    finally:
+        episode.close()
+
+
+@dataclass(frozen=True)
+class SensorFaults(OnWorkers):
+    """Faults of sensors and of the control loop, with locked hips and with the hip law, without a push.
+
+    :param seeds: number of episodes
+    :param time_limit: time limit of an episode, in s
+    """
+
+    seeds: int = 20
+    time_limit: float = 15.0
+
+    def rows(self) -> Iterator[Row]:
+        """A row for each fault and hips."""
+        with Workers(self.workers) as workers:
+            for name in FAULTS:
+                for hips in HIPS:
+                    jobs = [workers.submit(simulate, name, hips, seed, self.time_limit) for seed in range(self.seeds)]
+                    results = [job.result() for job in jobs]
+                    yield {
+                        "fault": name,
+                        "hips": hips,
+                        "survival": mean(survived for survived, _ in results),
+                        "steps_per_second": mean(steps for _, steps in results),
+                    }
