@@ -1,7 +1,7 @@
 """What becomes of a stepping robot whose sensors or control loop fail: faults begin at 3 s, and stay unless they say.
 
-The controller stands behind the fault, which decides what it reads and whether its tick takes place. The simulated robot
-and the judgement of the episode are not touched.
+The controller stands behind the fault, which decides what it reads and whether its tick takes place. The simulated
+robot and the judgement of the episode are not touched.
 """
 
 from __future__ import annotations
@@ -129,7 +129,8 @@ class BehindFault:
     """
 
     def __init__(self, generator: PatternGenerator, fault: Fault) -> None:
-        self.ticks = self.steps = 0
+        self.ticks = 0
+        self.changes: list[PhaseChange] = []
         self._generator = generator
         self._change = fault.change
         self._before: SensorReading | None = None
@@ -153,12 +154,26 @@ class BehindFault:
                 return None
             heard = changed
         change = self._generator.tick(heard)
-        self.steps += since >= 0 and change is not None and change.is_step
+        if since >= 0 and change is not None:
+            self.changes.append(change)
         return change
 
 
-def simulate(name: str, hips: str, seed: int, time_limit: float) -> tuple[bool, float]:
-    """Whether a robot with a fault stays in its place to the end, and its steps per second from the fault on.
+class Outcome(NamedTuple):
+    """What became of an episode with a fault.
+
+    :param survived: whether the robot stayed in its place to the end
+    :param steps_per_second: steps per second from the fault on
+    :param by_sensors: share of the phases from the fault on that sensors ended
+    """
+
+    survived: bool
+    steps_per_second: float
+    by_sensors: float
+
+
+def simulate(name: str, hips: str, seed: int, time_limit: float) -> Outcome:
+    """Simulate an episode with a fault.
 
     :param name: name of the fault
     :param hips: name of V1 to V4
@@ -176,10 +191,14 @@ def simulate(name: str, hips: str, seed: int, time_limit: float) -> tuple[bool, 
         episode.generator = generator  # type: ignore[assignment]  # whatever an episode asks of it, it has
         while episode.termination is None:
             episode.tick()
-        seconds = (generator.ticks - BEGIN_TICKS) * config.physics.control_dt
-        return episode.termination == "time_limit", generator.steps / seconds if seconds > 0 else 0.0
     finally:
         episode.close()
+    changes, seconds = generator.changes, (generator.ticks - BEGIN_TICKS) * config.physics.control_dt
+    return Outcome(
+        episode.termination == "time_limit",
+        sum(change.is_step for change in changes) / seconds if seconds > 0 else 0.0,
+        sum(change.by_sensors for change in changes) / len(changes) if changes else 0.0,
+    )
 
 
 @dataclass(frozen=True)
@@ -199,10 +218,11 @@ class SensorFaults(OnWorkers):
             for name in FAULTS:
                 for hips in HIPS:
                     jobs = [workers.submit(simulate, name, hips, seed, self.time_limit) for seed in range(self.seeds)]
-                    results = [job.result() for job in jobs]
+                    outcomes = [job.result() for job in jobs]
                     yield {
                         "fault": name,
                         "hips": hips,
-                        "survival": mean(survived for survived, _ in results),
-                        "steps_per_second": mean(steps for _, steps in results),
+                        "survival": mean(outcome.survived for outcome in outcomes),
+                        "steps_per_second": mean(outcome.steps_per_second for outcome in outcomes),
+                        "phases_by_sensors": mean(outcome.by_sensors for outcome in outcomes),
                     }
