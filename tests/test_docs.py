@@ -137,3 +137,29 @@ def test_what_a_robot_needs_runs_with_the_standard_library_alone(tmp_path: Path)
         [sys.executable, "-SE", "program.py"], cwd=tmp_path / "robot", capture_output=True, text=True
     )
     assert process.returncode == 0, process.stderr
+
+
+def test_naf_learns_the_environment_of_the_page_and_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    for block in blocks("how_to/own_environment.md"):
+        exec(block.replace("2_500", "510").replace("learn(500", "learn(20"), names)
+    assert names["model"].num_timesteps == 530
+    assert "return -" in capsys.readouterr().out
+    assert {path.name for path in Path("cart").iterdir()} == {"best_model.zip", "last.zip", "replay.pkl", "scales.pkl"}
+
+
+def test_the_page_of_the_library_links_every_public_name_to_where_it_is_defined() -> None:
+    links = re.findall(r"\{py:\w+\}`(?:([\w.]+) <)?([\w.]+)>?`", (ROOT / "docs/reference/api.md").read_text())
+    assert links
+    for shown, target in links:
+        module, name = target.rsplit(".", 1)
+        home = import_module(module)
+        assert hasattr(home, name), f"{target} does not exist"
+        if shown:
+            package, alias = shown.rsplit(".", 1)
+            assert getattr(import_module(package), alias) is getattr(home, name)
+    public = {f"{package}.{name}" for package in ("sarah", "sarah.agents") for name in import_module(package).__all__}
+    assert public - {shown for shown, _ in links} == set()
