@@ -139,6 +139,25 @@ def test_what_a_robot_needs_runs_with_the_standard_library_alone(tmp_path: Path)
     assert process.returncode == 0, process.stderr
 
 
+def test_the_optimiser_of_the_page_keeps_to_the_protocol_and_climbs() -> None:
+    names: dict[str, Any] = {}
+    for block in blocks("how_to/algorithm.md")[1:3]:
+        exec(block, names)
+
+    def tried(seed: int, at_centre: bool = False) -> list[float]:
+        optimiser = names["HillClimber"](names["ClimberSettings"](), 1, seed, at_centre)
+        asked = []
+        for _ in range(30):
+            assert optimiser.ready()
+            asked.append(optimiser.ask())
+            optimiser.tell(asked[-1], -abs(asked[-1][0] - 0.8))
+        assert abs(optimiser.choice()[0] - 0.8) < 0.1
+        return [float(action[0]) for action in asked]
+
+    assert tried(1) == tried(1) != tried(2)
+    assert tried(1, at_centre=True)[0] == 0.0 != tried(1)[0]
+
+
 def test_naf_learns_the_environment_of_the_page_and_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
