@@ -1,5 +1,6 @@
 """What the site's own build cannot see; `make docs` sees the rest."""
 
+import ast
 import json
 import re
 import shutil
@@ -156,6 +157,28 @@ def test_the_optimiser_of_the_page_keeps_to_the_protocol_and_climbs() -> None:
 
     assert tried(1) == tried(1) != tried(2)
     assert tried(1, at_centre=True)[0] == 0.0 != tried(1)[0]
+
+
+def texts_of_the_code() -> Iterator[str]:
+    """Every text in the code, what is filled in left out, and the Makefile."""
+    for path in (ROOT / "sarah").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.JoinedStr):
+                parts = (part.value if isinstance(part, ast.Constant) else "…" for part in node.values)
+                yield "".join(map(str, parts))
+            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+                yield node.value
+    yield (ROOT / "Makefile").read_text(encoding="utf-8")
+
+
+def test_the_messages_on_the_page_of_trouble_are_the_programs_own() -> None:
+    rows = re.findall(r"^\| (.+?) \|", (ROOT / "docs/how_to/trouble.md").read_text(encoding="utf-8"), re.MULTILINE)
+    shown = [text for row in rows for text in re.findall(r"`([^`]+)`", row) if " " in text and "--pictures" not in text]
+    known = list(texts_of_the_code())
+    for message in shown:
+        parts = [part for part in message.split("…") if part.strip(" :,")]
+        assert any(all(part in text for part in parts) for text in known), f"no code says {message!r}"
+    assert len(shown) > 20
 
 
 def test_naf_learns_the_environment_of_the_page_and_goes_on(
