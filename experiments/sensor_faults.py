@@ -1,4 +1,4 @@
-"""What becomes of a stepping robot whose sensors or control loop fail: faults begin at 3 s, and stay unless they say.
+"""What becomes of a stepping robot whose sensors or control loop fail. Faults stay, unless their name says otherwise.
 
 The controller stands behind the fault, which decides what it reads and whether its tick takes place. The simulated
 robot and the judgement of the episode are not touched.
@@ -19,10 +19,12 @@ from sarah.episode.episode import Episode
 from sarah.episode.push import Push
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.workers import Workers
+from sarah.robot.filters import ramped
 from sarah.robot.reading import SensorReading
 
-BEGIN_TICKS = 200
-"""Ticks of stepping before the fault begins."""
+FIRST_TICKS, TICKS_LATER = 200, 3
+"""Ticks of stepping before the fault begins, and how many later it does in each further episode. So faults meet the
+robot in any phase."""
 STUCK_PAD = 300.0
 """Load that a stuck pad reports, in N: about the weight of the robot."""
 HIPS = {"locked": (0.0, 0.0, 0.0, 0.0), "V1 = 0.8, V3 = 0.2": (0.8, 0.0, 0.2, 0.0)}
@@ -83,10 +85,12 @@ class Fault(NamedTuple):
 
     :param change: what it does to readings
     :param delay_ticks: delay of all readings, in control ticks
+    :param to_zero: whether targets go to zero, at the speeds of the controller, while its ticks do not take place
     """
 
     change: Change = exact
     delay_ticks: int = 1
+    to_zero: bool = False
 
 
 NOT_FINITE = signal("joints", (0,), math.nan)
@@ -114,6 +118,8 @@ FAULTS = {
     "one tick in ten is missed": Fault(at_times(lambda ticks: ticks % 10 == 0, missed)),
     "every second tick is missed": Fault(at_times(lambda ticks: ticks % 2 == 0, missed)),
     "ten ticks are missed, once": Fault(at_times(lambda ticks: ticks < 10, missed)),
+    "no tick any more, targets stay": Fault(missed),
+    "no tick any more, targets go to zero": Fault(missed, to_zero=True),
     "delay of 2 ticks": Fault(delay_ticks=2),
     "delay of 3 ticks": Fault(delay_ticks=3),
     "delay of 5 ticks": Fault(delay_ticks=5),
@@ -126,13 +132,18 @@ class BehindFault:
 
     :param generator: pattern generator
     :param fault: fault
+    :param begin: ticks of stepping before the fault begins
+    :param dt: control period, in s
     """
 
-    def __init__(self, generator: PatternGenerator, fault: Fault) -> None:
-        self.ticks = 0
+    def __init__(self, generator: PatternGenerator, fault: Fault, begin: int, dt: float) -> None:
+        self.since = -begin
+        self.targets: tuple[float, ...] = generator.targets
         self.changes: list[PhaseChange] = []
+        constants = generator.constants
         self._generator = generator
-        self._change = fault.change
+        self._fault = fault
+        self._largest_moves = [constants.hip_speed * dt] * 4 + [constants.leg_speed * dt] * 2
         self._before: SensorReading | None = None
 
     def __getattr__(self, name: str) -> Any:
@@ -144,16 +155,20 @@ class BehindFault:
 
         :param reading: sensor reading of this tick, without the fault
         """
-        since, heard = self.ticks - BEGIN_TICKS, reading
-        self.ticks += 1
+        since, heard = self.since, reading
+        self.since += 1
         if since < 0 or self._before is None:
             self._before = reading
         else:
-            changed = self._change(reading, self._before, since)
+            changed = self._fault.change(reading, self._before, since)
             if changed is None:
+                if self._fault.to_zero:
+                    moves = zip(self.targets, self._largest_moves, strict=True)
+                    self.targets = tuple(ramped(target, 0.0, largest) for target, largest in moves)
                 return None
             heard = changed
         change = self._generator.tick(heard)
+        self.targets = self._generator.targets
         if since >= 0 and change is not None:
             self.changes.append(change)
         return change
@@ -187,13 +202,14 @@ def simulate(name: str, hips: str, seed: int, time_limit: float) -> Outcome:
     try:
         episode.stand()
         episode.start(HIPS[hips])
-        generator = BehindFault(episode.generator, fault)
+        dt = config.physics.control_dt
+        generator = BehindFault(episode.generator, fault, FIRST_TICKS + TICKS_LATER * seed, dt)
         episode.generator = generator  # type: ignore[assignment]  # whatever an episode asks of it, it has
         while episode.termination is None:
             episode.tick()
     finally:
         episode.close()
-    changes, seconds = generator.changes, (generator.ticks - BEGIN_TICKS) * config.physics.control_dt
+    changes, seconds = generator.changes, generator.since * dt
     return Outcome(
         episode.termination == "time_limit",
         sum(change.is_step for change in changes) / seconds if seconds > 0 else 0.0,
