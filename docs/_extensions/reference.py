@@ -139,9 +139,9 @@ SIGNALS = (
 )
 """Name, unit, meaning and use of the signals of a reading, but for the actuators' positions."""
 POSITIVE = {
-    "hip_abduction": "the foot goes to the left, of either leg: outward on the left, inward on the right",
-    "hip_flexion": "the foot goes forward, of either leg",
-    "leg_length": "the leg gets shorter, of either leg",
+    "hip_abduction": "the foot goes to the left: outward on the left leg, inward on the right",
+    "hip_flexion": "the foot goes forward",
+    "leg_length": "the leg gets shorter",
 }
 """Positive direction of each kind of actuator."""
 
