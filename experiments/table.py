@@ -27,6 +27,7 @@ from experiments.rank_replay import RankReplay
 from experiments.robot_dimensions import RobotDimensions
 from experiments.robustness import Robustness
 from experiments.second_training import SecondTraining
+from experiments.sensor_faults import SensorFaults
 from experiments.slots import SlotsSchedule
 from experiments.slots_cost import SlotsCost
 from experiments.standard_tasks import StandardTask
@@ -173,6 +174,11 @@ TABLE: dict[str, Maker] = {
         "How many pushes of 105 N from front and back does the robot survive with V3 and without?",
         FlexionLawsToday(),
         {"pushes": 1},
+    ),
+    "sensor_faults": Maker(
+        "Does the robot go on stepping when its sensors or its control loop fail?",
+        SensorFaults(),
+        {"time_limit": 1.1, "seeds": 1},
     ),
     "robot_dimensions": Maker(
         "What does each dimension of the robot do for its stability?",

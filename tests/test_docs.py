@@ -1,17 +1,47 @@
 """What the site's own build cannot see; `make docs` sees the rest."""
 
+import ast
+import json
 import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
 from dataclasses import replace
 from importlib import import_module
+from itertools import islice
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from sarah.episode.episode import simulate
+from sarah.episode.push import Push
+from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import TASKS
+from sarah.episode.tasks import BALANCE, TASKS, BalanceConfig
+from sarah.robot.description import describe_robot
+from sarah.robot.reading import SensorReading
+from sarah.simulation.build import simulator_of
+from sarah.simulation.randomisation import NOMINAL, Randomisation
 
 ROOT = Path(__file__).parent.parent
+AS_DESIGNED = Randomisation(enabled=False, start_speed=0.0)
+LEARNED = {
+    "stepping": {"task": "stepping", "parameters": dict(P1=0.4, P2=1.3, P3=0.1, P4=1.0, P5=1.0), "stepping": None},
+    "balance": {
+        "task": "balance",
+        "parameters": dict(V1=0.8, V2=0.1, V3=0.2, V4=0.1),
+        "stepping": [0.4, 0.5, 0.6, 1, 1],
+    },
+}
+"""What a run's parameters.json holds, by task."""
+
+
+def blocks(page: str, language: str = "python") -> list[str]:
+    """The code of a page, block by block."""
+    return re.findall(rf"```{language}\n(.*?)```", (ROOT / "docs" / page).read_text(), re.DOTALL)
 
 
 @pytest.mark.parametrize("page", ["README.md", "CONTRIBUTING.md", "runs/README.md"])
@@ -36,10 +66,142 @@ def test_contributing_answers_with_one_file_each() -> None:
 
 
 def test_the_task_of_the_tutorial_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs/tutorials/own_task.md").read_text(), re.DOTALL)
-    (tmp_path / "together.py").write_text(blocks[0])
+    (tmp_path / "together.py").write_text(blocks("tutorials/own_task.md")[0])
     monkeypatch.syspath_prepend(tmp_path)
     task = import_module("together").TOGETHER
     monkeypatch.setitem(TASKS, task.name, task)
     config = replace(task.episode, time_limit=1.5)
     assert simulate(EpisodeSpec(task.baseline, 0, task.name, config)).survived
+
+
+def loop_of_the_page() -> dict[str, Any]:
+    names: dict[str, Any] = {}
+    exec(blocks("how_to/real_robot.md")[0], names)
+    return names
+
+
+@pytest.mark.parametrize("task", LEARNED)
+def test_the_loop_for_a_real_robot_drives_the_simulated_one_as_an_episode_does(task: str, tmp_path: Path) -> None:
+    names, learned = loop_of_the_page(), LEARNED[task]
+    (tmp_path / "parameters.json").write_text(json.dumps(learned))
+    shared: dict[str, Any] = dict(randomisation=AS_DESIGNED, time_limit=4.0)
+    config = EpisodeConfig(**shared)
+    if task == BALANCE.name:
+        config = BalanceConfig(**shared, stepping=tuple(learned["stepping"]), push=Push(newtons=(0.0, 0.0)))
+    parameters = tuple(learned["parameters"].values())
+    trace = simulate(EpisodeSpec(parameters, 0, task, config), record_trace=True).trace
+    assert trace is not None and set(trace.phase) == {"shift", "lift", "land"}
+    robot = simulator_of(config.engine)(describe_robot(), config.physics, NOMINAL)
+
+    def readings() -> Iterator[SensorReading]:
+        for _ in range(round(config.time_limit / names["DT"])):
+            yield robot.read()
+            robot.advance()
+
+    sent = []
+
+    def send(targets: tuple[float, ...]) -> None:
+        sent.append(targets)
+        robot.set_targets(targets)
+
+    names["drive"](names["controller"](tmp_path / "parameters.json", NOMINAL.pad_threshold), readings(), send)
+    robot.close()
+    assert np.array_equal(sent[-len(trace) :], trace.targets) and not np.any(sent[: -len(trace)])
+
+
+def test_the_loop_for_a_real_robot_reads_once_in_every_control_period() -> None:
+    names, now = loop_of_the_page(), [10.0]
+    waits: list[float] = []
+    names["time"] = type("Clock", (), {"monotonic": lambda: now[0], "sleep": waits.append})
+    for _ in islice(names["every_tick"](lambda: None), 3):
+        now[0] += 0.004
+    assert waits == pytest.approx([0.006, 0.012])  # a clock that sleeping does not move
+
+
+def test_what_a_robot_needs_runs_with_the_standard_library_alone(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "sarah", tmp_path / "sarah", ignore=shutil.ignore_patterns("__pycache__"))
+    subprocess.run(["sh", "-e", "-c", blocks("how_to/real_robot.md", "sh")[0]], cwd=tmp_path, check=True)
+    program = "\n".join(
+        [
+            blocks("how_to/real_robot.md")[0],
+            "from sarah.robot.reading import SensorReading",
+            "reading = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (75.0,) * 4, (0.0,) * 6)",
+            "sent = []",
+            "drive(controller(Path('parameters.json'), 30.0), [reading] * 300, sent.append)",
+            "assert len(sent) == 300 and any(sent[-1])",
+        ]
+    )
+    (tmp_path / "robot" / "program.py").write_text(program)
+    (tmp_path / "robot" / "parameters.json").write_text(json.dumps(LEARNED["balance"]))
+    # -SE: nothing but the standard library can be imported
+    process = subprocess.run(
+        [sys.executable, "-SE", "program.py"], cwd=tmp_path / "robot", capture_output=True, text=True
+    )
+    assert process.returncode == 0, process.stderr
+
+
+def test_the_optimiser_of_the_page_keeps_to_the_protocol_and_climbs() -> None:
+    names: dict[str, Any] = {}
+    for block in blocks("how_to/algorithm.md")[1:3]:
+        exec(block, names)
+
+    def tried(seed: int, at_centre: bool = False) -> list[float]:
+        optimiser = names["HillClimber"](names["ClimberSettings"](), 1, seed, at_centre)
+        asked = []
+        for _ in range(30):
+            assert optimiser.ready()
+            asked.append(optimiser.ask())
+            optimiser.tell(asked[-1], -abs(asked[-1][0] - 0.8))
+        assert abs(optimiser.choice()[0] - 0.8) < 0.1
+        return [float(action[0]) for action in asked]
+
+    assert tried(1) == tried(1) != tried(2)
+    assert tried(1, at_centre=True)[0] == 0.0 != tried(1)[0]
+
+
+def texts_of_the_code() -> Iterator[str]:
+    """Every text in the code, what is filled in left out, and the Makefile."""
+    for path in (ROOT / "sarah").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.JoinedStr):
+                parts = (part.value if isinstance(part, ast.Constant) else "…" for part in node.values)
+                yield "".join(map(str, parts))
+            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+                yield node.value
+    yield (ROOT / "Makefile").read_text(encoding="utf-8")
+
+
+def test_the_messages_on_the_page_of_trouble_are_the_programs_own() -> None:
+    rows = re.findall(r"^\| (.+?) \|", (ROOT / "docs/how_to/trouble.md").read_text(encoding="utf-8"), re.MULTILINE)
+    shown = [text for row in rows for text in re.findall(r"`([^`]+)`", row) if " " in text and "--pictures" not in text]
+    known = list(texts_of_the_code())
+    for message in shown:
+        parts = [part for part in message.split("…") if part.strip(" :,")]
+        assert any(all(part in text for part in parts) for text in known), f"no code says {message!r}"
+    assert len(shown) > 20
+
+
+def test_naf_learns_the_environment_of_the_page_and_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    for block in blocks("how_to/own_environment.md"):
+        exec(block.replace("2_500", "510").replace("learn(500", "learn(20"), names)
+    assert names["model"].num_timesteps == 530
+    assert "return -" in capsys.readouterr().out
+    assert {path.name for path in Path("cart").iterdir()} == {"best_model.zip", "last.zip", "replay.pkl", "scales.pkl"}
+
+
+def test_the_page_of_the_library_links_every_public_name_to_where_it_is_defined() -> None:
+    links = re.findall(r"\{py:\w+\}`(?:([\w.]+) <)?([\w.]+)>?`", (ROOT / "docs/reference/api.md").read_text())
+    assert links
+    for shown, target in links:
+        module, name = target.rsplit(".", 1)
+        home = import_module(module)
+        assert hasattr(home, name), f"{target} does not exist"
+        if shown:
+            package, alias = shown.rsplit(".", 1)
+            assert getattr(import_module(package), alias) is getattr(home, name)
+    public = {f"{package}.{name}" for package in ("sarah", "sarah.agents") for name in import_module(package).__all__}
+    assert public - {shown for shown, _ in links} == set()

@@ -1,4 +1,4 @@
-"""Sphinx extension: writes from the code what pages say of settings, parameters, metrics and examples.
+"""Sphinx extension: writes from the code what pages say of settings, parameters, metrics, examples and the robot.
 
 It does so before the pages are read. They include what is written here, by the names of :data:`PAGES`.
 """
@@ -14,13 +14,17 @@ from typing import Any
 import docstring_parser
 from sphinx.application import Sphinx
 
+from sarah.control.constants import STANDARD_CONSTANTS
+from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.result import METRICS
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS
+from sarah.robot.description import ACTUATED_JOINTS, JOINT_TYPES, describe_robot
 from sarah.runs import agent_settings
 from sarah.runs.agent_settings import AGENT_SETTINGS, LearnerSettings, NAFSettings
 from sarah.runs.config import TrainingConfig
 from sarah.simulation.physics import PHYSICS, Physics
+from sarah.simulation.randomisation import Randomisation
 
 GENERATED = Path("reference") / "generated"
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -121,6 +125,97 @@ def examples_page() -> Iterator[str]:
         yield f"```python\n{code.strip()}\n```\n"
 
 
+SIGNALS = (
+    ("acceleration[0]", "m/s²", "a push to the right; negative while the standing robot leans to the right", "yes"),
+    ("acceleration[1]", "m/s²", "a push forward; negative while the standing robot leans forward", "no"),
+    ("acceleration[2]", "m/s²", "up: 9.81 at rest", "no"),
+    ("angular_rate[0]", "rad/s", "the torso tips backward", "by V3"),
+    ("angular_rate[1]", "rad/s", "the torso tips to the right", "yes"),
+    ("angular_rate[2]", "rad/s", "the torso turns to the left", "no"),
+    ("pressures[0]", "N", "load on the left forefoot's pad", "yes"),
+    ("pressures[1]", "N", "load on the left hindfoot's pad", "yes"),
+    ("pressures[2]", "N", "load on the right forefoot's pad", "yes"),
+    ("pressures[3]", "N", "load on the right hindfoot's pad", "yes"),
+)
+"""Name, unit, meaning and use of the signals of a reading, but for the actuators' positions."""
+POSITIVE = {
+    "hip_abduction": "the foot goes to the left: outward on the left leg, inward on the right",
+    "hip_flexion": "the foot goes forward",
+    "leg_length": "the leg gets shorter",
+}
+"""Positive direction of each kind of actuator."""
+
+
+def signals_page() -> Iterator[str]:
+    """A table of the signals of a reading, in order."""
+    positions = [
+        [f"`joints[{index}]`", unit_of(joint), f"position of `{joint}`, positive as its target", "no"]
+        for index, joint in enumerate(ACTUATED_JOINTS)
+    ]
+    yield from table(
+        ["signal", "unit", "positive", "used"], [[f"`{name}`", *rest] for name, *rest in SIGNALS] + positions
+    )
+
+
+def targets_page() -> Iterator[str]:
+    """A table of the targets, in order."""
+    robot, constants = describe_robot(), STANDARD_CONSTANTS
+    hips = (-constants.largest_hip_angle, constants.largest_hip_angle, constants.hip_speed)
+    legs = (-constants.shift_extension, constants.lift_retraction, constants.leg_speed)
+    rows = []
+    for index, joint in enumerate(ACTUATED_JOINTS):
+        kind, unit = joint.partition("_")[2], unit_of(joint)
+        low, high, speed = legs if kind == "leg_length" else hips
+        ends = robot.limits[joint]
+        effort = f"{robot.efforts[joint]:g} {'N' if unit == 'm' else 'Nm'}"
+        rows.append(
+            [
+                f"`targets[{index}]`",
+                f"`{joint}`",
+                POSITIVE[kind],
+                f"{low:g} to {high:g} {unit}",
+                f"{speed:g} {unit}/s",
+                f"{ends[0]:g} to {ends[1]:g} {unit}",
+                effort,
+            ]
+        )
+    head = ["target", "joint", "positive", "range of the target", "its speed", "range of the joint", "largest effort"]
+    yield from table(head, rows)
+
+
+def rates_page() -> Iterator[str]:
+    """A table of the times, thresholds and errors that a training assumes."""
+    physics, sensors = PHYSICS["standard"], Randomisation()
+    rows = [
+        ["control rate", f"{physics.control_rate} Hz", "`episode.physics.control_rate`"],
+        ["standing before the first step", f"{STAND_SECONDS:g} s", "fixed"],
+        ["delay from sensing to acting", f"{sensors.delay_ticks} tick", "`episode.randomisation.delay_ticks`"],
+        ["bandwidth of the position servos", f"{span(sensors.actuator_bandwidth)} per second", "`…actuator_bandwidth`"],
+        ["load above which a foot counts as loaded", f"{span(sensors.pad_threshold)} N", "`…pad_threshold`"],
+        ["noise of a pad", f"{sensors.pad_noise:g} N", "`…pad_noise`"],
+        ["noise of the accelerometer", f"{sensors.acceleration_noise:g} m/s²", "`…acceleration_noise`"],
+        ["noise of the gyroscope", f"{sensors.angular_rate_noise:g} rad/s", "`…angular_rate_noise`"],
+        ["low-pass of both", f"{sensors.imu_bandwidth:g} Hz", "`…imu_bandwidth`"],
+    ]
+    yield from table(["what", "in a training", "setting"], rows)
+
+
+def span(ends: tuple[float, float]) -> str:
+    """A range as words.
+
+    :param ends: its ends
+    """
+    return f"{ends[0]:g} to {ends[1]:g}"
+
+
+def unit_of(joint: str) -> str:
+    """Unit of a joint's position.
+
+    :param joint: name of the joint
+    """
+    return "m" if JOINT_TYPES[joint] == "prismatic" else "rad"
+
+
 def table(head: list[str], rows: Iterable[list[str]]) -> Iterator[str]:
     """Lines of a Markdown table.
 
@@ -168,6 +263,9 @@ PAGES = {
     "parameters": parameters_page,
     "metrics": metrics_page,
     "examples": examples_page,
+    "rates": rates_page,
+    "signals": signals_page,
+    "targets": targets_page,
 }
 """What is written, by name of the file."""
 

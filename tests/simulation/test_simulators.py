@@ -137,7 +137,7 @@ def test_accelerometer_reads_gravity_standing_and_nothing_falling(lab: Laborator
 
 
 @pytest.mark.parametrize("angle", [0.1, -0.2])
-def test_leaning_right_reads_negative_x_and_leaning_back_negative_y(
+def test_leaning_right_reads_negative_x_and_leaning_back_positive_y(
     lab: Laboratory, build: BuildSimulation, angle: float
 ) -> None:
     """A torso at rest, turned by a positive angle about y (to the right) or about x (backward)."""
