@@ -1,8 +1,9 @@
-"""A reward of your own, by a wrapper of gymnasium: the score, less what the actuators' power costs.
+"""A reward of your own as an environment: NAF learns to step with a low torso.
 
-One sees a few of NAF's trials, each with the package's reward, the return, and with the new one. ``info["result"]`` is
-the whole :class:`sarah.EpisodeResult`, so any of its metrics can enter the reward.
+One sees a few of NAF's trials, each with its return. A reward knows everything of a control tick: :class:`sarah.Tick`.
 """
+
+import dataclasses
 
 import gymnasium
 import torch
@@ -10,23 +11,25 @@ import torch
 import sarah
 from sarah.agents import NAF
 
-POWER_COST = 0.002
-"""Loss of reward per watt of mean actuator power."""
+
+def reward(tick, config):
+    """Reward per second at the end of a control tick: steps, and centimetres below 0.85 m."""
+    return tick.steps_per_second + 100.0 * (0.85 - tick.height)
 
 
-class Thrifty(gymnasium.Wrapper):
-    """The robot's environment with another reward."""
+LOW = dataclasses.replace(sarah.STEPPING, name="low", reward=reward, best_reward=5.0)
+
+
+class Printed(gymnasium.Wrapper):
+    """The environment, whose steps are printed."""
 
     def step(self, action):
-        """Simulate the episode and judge it anew."""
-        observation, episode_return, terminated, truncated, info = self.env.step(action)
-        score, power = info["result"].score, info["result"].actuator_power
-        reward = score - POWER_COST * power
-        print(f"return {episode_return:.3f}, {power:4.1f} W: reward {reward:.3f}")
-        return observation, reward, terminated, truncated, info
+        """Simulate an episode."""
+        outcome = self.env.step(action)
+        print(f"return {outcome[1]:5.2f}, {outcome[4]['result'].steps} steps")
+        return outcome
 
 
 torch.set_num_threads(1)  # the networks are small: more threads only wait for each other
-config = sarah.EpisodeConfig(time_limit=5.0)
-env = Thrifty(gymnasium.make("SarahStepping-v0", config=config))
+env = Printed(gymnasium.make("SarahEpisode-v0", task=LOW, time_limit=5))
 NAF("MlpPolicy", env, gamma=0.0, learning_starts=5, gradient_steps=10, seed=0).learn(12)

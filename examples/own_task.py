@@ -1,36 +1,37 @@
-"""A task of your own: P1 to P3 are learned, and P4 and P5, which hardly matter, stay 1.
+"""A task of your own: equation 2, less what the actuators' power costs, on a robot that is pushed.
 
-One sees what CMA-ES learned. Once the task has an entry in ``TASKS``, everything takes it by its name. A task for
-the command line and for several workers stands in a file of the package; the tutorial shows how.
+One sees what random search finds. The same file is for the command line: ``sarah-train --task own_task.py:THRIFTY``.
 """
 
+import dataclasses
 import tempfile
 from pathlib import Path
 
 import sarah
-from sarah.control.parameters import PAPER_STEPPING, STEPPING_PARAMETERS
-from sarah.control.pattern_generator import SteppingParameters
-from sarah.episode.tasks import TASKS, Task
-from sarah.runs.config import TrainingConfig
-from sarah.runs.run_folder import RunFolder
-from sarah.training.train import train
+
+POWER_COST = 0.001
+"""Loss of reward per second and watt."""
 
 
-def controller_parameters(chosen, config):
-    """P1 to P5, and no hip law."""
-    return SteppingParameters(*chosen, 1.0, 1.0), None
+def reward(tick, config):
+    """Reward per second at the end of a control tick."""
+    return sarah.equation_2(tick, config) - POWER_COST * tick.power
 
 
-TASKS["three"] = Task(
-    name="three",
-    title="Stepping with three parameters",
-    parameters=STEPPING_PARAMETERS[:3],
-    episode=sarah.EpisodeConfig(time_limit=6.0),
-    controller_parameters=controller_parameters,
-    baseline=PAPER_STEPPING[:3],
-    baseline_label="the paper's parameters, simulated here",
+THRIFTY = dataclasses.replace(
+    sarah.STEPPING,
+    name="thrifty",
+    title="Stepping that costs little power",
+    episode=sarah.PushedConfig(time_limit=6.0, push=sarah.Push(newtons=30)),
+    reward=reward,
 )
-config = TrainingConfig(task="three", algo="cma-es", episodes=16)
-learned = train(config, RunFolder.create(Path(tempfile.mkdtemp()), config))
-print(f"P1 to P3  {', '.join(f'{value:.2f}' for value in learned.parameters)}")
-print(f"score     {learned.evaluation.median('score'):.3f} on unseen seeds")
+
+if __name__ == "__main__":
+    from sarah.runs.config import TrainingConfig
+    from sarah.runs.run_folder import RunFolder
+    from sarah.training.train import train
+
+    config = TrainingConfig(task=sarah.load_task(f"{__file__}:THRIFTY"), algo="random", episodes=12)
+    learned = train(config, RunFolder.create(Path(tempfile.mkdtemp()), config))
+    print(f"P1 to P5  {', '.join(f'{value:.2f}' for value in learned.parameters)}")
+    print(f"power     {learned.evaluation.mean('actuator_power'):.0f} W")

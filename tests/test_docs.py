@@ -20,10 +20,11 @@ from sarah.episode.episode import simulate
 from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, TASKS, BalanceConfig
+from sarah.episode.tasks import BALANCE, BalanceConfig, load_task
 from sarah.robot.description import describe_robot
 from sarah.robot.reading import SensorReading
 from sarah.simulation.build import simulator_of
+from sarah.simulation.engines import is_installed
 from sarah.simulation.randomisation import NOMINAL, Randomisation
 
 ROOT = Path(__file__).parent.parent
@@ -65,13 +66,18 @@ def test_contributing_answers_with_one_file_each() -> None:
     assert len(files) >= 5 and [file for _, file in files if not (ROOT / file).is_file()] == []
 
 
-def test_the_task_of_the_tutorial_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "together.py").write_text(blocks("tutorials/own_task.md")[0])
-    monkeypatch.syspath_prepend(tmp_path)
-    task = import_module("together").TOGETHER
-    monkeypatch.setitem(TASKS, task.name, task)
-    config = replace(task.episode, time_limit=1.5)
-    assert simulate(EpisodeSpec(task.baseline, 0, task.name, config)).survived
+def test_the_tasks_of_the_tutorial_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    thrifty, together, environment = blocks("tutorials/own_task.md")
+    for name, block in (("my_task", thrifty), ("together", together)):
+        Path(f"{name}.py").write_text(block)
+    for reference in ("my_task.py:THRIFTY", "together.py:TOGETHER"):
+        task = load_task(reference)
+        config = replace(task.episode, time_limit=1.5)
+        assert simulate(EpisodeSpec(task.baseline, 0, task, config)).survived
+    names: dict[str, Any] = {}
+    exec(environment if is_installed("pybullet") else environment.replace("pybullet", "mujoco"), names)
+    assert names["env"].unwrapped.config.time_limit == 10.0
 
 
 def loop_of_the_page() -> dict[str, Any]:

@@ -18,7 +18,8 @@ from sarah.control.constants import STANDARD_CONSTANTS
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.result import METRICS
 from sarah.episode.settings import EpisodeConfig
-from sarah.episode.tasks import TASKS
+from sarah.episode.tasks import TASKS, Task
+from sarah.episode.tick import Tick
 from sarah.robot.description import ACTUATED_JOINTS, JOINT_TYPES, describe_robot
 from sarah.runs import agent_settings
 from sarah.runs.agent_settings import AGENT_SETTINGS, LearnerSettings, NAFSettings
@@ -95,7 +96,8 @@ def own_fields(config_type: Any, base: Any = None) -> list[str]:
     known = {field.name for field in dataclasses.fields(base)} if base else set()
     names = [field.name for field in dataclasses.fields(config_type) if field.name not in known]
     defaults = config_type()
-    return [name for name in names if not dataclasses.is_dataclass(getattr(defaults, name))]
+    values = {name: getattr(defaults, name) for name in names}
+    return [name for name, value in values.items() if isinstance(value, Task) or not dataclasses.is_dataclass(value)]
 
 
 def parameters_page() -> Iterator[str]:
@@ -113,6 +115,19 @@ def metrics_page() -> Iterator[str]:
         for name, metric in METRICS.items()
     )
     yield from table(["metric", "unit", "meaning", "statistics", "paper"], rows)
+
+
+def tick_page() -> Iterator[str]:
+    """A table of what a reward and an ending know."""
+    fields = {name: meaning for name, meaning in meanings_of(Tick).items() if name != "simulator"}
+    properties = {
+        name: markdown(str(member.__doc__).rstrip("."))
+        for name, member in vars(Tick).items()
+        if isinstance(member, property)
+    }
+    rows = ([f"`tick.{name}`", meaning[0].lower() + meaning[1:]] for name, meaning in (fields | properties).items())
+    yield from table(["name", "what it is"], rows)
+    yield "x points to the robot's right, y forward and z up. " + markdown(f"Actuators: {', '.join(ACTUATED_JOINTS)}.")
 
 
 def examples_page() -> Iterator[str]:
@@ -251,6 +266,8 @@ def shown(value: Any) -> str:
 
     :param value: the default
     """
+    if isinstance(value, Task):
+        return f"`{value.reference}`"
     if value in ((), {}):
         return "none"
     if isinstance(value, tuple):
@@ -266,6 +283,7 @@ PAGES = {
     "rates": rates_page,
     "signals": signals_page,
     "targets": targets_page,
+    "tick": tick_page,
 }
 """What is written, by name of the file."""
 

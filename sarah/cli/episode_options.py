@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 
 NOBODY = Push(newtons=(0.0, 0.0))
 """Push of nobody, where a task has none."""
-METAVAR = "RUN|NUMBERS|NAME"
-"""Word for a subject in a command's help."""
 
 
 @dataclass(frozen=True)

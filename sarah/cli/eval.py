@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.episode_options import METAVAR, EpisodeOptions, episode_of, parse_episode_options
+from sarah.cli.episode_options import EpisodeOptions, episode_of, parse_episode_options
 from sarah.cli.options import run_command, say_engine
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
@@ -46,7 +46,7 @@ class EvalOptions(EpisodeOptions):
     """
 
     subject: Annotated[
-        str | None, tyro.conf.Positional, tyro.conf.arg(metavar=METAVAR, help_behavior_hint="(required)")
+        str | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN|NUMBERS|NAME", help_behavior_hint="(required)")
     ] = None
     robustness: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     forces: Annotated[tuple[float, ...], tyro.conf.arg(metavar="FLOAT...")] = (25.0, 50.0, 75.0, 100.0, 125.0, 150.0)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.episode_options import METAVAR, EpisodeOptions, episode_of, parse_episode_options
+from sarah.cli.episode_options import EpisodeOptions, episode_of, parse_episode_options
 from sarah.cli.options import run_command
 from sarah.episode.spec import FIRST_EVALUATION_SEED
 from sarah.episode.tasks import load_task
@@ -39,7 +39,9 @@ class TransferOptions(EpisodeOptions):
     """
 
     subjects: Annotated[
-        tuple[str, ...], tyro.conf.Positional, tyro.conf.arg(metavar=f"{METAVAR}...", help_behavior_hint="(required)")
+        tuple[str, ...],
+        tyro.conf.Positional,
+        tyro.conf.arg(metavar="RUN|NUMBERS|NAME...", help_behavior_hint="(required)"),
     ] = ()
     out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     episodes: int = 20

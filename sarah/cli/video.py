@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.episode_options import METAVAR, EpisodeOptions, episode_of, parse_episode_options
+from sarah.cli.episode_options import EpisodeOptions, episode_of, parse_episode_options
 from sarah.cli.options import run_command
 from sarah.episode.tasks import load_task
 from sarah.errors import ConfigurationError
@@ -37,7 +37,7 @@ class VideoOptions(EpisodeOptions):
     """
 
     subject: Annotated[
-        str | None, tyro.conf.Positional, tyro.conf.arg(metavar=METAVAR, help_behavior_hint="(required)")
+        str | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN|NUMBERS|NAME", help_behavior_hint="(required)")
     ] = None
     out: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="OUT", help_behavior_hint="(required)")] = (
         None

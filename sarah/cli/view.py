@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.episode_options import METAVAR, EpisodeOptions, episodes_of, parse_episode_options
+from sarah.cli.episode_options import EpisodeOptions, episodes_of, parse_episode_options
 from sarah.cli.options import run_command, say_engine
 from sarah.episode.tasks import load_task
 from sarah.errors import ConfigurationError
@@ -42,7 +42,7 @@ class ViewOptions(EpisodeOptions):
     :param port: port to serve the page at; the next free one if it is taken
     """
 
-    subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar=f"[{METAVAR}]")] = "stepping"
+    subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "stepping"
     which: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
     seed: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
     export: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None

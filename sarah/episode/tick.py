@@ -64,7 +64,7 @@ class Tick(NamedTuple):
 
     @property
     def pads(self) -> tuple[float, float, float, float]:
-        """True forces on the four pads at the beginning of the tick, in N: left toe and heel, right toe and heel."""
+        """True forces on the four pads at the beginning of the tick, in N, left before right, forefoot first."""
         return self.truth.pressures
 
     @property
