@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from sarah.errors import check_fields
 
 PLAUSIBLE = {
+    "baseline_time_constant": (0.1, 10_000.0, "s"),
     "minimum_phase_seconds": (0.0, 1.0, "s"),
     "time_out_seconds": (0.01, 100.0, "s"),
     "rate_scale": (0.0, 10.0, ""),
@@ -19,12 +20,16 @@ PLAUSIBLE = {
     "abduction_rate_share": (0.0, 10.0, ""),
     "largest_acceleration": (0.1, 1000.0, "m/s^2"),
     "abduction_scale": (0.0, 10.0, "rad per m/s^2"),
-    "pitch_scale": (0.0, 100.0, ""),
     "flexion_scale": (0.0, 1.0, "rad"),
     "largest_hip_angle": (0.0, 1.5, "rad"),
     "hip_speed": (0.01, 100.0, "rad/s"),
     "stable_time_constant": (1e-4, 100.0, "s"),
     "pitch_time_constant": (1e-4, 100.0, "s"),
+    "fall_time_constant": (1e-4, 100.0, "s"),
+    "fall_rate": (0.1, 100.0, "1/s"),
+    "fall_dead_band": (0.0, 1.5, "rad"),
+    "capture_gain": (0.0, 10.0, ""),
+    "unloaded_newtons": (0.0, 1000.0, "N"),
     "largest_rate": (0.1, 1000.0, "rad/s"),
 }
 """Lowest value, highest value and unit of each constant. Beyond them, somebody has mistaken the unit."""
@@ -34,6 +39,8 @@ PLAUSIBLE = {
 class ControllerConstants:
     """Time-outs, gains, time constants and lengths of the pattern generator and the hip law. All are reconstructed.
 
+    :param baseline_time_constant: time constant of the slow baselines that are subtracted from the lateral acceleration
+        and the rates about x and y, in s: long beside a step and a fall, short beside a sensor's drift
     :param minimum_phase_seconds: shortest duration of a phase, in s
     :param time_out_seconds: shortest time-out of a phase, in s; P4 and P5 stretch it, by the factor 1 + P4 or 1 + P5
     :param rate_scale: factor on P3 in the condition that ends SHIFT
@@ -44,18 +51,23 @@ class ControllerConstants:
     :param rate_time_constant: time constant of the rate's low-pass, in s
     :param abduction_tilt: tilt that counts for each radian of the hip law's abduction without its constant, in m/s^2
     :param abduction_rate_share: share of the abduction's rate that is added to the rate about y
-    :param largest_acceleration: limit to which the acceleration is clipped before the low-passes, in m/s^2
+    :param largest_acceleration: limit to which the lateral acceleration is clipped before all filters, in m/s^2
     :param abduction_scale: abduction per lateral acceleration at V1 = 1, in rad per m/s^2
-    :param pitch_scale: flexion of the swing leg per pitch at V3 = 1
     :param flexion_scale: constant flexion at V4 = 1, in rad; 0.1 rad would lean the robot over its toes
     :param largest_hip_angle: limit of either hip target, in rad
     :param hip_speed: speed of the ramp that hip targets follow, in rad/s
     :param stable_time_constant: time constant of the hips' own low-pass of the lateral acceleration, in s
     :param pitch_time_constant: time constant of the leaky integral that gives the pitch, in s: longer than a fall, and
-        short enough to forget a gyroscope's bias
-    :param largest_rate: limit to which the rate about x is clipped before it is integrated, in rad/s
+        short enough to forget an error of the gyroscope
+    :param fall_time_constant: time constant of the two low-passes of the fall, of its rate and of the whole, in s
+    :param fall_rate: rate at which a fall over a foot grows, in 1/s; a rate of leaning counts divided by it
+    :param fall_dead_band: fall below which the flexion does not react, in rad
+    :param capture_gain: flexion of an unloaded leg against the fall at V3 = 1, in rad per rad
+    :param unloaded_newtons: load below which a leg is free to flex against the fall, in N
+    :param largest_rate: limit to which rates about x and y are clipped before all filters, in rad/s
     """
 
+    baseline_time_constant: float = 4.0
     minimum_phase_seconds: float = 0.04
     time_out_seconds: float = 0.5
     rate_scale: float = 0.2
@@ -68,12 +80,16 @@ class ControllerConstants:
     abduction_rate_share: float = 0.2
     largest_acceleration: float = 20.0
     abduction_scale: float = 0.05
-    pitch_scale: float = 2.5
     flexion_scale: float = 0.02
     largest_hip_angle: float = 0.3
     hip_speed: float = 6.0
     stable_time_constant: float = 0.30
     pitch_time_constant: float = 1.0
+    fall_time_constant: float = 0.03
+    fall_rate: float = 4.0
+    fall_dead_band: float = 0.03
+    capture_gain: float = 0.6
+    unloaded_newtons: float = 30.0
     largest_rate: float = 10.0
 
     def __post_init__(self) -> None:

@@ -1,14 +1,22 @@
 """The hip law: how V1 to V4 move the hips so that the robot steps back to where it stood.
 
-    abduction of both hips      -0.05 (V1 stable_x + V2)
-    flexion of the swing leg    2.5 V3 pitch + 0.02 V4
-    flexion of the stance leg  0.02 V4                     each within 0.3 rad, at 6 rad/s
+    abduction of both hips        -0.05 (V1 stable_x + V2)
+    flexion of an unloaded leg    -0.6 V3 fall + 0.02 V4
+    flexion of a loaded leg       0.02 V4                     each within 0.3 rad, at 6 rad/s
 
 Positive abduction turns both feet to the left of the torso, positive flexion turns a foot forward. stable_x is the
 lateral acceleration after a low-pass of the hips' own, slower than the pattern generator's. With V1 above zero both
-feet go to the side that the torso was pushed to. pitch is how far the torso has lately turned about its x axis: the
-leaky integral of that rate. With V3 above zero the swing leg turns on with the fall, and takes up momentum that would
-otherwise tip the robot over the stance foot.
+feet go to the side that the torso was pushed to.
+
+The fall is the angle at which the leg that carries leans back over its foot, and will lean soon::
+
+    lean = pitch + its flexion joint - 0.02 V4 + low-pass of (rate about x + speed of that joint) / 4
+    fall = low-pass of (lean beyond 0.03 rad)
+
+pitch is how far the torso has lately turned about its x axis: the leaky integral of that rate. The joint's angle, and
+not its target, belongs to the lean, because a servo gives way when the robot falls. A lean and a quarter of its rate
+say where a pendulum that falls over its foot is going (the capture point). With V3 above zero the foot in the air steps
+there: forward when the robot falls forward.
 
 The law is a reconstruction. The paper says only that V1 and V3 multiply signals of the x and the y axis, that V2 and
 V4 are constants, and that the sums adjust abduction and flexion. Laws with the forward acceleration did not help, for
@@ -31,7 +39,7 @@ class BalanceParameters:
 
     :param V1: gain from the lateral acceleration to the abduction of both hips
     :param V2: constant added to that acceleration, in m/s^2
-    :param V3: gain from the torso's pitch to the flexion of the swing leg
+    :param V3: gain from a fall forward or backward to the step of a leg in the air
     :param V4: constant flexion of both legs, in units of 0.02 rad
     """
 
@@ -60,11 +68,20 @@ class HipLaw:
         self._constants = constants
         self._dt = dt
         self._stable_x = LowPass(constants.stable_time_constant, dt)
+        self._lean_rate = LowPass(constants.fall_time_constant, dt)
+        self._fall = LowPass(constants.fall_time_constant, dt)
+        self._loads = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
+        self._joints: dict[Side, float] | None = None
 
     @property
     def stable_x(self) -> float:
         """The hips' low-passed lateral acceleration, in m/s^2."""
         return self._stable_x.value
+
+    @property
+    def fall(self) -> float:
+        """Angle at which the leg that carries falls over its foot, in rad; falling backward is positive."""
+        return self._fall.value
 
     @property
     def sway(self) -> float:
@@ -79,24 +96,38 @@ class HipLaw:
     def sense(self, reading: SensorReading) -> None:
         """Filter one reading without acting on it, as while standing.
 
-        :param reading: sensor reading of this tick
+        :param reading: finite sensor reading of this tick, clipped and corrected by the
+            :class:`~sarah.control.baselines.Baselines`
         """
         constants = self._constants
-        self._stable_x(clipped(reading.acceleration[0], constants.largest_acceleration))
-        rate = clipped(reading.angular_rate[0], constants.largest_rate)
+        rate = reading.angular_rate[0]
+        self._stable_x(reading.acceleration[0])
         self.pitch += self._dt * (rate - self.pitch / constants.pitch_time_constant)
+        left_fore, left_hind, right_fore, right_hind = reading.pressures
+        self._loads = {Side.LEFT: left_fore + left_hind, Side.RIGHT: right_fore + right_hind}
+        _, _, left_flexion, right_flexion, _, _ = reading.joints
+        joints = {Side.LEFT: left_flexion, Side.RIGHT: right_flexion}
+        carrying = Side.LEFT if self._loads[Side.LEFT] > self._loads[Side.RIGHT] else Side.RIGHT
+        speed = (joints[carrying] - (self._joints or joints)[carrying]) / self._dt
+        self._joints = joints
+        lean_rate = self._lean_rate(clipped(rate + speed, constants.largest_rate))
+        lean = self.pitch + joints[carrying] - self._constant_flexion + lean_rate / constants.fall_rate
+        self._fall(lean - clipped(lean, constants.fall_dead_band))
 
-    def tick(self, swing: Side) -> None:
-        """Move the targets by one control tick.
-
-        :param swing: side of the swing leg
-        """
+    def tick(self) -> None:
+        """Move the targets by one control tick."""
         v, constants = self._parameters, self._constants
-        constant = constants.flexion_scale * v.V4
         self._abduction_before = self.abduction
         self.abduction = self._moved(self.abduction, -constants.abduction_scale * (v.V1 * self.stable_x + v.V2))
-        self.flexion[swing] = self._moved(self.flexion[swing], constants.pitch_scale * v.V3 * self.pitch + constant)
-        self.flexion[swing.other] = self._moved(self.flexion[swing.other], constant)
+        for side in Side:
+            goal = self._constant_flexion
+            if self._loads[side] < constants.unloaded_newtons:
+                goal = -constants.capture_gain * v.V3 * self.fall + goal
+            self.flexion[side] = self._moved(self.flexion[side], goal)
+
+    @property
+    def _constant_flexion(self) -> float:
+        return self._constants.flexion_scale * self._parameters.V4
 
     def _moved(self, now: float, goal: float) -> float:
         constants = self._constants

@@ -53,7 +53,7 @@ STEPPING_PARAMETERS = (
 BALANCE_PARAMETERS = (
     Parameter("V1", -2.0, 2.0, "", "gain from lateral acceleration to abduction of both hips", MATTERS),
     Parameter("V2", -2.0, 2.0, "m/s²", "constant added to that acceleration", CONSTANT),
-    Parameter("V3", -2.0, 2.0, "", "gain from the torso's pitch to flexion of the swing leg", MATTERS),
+    Parameter("V3", -2.0, 2.0, "", "gain from a fall forward or backward to the step of a leg in the air", MATTERS),
     Parameter("V4", -2.0, 2.0, "", "constant flexion of both legs, in units of 0.02 rad", CONSTANT),
 )
 """V1 to V4. The paper gives no numbers; the ranges are this project's."""

@@ -12,7 +12,8 @@ y axis, and the sensors, not a clock, decide when each phase of a step ends::
             until the swing foot is loaded, or 0.5 (1 + P5) s
 
 Tilt is the low-passed lateral acceleration and rate the low-passed angular rate about y, both positive towards the
-stance leg. The hip law's abduction, which the torso does not feel, is added to both. The time-outs are slow on
+stance leg and without their slow baselines. The hip law's abduction, which the torso does not feel, is added to both.
+The time-outs are slow on
 purpose: with faster ones a learner uses them as an open-loop clock and ignores the sensors (``make results NAME=clock``
 compares 0.3 s and 0.5 s). The code uses plain floats only, because it runs once per control tick, and on a robot.
 """
@@ -22,9 +23,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
+from sarah.control.baselines import Baselines
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.hip_law import HipLaw
-from sarah.robot.filters import LowPass, clipped, ramped
+from sarah.robot.filters import LowPass, ramped
 from sarah.robot.reading import SensorReading, Side
 
 STAND_SECONDS = 1.0
@@ -104,6 +106,7 @@ class PatternGenerator:
         self._dt = dt
         self._ticks_in_phase = 0
         self._swing_foot_was_off = False
+        self._baselines = Baselines(dt, constants)
         self._stable_x = LowPass(constants.tilt_time_constant, dt)
         self._rate_y = LowPass(constants.rate_time_constant, dt)
         self._lengths = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
@@ -111,7 +114,7 @@ class PatternGenerator:
 
     @property
     def stable_x(self) -> float:
-        """Low-passed lateral acceleration, in m/s^2 (the paper's stable_X)."""
+        """Low-passed lateral acceleration without its baseline, in m/s^2 (the paper's stable_X)."""
         return self._stable_x.value
 
     @property
@@ -136,7 +139,8 @@ class PatternGenerator:
         """
         if not reading.is_finite:
             return
-        self._stable_x(clipped(reading.acceleration[0], self.constants.largest_acceleration))
+        reading = self._baselines.corrected(reading, self.phase is Phase.STAND)
+        self._stable_x(reading.acceleration[0])
         self._rate_y(reading.angular_rate[1])
         left_fore, left_hind, right_fore, right_hind = reading.pressures
         self._loads[Side.LEFT] = left_fore + left_hind
@@ -159,7 +163,7 @@ class PatternGenerator:
             self._enter_next_phase()
         self._ramp_legs()
         if self.hips is not None:
-            self.hips.tick(self.swing)
+            self.hips.tick()
         return change
 
     @property

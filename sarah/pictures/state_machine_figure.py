@@ -6,6 +6,7 @@ place of numbers. Phases, their order, time-outs and leg lengths come from runni
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
@@ -33,8 +34,8 @@ MINUS = "\u2212"
 NOTE = """tilt (m/s²), rate (rad/s): low-passed lateral acceleration and angular rate
 about y, towards the stance leg, plus {tilt:g} and {rate:g} times the abduction
 (without V2) and its rate. stable_x (m/s²): slower low-pass of the lateral
-acceleration. pitch (rad): leaky integral of the angular rate about x.
-Every phase lasts at least {shortest:g} s."""
+acceleration. All signals without slow baselines. fall (rad): lean of the leg
+that carries, where it is going. Every phase lasts at least {shortest:g} s."""
 
 
 class Name:
@@ -186,16 +187,18 @@ def read_hip_law(constants: ControllerConstants = STANDARD_CONSTANTS) -> dict[st
         _parameters=parameters,
         _constants=constants,
         stable_x=Name("stable_x", noted),
-        pitch=Name("pitch", noted),
+        fall=Name("fall", noted),
+        _constant_flexion=constants.flexion_scale * parameters.V4,
+        _loads={Side.LEFT: 0.0, Side.RIGHT: math.inf},
         abduction=0.0,
         flexion=dict.fromkeys(Side, 0.0),
         _moved=lambda now, goal: goal,
     )
-    HipLaw.tick(stand_in, Side.LEFT)
+    HipLaw.tick(stand_in)
     return {
         "abduction of both hips": stand_in.abduction.text,
-        "flexion of the swing leg": stand_in.flexion[Side.LEFT].text,
-        "flexion of the stance leg": stand_in.flexion[Side.RIGHT].text,
+        "flexion of an unloaded leg": stand_in.flexion[Side.LEFT].text,
+        "flexion of a loaded leg": stand_in.flexion[Side.RIGHT].text,
     }
 
 

@@ -51,21 +51,21 @@ def test_an_episode_depends_on_constants_of_the_hip_law() -> None:
         return simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.5), 0, "balance", config))
 
     standard = pushed()
-    for constants in ({"abduction_scale": 0.02}, {"pitch_scale": 1.0}, {"flexion_scale": 0.0}, {"hip_speed": 1.0}):
+    for constants in ({"abduction_scale": 0.02}, {"capture_gain": 0.3}, {"flexion_scale": 0.0}, {"hip_speed": 1.0}):
         assert pushed(**constants) != standard
 
 
 def test_hips_keep_to_the_limits_that_are_given() -> None:
     law = HipLaw(
-        BalanceParameters(2.0, 2.0, 2.0, 2.0), 0.01, ControllerConstants(largest_hip_angle=0.02, hip_speed=1.0)
+        BalanceParameters(2.0, 2.0, 2.0, -2.0), 0.01, ControllerConstants(largest_hip_angle=0.02, hip_speed=1.0)
     )
     before = 0.0
     for _ in range(50):
-        law.sense(SensorReading((9.0, 0.0, 9.81), (2.0, 0.0, 0.0), (75.0,) * 4, (0.0,) * 6))
-        law.tick(Side.LEFT)
+        law.sense(SensorReading((9.0, 0.0, 9.81), (2.0, 0.0, 0.0), (0.0, 0.0, 150.0, 150.0), (0.0,) * 6))
+        law.tick()
         assert abs(law.abduction) <= 0.02 and abs(law.abduction - before) <= 0.01 + 1e-12
         before = law.abduction
-    assert law.abduction == -0.02 and law.flexion[Side.LEFT] == 0.02
+    assert law.abduction == -0.02 and law.flexion[Side.LEFT] == -0.02
 
 
 @pytest.mark.parametrize("name", [field.name for field in dataclasses.fields(ControllerConstants)])

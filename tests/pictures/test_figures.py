@@ -36,8 +36,9 @@ def test_state_machine_is_read_from_the_code_that_runs() -> None:
 
 
 def test_hip_law_is_read_from_the_code_that_runs() -> None:
-    law = read_hip_law(ControllerConstants(pitch_scale=9.5))
-    assert law["flexion of the swing leg"] == f"9.5 V3 pitch + {CONSTANTS.flexion_scale:g} V4"
+    law = read_hip_law(ControllerConstants(capture_gain=9.5))
+    assert law["flexion of an unloaded leg"] == f"\N{MINUS SIGN}9.5 V3 fall + {CONSTANTS.flexion_scale:g} V4"
+    assert law["flexion of a loaded leg"] == f"{CONSTANTS.flexion_scale:g} V4"
 
 
 @NEEDS_PYBULLET

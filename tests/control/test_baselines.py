@@ -1,0 +1,65 @@
+"""The slow baselines of the inertial signals, against means and low-passes by hand."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sarah.control.baselines import Baselines
+from sarah.robot.reading import SensorReading
+
+DT = 0.01
+
+
+def reading(acceleration_x: float = 0.0, rate_x: float = 0.0, rate_y: float = 0.0) -> SensorReading:
+    return SensorReading((acceleration_x, 0.3, 9.81), (rate_x, rate_y, 0.7), (75.0,) * 4, (0.1,) * 6)
+
+
+def signals(reading: SensorReading) -> tuple[float, float, float]:
+    return reading.acceleration[0], reading.angular_rate[0], reading.angular_rate[1]
+
+
+def test_while_standing_baselines_are_the_means_so_far() -> None:
+    baselines = Baselines(DT)
+    corrected = [signals(baselines.corrected(reading(*values), True)) for values in ((1, 2, 3), (3, 1, 9), (2, 0, 0))]
+    assert corrected[0] == (0.0, 0.0, 0.0)
+    assert corrected[1] == pytest.approx((3 - 2, 1 - 1.5, 9 - 6))
+    assert corrected[2] == pytest.approx((2 - 2, 0 - 1, 0 - 4))
+    assert (baselines.acceleration_x, baselines.rate_x, baselines.rate_y) == pytest.approx((2, 1, 4))
+
+
+def test_stepping_baselines_follow_within_four_seconds() -> None:
+    baselines = Baselines(DT)
+    baselines.corrected(reading(), True)
+    for _ in range(400):
+        corrected = baselines.corrected(reading(1.0, 2.0, 3.0), False)
+    assert signals(corrected) == pytest.approx((math.exp(-1.0), 2.0 * math.exp(-1.0), 3.0 * math.exp(-1.0)))
+
+
+@given(offset=st.tuples(st.floats(-2, 2), st.floats(-0.2, 0.2), st.floats(-0.2, 0.2)), is_standing=st.booleans())
+def test_a_constant_offset_leaves_no_trace(offset: tuple[float, float, float], is_standing: bool) -> None:
+    level, askew = Baselines(DT), Baselines(DT)
+    level.corrected(reading(), True)
+    askew.corrected(reading(*offset), True)
+    for tick in range(50):
+        own = (math.sin(tick), math.cos(tick), math.sin(2 * tick))
+        shifted = tuple(a + b for a, b in zip(own, offset, strict=True))
+        expected = signals(level.corrected(reading(*own), is_standing))
+        assert signals(askew.corrected(reading(*shifted), is_standing)) == pytest.approx(expected)
+
+
+def test_other_signals_pass_unchanged() -> None:
+    baselines = Baselines(DT)
+    baselines.corrected(reading(5.0, 1.0, 1.0), True)
+    corrected = baselines.corrected(reading(5.0, 1.0, 1.0), False)
+    assert corrected == reading()
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_outliers_count_as_20_metres_per_second_squared_and_10_radians_per_second(sign: float) -> None:
+    baselines = Baselines(DT)
+    baselines.corrected(reading(), True)
+    share = math.exp(-DT / 4.0)
+    outlier = baselines.corrected(reading(sign * 1e5, sign * 1e5, sign * 1e5), False)
+    assert signals(outlier) == pytest.approx((sign * 20 * share, sign * 10 * share, sign * 10 * share))
