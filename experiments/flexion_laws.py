@@ -1,6 +1,7 @@
 """Which flexion law helps against pushes from front and back: candidates on the same pushes, at several settings.
 
-Every candidate keeps V1 = 1 on abduction and uses V3 on flexion. Signals: ``acceleration``, the forward acceleration
+Every candidate keeps V1 = 1 on abduction and uses V3 on flexion. The package's law flexes the unloaded leg against the
+``fall``. Signals of the others: ``acceleration``, the forward acceleration
 after a low-pass of 0.3 s; ``angle``, the postural angle asin(a_y / |a|) after the same; ``pitch``, the leaky integral
 of the rate about x. Legs: ``both``, ``swing``, ``held`` (the swing leg, which then lets go with a time constant of
 0.3 s while it supports), ``sampled`` (both, by the signal when the legs swapped).
@@ -18,6 +19,7 @@ from experiments.experiment import OnWorkers
 from experiments.record import Row
 from sarah.control.constants import ControllerConstants
 from sarah.control.hip_law import BalanceParameters, HipLaw
+from sarah.control.pattern_generator import PatternGenerator
 from sarah.episode.episode import Episode
 from sarah.episode.push import Push
 from sarah.episode.result import EpisodeResult
@@ -39,7 +41,7 @@ V = (1.0, 0.0, 0.0, 0.0)
 class Law(NamedTuple):
     """A flexion law.
 
-    :param signal: signal that flexes, one of :data:`SCALES`
+    :param signal: signal that flexes: ``fall``, or one of :data:`SCALES`
     :param legs: legs that flex
     :param v3: gain
     """
@@ -49,10 +51,11 @@ class Law(NamedTuple):
     v3: float
 
 
-OWN_LAWS = (Law("pitch", "swing", 0.0), Law("pitch", "swing", 1.0))
+OWN_LAWS = (Law("fall", "unloaded", 0.0), Law("fall", "unloaded", 1.0))
 """The package's, with V3 = 0 and with V3 = 1."""
 LAWS = (
     *OWN_LAWS,
+    Law("pitch", "swing", 1.0),
     Law("acceleration", "both", 1.0),
     Law("acceleration", "held", 1.0),
     Law("acceleration", "sampled", 1.0),
@@ -74,12 +77,14 @@ class Candidate(HipLaw):
     """The package's abduction with another flexion.
 
     :param law: the other flexion
+    :param generator: pattern generator that knows which leg swings
     :param dt: control period, in s
     """
 
-    def __init__(self, law: Law, dt: float) -> None:
+    def __init__(self, law: Law, generator: PatternGenerator, dt: float) -> None:
         constants = ControllerConstants()
         super().__init__(BalanceParameters(*V), dt, constants)
+        self._generator = generator
         self._law, self._gain = law, SCALES[law.signal] * law.v3
         self._limit, self._step = constants.largest_hip_angle, constants.hip_speed * dt
         self._largest = constants.largest_acceleration
@@ -96,12 +101,10 @@ class Candidate(HipLaw):
         self._acceleration(clipped(y, self._largest))
         self._angle(math.asin(y / max(math.sqrt(x * x + y * y + z * z), abs(y), 1e-9)))
 
-    def tick(self, swing: Side) -> None:
-        """Move the targets by one control tick.
-
-        :param swing: the leg that swings
-        """
-        super().tick(swing)  # for the abduction
+    def tick(self) -> None:
+        """Move the targets by one control tick."""
+        super().tick()  # for the abduction
+        swing = self._generator.swing
         signals = {"acceleration": self._acceleration.value, "angle": self._angle.value, "pitch": self.pitch}
         goal = self._gain * signals[self._law.signal]
         if swing is not self._swing_before:
@@ -118,20 +121,21 @@ class Candidate(HipLaw):
 
 
 def simulate(law: Law, seed: int, config: BalanceConfig) -> EpisodeResult:
-    """Simulate an episode with a candidate in the place of the hip law.
+    """Simulate an episode with the package's hip law, or with a candidate in its place.
 
-    :param law: flexion of the candidate
+    :param law: flexion law
     :param seed: seed of the episode
     :param config: settings of the episode
     """
     episode = Episode(config, seed, BALANCE)
     try:
         episode.stand()
-        episode.start(V)
-        candidate = Candidate(law, config.physics.control_dt)
-        for reading in episode.standing_readings:
-            candidate.sense(reading)
-        episode.generator.hips = candidate
+        v1, v2, _, v4 = V
+        episode.start((v1, v2, law.v3, v4))
+        if law.signal in SCALES:
+            episode.generator.hips = Candidate(law, episode.generator, config.physics.control_dt)
+            for reading in episode.standing_readings:  # through the generator, which knows the baselines
+                episode.generator.sense(reading)
         while episode.termination is None:
             episode.tick()
         return episode.result()

@@ -164,7 +164,7 @@ POSITIVE = {
 def signals_page() -> Iterator[str]:
     """A table of the signals of a reading, in order."""
     positions = [
-        [f"`joints[{index}]`", unit_of(joint), f"position of `{joint}`, positive as its target", "no"]
+        [f"`joints[{index}]`", unit_of(joint), f"position of `{joint}`, positive as its target", "by V3" if "flexion" in joint else "no"]
         for index, joint in enumerate(ACTUATED_JOINTS)
     ]
     yield from table(
