@@ -163,10 +163,10 @@ POSITIVE = {
 
 def signals_page() -> Iterator[str]:
     """A table of the signals of a reading, in order."""
-    positions = [
-        [f"`joints[{index}]`", unit_of(joint), f"position of `{joint}`, positive as its target", "by V3" if "flexion" in joint else "no"]
-        for index, joint in enumerate(ACTUATED_JOINTS)
-    ]
+    positions = []
+    for index, joint in enumerate(ACTUATED_JOINTS):
+        used = "by V3" if joint.endswith("flexion") else "no"
+        positions.append([f"`joints[{index}]`", unit_of(joint), f"position of `{joint}`, positive as its target", used])
     yield from table(
         ["signal", "unit", "positive", "used"], [[f"`{name}`", *rest] for name, *rest in SIGNALS] + positions
     )

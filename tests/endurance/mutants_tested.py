@@ -27,6 +27,7 @@ TARGETS = "tests/agents/test_naf_targets.py tests/agents/test_naf_train_eval_mod
 BUFFERS = "tests/agents/test_best_action.py tests/agents/test_rank_buffer.py tests/agents/test_naf_arguments.py"
 
 SUBJECTS = (
+    Subject("sarah/control/baselines.py", CONTROL),
     Subject("sarah/control/pattern_generator.py", CONTROL),
     Subject("sarah/control/hip_law.py", CONTROL),
     Subject("sarah/control/constants.py", CONTROL, "ControllerConstants"),
