@@ -67,7 +67,7 @@ class ControllerConstants:
     :param largest_rate: limit to which rates about x and y are clipped before all filters, in rad/s
     """
 
-    baseline_time_constant: float = 4.0
+    baseline_time_constant: float = 8.0
     minimum_phase_seconds: float = 0.04
     time_out_seconds: float = 0.5
     rate_scale: float = 0.2

@@ -45,13 +45,19 @@ def test_an_episode_depends_on_constants_of_the_hip_law() -> None:
     def pushed(**constants: float) -> EpisodeResult:
         config = BalanceConfig(
             time_limit=3.0,
-            push=Push(newtons=(60.0, 60.0), at_seconds=(1.5, 1.5)),
+            push=Push(newtons=100.0, degrees=90.0, at_seconds=1.5),
             controller=ControllerConstants(**constants),
         )
         return simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.5), 0, "balance", config))
 
     standard = pushed()
-    for constants in ({"abduction_scale": 0.02}, {"capture_gain": 0.3}, {"flexion_scale": 0.0}, {"hip_speed": 1.0}):
+    for constants in (
+        {"abduction_scale": 0.02},
+        {"capture_gain": 0.3},
+        {"fall_dead_band": 0.1},
+        {"flexion_scale": 0.0},
+        {"hip_speed": 1.0},
+    ):
         assert pushed(**constants) != standard
 
 

@@ -77,11 +77,11 @@ def test_tilt_and_rate_are_positive_towards_the_stance_leg() -> None:
 
 @pytest.mark.parametrize("lateral", [15.0, 1000.0, -1000.0])
 def test_lateral_acceleration_counts_up_to_20(lateral: float) -> None:
-    """One tick of a low-pass of 0.1 s covers 1 - exp(-0.1) of the way; the baseline of 4 s takes its share before."""
+    """One tick of a low-pass of 0.1 s covers 1 - exp(-0.1) of the way; the baseline of 8 s takes its share before."""
     generator = started()
     generator.sense(reading(lateral=lateral))
     clipped = max(-20.0, min(20.0, lateral))
-    assert generator.stable_x == pytest.approx(clipped * math.exp(-DT / 4.0) * (1.0 - math.exp(-0.1)))
+    assert generator.stable_x == pytest.approx(clipped * math.exp(-DT / 8.0) * (1.0 - math.exp(-0.1)))
 
 
 def test_rate_follows_within_a_hundredth_of_a_second() -> None:
