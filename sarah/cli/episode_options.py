@@ -131,6 +131,8 @@ def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tupl
         raise ConfigurationError("--which is for a run folder")
     if subject in PARAMETER_SETS:
         given = RunEpisode(subject, f"{subject} · seed 0", PARAMETER_SETS[subject].spec)
+        if task not in (None, given.spec.task):
+            raise ConfigurationError(f"{subject!r} are parameters of task {given.spec.task.name!r}: leave --task out")
     elif subject.strip("+-.")[:1].isdigit():
         given = episode_of_parameters(numbers("parameters", subject), task)
     else:

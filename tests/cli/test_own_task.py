@@ -84,6 +84,11 @@ def test_every_command_takes_it_when_it_is_named(folder: Path) -> None:
     assert run("sarah-video", "run", "a.gif", *TASK, "--seconds", "1", "1.1", cwd=folder).returncode == 0
     numbers = run("sarah-eval", "0.4,0.5,0.6,1,1", *TASK, "--episodes", "1", "--json", cwd=folder)
     assert json.loads(numbers.stdout)["task"] == "my_task.py:THRIFTY"
+    drawn = run("sarah-figures", "run", *TASK, "--out", "drawn", cwd=folder)
+    assert drawn.returncode == 0 and "no gait cycle of run" in drawn.stderr  # in a second there is none
+    assert run("sarah-report", "run", *TASK, "--episodes", "1", "--seconds", "1", "1.1", cwd=folder).returncode == 0
+    page = (folder / "run" / "report.html").read_text()
+    assert "sarah-eval naf-s0-again --task my_task.py:THRIFTY" in page
     finished = run("sarah-train", "--resume", "run", *TASK, cwd=folder)
     assert finished.returncode == 0 and "run is finished" in finished.stdout
 
