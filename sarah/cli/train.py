@@ -78,6 +78,7 @@ def _train(arguments: Sequence[str]) -> None:
 
     describe_robot(config.episode.dimensions)  # a bad dimension is refused before anything is written
     from sarah.episode.workers import Workers
+    from sarah.runs.origin import check_origin
     from sarah.runs.run_folder import RunFolder, new_run_path
     from sarah.simulation.engines import check_engine
     from sarah.training.learners import check_device
@@ -90,11 +91,12 @@ def _train(arguments: Sequence[str]) -> None:
         check_renderer()
     if options.resume is not None:
         run = _resumed(options.resume, options, config)
-        if run.is_finished and config.episodes > run.config().episodes:
-            config = _extended(run, config)
-        elif run.is_finished:
+        if run.is_finished and config.episodes == run.config().episodes:
             print(f"{options.resume} is finished: to go on, add --episodes with more than its {config.episodes}")
             return
+        check_origin(run.journal_path, run.config())
+        if run.is_finished:
+            config = _extended(run, config)
 
     with Workers(options.workers, options.scheduler) as workers:
         if options.resume is not None:
@@ -131,10 +133,7 @@ def _extended(run: RunFolder, config: TrainingConfig) -> TrainingConfig:
     :param run: run folder of the training
     :param config: settings with the larger budget
     """
-    from sarah.runs.origin import check_origin
-
     before = run.config()
-    check_origin(run.journal_path, before)
     extended = dataclasses.replace(before.extended_to(config.episodes), pictures=config.pictures)
     run.extend(extended)
     print(
