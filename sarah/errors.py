@@ -23,6 +23,10 @@ class ConfigurationError(SarahError, ValueError):
     """A setting, name or value is not allowed."""
 
 
+class TaskError(ConfigurationError):
+    """A task's file, or a function of a task, has a mistake."""
+
+
 class RunFolderError(SarahError, OSError):
     """A run folder is missing, not empty, or lacks a file that it should have."""
 

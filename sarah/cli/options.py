@@ -56,7 +56,9 @@ def fail(command: str, message: str) -> NoReturn:
     :param command: name of the command
     :param message: message, which becomes one line
     """
-    print(f"{command}: error: {' '.join(message.split())}", file=sys.stderr)
+    line = " ".join(message.split())
+    printable = "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in line)  # of anybody's file
+    print(f"{command}: error: {printable}", file=sys.stderr)
     raise SystemExit(USAGE_ERROR)
 
 
