@@ -5,6 +5,7 @@ from __future__ import annotations
 import reprlib
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
+from numbers import Real
 
 LONGEST_NAME = 100
 """Length in characters up to which a name is shown whole, and the nearest valid one is looked for."""
@@ -20,6 +21,10 @@ class DescriptionError(SarahError, ValueError):
 
 class ConfigurationError(SarahError, ValueError):
     """A setting, name or value is not allowed."""
+
+
+class TaskError(ConfigurationError):
+    """A task's file, or a function of a task, has a mistake."""
 
 
 class RunFolderError(SarahError, OSError):
@@ -56,8 +61,9 @@ def check_range(key: str, value: float | tuple[float, float], low: float, high: 
     :param unit: unit of the value and of its limits
     :raises ConfigurationError: naming key, value and range
     """
-    first, last = value if isinstance(value, tuple) else (value, value)
-    if not low <= first <= last <= high:
+    ends = value if isinstance(value, tuple) and len(value) == 2 else (value, value)
+    are_numbers = all(isinstance(end, Real) and not isinstance(end, bool) for end in ends)
+    if not are_numbers or not low <= ends[0] <= ends[1] <= high:
         order = " and in rising order" if isinstance(value, tuple) else ""
         raise ConfigurationError(
             f"{key} must be between {low:g} and {high:g}{unit and f' {unit}'}{order}, not {shortened(value)}"
@@ -65,16 +71,16 @@ def check_range(key: str, value: float | tuple[float, float], low: float, high: 
 
 
 def to_ranges(config: object, *names: str) -> None:
-    """Make ranges of fields of a frozen configuration: one number means both ends.
+    """Make ranges of fields of a frozen configuration: one number means both ends. What is no range stays as it is.
 
     :param config: configuration to change, while it is made
     :param names: names of the fields
     """
     for name in names:
         value = getattr(config, name)
-        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        if is_number or isinstance(value, list):
-            object.__setattr__(config, name, (value, value) if is_number else tuple(value))
+        ends = tuple(value) if isinstance(value, (list, tuple)) else (value, value)
+        if len(ends) == 2 and all(isinstance(end, Real) and not isinstance(end, bool) for end in ends):
+            object.__setattr__(config, name, tuple(map(float, ends)))
 
 
 def check_fields(key: str, config: object, plausible: Mapping[str, tuple[float, float, str]]) -> None:

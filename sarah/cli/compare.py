@@ -99,6 +99,7 @@ def _compare(arguments: Sequence[str]) -> None:
 
     describe_robot(options.episode.dimensions)
     check_engine(episode.engine)
+    from sarah.episode.trial import try_task
     from sarah.episode.workers import Workers
     from sarah.reports.race import entries_of, race
     from sarah.reports.rankings import as_markdown, rankings, write_csv
@@ -106,6 +107,7 @@ def _compare(arguments: Sequence[str]) -> None:
 
     seeds = range(options.first_seed, options.first_seed + options.seeds)
     entries = entries_of(options.algorithms, seeds, base, options.evaluations, options.out)
+    try_task(options.task, episode)
     options.out.mkdir(parents=True, exist_ok=True)
     with Workers(options.workers, options.scheduler) as workers:
         say_engine(episode, options.engine)

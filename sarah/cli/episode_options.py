@@ -7,8 +7,9 @@ so the subject is looked up before the options are parsed.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import dataclasses
-import re
+import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +21,7 @@ from sarah.cli.options import parse_options
 from sarah.episode.push import Push, PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import STEPPING, TASKS, Task, load_task
+from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task, load_task
 from sarah.errors import ConfigurationError, shortened, unknown_name
 from sarah.simulation.engines import Engine
 from sarah.simulation.physics import PHYSICS
@@ -41,7 +42,7 @@ class EpisodeOptions:
     :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
     :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default as in the training
     :param randomisation: friction, masses, sensors and so on stay as designed, instead of varying by seed: short for
-        --episode.randomisation.enabled
+        --episode.randomisation.no-enabled
     :param episode: settings of the episodes; by default those of the run folder, or the task's own
     """
 
@@ -67,6 +68,8 @@ class EpisodeOptions:
             config = dataclasses.replace(config, randomisation=dataclasses.replace(config.randomisation, enabled=False))
         if isinstance(config, PushedConfig) and not spec.task.has_push and config.push.newtons == NOBODY.newtons:
             config = spec.task.config_of(config)
+        if isinstance(config, PushedConfig) and config.push.newtons != NOBODY.newtons:
+            config.check_for_training()  # nor would anybody see a push after the end
         return dataclasses.replace(spec, config=config)
 
 
@@ -94,8 +97,8 @@ def parse_episode_options(
     """
     given = given_options(arguments, "task", "which", "engine", "episode.engine")
     task = load_task(given["task"]) if "task" in given else None
-    named = [argument for argument in arguments if _is_subject(argument)] if subject is None else [subject]
-    own = episode_of(named[0], given.get("which"), task).spec.config if named else (task or STEPPING).episode
+    subject = subject or _subject_among(arguments, default, given)
+    own = episode_of(subject, given.get("which"), task).spec.config if subject else (task or STEPPING).episode
     if type(own) is EpisodeConfig:  # any robot can be pushed, whether its task has a push or not
         own = PushedConfig(**vars(own), push=NOBODY)
     episode = with_given_engine(own, given)
@@ -103,11 +106,27 @@ def parse_episode_options(
     return parse_options(type(default), command, arguments, dataclasses.replace(default, episode=episode))
 
 
-def _is_subject(argument: str) -> bool:
+def _subject_among(arguments: Sequence[str], default: EpisodeOptions, given: Mapping[str, str]) -> str | None:
+    """What to look at, found by parsing with the settings of all tasks; nothing if that fails, or if help is wanted."""
+    if {"-h", "--help"} & set(arguments):
+        return None
+    every = dataclasses.replace(default, episode=with_given_engine(BALANCE.episode, given))
+    try:
+        with contextlib.redirect_stderr(io.StringIO()):
+            options: Any = parse_options(type(default), "", arguments, every)
+    except (SystemExit, ConfigurationError):  # the real parser will say so
+        return None
+    subjects = getattr(options, "subjects", None)
+    subject: str | None = subjects[0] if subjects else getattr(options, "subject", None)
+    return subject if subject is not None and _is_there(subject) else None
+
+
+def _is_there(subject: str) -> bool:
+    """Whether there are settings to begin from; what there is not is reported later."""
     from sarah.episode.parameter_sets import PARAMETER_SETS
 
-    is_run = Path(argument).joinpath("config.yaml").is_file()
-    return argument in PARAMETER_SETS or is_run or re.fullmatch(r"[-+.\de,]*\d,[-+.\de,]*\d", argument) is not None
+    is_run = Path(subject).joinpath("config.yaml").is_file()
+    return subject in PARAMETER_SETS or is_run or "," in subject
 
 
 def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tuple[list[RunEpisode], RunEpisode]:
@@ -131,7 +150,9 @@ def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tupl
         raise ConfigurationError("--which is for a run folder")
     if subject in PARAMETER_SETS:
         given = RunEpisode(subject, f"{subject} · seed 0", PARAMETER_SETS[subject].spec)
-    elif subject.strip("+-.")[:1].isdigit():
+        if task not in (None, given.spec.task):
+            raise ConfigurationError(f"{subject!r} are parameters of task {given.spec.task.name!r}: leave --task out")
+    elif subject.strip(" +-.")[:1].isdigit():
         given = episode_of_parameters(numbers("parameters", subject), task)
     else:
         names = unknown_name("name of parameters", subject, PARAMETER_SETS)

@@ -6,7 +6,7 @@ import json as json_format
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
@@ -14,7 +14,7 @@ from sarah.cli.episode_options import EpisodeOptions, episode_of, parse_episode_
 from sarah.cli.options import run_command, say_engine
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
-from sarah.episode.tasks import BALANCE, BalanceConfig, load_task
+from sarah.episode.tasks import BALANCE, BalanceConfig, Task, load_task
 from sarah.errors import ConfigurationError, check_range
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ def _evaluate(arguments: Sequence[str]) -> None:
     for label, text in [("seeds", seeds), *_rows(named, evaluation)]:
         print(f"{label:17}{text}")
     if baseline is not None:
-        for label, text in _comparison(evaluation, baseline):
+        for label, text in _comparison(spec.task, evaluation, baseline):
             print(f"{label:17}{text}")
 
 
@@ -139,13 +139,13 @@ def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[st
     ]
 
 
-def _comparison(evaluation: Evaluation, baseline: Evaluation) -> list[tuple[str, str]]:
-    """Rows about the baseline: the same episodes with V1 to V4 at zero."""
+def _comparison(task: Task[Any], evaluation: Evaluation, baseline: Evaluation) -> list[tuple[str, str]]:
+    """Rows about the baseline: the same episodes with the parameters that do nothing, such as V1 to V4 at zero."""
     score, steps = baseline.median("score"), baseline.mean("steps_per_second")
     chatter = "the hips chatter" if evaluation.chatters(baseline) else "no chatter"
     return [
         (
-            "baseline (V = 0)",
+            "baseline (V = 0)" if task is BALANCE else "neutral",
             f"score {score:.3f} median, {baseline.survivors} of {baseline.episodes} survive, {steps:.2f} steps/s",
         ),
         ("", f"vibration {baseline.median('vibration'):.1f} m²/s⁴: {chatter}"),

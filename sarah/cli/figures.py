@@ -10,6 +10,7 @@ from typing import Annotated
 import tyro
 
 from sarah.cli.options import parse_options, run_command
+from sarah.episode.tasks import load_task
 from sarah.errors import ConfigurationError
 
 COMMAND = "sarah-figures"
@@ -24,12 +25,14 @@ class FigureOptions:
     pattern generator's state machine. A gait cycle shows the learned parameters of the first run of each task.
 
     :param runs: run folders of finished trainings
+    :param task: task of runs whose task is that of a file, such as my_task.py:JUMP: their gait cycle is drawn with it
     :param out: folder for the figures; by default ``figures`` in the run folder, if there is one run
     """
 
     runs: Annotated[
         tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="RUN...", help_behavior_hint="(required)")
     ] = ()
+    task: Annotated[str | None, tyro.conf.arg(metavar="TASK")] = None
     out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
 
 
@@ -46,7 +49,8 @@ def _draw(arguments: Sequence[str]) -> None:
         raise ConfigurationError("several runs need a folder for their figures: --out DIR")
     from sarah.runs.run_folder import RunFolder
 
-    runs = [RunFolder.open(path) for path in options.runs]
+    task = None if options.task is None else load_task(options.task)
+    runs = [RunFolder.open(path, task=task) for path in options.runs]
     folder = options.out or runs[0].figures_path
     from sarah.reports.all_figures import draw_all_figures
 

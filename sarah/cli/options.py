@@ -56,18 +56,24 @@ def fail(command: str, message: str) -> NoReturn:
     :param command: name of the command
     :param message: message, which becomes one line
     """
-    print(f"{command}: error: {' '.join(message.split())}", file=sys.stderr)
+    line = " ".join(message.split())
+    printable = "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in line)  # of anybody's file
+    print(f"{command}: error: {printable}", file=sys.stderr)
     raise SystemExit(USAGE_ERROR)
 
 
 def _with_both_ends(arguments: Sequence[str], config: Any) -> list[str]:
     """Arguments in which a range has both its ends, also where one number was given for both."""
     ranges = {f"--{name}" for name in _ranges_of(config)}
+    words: list[str] = []
+    for argument in arguments:
+        option, equals, value = argument.partition("=")
+        is_range = option.replace("_", "-") in ranges
+        words += [option, value] if is_range and equals else [argument]
     completed: list[str] = []
-    for argument, following in zip(arguments, [*arguments[1:], ""], strict=False):
-        completed.append(argument)
-        if len(completed) >= 2 and completed[-2] in ranges and _is_number(argument) and not _is_number(following):
-            completed.append(argument)
+    for word, following in zip(words, [*words[1:], ""], strict=False):
+        is_first = bool(completed) and completed[-1].replace("_", "-") in ranges
+        completed += [word, word] if is_first and _is_number(word) and not _is_number(following) else [word]
     return completed
 
 

@@ -10,6 +10,7 @@ from typing import Annotated
 import tyro
 
 from sarah.cli.options import parse_options, run_command
+from sarah.episode.tasks import load_task
 from sarah.errors import ConfigurationError
 
 COMMAND = "sarah-report"
@@ -22,6 +23,7 @@ class ReportOptions:
     The page contains everything that it shows, so one file can be sent to others, and opens without a network.
 
     :param run: run folder of a finished training
+    :param task: task of a run whose task is that of a file, such as my_task.py:JUMP
     :param out: file to write; by default report.html in the run folder
     :param episodes: number of episodes on unseen seeds for the table of results
     :param seconds: simulated times at which the video begins and ends, in s. It is MP4 with the extra ``video``, and
@@ -32,6 +34,7 @@ class ReportOptions:
     run: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN", help_behavior_hint="(required)")] = (
         None
     )
+    task: Annotated[str | None, tyro.conf.arg(metavar="TASK")] = None
     out: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     episodes: int = 10
     seconds: Annotated[tuple[float, float], tyro.conf.arg(metavar="BEGIN END")] = (1.0, 9.0)
@@ -58,7 +61,7 @@ def _report(arguments: Sequence[str]) -> None:
     from sarah.reports.report import write_report
     from sarah.runs.run_folder import RunFolder
 
-    run = RunFolder.open(options.run)
+    run = RunFolder.open(options.run, task=None if options.task is None else load_task(options.task))
     path = options.out or run.report_path
     if not path.parent.is_dir():
         raise ConfigurationError(f"cannot write {path}: folder {path.parent} does not exist")

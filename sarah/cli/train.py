@@ -19,7 +19,14 @@ from sarah.cli.interruption import Interruption
 from sarah.cli.options import parse_options, run_command, say_engine
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, Task, load_task
-from sarah.errors import ConfigurationError, ResumeError, RunFolderError, SarahError, TrainingInterruptedError
+from sarah.errors import (
+    ConfigurationError,
+    ResumeError,
+    RunFolderError,
+    SarahError,
+    TaskError,
+    TrainingInterruptedError,
+)
 from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import first_difference, read_config
@@ -78,6 +85,7 @@ def _train(arguments: Sequence[str]) -> None:
 
     describe_robot(config.episode.dimensions)  # a bad dimension is refused before anything is written
     from sarah.episode.workers import Workers
+    from sarah.runs.origin import check_origin
     from sarah.runs.run_folder import RunFolder, new_run_path
     from sarah.simulation.engines import check_engine
     from sarah.training.learners import check_device
@@ -90,20 +98,25 @@ def _train(arguments: Sequence[str]) -> None:
         check_renderer()
     if options.resume is not None:
         run = _resumed(options.resume, options, config)
-        if run.is_finished and config.episodes > run.config().episodes:
-            config = _extended(run, config)
-        elif run.is_finished:
+        if run.is_finished and config.episodes == run.config().episodes:
             print(f"{options.resume} is finished: to go on, add --episodes with more than its {config.episodes}")
             return
+        check_origin(run.journal_path, run.config())
 
+    from sarah.episode.trial import try_task
+
+    try_task(config.task, config.episode)
     with Workers(options.workers, options.scheduler) as workers:
         if options.resume is not None:
             run = RunFolder.resumable(options.resume, config.task)
+            if run.is_finished:  # only now that somebody can simulate
+                config = _extended(run, config)
         else:
             run = RunFolder.create(options.run_dir or new_run_path(config.task.name, config.algo, config.seed), config)
         say_engine(config.episode, options.engine)
         print(f"training {config.algo} on {config.task.name}: {config.episodes} episodes into {run.path}", flush=True)
-        learned = _learned(config, run, workers)
+        named = given_options(arguments, "task") if config.task.file is not None else {}
+        learned = _learned(config, run, workers, " ".join(f" --task {shlex.quote(task)}" for task in named.values()))
     _summarise(config.task, learned, run.path)
 
 
@@ -131,10 +144,7 @@ def _extended(run: RunFolder, config: TrainingConfig) -> TrainingConfig:
     :param run: run folder of the training
     :param config: settings with the larger budget
     """
-    from sarah.runs.origin import check_origin
-
     before = run.config()
-    check_origin(run.journal_path, before)
     extended = dataclasses.replace(before.extended_to(config.episodes), pictures=config.pictures)
     run.extend(extended)
     print(
@@ -156,11 +166,11 @@ def _check_same(path: Path, key: str, there: object, given: object) -> None:
         raise ConfigurationError(f"--resume {path}: {key} is {there!r} in this training, not {given!r}: leave it out")
 
 
-def _learned(config: TrainingConfig, run: RunFolder, workers: Workers) -> Learned:
-    """Train; if the training stops early, the message says how to go on."""
+def _learned(config: TrainingConfig, run: RunFolder, workers: Workers, task: str) -> Learned:
+    """Train; if the training stops early, the message says how to go on, with the option of a file's task."""
     from sarah.training.train import train
 
-    go_on = f"go on with {COMMAND} --resume {shlex.quote(str(run.path))}"
+    go_on = f"go on with {COMMAND} --resume {shlex.quote(str(run.path))}{task}"
     with Interruption(COMMAND) as interruption:
         try:
             return train(config, run, workers, True, interruption.came)
@@ -169,6 +179,8 @@ def _learned(config: TrainingConfig, run: RunFolder, workers: Workers) -> Learne
             raise SystemExit(128 + (interruption.signal or signal.SIGINT)) from None
         except ResumeError:
             raise
+        except TaskError as error:
+            raise TaskError(f"{error}; correct the file, and train into another folder than {run.path}") from error
         except (SarahError, OSError) as error:
             raise RunFolderError(f"{error}; finished episodes are kept, {go_on}") from error
 
@@ -202,7 +214,10 @@ def _of_file(path: Path, task: Task[Any] | None) -> TrainingConfig:
     """
     if task is None:
         return read_config(TrainingConfig, path)
-    own = read_config(TrainingConfig, path, task if task.file is not None else None)
+    try:
+        own = read_config(TrainingConfig, path, task if task.file is not None else None)
+    except ConfigurationError:  # its own task may be that of another file
+        own = read_config(TrainingConfig, path, task)
     return dataclasses.replace(own, task=task, episode=task.config_of(own.episode))
 
 
@@ -267,7 +282,8 @@ def _summarise(task: Task[Any], learned: Learned, path: Path) -> None:
     score = f"{evaluation.median('score'):.3f}"
     print(f"score       {score} (median of {evaluation.episodes} unseen seeds; 1 is the ceiling)")
     print(f"steps       {evaluation.mean('steps_per_second'):.2f} per second")
-    compared = f", {baseline.survival_rate:.0%} for the baseline (V = 0)" if baseline else ""
+    neutral = "the baseline (V = 0)" if task is BALANCE else "neutral parameters"
+    compared = f", {baseline.survival_rate:.0%} for {neutral}" if baseline else ""
     print(f"survival    {evaluation.survival_rate:.0%}{compared}")
     shifts, lifts = evaluation.mean("shifts_by_sensors"), evaluation.mean("lifts_by_sensors")
     clearance = 1000 * evaluation.mean("sole_clearance")

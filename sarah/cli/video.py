@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -71,6 +72,7 @@ def _film(arguments: Sequence[str]) -> None:
     spec = _spec(options, options.subject)
     from tqdm import tqdm
 
+    from sarah.episode.ending import ending_words
     from sarah.episode.episode import simulate
     from sarah.robot.description import describe_robot
 
@@ -80,6 +82,8 @@ def _film(arguments: Sequence[str]) -> None:
     begin, end = max(begin, result.trace.time[0]), min(end, result.trace.time[-1])
     if begin > end:
         raise ConfigurationError(f"nothing to film: the episode runs from {end:g} to {result.duration:g} s")
+    if options.seconds is not None and options.seconds[1] > end:
+        print(f"the episode ends at {result.duration:g} s: {ending_words(result.termination)}", file=sys.stderr)
     check_renderer()
     times = frame_times(begin, end, FRAMES_PER_SECOND[options.out.suffix], options.speed)
     robot = describe_robot(spec.config.dimensions)

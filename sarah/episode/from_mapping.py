@@ -44,6 +44,8 @@ def from_mapping(default: ConfigType, content: Any, key: str = "") -> ConfigType
 
 def _converted(expected: Any, value: Any, key: str) -> Any:
     """Convert a value to the expected type, or raise an error that names the key."""
+    if hasattr(value, "tolist"):  # numpy's numbers and arrays
+        value = value.tolist()
     if get_origin(expected) is Task:
         return value if isinstance(value, Task) else task_named(_converted(str, value, key))
     if get_origin(expected) is tuple:

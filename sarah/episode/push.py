@@ -57,6 +57,11 @@ class DrawnPush:
     begin: float
     duration: float
 
+    def __post_init__(self) -> None:
+        """Refuse a push that is no number."""
+        if not math.isfinite(math.hypot(*self.force, self.begin, self.duration)):
+            raise ConfigurationError(f"a push must consist of finite numbers, not {self!r}")
+
 
 def draw_push(ranges: Push, seed: int) -> DrawnPush:
     """Draw one episode's push, independently of its conditions.

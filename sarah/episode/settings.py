@@ -10,6 +10,7 @@ from sarah.control.constants import ControllerConstants
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.reward import RewardForm
 from sarah.errors import ConfigurationError, check_range, unknown_name
+from sarah.robot.description import check_dimensions
 from sarah.simulation.engines import Engine, default_engine
 from sarah.simulation.physics import PHYSICS, Physics, physics_for
 from sarah.simulation.randomisation import Randomisation
@@ -44,6 +45,8 @@ class EpisodeConfig:
 
     def __post_init__(self) -> None:
         """Refuse settings that cannot be simulated."""
+        if self.dimensions:
+            check_dimensions(self.dimensions)
         if self.engine not in get_args(Engine):
             raise ConfigurationError(unknown_name("engine", self.engine, get_args(Engine)))
         object.__setattr__(self, "physics", physics_for(self.engine, self.physics))

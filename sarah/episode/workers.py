@@ -104,7 +104,7 @@ def close_waiting_episodes() -> None:
 
 
 def _key(spec: EpisodeSpec) -> tuple[Any, ...]:
-    return (spec.task.identity, spec.seed, repr(spec.config))
+    return (spec.task.identity, 0 if spec.task.is_portable else id(spec.task), spec.seed, repr(spec.config))
 
 
 _EPISODES = (begin_episode, finish_episode, simulate)

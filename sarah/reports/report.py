@@ -68,7 +68,7 @@ def write_report(
     :param seconds: simulated times at which the video begins and ends, in s
     :raises RunFolderError: if a file in the run folder is missing or damaged
     """
-    config, learned = run.config(), run.parameters()
+    config, learned, versions = run.config(), run.parameters(), run.versions()  # before the long simulation
     task = config.task
     ours, theirs = (
         evaluate(config.task, parameters, config.episode, range(episodes), executor)
@@ -101,7 +101,7 @@ def write_report(
         settings=run.config_text(),
         settings_address=_address(run.config_text().encode(), "text/yaml"),
         commands=_commands(run, config),
-        versions=run.versions(),
+        versions=versions,
     )
     replace_text(path, text)
 
@@ -166,9 +166,10 @@ def _film(spec: EpisodeSpec, folder: Path, seconds: tuple[float, float]) -> tupl
 
 def _commands(run: RunFolder, config: TrainingConfig) -> list[str]:
     again = f"{config.algo}-s{config.seed}-again"
+    task = "" if config.task.file is None else f" --task {shlex.quote(config.task.reference)}"
     extra = ["sarah-eval RUN --robustness tables"] if config.task is BALANCE else ["sarah-video RUN out.mp4"]
     commands = [f"sarah-train --config config.yaml --run-dir {again}", "sarah-eval RUN", "sarah-figures RUN", *extra]
-    return [command.replace("RUN", shlex.quote(again)) for command in [*commands, "sarah-report RUN"]]
+    return [command.replace("RUN", shlex.quote(again)) + task for command in [*commands, "sarah-report RUN"]]
 
 
 def _address(content: bytes, kind: str) -> str:

@@ -64,7 +64,8 @@ def figures_of(task: Task) -> dict[str, Panels]:
 
     :param task: task of the trainings
     """
-    own = (f"{task.name}_reward_and_frequency", [RETURN, STEPS], f"{task.name}_parameters")
+    own_return = ("return", "return")  # in a unit that only its author knows
+    own = (f"{task.name}_reward_and_frequency", [own_return, STEPS], f"{task.name}_parameters")
     outcome, panels, parameters = PAPER_FIGURES.get(task.name, own)
     return {outcome: panels, parameters: [(parameter.name, parameter.label) for parameter in task.parameters]}
 

@@ -82,7 +82,7 @@ class AgentSettings:
             key = f"agent.{name}"
             if name.endswith("layers") and len(value) > MOST_LAYERS:
                 raise ConfigurationError(f"{key} must be at most {MOST_LAYERS} layers, not {len(value)}")
-            if name in PLAUSIBLE and not isinstance(value, str):
+            if name in PLAUSIBLE and value != "auto":
                 for number in value if isinstance(value, tuple) else (value,):
                     check_range(key, number, *PLAUSIBLE[name])
 
@@ -171,6 +171,12 @@ class NAFSettings(LearnerSettings):
         if self.activation not in get_args(Activation):
             raise ConfigurationError(unknown_name("agent.activation", self.activation, get_args(Activation)))
         to_ranges(self, "exploration_std", "elite_std")
+        for name in ("exploration_std", "elite_std"):
+            value = getattr(self, name)
+            if not isinstance(value, tuple) or len(value) != 2:
+                raise ConfigurationError(
+                    f"agent.{name} must be a number, or one at first and one at last, not {shortened(value)}"
+                )
         super().__post_init__()
         if self.gamma > 0 and (self.temperature > 0 or self.elite_share > 0):
             raise ConfigurationError(

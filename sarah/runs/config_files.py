@@ -11,8 +11,6 @@ from sarah.episode.from_mapping import from_mapping
 from sarah.episode.tasks import Task
 from sarah.errors import ConfigurationError, SarahError, shortened
 from sarah.files import read_text, replace_text
-from sarah.robot.description import check_dimensions
-from sarah.runs.config import TrainingConfig
 
 ConfigType = TypeVar("ConfigType")
 LONGEST_REASON = 500
@@ -65,10 +63,7 @@ def read_config(config_type: type[ConfigType], path: Path, task: Task[Any] | Non
         content = {} if content is None else content
         if task is not None and isinstance(content, dict):
             content["task"] = task
-        config = from_mapping(config_type(), content)
-        if isinstance(config, TrainingConfig):
-            check_dimensions(config.episode.dimensions)
-        return config
+        return from_mapping(config_type(), content)
     except SarahError as error:
         raise ConfigurationError(f"{path}: {error}") from error
 
@@ -135,4 +130,6 @@ def _to_plain(value: Any) -> Any:
         return {item.name: _to_plain(getattr(value, item.name)) for item in dataclasses.fields(value)}
     if isinstance(value, Mapping):
         return {key: _to_plain(item) for key, item in value.items()}
+    if isinstance(value, float):  # numpy's floats are floats that no YAML knows
+        return float(value)
     return [_to_plain(item) for item in value] if isinstance(value, tuple) else value

@@ -32,11 +32,11 @@ from sarah.runs.agent_settings import (
     SACSettings,
     TD3Settings,
 )
-from sarah.runs.config import OPTIMISERS, TrainingConfig
+from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.randomisation import Randomisation
 from sarah.training.beginnings import BeginningDDPG, BeginningSAC, BeginningTD3
-from sarah.training.optimisers import Start, make_optimiser
+from sarah.training.optimisers import OPTIMISERS, Start
 from sarah.training.recommendation import Parameters
 from sarah.training.recorder import EpisodeRecorder, check_weights
 from sarah.training.replay import LateRankReplayBuffer, LateReplayBuffer
@@ -229,7 +229,7 @@ class _Search:
         self._config, self._recorder, self._workers = config, recorder, workers
         seeds, dimensions = seeds_of(config.seed), len(config.task.parameter_names)
         start = Start(begins_at_centre(config.task), warm_up(config), config.slots)
-        self._optimiser = make_optimiser(config.algo, config.agent, dimensions, seeds.algorithm, start)
+        self._optimiser = OPTIMISERS[config.algo](config.agent, dimensions, seeds.algorithm, start)
         self._generator = np.random.default_rng(seeds.episodes)
         self._running: deque[tuple[np.ndarray, EpisodeSpec, Job]] = deque()
 

@@ -6,6 +6,7 @@ They see no observation: they are asked for an action, a task's parameters scale
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -169,23 +170,39 @@ class OptunaSearch:
         return np.array([self._study.best_params[name] for name in self._box])
 
 
-def make_optimiser(algo: str, settings: AgentSettings, dimensions: int, seed: int, start: Start = Start()) -> Optimiser:
-    """Make an optimiser by name.
+def _random_search(settings: AgentSettings, dimensions: int, seed: int, start: Start) -> Optimiser:
+    return RandomSearch(dimensions, seed, start.at_centre)
 
-    :param algo: ``"cma-es"``, ``"gp"`` (Gaussian process), ``"tpe"`` (tree-structured Parzen estimator), ``"random"``
-    :param settings: Settings of that optimiser
-    :param dimensions: number of an action's elements
-    :param seed: seed of everything that it draws
-    :param start: how it begins
-    """
-    if algo == "random":
-        return RandomSearch(dimensions, seed, start.at_centre)
-    if isinstance(settings, EvolutionSettings):
-        return EvolutionStrategy(settings, dimensions, seed, start.at_centre)
-    from optuna.samplers import GPSampler, TPESampler
 
+def _evolution_strategy(settings: EvolutionSettings, dimensions: int, seed: int, start: Start) -> Optimiser:
+    return EvolutionStrategy(settings, dimensions, seed, start.at_centre)
+
+
+def _gaussian_process(settings: AgentSettings, dimensions: int, seed: int, start: Start) -> Optimiser:
+    from optuna.samplers import GPSampler
+
+    return _optuna_search(GPSampler, dimensions, seed, start)
+
+
+def _parzen_estimator(settings: AgentSettings, dimensions: int, seed: int, start: Start) -> Optimiser:
+    from optuna.samplers import TPESampler
+
+    return _optuna_search(TPESampler, dimensions, seed, start)
+
+
+def _optuna_search(sampler_type: Any, dimensions: int, seed: int, start: Start) -> Optimiser:
     # The actions that are in flight when the warm-up ends have no return yet, and are not waited for.
-    first = RandomSearch(dimensions, seed, start.at_centre)
     known = start.warm_up - start.slots + 1
-    sampler = (GPSampler if algo == "gp" else TPESampler)(seed=seed, n_startup_trials=known)
+    first = RandomSearch(dimensions, seed, start.at_centre)
+    sampler = sampler_type(seed=seed, n_startup_trials=known)
     return OptunaSearch(dimensions, sampler, np.array([first.ask() for _ in range(start.warm_up)]))
+
+
+OPTIMISERS: dict[str, Callable[[Any, int, int, Start], Optimiser]] = {
+    "cma-es": _evolution_strategy,
+    "gp": _gaussian_process,
+    "tpe": _parzen_estimator,
+    "random": _random_search,
+}
+"""Functions that make an optimiser, by the algorithm's name: of its settings, the number of an action's elements, the
+seed of everything that it draws, and how it begins."""

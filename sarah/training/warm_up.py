@@ -27,8 +27,8 @@ def warm_up_episodes(config: TrainingConfig) -> int:
 
     :param config: settings of the training
     """
-    begun = config.by_stage()[0]
-    return min(warm_up(begun), begun.episodes - begun.compared_episodes)
+    learned_from = sum(stage.stage_episodes - stage.compared_episodes for stage in config.by_stage())
+    return min(warm_up(config), learned_from)
 
 
 def describe_warm_up(config: TrainingConfig) -> str:

@@ -36,6 +36,7 @@ MISTAKES = {
         ("full/precious.txt", "is neither a run folder, nor numbers separated by commas: unknown name"),
         ("nowhere", "'nowhere' is neither a run folder, nor numbers"),
         ("steping", "did you mean 'stepping'?"),
+        ("balance --task stepping", "'balance' are parameters of task 'balance': leave --task out"),
         ("full --task steping", "unknown task 'steping', did you mean 'stepping'?"),
         (f"full {GIVEN}", "Unrecognized options: 1,1,1,1,1"),
         ("--task stepping 0.4,1.3,0.1,1", "must be 5 numbers (P1 to P5), not 4"),

@@ -84,6 +84,11 @@ def test_every_command_takes_it_when_it_is_named(folder: Path) -> None:
     assert run("sarah-video", "run", "a.gif", *TASK, "--seconds", "1", "1.1", cwd=folder).returncode == 0
     numbers = run("sarah-eval", "0.4,0.5,0.6,1,1", *TASK, "--episodes", "1", "--json", cwd=folder)
     assert json.loads(numbers.stdout)["task"] == "my_task.py:THRIFTY"
+    drawn = run("sarah-figures", "run", *TASK, "--out", "drawn", cwd=folder)
+    assert drawn.returncode == 0 and "no gait cycle of run" in drawn.stderr  # in a second there is none
+    assert run("sarah-report", "run", *TASK, "--episodes", "1", "--seconds", "1", "1.1", cwd=folder).returncode == 0
+    page = (folder / "run" / "report.html").read_text()
+    assert "sarah-eval naf-s0-again --task my_task.py:THRIFTY" in page
     finished = run("sarah-train", "--resume", "run", *TASK, cwd=folder)
     assert finished.returncode == 0 and "run is finished" in finished.stdout
 
@@ -138,8 +143,18 @@ def test_a_mistake_in_the_reward_names_file_and_line(folder: Path) -> None:
     (folder / "wrong.py").write_text(FILE.replace("tick.power", "tick.pover"))
     task = ("--task", "wrong.py:THRIFTY", "--run-dir", "wrong")
     process = run("sarah-train", *task, "--episodes", "2", "--workers", "1", cwd=folder)
-    assert process.returncode == 2 and "Traceback" not in process.stderr
+    assert process.returncode == 2 and process.stderr.count("\n") == 1
     assert "wrong.py, line 11: AttributeError: 'Tick' object has no attribute 'pover'" in process.stderr
+    assert not (folder / "wrong").exists()  # nothing is in the way of a second try
+
+
+def test_a_mistake_that_shows_late_says_what_to_do(folder: Path) -> None:
+    late = FILE.replace("0.01 * tick.power", "(1 / 0 if tick.time > 1.9 else 0.0)")
+    (folder / "late.py").write_text(late)
+    process = run("sarah-train", "--task", "late.py:THRIFTY", "--episodes", "2", "--run-dir", "late", cwd=folder)
+    assert process.returncode == 2 and "Traceback" not in process.stderr
+    assert "late.py, line 11: ZeroDivisionError" in process.stderr
+    assert "correct the file, and train into another folder than late" in process.stderr
 
 
 def test_a_damaged_description_is_one_line(folder: Path, answer: Callable[[str], str], tmp_path: Path) -> None:
@@ -148,3 +163,8 @@ def test_a_damaged_description_is_one_line(folder: Path, answer: Callable[[str],
     for text in ("{", "[]", '{"file": 1}', (folder / "run" / "task.json").read_text().replace("EpisodeConfig", "Path")):
         (tmp_path / "run" / "task.json").write_text(text.replace("PushedConfig", "Path"))
         assert "the task of run cannot be read" in answer("sarah-eval run")
+    description = json.loads((folder / "run" / "task.json").read_text())
+    for change in ({"file": "../\x1b[31mevil.py"}, {"attribute": ["a"]}, {"title": 5}, {"must_step": "no"}):
+        (tmp_path / "run" / "task.json").write_text(json.dumps(description | change))
+        line = answer("sarah-eval run")
+        assert "the task of run cannot be read" in line and line.strip().isprintable()

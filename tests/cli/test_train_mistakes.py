@@ -36,6 +36,7 @@ MISTAKES = {
         ("--episode.controller.leg-speed fast", "--episode.controller.leg-speed must be a number, not 'fast'"),
         (f"{PUSHED}.stepping 1 1 1", "--episode.stepping"),
         (f"{PUSHED}.push.newtons", "--episode.push.newtons"),
+        (f"{PUSHED}.push.newtons=20000", "push.newtons must be between 0 and 10000 N"),
     ],
     "out of any plausible range": [
         ("--episodes -5", "episodes must be between 1 and 1e+06, not -5"),

@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 import sarah
-from sarah.episode.workers import Workers
-from sarah.errors import ConfigurationError, SarahError
+from sarah.episode.trial import try_task
+from sarah.episode.workers import Workers, begin_episode, close_waiting_episodes, finish_episode
+from sarah.errors import ConfigurationError, SarahError, TaskError
 
 THRIFTY = """
 import dataclasses
@@ -78,7 +79,13 @@ def test_a_task_of_this_package_is_the_same_object_after_a_journey() -> None:
         ("import not_installed_anywhere\n", "my_task.py, line 1: ModuleNotFoundError"),
         ("import sarah\nJUMP = sarah.STEPPING\n", "is that of a task of this package"),
         (
-            "import dataclasses, sarah\nJUMP = dataclasses.replace(sarah.STEPPING, name='a b')\n",
+            "import dataclasses, sarah\n"
+            "P = sarah.Parameter('P', 0.0, 1.0, '$m$', 'a', 'b')\n"
+            "JUMP = dataclasses.replace(sarah.STEPPING, name='j', parameters=(P,), baseline=(0.5,))\n",
+            "unit and meaning of parameter P must be plain texts",
+        ),
+        (
+            "\ufeffimport dataclasses, sarah\nJUMP = dataclasses.replace(sarah.STEPPING, name='a b')\n",
             "a task's name must be letters, digits, - and _, not 'a b'",
         ),
         (
@@ -103,9 +110,13 @@ def test_mistakes_of_a_file_are_one_line(tmp_path: Path, text: str, words: str) 
     ("body", "words"),
     [
         ("return tick.powr", r"my_task.py, line 3: AttributeError: 'Tick' object has no attribute 'powr'"),
-        ("return float('nan')", "must be finite"),
-        ("return None", "my_task.py: TypeError"),
+        ("return float('nan')", "my_task.py:JUMP: its reward must be a finite number, not nan"),
+        ("return None", "my_task.py:JUMP: its reward must be a finite number, not None"),
+        ("return [1.0]", r"its reward must be a finite number, not \[1.0\]"),
+        ("return 10**400", "its reward must be a finite number, not 1000000"),
         ("return 1 / 0", "my_task.py, line 3: ZeroDivisionError"),
+        ("raise SystemExit(0)", "my_task.py, line 3: SystemExit: 0"),
+        ("raise type('Odd', (Exception,), {'__str__': lambda e: 1 / 0})", "an exception without a message"),
     ],
 )
 def test_mistakes_of_a_reward_name_the_file(tmp_path: Path, body: str, words: str) -> None:
@@ -116,12 +127,58 @@ def test_mistakes_of_a_reward_name_the_file(tmp_path: Path, body: str, words: st
         sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT))
 
 
-def test_an_ending_needs_a_name(tmp_path: Path) -> None:
-    text = "import dataclasses, sarah\n"
-    text += "JUMP = dataclasses.replace(sarah.STEPPING, name='jump', ending=lambda tick, config: 'it fell')\n"
+@pytest.mark.parametrize(
+    ("function", "words"),
+    [
+        ("ending=lambda tick, config: 'it fell'", "a short name of its own such as 'jumped', not 'it fell'"),
+        ("ending=lambda tick, config: 'time_limit'", "a short name of its own such as 'jumped', not 'time_limit'"),
+        ("draw_push=lambda config, seed: 5", "draw_push must return a DrawnPush or None, not 5"),
+        ("draw_push=lambda config, seed: 1 / 0", "my_task.py, line 2: ZeroDivisionError"),
+        ("draw_push=lambda c, s: sarah.DrawnPush((float('nan'), 0.0, 0.0), 1.0, 1.0)", "a push must consist of finite"),
+        (
+            "controller_parameters=lambda chosen, config: 5",
+            "controller_parameters must return finite SteppingParameters",
+        ),
+        (
+            "controller_parameters=lambda chosen, config: (sarah.SteppingParameters(*[float('nan')] * 5), None)",
+            "controller_parameters must return finite SteppingParameters",
+        ),
+    ],
+)
+def test_mistakes_of_the_other_functions_are_named(tmp_path: Path, function: str, words: str) -> None:
+    text = f"import dataclasses, sarah\nJUMP = dataclasses.replace(sarah.STEPPING, name='jump', {function})\n"
     task = sarah.load_task(f"{written(tmp_path, text)}:JUMP")
-    with pytest.raises(ConfigurationError, match="an ending must be a short name such as 'jumped', not 'it fell'"):
+    with pytest.raises(SarahError, match=words):
         sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT))
+
+
+def test_numbers_of_numpy_are_numbers(tmp_path: Path) -> None:
+    text = "import dataclasses, sarah\nimport numpy as np\n"
+    text += "JUMP = dataclasses.replace(sarah.STEPPING, name='j', reward=lambda tick, config: np.float32(0.5))\n"
+    task = sarah.load_task(f"{written(tmp_path, text)}:JUMP")
+    result = sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT))
+    assert type(result.episode_return) is float and result.episode_return == pytest.approx(1.0)
+
+
+def test_a_trial_finds_a_function_that_remembers(tmp_path: Path) -> None:
+    text = "import dataclasses, sarah\nseen = []\n"
+    text += "def reward(tick, config):\n    seen.append(1)\n    return len(seen)\n"
+    text += "JUMP = dataclasses.replace(sarah.STEPPING, name='jump', reward=reward)\n"
+    task = sarah.load_task(f"{written(tmp_path, text)}:JUMP")
+    with pytest.raises(TaskError, match="its functions must depend on their arguments only"):
+        try_task(task, task.episode)
+    try_task(sarah.load_task(f"{written(tmp_path)}:THRIFTY"), SHORT)
+
+
+def test_two_tasks_of_a_script_with_one_name_do_not_mix() -> None:
+    one, two = (
+        dataclasses.replace(sarah.STEPPING, name="same", reward=reward)
+        for reward in (lambda tick, config: 1.0, lambda tick, config: 2.0)
+    )
+    begin_episode(sarah.EpisodeSpec(PARAMETERS, 0, one, SHORT))
+    outcome = finish_episode(sarah.EpisodeSpec(PARAMETERS, 0, two, SHORT))
+    close_waiting_episodes()
+    assert outcome.result.episode_return == pytest.approx(4.0)
 
 
 def test_everything_that_a_tick_knows(tmp_path: Path) -> None:

@@ -71,6 +71,14 @@ def test_a_cut_extension_goes_on_to_the_same_end(extended: tuple[str, Path]) -> 
             assert (copy / name).read_bytes() == (folder / "run" / name).read_bytes()
 
 
+def test_an_extension_without_workers_leaves_the_training_finished(extended: tuple[str, Path]) -> None:
+    _, folder = extended
+    before = tree(folder / "run")
+    for option in (("--workers", "-3"), ("--scheduler", "tcp://127.0.0.1:1")):
+        process = run("sarah-train", "--resume", "run", "--episodes", "30", *option, cwd=folder)
+        assert process.returncode == 2 and tree(folder / "run") == before
+
+
 @NEEDS_PYBULLET
 def test_only_a_finished_training_of_the_same_settings_is_extended(tmp_path: Path) -> None:
     assert run("sarah-train", "--episodes", "3", *SHORT, "--run-dir", "run", cwd=tmp_path).returncode == 0

@@ -3,11 +3,18 @@
 import numpy as np
 import pytest
 
-from sarah.runs.agent_settings import EvolutionSettings, settings_of
-from sarah.training.optimisers import Start, make_optimiser
+from sarah.runs.agent_settings import AgentSettings, EvolutionSettings, settings_of
+from sarah.training.optimisers import OPTIMISERS, Optimiser, Start
 
-OPTIMISERS = ("cma-es", "gp", "tpe", "random")
 BEST = np.array([0.3, -0.4])
+
+
+PLAIN = Start()
+
+
+def make_optimiser(algo: str, settings: AgentSettings, dimensions: int, seed: int, start: Start = PLAIN) -> Optimiser:
+    """An optimiser of the table."""
+    return OPTIMISERS[algo](settings, dimensions, seed, start)
 
 
 def episode(action: np.ndarray) -> float:

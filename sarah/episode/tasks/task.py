@@ -25,8 +25,15 @@ ControllerParameters = tuple[SteppingParameters, BalanceParameters | None]
 """P1 to P5, and V1 to V4 unless the hips are locked."""
 RESERVED = frozenset({"index", "seed", "episodes", "return", "x", "y", *EpisodeResult.__dataclass_fields__})
 """Names of columns in the tables of a run folder, which no parameter may have."""
+LONGEST_TEXT = 200
+"""Length of the longest text about a task or a parameter, in characters."""
 LARGEST = 1e6
 """Largest end of a parameter's range."""
+
+
+def _is_plain(text: object) -> bool:
+    """Whether a text can stand in tables and figures, and on a terminal."""
+    return isinstance(text, str) and text.isprintable() and "$" not in text and len(text) <= LONGEST_TEXT
 
 
 @dataclass(frozen=True)
@@ -41,6 +48,15 @@ class TaskFile:
     name: str
     attribute: str
     text: str
+
+    def __post_init__(self) -> None:
+        """Refuse names that no file and no task can have."""
+        if not _is_plain(self.name) or "/" in self.name or not self.name.endswith(".py"):
+            raise ConfigurationError(
+                f"a task's file must have a plain name that ends in .py, not {shortened(self.name)}"
+            )
+        if not isinstance(self.attribute, str) or not self.attribute.isidentifier() or not _is_plain(self.attribute):
+            raise ConfigurationError(f"a task in a file must be a name, not {shortened(self.attribute)}")
 
     @property
     def reference(self) -> str:
@@ -100,6 +116,8 @@ class Task(Generic[ConfigType]):
             raise ConfigurationError(f"a task's name must be letters, digits, - and _, not {shortened(self.name)}")
         if not isinstance(self.episode, EpisodeConfig):
             raise ConfigurationError(f"episode of task {self.name!r} must be settings of episodes")
+        if not _is_plain(self.title) or not _is_plain(self.baseline_label) or not isinstance(self.must_step, bool):
+            raise ConfigurationError(f"title and baseline_label of task {self.name!r} must be plain texts")
         names = self.parameter_names
         for name, parameter in zip(names, self.parameters, strict=True):
             if not re.fullmatch(r"[A-Za-z]\w{0,39}", str(name), re.ASCII) or name in RESERVED or names.count(name) > 1:
@@ -107,6 +125,8 @@ class Task(Generic[ConfigType]):
                     f"parameter {shortened(name)} of task {self.name!r} must have a name of its own: letters and "
                     f"digits, and none of {', '.join(sorted(RESERVED))}"
                 )
+            if not all(map(_is_plain, (parameter.unit, parameter.meaning, parameter.paper))):
+                raise ConfigurationError(f"unit and meaning of parameter {name} must be plain texts, without $")
             if not -LARGEST <= parameter.low < parameter.high <= LARGEST:
                 ends = f"{shortened(parameter.low)} and {shortened(parameter.high)}"
                 raise ConfigurationError(f"ends of parameter {name} must be in rising order, not {ends}")

@@ -14,7 +14,7 @@ from sarah.episode.push import PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks.balance import BalanceConfig
 from sarah.episode.tasks.task import Task, TaskFile
-from sarah.errors import ConfigurationError, SarahError, shortened, unknown_name
+from sarah.errors import ConfigurationError, SarahError, TaskError, unknown_name
 from sarah.files import read_text
 
 SETTINGS_TYPES: dict[str, type[EpisodeConfig]] = {
@@ -34,7 +34,7 @@ def read_task(path: Path, attribute: str) -> Task[Any]:
         text = read_text(path)
     except (OSError, UnicodeDecodeError) as error:
         raise ConfigurationError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from error
-    return task_of_text(path.name, attribute, text)
+    return task_of_text(path.name, attribute, text.removeprefix("\ufeff"))
 
 
 @lru_cache
@@ -53,9 +53,7 @@ def task_of_text(name: str, attribute: str, text: str) -> Task[Any]:
     task = tasks[attribute]
     if type(task.episode) not in SETTINGS_TYPES.values():
         kinds = ", ".join(SETTINGS_TYPES)
-        raise ConfigurationError(
-            f"{file.reference}: its episode must be one of {kinds}, not {type(task.episode).__name__}"
-        )
+        raise TaskError(f"{file.reference}: its episode must be one of {kinds}, not {type(task.episode).__name__}")
     return dataclasses.replace(task, file=file)
 
 
@@ -66,12 +64,12 @@ def _module(file: TaskFile) -> ModuleType:
     sys.modules[module.__name__] = module
     try:
         exec(compile(file.text, file.name, "exec"), vars(module))
-    except Exception as error:
-        raise ConfigurationError(mistake(file.name, error)) from error
+    except (Exception, SystemExit) as error:
+        raise TaskError(mistake(file.name, error)) from error
     return module
 
 
-def mistake(name: str, error: Exception) -> str:
+def mistake(name: str, error: BaseException) -> str:
     """Message about an exception that a user's file raised, with the line in that file.
 
     :param name: name of the file
@@ -79,6 +77,15 @@ def mistake(name: str, error: Exception) -> str:
     """
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == name]
     line = getattr(error, "lineno", None) if isinstance(error, SyntaxError) else lines[-1] if lines else None
-    words = error.msg if isinstance(error, SyntaxError) else str(error) or shortened(error)
+    words = error.msg if isinstance(error, SyntaxError) else _text_of(error)
+    if isinstance(error, ModuleNotFoundError):
+        words += "; a task's file can import installed packages only"
     kind = "" if isinstance(error, SarahError) else f"{type(error).__name__}: "
     return f"{name}{f', line {line}' if line else ''}: {kind}{words}"
+
+
+def _text_of(error: BaseException) -> str:
+    try:
+        return str(error) or type(error).__name__
+    except Exception:  # also this is the user's code
+        return "an exception without a message"

@@ -1,0 +1,114 @@
+"""A newcomer's first hour, as transcripts: what they type, from an empty folder, and what answers."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from laboratory import NEEDS_PYBULLET
+from terminal import run
+
+from sarah.simulation.engines import default_engine
+
+QUICK = ("--episode.time-limit", "3", "--workers", "2")
+
+
+def typed(line: str, folder: Path) -> str:
+    """What a command prints; the words of a line are separated by blanks."""
+    name, *arguments = line.split()
+    process = run(name, *arguments, cwd=folder)
+    assert process.returncode == 0, f"{line}: {process.stderr}"
+    return process.stdout
+
+
+def program(text: str, folder: Path) -> str:
+    """What a program of a few lines prints."""
+    (folder / "program.py").write_text(text)
+    process = subprocess.run([sys.executable, "program.py"], capture_output=True, text=True, cwd=folder, timeout=300)
+    assert process.returncode == 0, process.stderr
+    return process.stdout
+
+
+@NEEDS_PYBULLET
+def test_see_a_robot(tmp_path: Path) -> None:
+    typed("sarah-video stepping robot.gif --seconds 1 1.2", tmp_path)
+    typed("sarah-view balance --export robot.html --episode.time-limit 2", tmp_path)
+    assert (tmp_path / "robot.gif").stat().st_size > 5000 and (tmp_path / "robot.html").stat().st_size > 100_000
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a short training in ``run``."""
+    folder = tmp_path_factory.mktemp("hour")
+    typed(f"sarah-train --task stepping --episodes 20 --seed 1 --run-dir run {' '.join(QUICK)}", folder)
+    return folder
+
+
+def test_train_and_evaluate_on_unseen_seeds(trained: Path) -> None:
+    shown = typed("sarah-eval run --episodes 2", trained)
+    assert "which no training has seen" in shown and "score" in shown
+
+
+def test_td3_against_naf_in_one_picture(trained: Path) -> None:
+    typed("sarah-train --algo td3 --episodes 20 --seed 1 --run-dir td3 --episode.time-limit 3", trained)
+    assert "figure_4_reward_and_frequency.png" in typed("sarah-figures run td3 --out figures", trained)
+
+
+def test_another_learning_rate_and_network(tmp_path: Path) -> None:
+    agent = "--agent.learning-rate 1e-4 --agent.mu-layers 64 64 --agent.v-layers 64"
+    typed(f"sarah-train --episodes 10 --run-dir run --episode.time-limit 2 {agent}", tmp_path)
+    settings = (tmp_path / "run" / "config.yaml").read_text()
+    assert "learning_rate: 0.0001" in settings and "mu_layers:\n  - 64\n  - 64\n" in settings
+
+
+def test_naf_on_an_own_environment_is_a_page_of_the_documentation() -> None:
+    """tests/test_docs.py runs it: save, load, EvalCallback, Dict and VecNormalize."""
+    page = (Path(__file__).parents[2] / "docs/how_to/own_environment.md").read_text()
+    for name in ("NAF(", ".save(", "NAF.load(", "EvalCallback(", "Dict(", "VecNormalize("):
+        assert name in page
+
+
+@NEEDS_PYBULLET
+def test_a_longer_thigh_and_a_push_from_the_left_as_a_video(tmp_path: Path) -> None:
+    settings = (
+        "--episode.push.newtons 80 --episode.push.degrees 0 --episode.push.at-seconds 3 "
+        "--episode.dimensions thigh_length 0.38"
+    )
+    typed(f"sarah-video 0.4,1.3,0.1,1,1 out.gif {settings} --seconds 2.9 3.2", tmp_path)
+    assert (tmp_path / "out.gif").stat().st_size > 5000
+
+
+def test_a_reward_with_power(tmp_path: Path) -> None:
+    (tmp_path / "my_task.py").write_text(
+        "import dataclasses\nimport sarah\n\n"
+        "def reward(tick, config):\n    return sarah.equation_2(tick, config) - 0.01 * tick.power\n\n"
+        "THRIFTY = dataclasses.replace(sarah.STEPPING, name='thrifty', reward=reward)\n"
+    )
+    typed("sarah-train --task my_task.py:THRIFTY --episodes 10 --episode.time-limit 2 --run-dir run", tmp_path)
+    assert "score" in typed("sarah-eval run --task my_task.py:THRIFTY --episodes 1", tmp_path)
+
+
+def test_an_own_algorithm_in_a_race(tmp_path: Path) -> None:
+    page = (Path(__file__).parents[2] / "docs/how_to/algorithm.md").read_text()
+    (script,) = (block for block in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "HillClimber" in block)
+    (tmp_path / "my_race.py").write_text(script)
+    race = "my_race.py race --algorithms climber random --seeds 1 --episodes 6 --evaluations 1 --episode.time-limit 2"
+    command = [sys.executable, *race.split(), "--workers", "1"]
+    process = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=300)
+    assert process.returncode == 0, process.stderr
+    assert "| climber | 1 |" in process.stdout and (tmp_path / "race" / "race.png").exists()
+
+
+def test_extend_a_training(trained: Path) -> None:
+    assert "extending 20 to 30 episodes" in typed("sarah-train --resume run --simulations 30", trained)
+
+
+def test_the_environment_with_its_settings(tmp_path: Path) -> None:
+    shown = program(
+        "import gymnasium, sarah\n"
+        f"env = gymnasium.make('SarahStepping-v0', engine={default_engine()!r}, time_limit=2)\n"
+        "env.reset(seed=0)\nprint(env.step(env.action_space.sample())[4]['result'].duration)\n",
+        tmp_path,
+    )
+    assert float(shown) == 2.0

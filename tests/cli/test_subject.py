@@ -1,0 +1,41 @@
+"""What a command looks at is its argument, whatever the values of its options are called."""
+
+import json
+from pathlib import Path
+
+import pytest
+from terminal import run
+
+QUICK = ("--episodes", "2", "--json", "--episode.time-limit", "3")
+
+
+def shown(*arguments: str, folder: Path) -> dict[str, object]:
+    process = run("sarah-eval", *arguments, *QUICK, cwd=folder)
+    assert process.returncode == 0, process.stderr
+    content: dict[str, object] = json.loads(process.stdout)
+    return content
+
+
+def test_an_option_before_or_after_it_changes_nothing(tmp_path: Path) -> None:
+    numbers, task = "1.1,0.25,0.16,-0.42", ("--task", "balance")  # which is also the name of shipped parameters
+    assert shown(*task, numbers, folder=tmp_path) == shown(numbers, *task, folder=tmp_path)
+    pushed = ("--episode.push.newtons", "60")
+    assert shown(*pushed, numbers, folder=tmp_path) == shown(numbers, *pushed, folder=tmp_path)
+
+
+def test_shipped_parameters_come_with_their_settings(tmp_path: Path) -> None:
+    own = shown("balance", folder=tmp_path)
+    other = shown("1.1,0.25,0.16,-0.42", folder=tmp_path)  # on other legs, pushed less
+    assert own["parameters"] == other["parameters"] and own["score_mean"] != other["score_mean"]
+
+
+@pytest.mark.parametrize("numbers", ["-1,0,1,0", "1, 0.2, 0.1, 0", " -.5,0,1,-1"])
+def test_numbers_as_people_write_them(numbers: str, tmp_path: Path) -> None:
+    values = shown(numbers, folder=tmp_path)["parameters"]
+    assert list(values.values()) == [float(value) for value in numbers.split(",")]  # type: ignore[attr-defined]
+
+
+def test_a_push_after_the_end_is_refused(tmp_path: Path) -> None:
+    late = ("--episode.push.newtons", "80", "--episode.push.at-seconds", "5", "--episode.time-limit", "3")
+    process = run("sarah-eval", "stepping", *late, cwd=tmp_path)
+    assert process.returncode == 2 and "must begin before the time_limit of 3 s" in process.stderr
