@@ -107,15 +107,18 @@ def parse_episode_options(
 
 
 def _subject_among(arguments: Sequence[str], default: EpisodeOptions, given: Mapping[str, str]) -> str | None:
-    """What to look at, found by parsing with the settings of all tasks; nothing if that fails, or if help is wanted."""
+    """What to look at, found by parsing with the settings of all tasks.
+
+    Where that fails, or help is wanted, the first argument that could be it will do.
+    """
     if {"-h", "--help"} & set(arguments):
-        return None
+        return next(filter(_is_there, arguments), None)
     every = dataclasses.replace(default, episode=with_given_engine(BALANCE.episode, given))
     try:
         with contextlib.redirect_stderr(io.StringIO()):
             options: Any = parse_options(type(default), "", arguments, every)
     except (SystemExit, ConfigurationError):  # the real parser will say so
-        return None
+        return next(filter(_is_there, arguments), None)
     subjects = getattr(options, "subjects", None)
     subject: str | None = subjects[0] if subjects else getattr(options, "subject", None)
     return subject if subject is not None and _is_there(subject) else None
@@ -126,7 +129,7 @@ def _is_there(subject: str) -> bool:
     from sarah.episode.parameter_sets import PARAMETER_SETS
 
     is_run = Path(subject).joinpath("config.yaml").is_file()
-    return subject in PARAMETER_SETS or is_run or "," in subject
+    return subject in PARAMETER_SETS or is_run or ("," in subject and subject.strip(" +-.")[:1].isdigit())
 
 
 def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tuple[list[RunEpisode], RunEpisode]:
