@@ -30,10 +30,10 @@ PARAMETER_SETS = {
     ),
     "balance": ParameterSet(
         EpisodeSpec(
-            (1.1, 0.25, 0.16, -0.42),
+            (1.09, 0.17, 0.65, 1.13),
             0,
             BALANCE,
-            BalanceConfig(stepping=(0.09, 0.44, 0.6, 1.16, 1.82), push=Push(newtons=(75.0, 125.0))),
+            BalanceConfig(stepping=(0.03, 0.14, 0.83, 1.34, 1.81), push=Push(newtons=(75.0, 125.0))),
         ),
         "P1 to P5 and V1 to V4 that NAF learns in both trainings of `make train`, to two digits",
     ),

@@ -17,7 +17,7 @@ def shown(*arguments: str, folder: Path) -> dict[str, object]:
 
 
 def test_an_option_before_or_after_it_changes_nothing(tmp_path: Path) -> None:
-    numbers, task = "1.1,0.25,0.16,-0.42", ("--task", "balance")  # which is also the name of shipped parameters
+    numbers, task = "1.09,0.17,0.65,1.13", ("--task", "balance")  # which is also the name of shipped parameters
     assert shown(*task, numbers, folder=tmp_path) == shown(numbers, *task, folder=tmp_path)
     pushed = ("--episode.push.newtons", "60")
     assert shown(*pushed, numbers, folder=tmp_path) == shown(numbers, *pushed, folder=tmp_path)
@@ -25,7 +25,7 @@ def test_an_option_before_or_after_it_changes_nothing(tmp_path: Path) -> None:
 
 def test_shipped_parameters_come_with_their_settings(tmp_path: Path) -> None:
     own = shown("balance", folder=tmp_path)
-    other = shown("1.1,0.25,0.16,-0.42", folder=tmp_path)  # on other legs, pushed less
+    other = shown("1.09,0.17,0.65,1.13", folder=tmp_path)  # on other legs, pushed less
     assert own["parameters"] == other["parameters"] and own["score_mean"] != other["score_mean"]
 
 
