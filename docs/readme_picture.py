@@ -5,6 +5,7 @@ Two robots step in place and meet the same push: one with locked hips, one with 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib
@@ -13,10 +14,10 @@ from PIL import Image, ImageColor, ImageDraw, ImageFont
 
 from sarah.episode.ending import TERMINATIONS
 from sarah.episode.episode import simulate
+from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import Push
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BalanceConfig
 from sarah.episode.trace import Trace
 from sarah.pictures.colours import PUSH
 from sarah.pictures.overlay import INK, METRES_PER_NEWTON, PUSH_SHOWN_SECONDS
@@ -25,12 +26,12 @@ from sarah.simulation.renderer import Renderer
 from sarah.simulation.scenery import Camera, View
 
 OUT = Path(__file__).parent / "push_recovery.gif"
-LEARNED = (0.82, 0.13, 0.62, 0.17)
-"""V1 to V4 of a Second Training, to two digits."""
+SHIPPED = PARAMETER_SETS["balance"].spec
+LEARNED = SHIPPED.parameters
 CAPTIONS = {(0.0, 0.0, 0.0, 0.0): "hips locked", LEARNED: "hips as NAF learned"}
-SEED, NEWTONS = 9, 100.0
-BEGIN, END = 2.0, 6.0
-"""Of the picture, in s of simulated time: the push comes after one second of stepping."""
+SEED, NEWTONS = 12, 100.0
+BEGIN, END = 1.0, 5.0
+"""Of the picture, in s of simulated time: the push comes after some 0.4 s of stepping."""
 FRAMES_PER_SECOND = 20
 WIDTH, HEIGHT = 400, 380
 """Of each robot's half, in pixels."""
@@ -40,7 +41,7 @@ FONT = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans-Bold.ttf
 
 
 def main() -> None:
-    config = BalanceConfig(push=Push(newtons=(NEWTONS, NEWTONS)), time_limit=10.0)
+    config = replace(SHIPPED.config, push=Push(newtons=NEWTONS), time_limit=10.0)
     halves = []
     for parameters, caption in CAPTIONS.items():
         result = simulate(EpisodeSpec(parameters, SEED, "balance", config), record_trace=True)
