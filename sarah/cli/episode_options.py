@@ -56,8 +56,12 @@ class EpisodeOptions:
         """Specification of an episode with the settings that the options ask for.
 
         :param spec: specification of the episode
-        :raises ConfigurationError: if there is no such physics
+        :raises ConfigurationError: if there is no such physics, or if the task is that of a file that was not named
         """
+        from sarah.runs.recorded_task import RecordedTask, refuse_to_simulate
+
+        if isinstance(spec.task, RecordedTask):
+            refuse_to_simulate(spec.task)
         config = with_engine(self.episode, self.engine)
         if self.physics is not None:
             if self.physics not in PHYSICS:

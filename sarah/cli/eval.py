@@ -85,10 +85,10 @@ def _evaluate(arguments: Sequence[str]) -> None:
     from sarah.episode.workers import Workers
 
     with Workers(options.workers, options.scheduler) as workers:
-        say_engine(spec.config, options.engine)
         if options.robustness is not None:
             _show_robustness(spec.parameters, spec.config, options, workers)
             return
+        say_engine(spec.config, options.engine)
         evaluation = evaluate(spec.task, spec.parameters, spec.config, options.seeds, workers)
         neutral = spec.task.neutral
         baseline = None if neutral is None else evaluate(spec.task, neutral, spec.config, options.seeds, workers)
@@ -165,6 +165,7 @@ def _show_robustness(
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise ConfigurationError(f"cannot write folder {folder}: {error.strerror}") from error
+    say_engine(config, options.engine)
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
     pushed = push_many((neutral, parameters), config, workers, options.forces, options.episodes, options.first_seed)
     head = "".join(f" {name}: survival | score | drift | vibration |" for name in names)

@@ -24,10 +24,15 @@ class RecordedTask(Task[Any]):
 
     def __reduce__(self) -> NoReturn:
         """Refuse to travel to a worker, which would run the file."""
-        _refuse(self)
+        refuse_to_simulate(self)
 
 
-def _refuse(task: Task[Any]) -> NoReturn:
+def refuse_to_simulate(task: Task[Any]) -> NoReturn:
+    """Say how a task is given that has to be run.
+
+    :param task: task of a run folder
+    :raises ConfigurationError: always
+    """
     raise ConfigurationError(
         f"task {task.name!r} is in a file of its own, which is not run unasked: name it with --task {task.reference}"
     )
@@ -77,7 +82,7 @@ def recorded_task(folder: Path) -> Task[Any] | None:
         task: Task[Any]
 
         def refuse(*arguments: Any) -> NoReturn:
-            _refuse(task)
+            refuse_to_simulate(task)
 
         task = RecordedTask(
             parameters=parameters,
