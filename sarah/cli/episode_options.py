@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args
 
 import tyro
 
-from sarah.cli.options import parse_options
+from sarah.cli.options import named_task, parse_options
 from sarah.episode.push import Push, PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task, load_task
+from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
 from sarah.errors import ConfigurationError, shortened, unknown_name
 from sarah.simulation.engines import Engine
 from sarah.simulation.physics import PHYSICS
@@ -100,7 +100,7 @@ def parse_episode_options(
     :param subject: what to look at, if the arguments name several
     """
     given = given_options(arguments, "task", "which", "engine", "episode.engine")
-    task = load_task(given["task"]) if "task" in given else None
+    task = named_task(given.get("task"))
     subject = subject or _subject_among(arguments, default, given)
     own = episode_of(subject, given.get("which"), task).spec.config if subject else (task or STEPPING).episode
     if type(own) is EpisodeConfig:  # any robot can be pushed, whether its task has a push or not

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, episode_of, parse_episode_options
-from sarah.cli.options import run_command, say_engine
+from sarah.cli.options import named_task, run_command, say_engine
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
-from sarah.episode.tasks import BALANCE, BalanceConfig, Task, load_task
+from sarah.episode.tasks import BALANCE, BalanceConfig, Task
 from sarah.errors import ConfigurationError, check_range
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ def _subject(options: EvalOptions) -> tuple[EpisodeSpec, str | None]:
     """Episode to evaluate, on any seed, and the algorithm that learned its parameters."""
     if options.subject is None:
         raise ConfigurationError("give a run folder, numbers or a name")
-    task, algorithm = None if options.task is None else load_task(options.task), None
+    task, algorithm = named_task(options.task), None
     if Path(options.subject).is_dir():
         from sarah.runs.run_folder import RunFolder
 

@@ -9,8 +9,7 @@ from typing import Annotated
 
 import tyro
 
-from sarah.cli.options import parse_options, run_command
-from sarah.episode.tasks import load_task
+from sarah.cli.options import named_task, parse_options, run_command
 from sarah.errors import ConfigurationError
 
 COMMAND = "sarah-figures"
@@ -49,7 +48,7 @@ def _draw(arguments: Sequence[str]) -> None:
         raise ConfigurationError("several runs need a folder for their figures: --out DIR")
     from sarah.runs.run_folder import RunFolder
 
-    task = None if options.task is None else load_task(options.task)
+    task = named_task(options.task)
     runs = [RunFolder.open(path, task=task) for path in options.runs]
     folder = options.out or runs[0].figures_path
     from sarah.reports.all_figures import draw_all_figures

@@ -50,6 +50,14 @@ _REGISTRY = tyro.constructors.ConstructorRegistry()
 _REGISTRY.primitive_rule(_task_rule)
 
 
+def named_task(reference: str | None) -> Task[Any] | None:
+    """Task of an option ``--task``, which runs the file that it names.
+
+    :param reference: value of the option, or ``None`` if it was not given
+    """
+    return None if reference is None else load_task(reference)
+
+
 def fail(command: str, message: str) -> NoReturn:
     """Print one line that says what is wrong, and exit.
 

@@ -9,8 +9,7 @@ from typing import Annotated
 
 import tyro
 
-from sarah.cli.options import parse_options, run_command
-from sarah.episode.tasks import load_task
+from sarah.cli.options import named_task, parse_options, run_command
 from sarah.errors import ConfigurationError
 
 COMMAND = "sarah-report"
@@ -61,7 +60,7 @@ def _report(arguments: Sequence[str]) -> None:
     from sarah.reports.report import write_report
     from sarah.runs.run_folder import RunFolder
 
-    run = RunFolder.open(options.run, task=None if options.task is None else load_task(options.task))
+    run = RunFolder.open(options.run, task=named_task(options.task))
     path = options.out or run.report_path
     if not path.parent.is_dir():
         raise ConfigurationError(f"cannot write {path}: folder {path.parent} does not exist")

@@ -16,7 +16,7 @@ import tyro
 
 from sarah.cli.episode_options import check_episode_options, given_options, with_engine, with_given_engine
 from sarah.cli.interruption import Interruption
-from sarah.cli.options import parse_options, run_command, say_engine
+from sarah.cli.options import named_task, parse_options, run_command, say_engine
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, Task, load_task
 from sarah.errors import (
@@ -194,7 +194,7 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
     given = given_options(arguments, *names)
     if "resume" in given:
         return _resumed_defaults(Path(given["resume"]), given)
-    task = load_task(given["task"]) if "task" in given else None
+    task = named_task(given.get("task"))
     training = _of_file(Path(given["config"]), task) if "config" in given else TrainingConfig()
     training = _with_agent(training, given.get("algo"), given.get("agent.preset"))
     task = task or training.task

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, episode_of, parse_episode_options
-from sarah.cli.options import run_command
+from sarah.cli.options import named_task, run_command
 from sarah.episode.spec import FIRST_EVALUATION_SEED
-from sarah.episode.tasks import load_task
 from sarah.errors import ConfigurationError
 
 if TYPE_CHECKING:
@@ -95,7 +94,7 @@ def _learned(subject: str, arguments: Sequence[str]) -> LearnedParameters:
     from sarah.runs.run_folder import RunFolder
 
     options = parse_episode_options(COMMAND, arguments, TransferOptions(), subject)
-    task = None if options.task is None else load_task(options.task)
+    task = named_task(options.task)
     if Path(subject).is_dir():
         RunFolder.open(Path(subject), task=task).parameters()  # not of an unfinished training
     spec = episode_of(subject, None, task).spec

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, episode_of, parse_episode_options
-from sarah.cli.options import run_command
-from sarah.episode.tasks import load_task
+from sarah.cli.options import named_task, run_command
 from sarah.errors import ConfigurationError
 
 if TYPE_CHECKING:
@@ -94,7 +93,7 @@ def _film(arguments: Sequence[str]) -> None:
 
 def _spec(options: VideoOptions, subject: str) -> EpisodeSpec:
     """Specification of the episode to film."""
-    task = None if options.task is None else load_task(options.task)
+    task = named_task(options.task)
     spec = episode_of(subject, options.which, task).spec
     return dataclasses.replace(options.applied_to(spec), seed=spec.seed if options.seed is None else options.seed)
 

@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, episodes_of, parse_episode_options
-from sarah.cli.options import run_command, say_engine
-from sarah.episode.tasks import load_task
+from sarah.cli.options import named_task, run_command, say_engine
 from sarah.errors import ConfigurationError
 
 if TYPE_CHECKING:
@@ -64,7 +63,7 @@ def _view(arguments: Sequence[str]) -> None:
     options = parse_episode_options(COMMAND, arguments, ViewOptions())
     if find_spec("viser") is None:
         raise ConfigurationError("this needs the extra view: pip install 'sarah[view]'")
-    task = None if options.task is None else load_task(options.task)
+    task = named_task(options.task)
     choices, chosen = episodes_of(options.subject, options.which, task)
     choices = [choice.of(options.applied_to(choice.spec)) for choice in choices]
     chosen = chosen.of(options.applied_to(chosen.spec))

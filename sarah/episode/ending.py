@@ -15,6 +15,8 @@ OSCILLATION_STEPS = 2
 """Number of steps that make an oscillation: one with each leg."""
 LEAST_UPRIGHT = math.cos(math.radians(45.0))
 """Cosine of the torso's tilt beyond which the robot has fallen."""
+LONGEST_ENDING = 40
+"""Longest name of a way in which an episode ends, in characters."""
 TERMINATIONS = {
     "time_limit": "ran to the end",
     "left_box": "left its place",
@@ -42,6 +44,14 @@ def paper_ending(tick: Tick, config: EpisodeConfig) -> str | None:
     if tick.steps < OSCILLATION_STEPS and tick.time > OSCILLATION_SECONDS - half_tick:
         return "no_oscillation"
     return None
+
+
+def is_ending(termination: object) -> bool:
+    """Whether something can name the way in which an episode ended: a short identifier.
+
+    :param termination: name to check, of any type
+    """
+    return isinstance(termination, str) and termination.isidentifier() and len(termination) <= LONGEST_ENDING
 
 
 def ending_words(termination: str) -> str:

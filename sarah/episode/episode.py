@@ -2,33 +2,25 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
-from numbers import Real
 from typing import Any
 
-from sarah.control.hip_law import BalanceParameters, HipLaw
-from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, Phase, SteppingParameters
+from sarah.control.hip_law import HipLaw
+from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, Phase
 from sarah.episode.gait import GaitRecord
 from sarah.episode.motion import MotionRecord
-from sarah.episode.push import DrawnPush
 from sarah.episode.result import EpisodeResult
 from sarah.episode.reward import highest_return
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import STEPPING, Task, mistake
+from sarah.episode.tasks import STEPPING, Task, controller_of, ending_of, push_of, reward_of
 from sarah.episode.tick import Tick
 from sarah.episode.trace import Trace
-from sarah.errors import SarahError, TaskError, shortened
 from sarah.robot.description import ANKLE_JOINTS, describe_robot
 from sarah.robot.reading import SensorReading, Vector
 from sarah.simulation.build import BuildSimulator, simulator_of
 from sarah.simulation.randomisation import draw_conditions
 from sarah.simulation.sensors import ImperfectSensors
 from sarah.simulation.simulator import TorsoState
-
-LONGEST_ENDING = 40
-"""Longest name of a way in which a task ends an episode, in characters."""
 
 
 class Episode:
@@ -60,9 +52,7 @@ class Episode:
     ) -> None:
         self.config = config
         self.task = task
-        self.push = self._asked(task.draw_push, task.checked_config(config, True), seed)
-        if not isinstance(self.push, DrawnPush | None):
-            raise TaskError(f"{task.reference}: draw_push must return a DrawnPush or None, not {shortened(self.push)}")
+        self.push = push_of(task, task.checked_config(config, True), seed)
         self.termination: str | None = None
         self.robot = describe_robot(config.dimensions)
         conditions = draw_conditions(config.randomisation, seed)
@@ -120,13 +110,7 @@ class Episode:
         :param parameters: values of the task's parameters, in order
         """
         constants = self.config.controller
-        made = self._asked(self.task.controller_parameters, self.task.checked(parameters), self.config)
-        if not is_controller_parameters(made):
-            raise TaskError(
-                f"{self.task.reference}: controller_parameters must return finite SteppingParameters, and "
-                f"BalanceParameters or None, not {shortened(made)}"
-            )
-        stepping, balance = made
+        stepping, balance = controller_of(self.task, parameters, self.config)
         hips = None if balance is None else HipLaw(balance, self._dt, constants)
         self.generator = PatternGenerator(stepping, self._pad_threshold, self._dt, hips, constants)
         for reading in self.standing_readings:
@@ -208,35 +192,10 @@ class Episode:
             self.last_reading,
             self.simulation,
         )
-        reward = self._asked(self.task.reward, tick, self.config)
-        if not is_finite_number(reward):
-            raise TaskError(f"{self.task.reference}: its reward must be a finite number, not {shortened(reward)}")
-        self._return += float(reward) * self._dt
-        self.termination = self._ended(tick)
-
-    def _asked(self, function: Callable[..., Any], *arguments: Any) -> Any:
-        """What a function of the task returns. A mistake in somebody's file is named with its line."""
-        try:
-            return function(*arguments)
-        except SarahError:
-            raise
-        except (Exception, SystemExit) as error:
-            if self.task.file is None:
-                raise
-            raise TaskError(mistake(self.task.file.name, error)) from error
-
-    def _ended(self, tick: Tick) -> str | None:
-        """Name of the way in which the episode ends now; ``None`` if it goes on."""
-        ending = self._asked(self.task.ending, tick, self.config)
-        if ending is None:
-            return "time_limit" if tick.time > self.config.time_limit - self._dt / 2 else None
-        is_name = isinstance(ending, str) and ending.isidentifier() and len(ending) <= LONGEST_ENDING
-        if not is_name or ending in ("time_limit", "diverged"):
-            raise TaskError(
-                f"{self.task.reference}: an ending must be a short name of its own such as 'jumped', not "
-                f"{shortened(ending)}"
-            )
-        return ending
+        self._return += reward_of(self.task, tick, self.config) * self._dt
+        self.termination = ending_of(self.task, tick, self.config)
+        if self.termination is None and tick.time > self.config.time_limit - self._dt / 2:
+            self.termination = "time_limit"
 
     def _displacement(self, torso: TorsoState) -> tuple[float, float, float]:
         """Torso position as in equation 2: x and y from the start, z over the floor, in m."""
@@ -267,33 +226,6 @@ class Episode:
                 "score": self._return / self._highest_return,
             }
         )
-
-
-def is_finite_number(value: object) -> bool:
-    """Whether a reward can be added up.
-
-    :param value: what a reward returned
-    """
-    try:
-        return isinstance(value, Real) and math.isfinite(value)
-    except OverflowError:  # an integer that no float can hold
-        return False
-
-
-def is_controller_parameters(value: object) -> bool:
-    """Whether a controller can be made of something.
-
-    :param value: what a task's ``controller_parameters`` returned
-    """
-    if not isinstance(value, tuple) or len(value) != 2:
-        return False
-    stepping, balance = value
-    numbers = (*vars(stepping).values(),) if isinstance(stepping, SteppingParameters) else (None,)
-    if isinstance(balance, BalanceParameters):
-        numbers += (*vars(balance).values(),)
-    elif balance is not None:
-        return False
-    return all(map(is_finite_number, numbers))
 
 
 def simulate(spec: EpisodeSpec, record_trace: bool = False) -> EpisodeResult:

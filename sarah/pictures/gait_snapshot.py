@@ -13,7 +13,7 @@ from PIL import Image
 from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import Task
+from sarah.episode.tasks import Task, controller_of
 from sarah.errors import ConfigurationError, SimulationError
 from sarah.pictures.gait_figure import draw_gait_cycle
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
@@ -55,7 +55,7 @@ def draw_gait(parameters: tuple[float, ...], task: Task[Any], config: EpisodeCon
     except SimulationError:  # the simulation diverges, which the learning curves show
         return []
     assert trace is not None
-    stepping, _ = task.controller_parameters(parameters, config)
+    stepping, _ = controller_of(task, parameters, config)
     end = trace.time[-1]
     times = frame_times(max(trace.time[0], end - VIDEO_SECONDS), end, FRAMES_PER_SECOND[".gif"])
     with tempfile.TemporaryDirectory() as name:

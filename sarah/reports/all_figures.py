@@ -8,6 +8,7 @@ from pathlib import Path
 
 from sarah.episode.episode import simulate
 from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import controller_of
 from sarah.errors import ConfigurationError
 from sarah.pictures.gait_figure import draw_gait_cycle
 from sarah.pictures.robot_figure import draw_robot
@@ -52,7 +53,7 @@ def _draw_cycle(run: RunFolder, path: Path) -> list[Path]:
     config, learned = run.config(), run.parameters()
     trace = simulate(EpisodeSpec(learned, 0, config.task, config.episode), record_trace=True).trace
     assert trace is not None
-    stepping, _ = config.task.controller_parameters(learned, config.episode)
+    stepping, _ = controller_of(config.task, learned, config.episode)
     try:
         return draw_gait_cycle(trace, stepping, path, config.episode.controller)
     except ConfigurationError as error:

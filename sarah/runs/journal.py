@@ -24,7 +24,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO
 
-from sarah.episode.episode import LONGEST_ENDING, simulate
+from sarah.episode.ending import is_ending
+from sarah.episode.episode import simulate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Executor, Job, Outcome, begin_episode, finish_episode
@@ -61,7 +62,7 @@ def _reading(plain: Any) -> SensorReading:
 def _result(plain: Any) -> EpisodeResult:
     x, y, z = plain["final_position"]
     termination = plain["termination"]
-    if not isinstance(termination, str) or not termination.isidentifier() or len(termination) > LONGEST_ENDING:
+    if not is_ending(termination):
         raise ValueError("the way in which an episode ended is no name")
     numbers = {name: value for name, value in plain.items() if name not in ("termination", "final_position")}
     if any(type(value) not in (int, float) for value in (x, y, z, *numbers.values())):

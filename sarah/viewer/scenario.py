@@ -7,7 +7,7 @@ from dataclasses import astuple, dataclass
 
 from sarah.episode.push import Push
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, BalanceConfig
+from sarah.episode.tasks import BALANCE, BalanceConfig, controller_of, push_of
 
 
 @dataclass(frozen=True)
@@ -51,8 +51,8 @@ class Scenario:
         :param spec: specification of any task; a push that its seed draws becomes a given push
         """
         task = spec.task
-        stepping, balance = task.controller_parameters(spec.parameters, spec.config)
-        drawn, push = task.draw_push(spec.config, spec.seed), NO_PUSH
+        stepping, balance = controller_of(task, spec.parameters, spec.config)
+        drawn, push = push_of(task, spec.config, spec.seed), NO_PUSH
         if drawn is not None:
             x, y, _ = drawn.force
             push = KnownPush(math.hypot(x, y), math.degrees(math.atan2(y, x)) % 360.0, drawn.begin)

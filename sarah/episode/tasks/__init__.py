@@ -6,10 +6,11 @@ A task may import errors, robot, control, and from the episode its settings, pus
 from pathlib import Path
 from typing import Any
 
+from sarah.episode.tasks.asking import controller_of, ending_of, push_of, reward_of
 from sarah.episode.tasks.balance import BALANCE, BalanceConfig
 from sarah.episode.tasks.stepping import STEPPING
 from sarah.episode.tasks.task import Task, TaskFile
-from sarah.episode.tasks.task_file import SETTINGS_TYPES, mistake, read_task, task_of_text
+from sarah.episode.tasks.task_file import SETTINGS_TYPES, read_task, task_of_text
 from sarah.errors import ConfigurationError, unknown_name
 
 TASKS: dict[str, Task[Any]] = {task.name: task for task in (STEPPING, BALANCE)}
@@ -57,8 +58,11 @@ __all__ = [
     "BalanceConfig",
     "Task",
     "TaskFile",
+    "controller_of",
+    "ending_of",
     "load_task",
-    "mistake",
+    "push_of",
+    "reward_of",
     "task_named",
     "task_of_text",
 ]
