@@ -3,16 +3,16 @@
     >>> import sarah
     >>> result = sarah.simulate(sarah.EpisodeSpec(parameters=(0.4, 1.3, 0.1, 1.0, 1.0), seed=0))
 
-Importing it registers ``SarahStepping-v0``, ``SarahBalance-v0`` and ``SarahEpisode-v0`` with gymnasium. The names below
-are loaded when they are first used, so that importing the package is fast.
+Importing it registers ``SarahStepping-v0``, ``SarahBalance-v0`` and ``SarahEpisode-v0`` with gymnasium. On a robot's
+computer without gymnasium and numpy it registers nothing, and ``sarah.control`` can be used. The names below are loaded
+when they are first used, so that importing the package is fast.
 """
 
 from __future__ import annotations
 
 from importlib import import_module
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
-
-from sarah.envs.registration import register_environments
 
 if TYPE_CHECKING:
     from sarah.control.constants import ControllerConstants
@@ -102,4 +102,7 @@ def __getattr__(name: str) -> Any:
     return getattr(import_module(f"sarah.{_HOMES[name]}"), name)
 
 
-register_environments()
+if find_spec("gymnasium") is not None:
+    from sarah.envs.registration import register_environments
+
+    register_environments()

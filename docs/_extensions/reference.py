@@ -200,16 +200,41 @@ def targets_page() -> Iterator[str]:
 
 def rates_page() -> Iterator[str]:
     """A table of the times, thresholds and errors that a training assumes."""
-    physics, sensors = PHYSICS["standard"], Randomisation()
+    physics, sensors, constants = PHYSICS["standard"], Randomisation(), STANDARD_CONSTANTS
     rows = [
         ["control rate", f"{physics.control_rate} Hz", "`episode.physics.control_rate`"],
         ["standing before the first step", f"{STAND_SECONDS:g} s", "fixed"],
-        ["delay from sensing to acting", f"{sensors.delay_ticks} tick", "`episode.randomisation.delay_ticks`"],
+        [
+            "delay from sensing to acting",
+            f"{1000 * sensors.delay_seconds:g} ms",
+            "`episode.randomisation.delay_seconds`",
+        ],
         ["bandwidth of the position servos", f"{span(sensors.actuator_bandwidth)} per second", "`…actuator_bandwidth`"],
-        ["load above which a foot counts as loaded", f"{span(sensors.pad_threshold)} N", "`…pad_threshold`"],
-        ["noise of a pad", f"{sensors.pad_noise:g} N", "`…pad_noise`"],
-        ["noise of the accelerometer", f"{sensors.acceleration_noise:g} m/s²", "`…acceleration_noise`"],
-        ["noise of the gyroscope", f"{sensors.angular_rate_noise:g} rad/s", "`…angular_rate_noise`"],
+        [
+            "load above which a foot counts as loaded",
+            f"{constants.pad_threshold:g} N",
+            "`episode.controller.pad_threshold`",
+        ],
+        ["error of a pad's gain", f"up to {100 * sensors.pad_gain:g} %", "`episode.randomisation.pad_gain`"],
+        ["noise of a pad", f"{sensors.pad_noise_density:g} N per √Hz", "`…pad_noise_density`"],
+        [
+            "noise of the accelerometer",
+            f"{sensors.acceleration_noise_density:g} m/s² per √Hz",
+            "`…acceleration_noise_density`",
+        ],
+        [
+            "noise of the gyroscope",
+            f"{sensors.angular_rate_noise_density:g} rad/s per √Hz",
+            "`…angular_rate_noise_density`",
+        ],
+        ["constant error of the accelerometer", f"up to {sensors.acceleration_bias:g} m/s²", "`…acceleration_bias`"],
+        ["constant error of the gyroscope", f"up to {sensors.angular_rate_bias:g} rad/s", "`…angular_rate_bias`"],
+        ["inertial unit mounted askew", f"by up to {sensors.imu_tilt_degrees:g} degrees", "`…imu_tilt_degrees`"],
+        [
+            "torso's centre of mass, along each axis",
+            f"off by up to {1000 * sensors.mass_offset:g} mm",
+            "`…mass_offset`",
+        ],
         ["low-pass of both", f"{sensors.imu_bandwidth:g} Hz", "`…imu_bandwidth`"],
     ]
     yield from table(["what", "in a training", "setting"], rows)

@@ -29,8 +29,11 @@ PLAUSIBLE = {
     "fall_rate": (0.1, 100.0, "1/s"),
     "fall_dead_band": (0.0, 1.5, "rad"),
     "capture_gain": (0.0, 10.0, ""),
-    "unloaded_newtons": (0.0, 1000.0, "N"),
+    "pad_threshold": (0.0, 1000.0, "N"),
     "largest_rate": (0.1, 1000.0, "rad/s"),
+    "balance_ramp": (0.01, 1000.0, "per second"),
+    "upright_time_constant": (1e-4, 100.0, "s"),
+    "least_upright": (-20.0, 20.0, "m/s^2"),
 }
 """Lowest value, highest value and unit of each constant. Beyond them, somebody has mistaken the unit."""
 
@@ -63,8 +66,13 @@ class ControllerConstants:
     :param fall_rate: rate at which a fall over a foot grows, in 1/s; a rate of leaning counts divided by it
     :param fall_dead_band: fall below which the flexion does not react, in rad
     :param capture_gain: flexion of an unloaded leg against the fall at V3 = 1, in rad per rad
-    :param unloaded_newtons: load below which a leg is free to flex against the fall, in N
+    :param pad_threshold: sum of a foot's two pads above which it counts as loaded, in N; a leg with less is free to
+        flex against the fall
     :param largest_rate: limit to which rates about x and y are clipped before all filters, in rad/s
+    :param balance_ramp: speed at which V1 to V4 move to new values while the robot steps, per second
+    :param upright_time_constant: time constant of the low-pass of the vertical acceleration that recognises a fall,
+        in s
+    :param least_upright: low-passed vertical acceleration of the torso below which the robot has fallen, in m/s^2
     """
 
     baseline_time_constant: float = 8.0
@@ -89,8 +97,11 @@ class ControllerConstants:
     fall_rate: float = 4.0
     fall_dead_band: float = 0.03
     capture_gain: float = 0.6
-    unloaded_newtons: float = 30.0
+    pad_threshold: float = 30.0
     largest_rate: float = 10.0
+    balance_ramp: float = 4.0
+    upright_time_constant: float = 0.3
+    least_upright: float = 5.0
 
     def __post_init__(self) -> None:
         """Refuse values that no controller can have."""

@@ -26,6 +26,8 @@ a reason: where the torso sits, the acceleration of a falling robot and its tilt
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
@@ -49,28 +51,49 @@ class BalanceParameters:
     V4: float
 
 
+LOCKED_HIPS = BalanceParameters(0.0, 0.0, 0.0, 0.0)
+"""V1 to V4 of the First Training, in which the hips stay straight."""
+NO_LIMITS = ((-math.inf, math.inf),) * 6
+"""Lowest and highest position of each actuated joint, for a robot whose joints have no limits."""
+
+
 class HipLaw:
     """Hip targets from sensor readings. Call :meth:`sense` and then :meth:`tick` once per control tick.
 
     :param parameters: values of V1 to V4
     :param dt: control period, in s
     :param constants: gains, limits, speeds and time constants of the controller
+    :param limits: lowest and highest position of the joints in the order of ``ACTUATED_JOINTS``, each around zero
     """
 
+    parameters: BalanceParameters
+    """Values of V1 to V4 at present."""
+    loads: dict[Side, float]
+    """Sum of the two pads of each foot in the last reading, in N."""
+    limited: set[int]
+    """Indices of the hip joints whose limits kept a target of the last tick from where the law wanted it."""
+
     def __init__(
-        self, parameters: BalanceParameters, dt: float, constants: ControllerConstants = STANDARD_CONSTANTS
+        self,
+        parameters: BalanceParameters,
+        dt: float,
+        constants: ControllerConstants = STANDARD_CONSTANTS,
+        limits: Sequence[tuple[float, float]] = NO_LIMITS,
     ) -> None:
         self.abduction = 0.0
         self.flexion = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
         self.pitch = 0.0
-        self._abduction_before = 0.0
-        self._parameters = parameters
+        self.abduction_rate = 0.0
+        """Speed of the abduction target in the last tick, in rad/s."""
+        self.parameters = parameters
+        self.loads = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
+        self.limited = set()
         self._constants = constants
         self._dt = dt
+        self._limits = limits
         self._stable_x = LowPass(constants.stable_time_constant, dt)
         self._lean_rate = LowPass(constants.fall_time_constant, dt)
         self._fall = LowPass(constants.fall_time_constant, dt)
-        self._loads = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
         self._joints: dict[Side, float] | None = None
 
     @property
@@ -86,49 +109,61 @@ class HipLaw:
     @property
     def sway(self) -> float:
         """Abduction without V2's constant, in rad: the part that comes and goes with the rocking."""
-        return self.abduction + self._constants.abduction_scale * self._parameters.V2
+        return self.abduction + self._constants.abduction_scale * self.parameters.V2
 
-    @property
-    def abduction_rate(self) -> float:
-        """Speed of the abduction target in the last tick, in rad/s."""
-        return (self.abduction - self._abduction_before) / self._dt
-
-    def sense(self, reading: SensorReading) -> None:
+    def sense(self, reading: SensorReading, periods: int = 1) -> None:
         """Filter one reading without acting on it, as while standing.
 
         :param reading: finite sensor reading of this tick, clipped and corrected by the
             :class:`~sarah.control.baselines.Baselines`
+        :param periods: control periods since the last reading
         """
-        constants = self._constants
-        rate = reading.angular_rate[0]
-        self._stable_x(reading.acceleration[0])
-        self.pitch += self._dt * (rate - self.pitch / constants.pitch_time_constant)
         left_fore, left_hind, right_fore, right_hind = reading.pressures
-        self._loads = {Side.LEFT: left_fore + left_hind, Side.RIGHT: right_fore + right_hind}
-        _, _, left_flexion, right_flexion, _, _ = reading.joints
-        joints = {Side.LEFT: left_flexion, Side.RIGHT: right_flexion}
-        carrying = Side.LEFT if self._loads[Side.LEFT] > self._loads[Side.RIGHT] else Side.RIGHT
-        speed = (joints[carrying] - (self._joints or joints)[carrying]) / self._dt
+        loads = self.loads = {Side.LEFT: left_fore + left_hind, Side.RIGHT: right_fore + right_hind}
+        carrying = Side.LEFT if loads[Side.LEFT] > loads[Side.RIGHT] else Side.RIGHT
+        joints = {Side.LEFT: reading.joints[2], Side.RIGHT: reading.joints[3]}
+        speed = (joints[carrying] - (self._joints or joints)[carrying]) / (periods * self._dt)
         self._joints = joints
+        for _ in range(periods):
+            self._filter(reading.acceleration[0], reading.angular_rate[0], joints[carrying], speed)
+
+    def _filter(self, acceleration: float, rate: float, joint: float, speed: float) -> None:
+        """Advance all filters by a control period: lateral acceleration, rate about x, carrying joint and its speed."""
+        constants = self._constants
+        self._stable_x(acceleration)
+        self.pitch += self._dt * (rate - self.pitch / constants.pitch_time_constant)
         lean_rate = self._lean_rate(clipped(rate + speed, constants.largest_rate))
-        lean = self.pitch + joints[carrying] - self._constant_flexion + lean_rate / constants.fall_rate
+        lean = self.pitch + joint - self._constant_flexion + lean_rate / constants.fall_rate
         self._fall(lean - clipped(lean, constants.fall_dead_band))
 
-    def tick(self) -> None:
-        """Move the targets by one control tick."""
-        v, constants = self._parameters, self._constants
-        self._abduction_before = self.abduction
-        self.abduction = self._moved(self.abduction, -constants.abduction_scale * (v.V1 * self.stable_x + v.V2))
-        for side in Side:
+    def tick(self, periods: int = 1) -> None:
+        """Move the targets.
+
+        :param periods: control periods to move them by
+        """
+        v, constants = self.parameters, self._constants
+        self.limited = set()
+        before = self.abduction
+        self.abduction = self._moved(
+            before, -constants.abduction_scale * (v.V1 * self.stable_x + v.V2), (0, 1), periods
+        )
+        self.abduction_rate = (self.abduction - before) / (periods * self._dt)
+        for joint, side in enumerate(Side, start=2):
             goal = self._constant_flexion
-            if self._loads[side] < constants.unloaded_newtons:
+            if self.loads[side] < constants.pad_threshold:
                 goal = -constants.capture_gain * v.V3 * self.fall + goal
-            self.flexion[side] = self._moved(self.flexion[side], goal)
+            self.flexion[side] = self._moved(self.flexion[side], goal, (joint,), periods)
 
     @property
     def _constant_flexion(self) -> float:
-        return self._constants.flexion_scale * self._parameters.V4
+        return self._constants.flexion_scale * self.parameters.V4
 
-    def _moved(self, now: float, goal: float) -> float:
+    def _moved(self, now: float, goal: float, joints: tuple[int, ...], periods: int) -> float:
         constants = self._constants
-        return ramped(now, clipped(goal, constants.largest_hip_angle), constants.hip_speed * self._dt)
+        goal = clipped(goal, constants.largest_hip_angle)
+        for joint in joints:
+            low, high = self._limits[joint]
+            if not low <= goal <= high:
+                self.limited.add(joint)
+                goal = max(low, min(high, goal))
+        return ramped(now, goal, constants.hip_speed * self._dt * periods)

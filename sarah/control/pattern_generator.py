@@ -20,17 +20,23 @@ compares 0.3 s and 0.5 s). The code uses plain floats only, because it runs once
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Sequence
+from dataclasses import astuple, dataclass
 from enum import Enum
 
 from sarah.control.baselines import Baselines
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
-from sarah.control.hip_law import HipLaw
-from sarah.robot.filters import LowPass, ramped
-from sarah.robot.reading import SensorReading, Side
+from sarah.control.hip_law import LOCKED_HIPS, NO_LIMITS, BalanceParameters, HipLaw
+from sarah.errors import ConfigurationError
+from sarah.robot.description import ACTUATED_JOINTS
+from sarah.robot.filters import LowPass, clipped, ramped
+from sarah.robot.reading import GRAVITY, STANDING, SensorReading, Side
 
 STAND_SECONDS = 1.0
 """Duration of standing before the robot begins to step, in s; it is the paper's."""
+LONGEST_GAP = 1.0
+"""Longest time between two ticks that the controller makes up for, in s."""
 
 
 class Phase(Enum):
@@ -75,42 +81,81 @@ class PhaseChange:
 
 
 class PatternGenerator:
-    """State machine that makes the steps. Call :meth:`tick` once per control tick with a new reading.
+    """The controller of the robot. Call :meth:`tick` once per control period with a new reading, from standing on.
+
+    It stands for its first second, in which it learns the baselines of its sensors, and then steps. A signal that is
+    not finite keeps its last value. Once the robot has fallen, the targets stay where they are.
 
     :param parameters: values of P1 to P5
-    :param pad_threshold: load above which a foot counts as loaded, in N
+    :param balance: values of V1 to V4; zeros lock the hips, as in the First Training
     :param dt: control period, in s
-    :param hips: hip law; without one the hips are locked, as in the First Training
+    :param limits: lowest and highest position of the joints in the order of ``ACTUATED_JOINTS``, in rad and m, which no
+        target leaves
     :param constants: time-outs, lengths, speeds and time constants of the controller
+    :raises ConfigurationError: if a parameter is not finite, or zero is not within a joint's limits
     """
 
+    parameters: SteppingParameters
+    """Values of P1 to P5."""
+    hips: HipLaw
+    """Hip law, with the values that V1 to V4 have at present."""
     stance: Side
     """Leg that carries the robot."""
     swing: Side
     """Other leg, which moves."""
+    has_fallen: bool
+    """Whether the torso has lain down: its vertical acceleration has been low for some tenths of a second."""
 
     def __init__(
         self,
         parameters: SteppingParameters,
-        pad_threshold: float = 30.0,
+        balance: BalanceParameters = LOCKED_HIPS,
         dt: float = 0.01,
-        hips: HipLaw | None = None,
+        limits: Sequence[tuple[float, float]] = NO_LIMITS,
         constants: ControllerConstants = STANDARD_CONSTANTS,
     ) -> None:
-        self.parameters = parameters
+        if len(limits) != len(ACTUATED_JOINTS) or not all(low <= 0.0 <= high for low, high in limits):
+            raise ConfigurationError(f"limits must be {len(ACTUATED_JOINTS)} ranges around zero, not {limits!r}")
         self.constants = constants
-        self.hips = hips
+        self.hips = HipLaw(balance, dt, constants, limits)
         self.phase = Phase.STAND
         self.stance, self.swing = Side.RIGHT, Side.LEFT
-        self._pad_threshold = pad_threshold
+        self.has_fallen = False
+        self._balance_goal = balance
         self._dt = dt
+        self._limits = limits
         self._ticks_in_phase = 0
         self._swing_foot_was_off = False
+        self._reading = STANDING
         self._baselines = Baselines(dt, constants)
         self._stable_x = LowPass(constants.tilt_time_constant, dt)
         self._rate_y = LowPass(constants.rate_time_constant, dt)
+        self._upright = LowPass(constants.upright_time_constant, dt, GRAVITY)
         self._lengths = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
-        self._loads = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
+        self._limited_legs: set[int] = set()
+        self.set_parameters(parameters, balance)
+
+    def set_parameters(
+        self, parameters: SteppingParameters | None = None, balance: BalanceParameters | None = None
+    ) -> None:
+        """Take new parameters, at any time.
+
+        P1 to P5 hold from the next tick on. While the robot steps, V1 to V4 move to their new values at the speed of
+        ``balance_ramp``: a jump of V2 would feel like a push.
+
+        :param parameters: values of P1 to P5; without them the present ones stay
+        :param balance: values of V1 to V4; without them the present ones stay
+        :raises ConfigurationError: if a value is not finite; all values stay as they were
+        """
+        for given in (parameters, balance):
+            if given is not None and not all(map(math.isfinite, astuple(given))):
+                raise ConfigurationError(f"parameters must be finite numbers, not {given!r}")
+        if parameters is not None:
+            self.parameters = parameters
+        if balance is not None:
+            self._balance_goal = balance
+            if self.phase is Phase.STAND:
+                self.hips.parameters = balance
 
     @property
     def stable_x(self) -> float:
@@ -123,62 +168,67 @@ class PatternGenerator:
 
         Abduction keeps the torso upright while the legs lean, and counts as tilt too.
         """
-        sway = 0.0 if self.hips is None else self.hips.sway
-        return self.stance.value * (self.constants.abduction_tilt * sway - self._stable_x.value)
+        return self.stance.value * (self.constants.abduction_tilt * self.hips.sway - self._stable_x.value)
 
     @property
     def rate(self) -> float:
         """Angular rate about y towards the stance leg, in rad/s, with a share of the abduction's rate."""
-        abduction_rate = 0.0 if self.hips is None else self.hips.abduction_rate
-        return self.stance.value * (self._rate_y.value + self.constants.abduction_rate_share * abduction_rate)
+        sway_rate = self.constants.abduction_rate_share * self.hips.abduction_rate
+        return self.stance.value * (self._rate_y.value + sway_rate)
 
-    def sense(self, reading: SensorReading) -> None:
-        """Filter one reading without acting on it, as while standing.
-
-        :param reading: sensor reading of this tick; one that is not finite is ignored
-        """
-        if not reading.is_finite:
-            return
-        reading = self._baselines.corrected(reading, self.phase is Phase.STAND)
-        self._stable_x(reading.acceleration[0])
-        self._rate_y(reading.angular_rate[1])
-        left_fore, left_hind, right_fore, right_hind = reading.pressures
-        self._loads[Side.LEFT] = left_fore + left_hind
-        self._loads[Side.RIGHT] = right_fore + right_hind
-        if self.hips is not None:
-            self.hips.sense(reading)
-
-    def tick(self, reading: SensorReading) -> PhaseChange | None:
+    def tick(self, reading: SensorReading, seconds: float | None = None) -> PhaseChange | None:
         """Advance by one control tick.
 
-        :param reading: sensor reading of this tick
+        :param reading: sensor reading of this tick; a signal that is not finite keeps its last value
+        :param seconds: time since the last tick in s, if the loop was late or missed some; by default a control period
         :return: the phase change that this tick made, if it made one; :attr:`targets` follow the new phase
         """
-        self.sense(reading)
-        self._ticks_in_phase += 1
+        periods = 1 if seconds is None else max(1, round(min(seconds, LONGEST_GAP) / self._dt))
+        self._sense(reading, periods)
+        if self.has_fallen:
+            return None
+        self._ticks_in_phase += periods
         if self.phase in (Phase.LIFT, Phase.LAND) and not self._is_loaded(self.swing):
             self._swing_foot_was_off = True
         change = self._phase_change()
         if change is not None:
             self._enter_next_phase()
-        self._ramp_legs()
-        if self.hips is not None:
-            self.hips.tick()
+        if self.phase is not Phase.STAND:
+            self._ramp_balance(periods)
+            self._ramp_legs(periods)
+            self.hips.tick(periods)
         return change
 
     @property
     def targets(self) -> tuple[float, float, float, float, float, float]:
         """Joint targets in the order of ``ACTUATED_JOINTS``, in rad and m."""
-        left, right = self._lengths[Side.LEFT], self._lengths[Side.RIGHT]
-        if self.hips is None:
-            return (0.0, 0.0, 0.0, 0.0, left, right)
-        abduction, flexion = self.hips.abduction, self.hips.flexion
-        return (abduction, abduction, flexion[Side.LEFT], flexion[Side.RIGHT], left, right)
+        abduction, flexion, lengths = self.hips.abduction, self.hips.flexion, self._lengths
+        left, right = Side.LEFT, Side.RIGHT
+        return (abduction, abduction, flexion[left], flexion[right], lengths[left], lengths[right])
+
+    @property
+    def limited_joints(self) -> tuple[str, ...]:
+        """Names of the joints whose limits keep their targets from where the controller wants them."""
+        return tuple(ACTUATED_JOINTS[joint] for joint in sorted(self.hips.limited | self._limited_legs))
+
+    def _sense(self, reading: SensorReading, periods: int) -> None:
+        reading = self._reading = reading.repaired(self._reading)
+        is_standing = self.phase is Phase.STAND
+        up = clipped(reading.acceleration[2], self.constants.largest_acceleration)
+        corrected = reading
+        for _ in range(periods):
+            corrected = self._baselines.corrected(reading, is_standing)
+            self._stable_x(corrected.acceleration[0])
+            self._rate_y(corrected.angular_rate[1])
+            self._upright(up)
+        self.hips.sense(corrected, periods)
+        if self._upright.value < self.constants.least_upright:
+            self.has_fallen = True
 
     def _phase_change(self) -> PhaseChange | None:
         elapsed = self._ticks_in_phase * self._dt
         if self.phase is Phase.STAND:
-            return PhaseChange(Phase.STAND, by_sensors=False)
+            return PhaseChange(Phase.STAND, by_sensors=False) if elapsed > STAND_SECONDS + self._dt / 2 else None
         if elapsed < self.constants.minimum_phase_seconds - self._dt / 2:
             return None
         by_sensors = self._condition_holds()
@@ -214,17 +264,31 @@ class PatternGenerator:
             self._swing_foot_was_off = False
 
     def _is_loaded(self, side: Side) -> bool:
-        return self._loads[side] > self._pad_threshold
+        return self.hips.loads[side] > self.constants.pad_threshold
 
-    def _ramp_legs(self) -> None:
+    def _ramp_balance(self, periods: int) -> None:
+        """Move V1 to V4 towards the values that were set last."""
+        now, goal = self.hips.parameters, self._balance_goal
+        if now is not goal:
+            largest = self.constants.balance_ramp * self._dt * periods
+            moved = BalanceParameters(
+                *[ramped(*pair, largest) for pair in zip(astuple(now), astuple(goal), strict=True)]
+            )
+            self.hips.parameters = goal if moved == goal else moved
+
+    def _ramp_legs(self, periods: int) -> None:
         """Move both leg length targets towards those of the phase; positive lengths retract."""
         constants = self.constants
-        swing_length = 0.0
+        goals = {self.stance: 0.0, self.swing: 0.0}
         if self.phase is Phase.SHIFT:
-            swing_length = -constants.shift_extension
+            goals[self.swing] = -constants.shift_extension
         elif self.phase is Phase.LIFT:
-            swing_length = constants.lift_retraction
-        largest = constants.leg_speed * self._dt
-        lengths, swing, stance = self._lengths, self.swing, self.stance
-        lengths[swing] = ramped(lengths[swing], swing_length, largest)
-        lengths[stance] = ramped(lengths[stance], 0.0, largest)
+            goals[self.swing] = constants.lift_retraction
+        largest = constants.leg_speed * self._dt * periods
+        self._limited_legs = set()
+        for joint, side in enumerate(Side, start=4):
+            low, high = self._limits[joint]
+            goal = max(low, min(high, goals[side]))
+            if goal != goals[side]:
+                self._limited_legs.add(joint)
+            self._lengths[side] = ramped(self._lengths[side], goal, largest)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from sarah.control.hip_law import HipLaw
-from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, Phase
+from sarah.control.hip_law import LOCKED_HIPS
+from sarah.control.parameters import PAPER_STEPPING
+from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, Phase, SteppingParameters
 from sarah.episode.gait import GaitRecord
 from sarah.episode.motion import MotionRecord
 from sarah.episode.result import EpisodeResult
@@ -15,7 +16,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING, Task, controller_of, ending_of, push_of, reward_of
 from sarah.episode.tick import Tick
 from sarah.episode.trace import Trace
-from sarah.robot.description import ANKLE_JOINTS, describe_robot
+from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, describe_robot
 from sarah.robot.reading import SensorReading, Vector
 from sarah.simulation.build import BuildSimulator, simulator_of
 from sarah.simulation.randomisation import draw_conditions
@@ -38,7 +39,7 @@ class Episode:
     """
 
     generator: PatternGenerator
-    """Source of the joint targets, from :meth:`start` on."""
+    """Source of the joint targets; :meth:`start` gives it its parameters."""
     standing_readings: list[SensorReading]
     """Sensor readings of the first second."""
 
@@ -59,16 +60,10 @@ class Episode:
         self.simulation = (build or simulator_of(config.engine))(self.robot, config.physics, conditions)
         self._truth = self.last_reading = self.simulation.read()
         self._dt = config.physics.control_dt
-        self._pad_threshold = conditions.pad_threshold
-        self._sensors = ImperfectSensors(
-            conditions.acceleration_noise,
-            conditions.angular_rate_noise,
-            conditions.imu_bandwidth,
-            conditions.pad_noise,
-            conditions.delay_ticks,
-            conditions.sensor_seed,
-            self._dt,
-        )
+        limits = [self.robot.limits[joint] for joint in ACTUATED_JOINTS]
+        stepping = SteppingParameters(*PAPER_STEPPING)  # until start() gives it others
+        self.generator = PatternGenerator(stepping, dt=self._dt, limits=limits, constants=config.controller)
+        self._sensors = ImperfectSensors(conditions.sensors, self._dt)
         self.standing_readings = []
         self._first = self._last = self.simulation.torso_state()
         self._gait = GaitRecord(config.physics.control_rate)
@@ -89,7 +84,9 @@ class Episode:
         :return: the last reading of that second, which is the observation that the agent acts on
         """
         for _ in range(round(STAND_SECONDS / self._dt)):
-            self.standing_readings.append(self._sense())
+            reading = self._sense()
+            self.standing_readings.append(reading)
+            self.generator.tick(reading)
             self.simulation.advance()
         return self.last_reading
 
@@ -105,16 +102,12 @@ class Episode:
         return self.result()
 
     def start(self, parameters: tuple[float, ...]) -> None:
-        """Make the pattern generator, and filter the readings of the standing robot with it.
+        """Give the pattern generator its parameters; it steps from the next tick on.
 
         :param parameters: values of the task's parameters, in order
         """
-        constants = self.config.controller
         stepping, balance = controller_of(self.task, parameters, self.config)
-        hips = None if balance is None else HipLaw(balance, self._dt, constants)
-        self.generator = PatternGenerator(stepping, self._pad_threshold, self._dt, hips, constants)
-        for reading in self.standing_readings:
-            self.generator.sense(reading)
+        self.generator.set_parameters(stepping, balance or LOCKED_HIPS)
 
     def tick(self) -> None:
         """Advance by one control tick: sense, decide, act, simulate and judge."""

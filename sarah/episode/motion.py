@@ -14,8 +14,9 @@ import numpy as np
 from sarah.robot.description import ACTUATED_JOINTS
 from sarah.robot.reading import Vector
 
-CHATTER_HZ = 20.0
-"""Frequency above which motion counts as vibration, in Hz: above the gait's harmonics, below half the control rate."""
+CHATTER_BAND = (20.0, 50.0)
+"""Frequencies between which motion counts as vibration, in Hz: above the gait's harmonics, and the same at all control
+rates from 100 Hz on."""
 SEGMENT_SECONDS = 0.5
 """Length of the segments that spectra are averaged over, in s."""
 IS_HIP = np.array([not name.endswith("leg_length") for name in ACTUATED_JOINTS])
@@ -67,8 +68,8 @@ class MotionRecord:
 
     @property
     def vibration(self) -> float:
-        """Mean square of the torso's acceleration above 20 Hz, all axes together, in m^2/s^4; 0 for less than 0.5 s."""
-        return power_above(np.array(self._accelerations), self._control_rate, CHATTER_HZ)
+        """Mean square of the torso's acceleration from 20 to 50 Hz, all axes together, in m^2/s^4; 0 below 0.5 s."""
+        return power_within(np.array(self._accelerations), self._control_rate, CHATTER_BAND)
 
     def metrics(self) -> dict[str, Any]:
         """Metrics of :class:`~sarah.episode.result.EpisodeResult` that follow from the motion."""
@@ -80,15 +81,15 @@ class MotionRecord:
         }
 
 
-def power_above(signals: np.ndarray, rate: int, hertz: float) -> float:
-    """Mean square of the components of signals above a frequency, summed over the signals.
+def power_within(signals: np.ndarray, rate: int, band: tuple[float, float]) -> float:
+    """Mean square of the components of signals within a band of frequencies, summed over the signals.
 
     It is estimated by Welch's method (1967): the mean over half-overlapping segments of half a second. So a short burst
     counts alike whenever it occurs.
 
     :param signals: samples of the signals, of shape (time, signals)
     :param rate: samples per second
-    :param hertz: frequency, in Hz
+    :param band: frequencies above which and up to which components count, in Hz
     :return: in the signals' unit squared; 0 for less than one segment
     """
     length = round(SEGMENT_SECONDS * rate)
@@ -100,5 +101,6 @@ def power_above(signals: np.ndarray, rate: int, hertz: float) -> float:
     spectra = 2.0 * np.abs(np.fft.rfft(centred * window, axis=-1)) ** 2 / (length * (window**2).sum())
     if length % 2 == 0:
         spectra[..., -1] /= 2.0  # half the sampling rate has no negative twin
-    above = np.fft.rfftfreq(length, 1.0 / rate) > hertz
-    return float(spectra[..., above].sum(axis=(1, 2)).mean())
+    frequencies = np.fft.rfftfreq(length, 1.0 / rate)
+    within = (frequencies > band[0]) & (frequencies <= band[1])
+    return float(spectra[..., within].sum(axis=(1, 2)).mean())

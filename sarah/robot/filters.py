@@ -6,14 +6,15 @@ import math
 
 
 class LowPass:
-    """First-order low-pass filter, starting at zero.
+    """First-order low-pass filter.
 
     :param time_constant: time constant, in s
     :param dt: control period, in s
+    :param value: value to start at
     """
 
-    def __init__(self, time_constant: float, dt: float) -> None:
-        self.value = 0.0
+    def __init__(self, time_constant: float, dt: float, value: float = 0.0) -> None:
+        self.value = value
         self._gain = low_pass_gain(time_constant, dt)
 
     def __call__(self, sample: float) -> float:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from enum import Enum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 Vector = tuple[float, float, float]
+GRAVITY = 9.81
+"""Acceleration of gravity, in m/s^2."""
 LARGEST_SIGNAL = 1e6
 """Largest signal of a sensor, in any SI unit: a larger one means that the simulation diverges."""
 
@@ -50,3 +52,20 @@ class SensorReading(NamedTuple):
         """Whether all signals are finite numbers that a sensor can return."""
         acceleration, angular_rate, pressures, joints = self
         return math.hypot(*acceleration, *angular_rate, *pressures, *joints) < LARGEST_SIGNAL
+
+    def repaired(self, before: SensorReading) -> SensorReading:
+        """Replace each signal that no sensor can return by that of an earlier reading.
+
+        :param before: earlier reading, of finite signals
+        """
+        if self.is_finite:
+            return self
+        held: list[Any] = [
+            tuple([value if abs(value) < LARGEST_SIGNAL else last for value, last in zip(values, old, strict=True)])
+            for values, old in zip(self, before, strict=True)
+        ]
+        return SensorReading(*held)
+
+
+STANDING = SensorReading((0.0, 0.0, GRAVITY), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+"""Reading of an upright robot whose feet carry nothing: what is known before the first one."""

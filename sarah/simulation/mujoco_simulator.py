@@ -16,7 +16,7 @@ from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, PLATES, Robot
 from sarah.robot.reading import SensorReading, Side, Vector
 from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.randomisation import NOMINAL, Conditions
-from sarah.simulation.simulator import GRAVITY, TorsoState, rotate_to_body, specific_force
+from sarah.simulation.simulator import GRAVITY, TorsoState, rotate_to_world, specific_force
 
 CONTACT_STEPS = 0.5
 """Time constant with which a contact stops what moves towards it, in physics steps."""
@@ -43,7 +43,7 @@ class MujocoSimulator:
 
     :param robot: checked robot
     :param physics: resolution in time, at least 300 Hz; the solver may converge, and stop, before its last iteration
-    :param conditions: friction, masses, servo bandwidth and start velocity of this episode
+    :param conditions: friction, masses and servo bandwidth of this episode
     """
 
     model: mujoco.MjModel
@@ -81,7 +81,6 @@ class MujocoSimulator:
         }
         self._before = np.empty(mujoco.mj_stateSize(self.model, STATE))
         self.data.qpos[2] = robot.standing_height
-        self.data.qvel[:2] = conditions.start_velocity
         # These are views of MuJoCo's memory.
         self._qpos, self._qvel, self._pads = self.data.qpos, self.data.qvel, self.data.sensordata
         self._pushed = self.data.xfrc_applied[self.model.body("torso").id, :3]
@@ -97,6 +96,7 @@ class MujocoSimulator:
             index = model.body(link).id
             model.body_mass[index] *= factor
             model.body_inertia[index] *= factor
+        model.body_ipos[model.body("torso").id] += conditions.mass_offset
         mujoco.mj_setConst(model, self.data)  # updates what MuJoCo derives from the masses
         mujoco.mj_resetData(model, self.data)
         model.pair_friction[:, :2] = conditions.friction
@@ -190,8 +190,7 @@ class MujocoSimulator:
         orientation = (orientation_x, orientation_y, orientation_z, orientation_w)
         velocity_x, velocity_y, velocity_z, *rate = self._qvel[:6].tolist()
         self._angular_rate: Vector = tuple(rate)  # MuJoCo gives it in the torso's frame
-        to_world = (-orientation_x, -orientation_y, -orientation_z, orientation_w)
-        angular_velocity = rotate_to_body(to_world, self._angular_rate)
+        angular_velocity = rotate_to_world(orientation, self._angular_rate)
         self._torso = TorsoState((x, y, z), orientation, (velocity_x, velocity_y, velocity_z), angular_velocity)
 
     def read(self) -> SensorReading:

@@ -7,14 +7,16 @@ poses that are reset in place, or a restored state, do not.
 from __future__ import annotations
 
 import math
+import xml.etree.ElementTree as ElementTree
 from itertools import product
 
+from sarah.errors import SimulationError
 from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, PLATES, RobotDescription
 from sarah.robot.reading import SensorReading, Side, Vector
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
 from sarah.simulation.pybullet_client import give_back_client, load_robot, pybullet, take_client
 from sarah.simulation.randomisation import NOMINAL, Conditions
-from sarah.simulation.simulator import GRAVITY, TorsoState, rotate_to_body, specific_force
+from sarah.simulation.simulator import GRAVITY, TorsoState, rotate_to_body, rotate_to_world, specific_force
 
 CONTACT_SECONDS = 0.0015
 """Time in which contacts reduce errors of position to 1/e, in s. PyBullet takes a share per physics step instead; with
@@ -29,7 +31,7 @@ class PyBulletSimulator:
 
     :param robot: checked robot
     :param physics: resolution in time
-    :param conditions: friction, masses, servo bandwidth and start velocity of this episode
+    :param conditions: friction, masses and servo bandwidth of this episode
     """
 
     client: int
@@ -73,7 +75,7 @@ class PyBulletSimulator:
         self._build_floor()
         self.body, self.links = load_robot(
             self.client,
-            self.robot.urdf,
+            self._urdf(conditions),
             self.robot.standing_height,
             flags=pybullet.URDF_USE_INERTIA_FROM_FILE
             | pybullet.URDF_IGNORE_VISUAL_SHAPES
@@ -108,6 +110,18 @@ class PyBulletSimulator:
         self._velocity_before = self._torso.velocity
         self._targets: tuple[float, ...] = ()
         self.set_targets((0.0,) * len(self._joints))
+
+    def _urdf(self, conditions: Conditions) -> str:
+        """The robot's description with the torso's centre of mass where it is; PyBullet cannot move it later."""
+        x, y, z = self._mass_offset = conditions.mass_offset
+        if self._mass_offset == NOMINAL.mass_offset:
+            return self.robot.urdf
+        root = ElementTree.fromstring(self.robot.urdf)
+        origin = root.find("link[@name='torso']/inertial/origin")
+        if origin is None:
+            raise SimulationError("the robot's torso has no inertial origin")
+        origin.set("xyz", f"{x!r} {y!r} {z!r}")
+        return ElementTree.tostring(root, encoding="unicode")
 
     def _build_floor(self) -> None:
         shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self.client)
@@ -145,7 +159,6 @@ class PyBulletSimulator:
             pybullet.setJointMotorControl2(
                 self.body, self.links[name], pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client
             )
-        pybullet.resetBaseVelocity(self.body, (*conditions.start_velocity, 0.0), physicsClientId=client)
 
     def set_targets(self, targets: tuple[float, ...]) -> None:
         """Set where the servos move the joints from now on.
@@ -228,8 +241,16 @@ class PyBulletSimulator:
     def look(self) -> None:
         """Query the motion of the torso and of the actuators from PyBullet, after whatever changed it."""
         position, orientation = pybullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client)
-        velocities = pybullet.getBaseVelocity(self.body, physicsClientId=self.client)
-        self._torso = TorsoState(position, orientation, *velocities)
+        velocity, rate = pybullet.getBaseVelocity(self.body, physicsClientId=self.client)
+        if self._mass_offset != NOMINAL.mass_offset:  # PyBullet gives the motion of the centre of mass
+            x, y, z = rotate_to_world(orientation, self._mass_offset)
+            position = (position[0] - x, position[1] - y, position[2] - z)
+            velocity = (
+                velocity[0] - (rate[1] * z - rate[2] * y),
+                velocity[1] - (rate[2] * x - rate[0] * z),
+                velocity[2] - (rate[0] * y - rate[1] * x),
+            )
+        self._torso = TorsoState(position, orientation, velocity, rate)
         self._positions, self._speeds, _, self._joint_efforts = zip(
             *pybullet.getJointStates(self.body, self._joints, self.client), strict=True
         )

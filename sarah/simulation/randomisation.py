@@ -5,23 +5,27 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from sarah.errors import ConfigurationError, check_fields, to_ranges
 from sarah.robot.description import GROUPS
+from sarah.robot.reading import Vector
 
 LINKS = tuple(link for group in GROUPS.values() for link in group)
 PLAUSIBLE = {
     "friction": (0.0, 5.0, ""),
     "mass_deviation": (0.0, 0.9, ""),
+    "mass_offset": (0.0, 0.1, "m"),
     "actuator_bandwidth": (0.1, 1000.0, "per second"),
-    "pad_threshold": (0.0, 1000.0, "N"),
-    "acceleration_noise": (0.0, 100.0, "m/s^2"),
-    "angular_rate_noise": (0.0, 100.0, "rad/s"),
+    "imu_tilt_degrees": (0.0, 45.0, "degrees"),
+    "acceleration_bias": (0.0, 100.0, "m/s^2"),
+    "angular_rate_bias": (0.0, 100.0, "rad/s"),
+    "pad_gain": (0.0, 0.9, ""),
+    "acceleration_noise_density": (0.0, 10.0, "m/s^2 per root Hz"),
+    "angular_rate_noise_density": (0.0, 10.0, "rad/s per root Hz"),
     "imu_bandwidth": (0.1, 100_000.0, "Hz"),
-    "pad_noise": (0.0, 1000.0, "N"),
-    "delay_ticks": (0, 100, "ticks"),
-    "start_speed": (0.0, 10.0, "m/s"),
+    "pad_noise_density": (0.0, 100.0, "N per root Hz"),
+    "delay_seconds": (0.0, 1.0, "s"),
 }
 """Lowest value, highest value and unit of each setting. Beyond them, somebody has mistaken the unit."""
 
@@ -30,38 +34,76 @@ PLAUSIBLE = {
 class Randomisation:
     """Uncertain properties of the robot and its world, drawn for each episode from its seed.
 
-    Parameters learned on one exact robot exploit it, so they must hold under a little of everything. The ranges are
-    reconstructed, as the paper gives none. A pair is a uniform range; one number, or equal ends, fix the value.
+    Parameters learned on one exact robot exploit it, so they must hold under a little of everything: under errors that
+    are constant in an episode, as a sensor mounted askew, and under noise. The values are reconstructed, as the paper
+    gives none; those of sensors are what datasheets of small inertial units and load cells promise, before calibration.
+    A pair is a uniform range; one number, or equal ends, fix the value.
 
-    :param enabled: whether to randomise; if not, the robot is as designed, except for a random start velocity
+    :param enabled: whether to randomise; if not, the robot is as designed, and the seed draws the push only
     :param friction: range of the Coulomb friction coefficient between sole and floor
     :param mass_deviation: largest relative deviation of each link's mass and inertia
+    :param mass_offset: largest offset of the torso's centre of mass along each of its axes, in m
     :param actuator_bandwidth: range of the position servos' bandwidth, per second
-    :param pad_threshold: range of the load above which a foot counts as loaded, in N
-    :param acceleration_noise: standard deviation of the accelerometer's white noise, in m/s^2
-    :param angular_rate_noise: standard deviation of the gyroscope's white noise, in rad/s
+    :param imu_tilt_degrees: largest angle by which the inertial measurement unit is mounted askew, about any horizontal
+        axis, in degrees
+    :param acceleration_bias: largest constant error of each axis of the accelerometer, in m/s^2
+    :param angular_rate_bias: largest constant error of each axis of the gyroscope, in rad/s
+    :param pad_gain: largest relative error of each pressure pad's gain
+    :param acceleration_noise_density: density of the accelerometer's white noise, in m/s^2 per root Hz
+    :param angular_rate_noise_density: density of the gyroscope's white noise, in rad/s per root Hz
     :param imu_bandwidth: bandwidth of the first-order low-pass inside the inertial measurement unit, in Hz
-    :param pad_noise: standard deviation of each pressure pad's white noise, in N
-    :param delay_ticks: delay between sensing and acting, in control ticks
-    :param start_speed: standard deviation of the torso's velocity along x and y at the start, in m/s
+    :param pad_noise_density: density of each pressure pad's white noise, in N per root Hz
+    :param delay_seconds: delay between sensing and acting, in s
     """
 
     enabled: bool = True
     friction: tuple[float, float] = (0.7, 1.0)
     mass_deviation: float = 0.05
+    mass_offset: float = 0.010
     actuator_bandwidth: tuple[float, float] = (40.0, 50.0)
-    pad_threshold: tuple[float, float] = (20.0, 40.0)
-    acceleration_noise: float = 0.2
-    angular_rate_noise: float = 0.02
+    imu_tilt_degrees: float = 2.0
+    acceleration_bias: float = 0.1
+    angular_rate_bias: float = 0.02
+    pad_gain: float = 0.2
+    acceleration_noise_density: float = 0.028
+    angular_rate_noise_density: float = 0.0028
     imu_bandwidth: float = 40.0
-    pad_noise: float = 3.0
-    delay_ticks: int = 1
-    start_speed: float = 0.01
+    pad_noise_density: float = 0.42
+    delay_seconds: float = 0.010
 
     def __post_init__(self) -> None:
         """Refuse ranges that no robot has."""
-        to_ranges(self, "friction", "actuator_bandwidth", "pad_threshold")
+        to_ranges(self, "friction", "actuator_bandwidth")
         check_fields("randomisation", self, PLAUSIBLE)
+
+
+@dataclass(frozen=True)
+class SensorConditions:
+    """One episode's draw of the sensors' errors; without any, they are perfect.
+
+    :param imu_tilt: rotation by which the inertial measurement unit is mounted askew, about the torso's x and y axis,
+        in rad
+    :param acceleration_bias: constant error of the accelerometer, in m/s^2
+    :param angular_rate_bias: constant error of the gyroscope, in rad/s
+    :param pad_gains: factor on each pad's load
+    :param acceleration_noise_density: density of the accelerometer's white noise, in m/s^2 per root Hz
+    :param angular_rate_noise_density: density of the gyroscope's white noise, in rad/s per root Hz
+    :param imu_bandwidth: bandwidth of the inertial measurement unit's low-pass, in Hz; infinite for none
+    :param pad_noise_density: density of each pressure pad's white noise, in N per root Hz
+    :param delay_seconds: delay between sensing and acting, in s
+    :param seed: seed of the noise
+    """
+
+    imu_tilt: tuple[float, float] = (0.0, 0.0)
+    acceleration_bias: Vector = (0.0, 0.0, 0.0)
+    angular_rate_bias: Vector = (0.0, 0.0, 0.0)
+    pad_gains: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
+    acceleration_noise_density: float = 0.0
+    angular_rate_noise_density: float = 0.0
+    imu_bandwidth: float = math.inf
+    pad_noise_density: float = 0.0
+    delay_seconds: float = 0.0
+    seed: int = 0
 
 
 @dataclass(frozen=True)
@@ -70,28 +112,16 @@ class Conditions:
 
     :param friction: Coulomb friction coefficient between sole and floor
     :param mass_factors: factor on the mass and inertia of every link
+    :param mass_offset: offset of the torso's centre of mass in its frame, in m
     :param actuator_bandwidth: bandwidth of the position servos, per second
-    :param pad_threshold: load above which a foot counts as loaded, in N
-    :param acceleration_noise: standard deviation of the accelerometer's white noise, in m/s^2
-    :param angular_rate_noise: standard deviation of the gyroscope's white noise, in rad/s
-    :param imu_bandwidth: bandwidth of the inertial measurement unit's low-pass, in Hz; infinite for none
-    :param pad_noise: standard deviation of each pressure pad's white noise, in N
-    :param delay_ticks: delay between sensing and acting, in control ticks
-    :param start_velocity: velocity of the torso along x and y at the start, in m/s
-    :param sensor_seed: seed of the sensor noise
+    :param sensors: errors of the sensors
     """
 
     friction: float = 0.9
     mass_factors: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(LINKS, 1.0))
+    mass_offset: Vector = (0.0, 0.0, 0.0)
     actuator_bandwidth: float = 50.0
-    pad_threshold: float = 30.0
-    acceleration_noise: float = 0.0
-    angular_rate_noise: float = 0.0
-    imu_bandwidth: float = math.inf
-    pad_noise: float = 0.0
-    delay_ticks: int = 0
-    start_velocity: tuple[float, float] = (0.0, 0.0)
-    sensor_seed: int = 0
+    sensors: SensorConditions = SensorConditions()
 
     def __post_init__(self) -> None:
         """Refuse factors that omit a link."""
@@ -108,23 +138,42 @@ def draw_conditions(ranges: Randomisation, seed: int) -> Conditions:
 
     :param ranges: ranges to draw from
     :param seed: seed of the episode; the same seed draws the same conditions
-    :return: the draw; with the randomisation off, the robot as designed with perfect sensors and a start velocity
+    :return: the draw; with the randomisation off, the robot as designed with perfect sensors
     """
+    if not ranges.enabled:
+        return NOMINAL
     # Each quantity takes a fixed number of draws, so that changing one range leaves the others' draws alone.
     generator = random.Random(seed)
-    velocity = (generator.gauss(0.0, ranges.start_speed), generator.gauss(0.0, ranges.start_speed))
-    if not ranges.enabled:
-        return replace(NOMINAL, start_velocity=velocity)
     return Conditions(
         friction=generator.uniform(*ranges.friction),
         mass_factors={link: 1.0 + ranges.mass_deviation * generator.uniform(-1.0, 1.0) for link in LINKS},
         actuator_bandwidth=generator.uniform(*ranges.actuator_bandwidth),
-        pad_threshold=generator.uniform(*ranges.pad_threshold),
-        acceleration_noise=ranges.acceleration_noise,
-        angular_rate_noise=ranges.angular_rate_noise,
-        imu_bandwidth=ranges.imu_bandwidth,
-        pad_noise=ranges.pad_noise,
-        delay_ticks=ranges.delay_ticks,
-        start_velocity=velocity,
-        sensor_seed=generator.getrandbits(64),
+        mass_offset=_within(ranges.mass_offset, generator),
+        sensors=_draw_sensors(ranges, generator),
     )
+
+
+def _draw_sensors(ranges: Randomisation, generator: random.Random) -> SensorConditions:
+    angle = math.radians(ranges.imu_tilt_degrees) * generator.random()
+    direction = math.tau * generator.random()
+
+    def gain() -> float:
+        return 1.0 + ranges.pad_gain * generator.uniform(-1.0, 1.0)
+
+    return SensorConditions(
+        imu_tilt=(angle * math.cos(direction), angle * math.sin(direction)),
+        acceleration_bias=_within(ranges.acceleration_bias, generator),
+        angular_rate_bias=_within(ranges.angular_rate_bias, generator),
+        pad_gains=(gain(), gain(), gain(), gain()),
+        acceleration_noise_density=ranges.acceleration_noise_density,
+        angular_rate_noise_density=ranges.angular_rate_noise_density,
+        imu_bandwidth=ranges.imu_bandwidth,
+        pad_noise_density=ranges.pad_noise_density,
+        delay_seconds=ranges.delay_seconds,
+        seed=generator.getrandbits(64),
+    )
+
+
+def _within(largest: float, generator: random.Random) -> Vector:
+    x, y, z = (largest * generator.uniform(-1.0, 1.0) for _ in range(3))
+    return (x, y, z)

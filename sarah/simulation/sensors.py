@@ -1,61 +1,78 @@
-"""Imperfect sensors: one reading per control tick, with the band limit, noise and delay of real sensors."""
+"""Imperfect sensors: one reading per control tick, with constant errors, band limit, noise and delay."""
 
 from __future__ import annotations
 
 import math
 from collections import deque
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
 from sarah.robot.filters import low_pass_gain
-from sarah.robot.reading import SensorReading
+from sarah.robot.reading import SensorReading, Vector
+from sarah.simulation.randomisation import SensorConditions
 
 TICKS_AT_ONCE = 256
 """Number of control ticks for which noise is drawn at once."""
 
 
 class ImperfectSensors:
-    """Model of real sensors: band limit and noise of the inertial measurement unit, noise of the pads, and delay.
+    """Model of real sensors. Signals are delayed, get their constant errors, and then the noise.
 
-    :param acceleration_noise: standard deviation of the accelerometer's white noise, in m/s^2
-    :param angular_rate_noise: standard deviation of the gyroscope's white noise, in rad/s
-    :param imu_bandwidth: bandwidth of the inertial measurement unit's first-order low-pass, in Hz; infinite for none
-    :param pad_noise: standard deviation of each pressure pad's white noise, in N
-    :param delay_ticks: delay of all signals, in control ticks
-    :param seed: seed of the noise
+    :param conditions: errors of the sensors in this episode
     :param dt: control period, in s
     """
 
-    def __init__(
-        self,
-        acceleration_noise: float,
-        angular_rate_noise: float,
-        imu_bandwidth: float,
-        pad_noise: float,
-        delay_ticks: int,
-        seed: int,
-        dt: float,
-    ) -> None:
-        deviations = [acceleration_noise] * 3 + [angular_rate_noise] * 3 + [pad_noise] * 4
+    def __init__(self, conditions: SensorConditions, dt: float) -> None:
+        to_deviation = math.sqrt(0.5 / dt)  # a sample holds all frequencies up to half the control rate
+        deviations = (
+            [conditions.acceleration_noise_density * to_deviation] * 3
+            + [conditions.angular_rate_noise_density * to_deviation] * 3
+            + [conditions.pad_noise_density * to_deviation] * 4
+        )
         self._deviations = np.array(deviations)
-        self._generator = np.random.default_rng(seed)
+        self._generator = np.random.default_rng(conditions.seed)
         self._noise: Iterator[list[float]] = iter(())
-        self._pending: deque[SensorReading] = deque(maxlen=delay_ticks + 1)
-        self._imu_gain = low_pass_gain(1.0 / (2.0 * math.pi * imu_bandwidth), dt) if imu_bandwidth < math.inf else 1.0
+        self._conditions = conditions
+        self._rotation = _rotation(*conditions.imu_tilt)
+        ticks = conditions.delay_seconds / dt
+        whole = math.ceil(ticks - 1e-9)
+        self._share_of_later = max(0.0, whole - ticks)
+        self._pending: deque[SensorReading] = deque(maxlen=whole + 1)
+        bandwidth = conditions.imu_bandwidth
+        self._imu_gain = low_pass_gain(1.0 / (2.0 * math.pi * bandwidth), dt) if bandwidth < math.inf else 1.0
         self._imu = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
     def __call__(self, truth: SensorReading) -> SensorReading:
         """Take the true reading of this tick, and return the reading that the controller sees."""
         self._pending.append(self._band_limited(truth))
-        (ax, ay, az), (wx, wy, wz), (a, b, c, d), joints = self._pending[0]
+        (ax, ay, az), (wx, wy, wz), (a, b, c, d), joints = self._delayed()
+        conditions = self._conditions
+        if self._rotation is not None:
+            ax, ay, az = _rotated(self._rotation, (ax, ay, az))
+            wx, wy, wz = _rotated(self._rotation, (wx, wy, wz))
+        (bax, bay, baz), (bwx, bwy, bwz) = conditions.acceleration_bias, conditions.angular_rate_bias
+        ga, gb, gc, gd = conditions.pad_gains
         nax, nay, naz, nwx, nwy, nwz, na, nb, nc, nd = self._next_noise()
         return SensorReading(
-            (ax + nax, ay + nay, az + naz),
-            (wx + nwx, wy + nwy, wz + nwz),
-            (max(0.0, a + na), max(0.0, b + nb), max(0.0, c + nc), max(0.0, d + nd)),
+            (ax + bax + nax, ay + bay + nay, az + baz + naz),
+            (wx + bwx + nwx, wy + bwy + nwy, wz + bwz + nwz),
+            (max(0.0, a * ga + na), max(0.0, b * gb + nb), max(0.0, c * gc + nc), max(0.0, d * gd + nd)),
             joints,
         )
+
+    def _delayed(self) -> SensorReading:
+        """Reading of the delay ago; between two ticks it lies on the line from one to the other."""
+        share = self._share_of_later
+        if share == 0.0 or len(self._pending) < 2:
+            return self._pending[0]
+        earlier, later = self._pending[0], self._pending[1]
+        between: list[Any] = [
+            tuple([now + share * (then - now) for now, then in zip(values, others, strict=True)])
+            for values, others in zip(earlier, later, strict=True)
+        ]
+        return SensorReading(*between)
 
     def _band_limited(self, truth: SensorReading) -> SensorReading:
         gain = self._imu_gain
@@ -81,3 +98,26 @@ class ImperfectSensors:
             self._noise = iter((drawn * self._deviations).tolist())
             noise = next(self._noise)
         return noise
+
+
+Rotation = tuple[Vector, Vector, Vector]
+
+
+def _rotation(about_x: float, about_y: float) -> Rotation | None:
+    """Matrix from the torso's frame into that of a sensor turned about a horizontal axis; ``None`` if it is not."""
+    angle = math.hypot(about_x, about_y)
+    if angle == 0.0:
+        return None
+    x, y, cosine, sine = about_x / angle, about_y / angle, math.cos(angle), math.sin(angle)
+    rest = 1.0 - cosine
+    return (
+        (cosine + x * x * rest, x * y * rest, -y * sine),
+        (x * y * rest, cosine + y * y * rest, x * sine),
+        (y * sine, -x * sine, cosine),
+    )
+
+
+def _rotated(rotation: Rotation, vector: Vector) -> Vector:
+    (a, b, c), (d, e, f), (g, h, i) = rotation
+    x, y, z = vector
+    return (a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z)

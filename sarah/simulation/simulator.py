@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple, Protocol
 
-from sarah.robot.reading import SensorReading, Side, Vector
+from sarah.robot.reading import GRAVITY, SensorReading, Side, Vector
 
-GRAVITY = 9.81
-"""Acceleration of gravity, in m/s^2."""
 LARGEST_STATE = 1e3
 """Largest state of a torso, in any SI unit: a larger one means that the simulation diverges."""
 
@@ -107,6 +105,17 @@ def rotate_to_body(orientation: tuple[float, float, float, float], vector: Vecto
         2.0 * (x * y - w * z) * a + (1.0 - 2.0 * (x * x + z * z)) * b + 2.0 * (y * z + w * x) * c,
         2.0 * (x * z + w * y) * a + 2.0 * (y * z - w * x) * b + (1.0 - 2.0 * (x * x + y * y)) * c,
     )
+
+
+def rotate_to_world(orientation: tuple[float, float, float, float], vector: Vector) -> Vector:
+    """Rotate a vector from a body's frame into the world's frame.
+
+    :param orientation: orientation of the body, as a unit quaternion (x, y, z, w)
+    :param vector: vector in the body's frame
+    :return: the same vector in the world's frame
+    """
+    x, y, z, w = orientation
+    return rotate_to_body((-x, -y, -z, w), vector)
 
 
 def specific_force(torso: TorsoState, velocity_before: Vector, dt: float) -> Vector:

@@ -203,7 +203,7 @@ def nominal_observation(config: TrainingConfig) -> np.ndarray:
 
     :param config: settings of the training; the randomisation is left out
     """
-    nominal = dataclasses.replace(config.episode, randomisation=Randomisation(enabled=False, start_speed=0.0))
+    nominal = dataclasses.replace(config.episode, randomisation=Randomisation(enabled=False))
     episode = Episode(nominal, 0, config.task)
     try:
         return observation_from(episode.stand())

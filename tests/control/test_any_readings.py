@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sarah.control.constants import STANDARD_CONSTANTS as CONSTANTS
-from sarah.control.hip_law import BalanceParameters, HipLaw
+from sarah.control.hip_law import BalanceParameters
 from sarah.control.pattern_generator import PatternGenerator, Phase, SteppingParameters
 from sarah.robot.description import ACTUATED_JOINTS, describe_robot
 from sarah.robot.reading import SensorReading
@@ -35,7 +35,7 @@ def test_pattern_generator_keeps_to_limits_and_rates_and_never_sticks(
     dt = 1.0 / control_rate
     limits = [describe_robot().limits[name] for name in ACTUATED_JOINTS]
     largest_moves = [CONSTANTS.hip_speed * dt] * 4 + [CONSTANTS.leg_speed * dt] * 2
-    generator = PatternGenerator(SteppingParameters(*p), dt=dt, hips=HipLaw(BalanceParameters(*v), dt))
+    generator = PatternGenerator(SteppingParameters(*p), BalanceParameters(*v), dt)
     before, in_phase, entered = generator.targets, 0, {generator.phase}
     silence = [(STANDING, round(12.0 / dt) if control_rate == 50 else 1)]
     for reading, ticks in held + silence:

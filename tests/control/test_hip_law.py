@@ -159,8 +159,9 @@ def test_zeros_leave_the_hips_locked() -> None:
 
 
 def test_pattern_generator_sends_the_hips_targets() -> None:
-    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT, hips=law(1.0, 0.0, 1.0, 0.5))
-    generator.tick(reading())
+    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), BalanceParameters(1.0, 0.0, 1.0, 0.5), DT)
+    for _ in range(101):
+        generator.tick(reading())
     for _ in range(10):
         generator.tick(reading(lateral=-3.0, rate_x=-0.8, left=0.0))
     left_abduction, right_abduction, left_flexion, right_flexion, *_ = generator.targets
@@ -170,10 +171,10 @@ def test_pattern_generator_sends_the_hips_targets() -> None:
 
 def test_offsets_that_were_there_while_standing_move_no_hip() -> None:
     """An accelerometer mounted 4 degrees askew, and a gyroscope's bias of 0.05 rad/s."""
-    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT, hips=law(v1=1.0, v3=1.0))
+    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), BalanceParameters(1.0, 0.0, 1.0, 0.0), DT)
     askew = reading(lateral=9.81 * math.sin(math.radians(4.0)), rate_x=0.05, left=0.0)
     for _ in range(100):
-        generator.sense(askew)
+        generator.tick(askew)
     for _ in range(200):
         generator.tick(askew)
         assert generator.targets[:4] == pytest.approx((0.0,) * 4, abs=1e-9)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sarah.episode.motion import MotionRecord, power_above
+from sarah.episode.motion import MotionRecord, power_within
 
 RATE = 100
 
@@ -15,17 +15,17 @@ def sine(hertz: float, amplitude: float, seconds: float = 10.0) -> np.ndarray:
 
 def test_power_of_a_fast_sine_is_half_its_amplitude_squared() -> None:
     signals = np.stack([sine(35.0, 3.0), sine(25.0, 1.0)], axis=1)
-    assert power_above(signals, RATE, 20.0) == pytest.approx(4.5 + 0.5, rel=0.01)
+    assert power_within(signals, RATE, (20.0, 50.0)) == pytest.approx(4.5 + 0.5, rel=0.01)
 
 
 def test_gravity_and_slow_motion_do_not_count() -> None:
     signals = np.stack([9.81 + sine(1.5, 5.0), sine(10.0, 2.0)], axis=1)
-    assert power_above(signals, RATE, 20.0) < 1e-5
+    assert power_within(signals, RATE, (20.0, 50.0)) < 1e-5
 
 
 def test_chatter_at_half_the_control_rate_counts() -> None:
     shaking = np.where(np.arange(1001) % 2, 4.0, -4.0)[:, None]
-    assert power_above(shaking, RATE, 20.0) == pytest.approx(16.0, rel=0.01)
+    assert power_within(shaking, RATE, (20.0, 50.0)) == pytest.approx(16.0, rel=0.01)
 
 
 def test_a_burst_counts_alike_whenever_it_comes() -> None:
@@ -33,12 +33,12 @@ def test_a_burst_counts_alike_whenever_it_comes() -> None:
     for second in (1, 5, 9):
         signal = np.zeros((1100, 1))
         signal[100 * second : 100 * second + 100, 0] = sine(40.0, 6.0, 1.0)
-        powers.append(power_above(signal, RATE, 20.0))
+        powers.append(power_within(signal, RATE, (20.0, 50.0)))
     assert powers == pytest.approx([18.0 / 11.0] * 3, rel=0.1)
 
 
 def test_too_short_for_a_spectrum_is_zero() -> None:
-    assert power_above(np.ones((10, 3)), RATE, 20.0) == 0.0
+    assert power_within(np.ones((10, 3)), RATE, (20.0, 50.0)) == 0.0
 
 
 def test_actuators_work_and_peaks() -> None:

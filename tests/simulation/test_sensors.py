@@ -8,10 +8,11 @@ import pytest
 from laboratory import laboratory
 
 from sarah.robot.description import describe_robot
+from sarah.robot.filters import LowPass
 from sarah.robot.reading import SensorReading
 from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import PHYSICS
-from sarah.simulation.randomisation import NOMINAL
+from sarah.simulation.randomisation import NOMINAL, SensorConditions
 from sarah.simulation.sensors import ImperfectSensors
 from sarah.simulation.simulator import GRAVITY, TorsoState, rotate_to_body, specific_force
 
@@ -20,15 +21,20 @@ TRUTH = SensorReading(
     (1.0, -2.0, 9.0), (0.1, -0.2, 0.3), (70.0, 71.0, 72.0, 73.0), (0.01, 0.02, 0.03, 0.04, 0.05, 0.06)
 )
 STILL = SensorReading((0.0,) * 3, (0.0,) * 3, (75.0,) * 4, (0.0,) * 6)  # type: ignore[arg-type]
-NOISE = {"acceleration_noise": 0.2, "angular_rate_noise": 0.02, "pad_noise": 3.0}
+ROOT = math.sqrt(50.0)
+"""Root of half the control rate of 100 Hz, in root Hz: a sample's deviation is the noise's density times this."""
+NOISE = {
+    "acceleration_noise_density": 0.2 / ROOT,
+    "angular_rate_noise_density": 0.02 / ROOT,
+    "pad_noise_density": 3.0 / ROOT,
+}
 DEVIATIONS = np.array([0.2] * 3 + [0.02] * 3 + [3.0] * 4)
 UNTIL_THE_NOISE_IS_DRAWN_ANEW = 600
 
 
 def sensors(**settings: Any) -> ImperfectSensors:
     """Sensors that are perfect but for some settings."""
-    perfect = dict.fromkeys(("acceleration_noise", "angular_rate_noise", "pad_noise"), 0.0)
-    return ImperfectSensors(**{**perfect, "imu_bandwidth": math.inf, "delay_ticks": 0, "seed": 0, "dt": DT, **settings})
+    return ImperfectSensors(SensorConditions(**settings), DT)
 
 
 def noisy_signals(reading: SensorReading) -> list[float]:
@@ -45,10 +51,50 @@ def test_perfect_sensors_read_the_truth() -> None:
 
 @pytest.mark.parametrize("ticks", [0, 1, 3])
 def test_all_signals_come_late_by_the_delay(ticks: int) -> None:
-    delayed = sensors(delay_ticks=ticks)
+    delayed = sensors(delay_seconds=ticks * DT)
     truths = [SensorReading(*(tuple(n + signal for signal in signals) for signals in TRUTH)) for n in range(8)]
     seen = [delayed(truth) for truth in truths]
     assert seen == [truths[0]] * ticks + truths[: 8 - ticks]
+
+
+def test_a_delay_between_two_ticks_lies_between_their_readings() -> None:
+    delayed = sensors(delay_seconds=0.0125)
+    seen = [delayed(TRUTH._replace(joints=(float(n),) * 6)).joints[0] for n in range(5)]
+    assert seen[2:] == pytest.approx([0.75, 1.75, 2.75])
+
+
+@pytest.mark.parametrize("control_rate", [50, 100, 200, 400])
+def test_the_delay_is_the_same_time_at_every_control_rate(control_rate: int) -> None:
+    """A signal that grows by 1 per second comes 0.0175 s late."""
+    delayed = ImperfectSensors(SensorConditions(delay_seconds=0.0175), 1.0 / control_rate)
+    for tick in range(control_rate):
+        seen = delayed(TRUTH._replace(joints=(tick / control_rate,) * 6))
+    assert (control_rate - 1) / control_rate - seen.joints[0] == pytest.approx(0.0175)
+
+
+@pytest.mark.parametrize("control_rate", [50, 400])
+def test_noise_behind_a_slow_filter_is_the_same_at_every_control_rate(control_rate: int) -> None:
+    """White noise of density d behind a low-pass of time constant T has the variance d^2 / (4 T)."""
+    noisy = ImperfectSensors(SensorConditions(acceleration_noise_density=0.03), 1.0 / control_rate)
+    filters = [LowPass(0.2, 1.0 / control_rate) for _ in range(3)]
+    values = [
+        [f(a) for f, a in zip(filters, noisy(STILL).acceleration, strict=True)] for _ in range(400 * control_rate)
+    ]
+    assert np.std(values) == pytest.approx(0.03 / math.sqrt(4 * 0.2), rel=0.06)
+
+
+def test_constant_errors_are_added_to_what_a_sensor_mounted_askew_reads() -> None:
+    """Turned by 0.1 rad about x, a level accelerometer reads g sin 0.1 forward; pads are scaled, joints exact."""
+    askew = sensors(imu_tilt=(0.1, 0.0), acceleration_bias=(0.5, 0.0, 0.0), pad_gains=(0.8, 1.0, 1.0, 1.2))
+    level = STILL._replace(acceleration=(0.0, 0.0, GRAVITY), angular_rate=(0.0, 0.0, 2.0))
+    seen = askew(level)
+    assert seen.acceleration == pytest.approx((0.5, GRAVITY * math.sin(0.1), GRAVITY * math.cos(0.1)))
+    assert seen.angular_rate == pytest.approx((0.0, 2.0 * math.sin(0.1), 2.0 * math.cos(0.1)))
+    assert seen.pressures == pytest.approx((60.0, 75.0, 75.0, 90.0)) and seen.joints == STILL.joints
+    to_the_side = sensors(imu_tilt=(0.0, 0.1))(level)
+    assert to_the_side.acceleration == pytest.approx((-GRAVITY * math.sin(0.1), 0.0, GRAVITY * math.cos(0.1)))
+    biased = sensors(angular_rate_bias=(0.01, -0.02, 0.03))(level)
+    assert biased.angular_rate == pytest.approx((0.01, -0.02, 2.03))
 
 
 @pytest.mark.parametrize("bandwidth", [5.0, 40.0])
@@ -84,14 +130,14 @@ def test_noise_is_that_of_numpys_generator_with_the_seed() -> None:
 
 def test_noise_is_added_behind_the_band_limit_and_the_delay() -> None:
     """So a slow sensor is as noisy as a fast one."""
-    slow = sensors(imu_bandwidth=1.0, delay_ticks=2, **NOISE)
+    slow = sensors(imu_bandwidth=1.0, delay_seconds=2 * DT, **NOISE)
     noise = np.array([noisy_signals(slow(STILL)) for _ in range(5000)]) - noisy_signals(STILL)
     assert noise.std(axis=0) == pytest.approx(DEVIATIONS, rel=0.05)
 
 
 def test_unloaded_pads_read_no_negative_load() -> None:
     """Half of the noise is cut off: what is left of deviation s has the mean s / sqrt(2 pi)."""
-    noisy = sensors(pad_noise=3.0)
+    noisy = sensors(pad_noise_density=3.0 / ROOT)
     pads = np.array([noisy(STILL._replace(pressures=(0.0,) * 4)).pressures for _ in range(20_000)])
     assert pads.min() == 0.0 and (pads == 0.0).mean(axis=0) == pytest.approx([0.5] * 4, abs=0.02)
     assert pads.mean(axis=0) == pytest.approx([3.0 / math.sqrt(2.0 * math.pi)] * 4, rel=0.04)
