@@ -25,10 +25,11 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BalanceConfig
 from sarah.robot.description import describe_robot
+from sarah.robot.reading import GRAVITY
 from sarah.simulation.engines import Engine, is_installed
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import Randomisation
-from sarah.simulation.simulator import GRAVITY
+from sarah.simulation.terrain import Terrain
 
 TOLERANCE = 1e-6
 PROBE_SECONDS = 4.0
@@ -113,7 +114,7 @@ def _physics() -> dict[str, list[Any]]:
     """Values of the named physics and of what is drawn for each episode, and each engine's constants."""
     named = [astuple(physics) for physics in PHYSICS.values()]
     engines = {engine: _constants(engine) for engine in installed_engines()}
-    return {"settings": [named, GRAVITY, astuple(Randomisation())], **engines}
+    return {"settings": [named, GRAVITY, astuple(Randomisation()), astuple(Terrain())], **engines}
 
 
 def _constants(engine: Engine) -> list[float]:

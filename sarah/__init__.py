@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from sarah.errors import SarahError
     from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
     from sarah.simulation.randomisation import Randomisation
+    from sarah.simulation.terrain import Terrain
 
 _HOMES = {
     "BALANCE": "episode.tasks",
@@ -56,6 +57,7 @@ _HOMES = {
     "SarahError": "errors",
     "SteppingParameters": "control.pattern_generator",
     "Task": "episode.tasks",
+    "Terrain": "simulation.terrain",
     "Tick": "episode.tick",
     "equation_2": "episode.reward",
     "evaluate": "episode.evaluation",
@@ -87,6 +89,7 @@ __all__ = [
     "SarahError",
     "SteppingParameters",
     "Task",
+    "Terrain",
     "Tick",
     "equation_2",
     "evaluate",

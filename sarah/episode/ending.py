@@ -14,7 +14,7 @@ OSCILLATION_SECONDS = 5.0
 OSCILLATION_STEPS = 2
 """Number of steps that make an oscillation: one with each leg."""
 LEAST_UPRIGHT = math.cos(math.radians(45.0))
-"""Cosine of the torso's tilt beyond which the robot has fallen."""
+"""Cosine of the torso's tilt from gravity's vertical beyond which the robot has fallen."""
 LONGEST_ENDING = 40
 """Longest name of a way in which an episode ends, in characters."""
 TERMINATIONS = {
@@ -38,7 +38,7 @@ def paper_ending(tick: Tick, config: EpisodeConfig) -> str | None:
     (x, y, z), (start_x, start_y, start_z) = tick.torso.position, tick.start
     if max(abs(x - start_x), abs(y - start_y), abs(z - start_z)) > BOX_HALF_WIDTH:
         return "left_box"
-    if tick.torso.upright < LEAST_UPRIGHT:
+    if tick.upright < LEAST_UPRIGHT:
         return "fell"
     half_tick = config.physics.control_dt / 2  # the tolerance for rounding
     if tick.steps < OSCILLATION_STEPS and tick.time > OSCILLATION_SECONDS - half_tick:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 from sarah.control.hip_law import LOCKED_HIPS
@@ -17,11 +18,12 @@ from sarah.episode.tasks import STEPPING, Task, controller_of, ending_of, push_o
 from sarah.episode.tick import Tick
 from sarah.episode.trace import Trace
 from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, describe_robot
-from sarah.robot.reading import SensorReading, Vector
+from sarah.robot.reading import GRAVITY, SensorReading, Vector
 from sarah.simulation.build import BuildSimulator, simulator_of
 from sarah.simulation.randomisation import draw_conditions
 from sarah.simulation.sensors import ImperfectSensors
 from sarah.simulation.simulator import TorsoState
+from sarah.simulation.terrain import draw_gravity
 
 
 class Episode:
@@ -56,7 +58,9 @@ class Episode:
         self.push = push_of(task, task.checked_config(config, True), seed)
         self.termination: str | None = None
         self.robot = describe_robot(config.dimensions)
-        conditions = draw_conditions(config.randomisation, seed)
+        gravity_x, gravity_y, gravity_z = gravity = draw_gravity(config.terrain, seed)
+        self._vertical = (-gravity_x / GRAVITY, -gravity_y / GRAVITY, -gravity_z / GRAVITY)
+        conditions = dataclasses.replace(draw_conditions(config.randomisation, seed), gravity=gravity)
         self.simulation = (build or simulator_of(config.engine))(self.robot, config.physics, conditions)
         self._truth = self.last_reading = self.simulation.read()
         self._dt = config.physics.control_dt
@@ -184,6 +188,7 @@ class Episode:
             self._truth,
             self.last_reading,
             self.simulation,
+            self._vertical,
         )
         self._return += reward_of(self.task, tick, self.config) * self._dt
         self.termination = ending_of(self.task, tick, self.config)

@@ -16,8 +16,11 @@ PLAUSIBLE = {
     "degrees": (0.0, 720.0, "degrees"),
     "at_seconds": (STAND_SECONDS, LONGEST_EPISODE, "s"),
     "duration": (0.0, 10.0, "s"),
+    "sagittal_share": (0.0, 1.0, ""),
 }
 """Lowest value, highest value and unit of each setting. Beyond them, somebody has mistaken the unit."""
+SAGITTAL_DEGREES = 30.0
+"""Largest angle between a sagittal push and the robot's forward or backward direction, in degrees."""
 
 
 @dataclass(frozen=True)
@@ -31,12 +34,15 @@ class Push:
     :param at_seconds: uniform range of the simulated time at which it begins, in s; the paper pushed after the first
         second
     :param duration: duration, in s
+    :param sagittal_share: share of the pushes that point within 30 degrees of forward or backward, half of them each
+        way, instead of anywhere in the range of directions
     """
 
     newtons: tuple[float, float] = (0.0, 100.0)
     degrees: tuple[float, float] = (0.0, 360.0)
     at_seconds: tuple[float, float] = (1.0, 4.0)
     duration: float = 0.15
+    sagittal_share: float = 0.0
 
     def __post_init__(self) -> None:
         """Refuse impossible pushes, and pushes that begin while the robot stands."""
@@ -71,8 +77,12 @@ def draw_push(ranges: Push, seed: int) -> DrawnPush:
     """
     generator = random.Random(f"push {seed}")
     newtons = generator.uniform(*ranges.newtons)
-    direction = math.radians(generator.uniform(*ranges.degrees))
+    degrees = generator.uniform(*ranges.degrees)
     begin = generator.uniform(*ranges.at_seconds)
+    if generator.random() < ranges.sagittal_share:
+        forward_or_backward = 90.0 if generator.random() < 0.5 else 270.0
+        degrees = forward_or_backward + generator.uniform(-SAGITTAL_DEGREES, SAGITTAL_DEGREES)
+    direction = math.radians(degrees)
     return DrawnPush((newtons * math.cos(direction), newtons * math.sin(direction), 0.0), begin, ranges.duration)
 
 

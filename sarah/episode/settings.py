@@ -14,6 +14,7 @@ from sarah.robot.description import check_dimensions
 from sarah.simulation.engines import Engine, default_engine
 from sarah.simulation.physics import PHYSICS, Physics, physics_for
 from sarah.simulation.randomisation import Randomisation
+from sarah.simulation.terrain import Terrain
 
 LONGEST_EPISODE = 3600.0
 """Longest time limit of an episode, in s."""
@@ -27,6 +28,7 @@ class EpisodeConfig:
     :param engine: physics engine: ``pybullet``, the reference, or ``mujoco``, the default where PyBullet is not
         installed
     :param randomisation: ranges that each episode's seed draws from
+    :param terrain: ground, drawn from each episode's seed as well
     :param controller: constants of the pattern generator and the hip law
     :param dimensions: dimensions of the robot that differ from their defaults: values by name in SI units, such as
         hinge_height 0.04
@@ -38,6 +40,7 @@ class EpisodeConfig:
     physics: Physics = PHYSICS["standard"]
     engine: Engine = field(default_factory=default_engine)
     randomisation: Randomisation = Randomisation()
+    terrain: Terrain = Terrain()
     controller: ControllerConstants = ControllerConstants()
     dimensions: Mapping[str, float] = field(default_factory=dict)
     time_limit: float = 30.0

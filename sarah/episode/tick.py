@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from sarah.control.pattern_generator import Phase
@@ -12,7 +13,8 @@ from sarah.simulation.simulator import Simulator, TorsoState
 class Tick(NamedTuple):
     """Everything that is known at the end of a control tick.
 
-    Frames: x to the robot's right, y forward, z up. Actuators have the order of ``ACTUATED_JOINTS``.
+    Frames: x to the robot's right, y forward, z up, along the ground's normal. Actuators have the order of
+    ``ACTUATED_JOINTS``.
 
     :param time: simulated time, in s
     :param start: position of the torso's centre when the episode began, in m
@@ -24,6 +26,7 @@ class Tick(NamedTuple):
     :param truth: true sensor signals at the beginning of the tick
     :param reading: the same signals as the robot got them, with noise and delay
     :param simulator: simulator, for what the properties below do not give
+    :param vertical: unit vector against gravity; (0, 0, 1) on level ground
     """
 
     time: float
@@ -36,6 +39,7 @@ class Tick(NamedTuple):
     truth: SensorReading
     reading: SensorReading
     simulator: Simulator
+    vertical: Vector = (0.0, 0.0, 1.0)
 
     @property
     def x(self) -> float:
@@ -59,8 +63,14 @@ class Tick(NamedTuple):
 
     @property
     def tilt(self) -> float:
-        """Angle between the torso's axis and the vertical, in rad."""
-        return self.torso.tilt
+        """Angle between the torso's axis and gravity's vertical, in rad."""
+        return math.acos(max(-1.0, min(1.0, self.upright)))
+
+    @property
+    def upright(self) -> float:
+        """Cosine of the angle between the torso's axis and gravity's vertical."""
+        (axis_x, axis_y, axis_z), (x, y, z) = self.torso.axis, self.vertical
+        return axis_x * x + axis_y * y + axis_z * z
 
     @property
     def pads(self) -> tuple[float, float, float, float]:

@@ -87,7 +87,7 @@ def push_many(
     """Simulate the same pushes of several controllers.
 
     :param controllers: values of V1 to V4 of each controller
-    :param config: settings of the episodes; time limit, and force and time of the push, are replaced
+    :param config: settings of the episodes; time limit, force, time and sagittal share of the push are replaced
     :param workers: workers that simulate the episodes
     :param forces: forces of the pushes, in N
     :param episodes: number of episodes for each force
@@ -96,7 +96,9 @@ def push_many(
     """
     settings: dict[float, BalanceConfig] = {}
     for newtons in forces:
-        push = dataclasses.replace(config.push, newtons=(newtons, newtons), at_seconds=PUSHED_BETWEEN)
+        push = dataclasses.replace(
+            config.push, newtons=(newtons, newtons), at_seconds=PUSHED_BETWEEN, sagittal_share=0.0
+        )
         limit = PUSHED_BETWEEN[1] + push.duration + SECONDS_AFTER
         settings[newtons] = dataclasses.replace(config, push=push, time_limit=limit)
     pushes = [(newtons, first_seed + index) for newtons in forces for index in range(episodes)]

@@ -1,6 +1,7 @@
 """One robot in one MuJoCo world: build, act, sense, push.
 
-A process compiles the model of a robot once. Every episode changes its own copy of it: friction, masses, servos.
+A process compiles the model of a robot once. Every episode changes its own copy of it: friction, masses, servos,
+gravity.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, PLATES, Robot
 from sarah.robot.reading import SensorReading, Side, Vector
 from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.randomisation import NOMINAL, Conditions
-from sarah.simulation.simulator import GRAVITY, TorsoState, rotate_to_world, specific_force
+from sarah.simulation.simulator import TorsoState, rotate_to_world, specific_force
 
 CONTACT_STEPS = 0.5
 """Time constant with which a contact stops what moves towards it, in physics steps."""
@@ -43,7 +44,7 @@ class MujocoSimulator:
 
     :param robot: checked robot
     :param physics: resolution in time, at least 300 Hz; the solver may converge, and stop, before its last iteration
-    :param conditions: friction, masses and servo bandwidth of this episode
+    :param conditions: friction, masses, servo bandwidth and gravity of this episode
     """
 
     model: mujoco.MjModel
@@ -60,6 +61,7 @@ class MujocoSimulator:
         self.robot = robot
         self.time = 0.0
         self._dt = physics.control_dt
+        self._gravity = conditions.gravity
         self._substeps = math.ceil(max(physics.rate, LOWEST_RATE) / physics.control_rate)
         rate = self._substeps * physics.control_rate
         self.model = copy.copy(_compiled(robot.urdf, rate, physics.solver_iterations))
@@ -100,6 +102,7 @@ class MujocoSimulator:
         mujoco.mj_setConst(model, self.data)  # updates what MuJoCo derives from the masses
         mujoco.mj_resetData(model, self.data)
         model.pair_friction[:, :2] = conditions.friction
+        model.opt.gravity[:] = conditions.gravity
         # MuJoCo takes the position at a step's end. With this rate a servo is the same first-order lag at every rate.
         self._rate = (math.exp(conditions.actuator_bandwidth / rate) - 1.0) * rate
         self._damping = [LEG_DAMPING if name.endswith("leg_length") else HIP_DAMPING for name in ACTUATED_JOINTS]
@@ -197,7 +200,7 @@ class MujocoSimulator:
         """True sensor signals of the last control tick, without noise or delay."""
         positions = self._qpos.tolist()
         return SensorReading(
-            specific_force(self._torso, self._velocity_before, self._dt),
+            specific_force(self._torso, self._velocity_before, self._dt, self._gravity),
             self._angular_rate,
             tuple(self._pads[::3].tolist()),  # the first of three components is the normal force
             tuple([positions[index] for index in self._positions]),
@@ -241,7 +244,6 @@ def _compiled(urdf: str, rate: int, solver_iterations: int) -> mujoco.MjModel:
     spec.compiler.fusestatic = False  # otherwise the torso becomes part of the world
     spec.body("torso").add_freejoint()
     spec.option.timestep = 1.0 / rate
-    spec.option.gravity = (0.0, 0.0, -GRAVITY)
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
     spec.option.iterations = solver_iterations
     spec.option.disableflags |= (

@@ -16,7 +16,7 @@ from sarah.robot.reading import SensorReading, Side, Vector
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
 from sarah.simulation.pybullet_client import give_back_client, load_robot, pybullet, take_client
 from sarah.simulation.randomisation import NOMINAL, Conditions
-from sarah.simulation.simulator import GRAVITY, TorsoState, rotate_to_body, rotate_to_world, specific_force
+from sarah.simulation.simulator import TorsoState, rotate_to_body, rotate_to_world, specific_force
 
 CONTACT_SECONDS = 0.0015
 """Time in which contacts reduce errors of position to 1/e, in s. PyBullet takes a share per physics step instead; with
@@ -50,6 +50,7 @@ class PyBulletSimulator:
         self.robot = robot
         self.time = 0.0
         self._dt = physics.control_dt
+        self._gravity = conditions.gravity
         self._substeps = physics.rate // physics.control_rate
         self.client = take_client()
         try:
@@ -71,7 +72,7 @@ class PyBulletSimulator:
             enableFileCaching=0,
             physicsClientId=self.client,
         )
-        pybullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self.client)
+        pybullet.setGravity(*conditions.gravity, physicsClientId=self.client)
         self._build_floor()
         self.body, self.links = load_robot(
             self.client,
@@ -218,7 +219,7 @@ class PyBulletSimulator:
         """True sensor signals of the last control tick, without noise or delay."""
         torso = self._torso
         return SensorReading(
-            specific_force(torso, self._velocity_before, self._dt),
+            specific_force(torso, self._velocity_before, self._dt, self._gravity),
             rotate_to_body(torso.orientation, torso.angular_velocity),
             self._pressures(),
             self._positions,

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from sarah.errors import ConfigurationError, check_fields, to_ranges
 from sarah.robot.description import GROUPS
 from sarah.robot.reading import Vector
+from sarah.simulation.simulator import LEVEL_GRAVITY
 
 LINKS = tuple(link for group in GROUPS.values() for link in group)
 PLAUSIBLE = {
@@ -39,7 +40,7 @@ class Randomisation:
     gives none; those of sensors are what datasheets of small inertial units and load cells promise, before calibration.
     A pair is a uniform range; one number, or equal ends, fix the value.
 
-    :param enabled: whether to randomise; if not, the robot is as designed, and the seed draws the push only
+    :param enabled: whether to randomise; if not, the robot is as designed, and the seed draws push and terrain only
     :param friction: range of the Coulomb friction coefficient between sole and floor
     :param mass_deviation: largest relative deviation of each link's mass and inertia
     :param mass_offset: largest offset of the torso's centre of mass along each of its axes, in m
@@ -115,6 +116,7 @@ class Conditions:
     :param mass_offset: offset of the torso's centre of mass in its frame, in m
     :param actuator_bandwidth: bandwidth of the position servos, per second
     :param sensors: errors of the sensors
+    :param gravity: acceleration of gravity in the world's frame, whose z axis is the ground's normal, in m/s^2
     """
 
     friction: float = 0.9
@@ -122,6 +124,7 @@ class Conditions:
     mass_offset: Vector = (0.0, 0.0, 0.0)
     actuator_bandwidth: float = 50.0
     sensors: SensorConditions = SensorConditions()
+    gravity: Vector = LEVEL_GRAVITY
 
     def __post_init__(self) -> None:
         """Refuse factors that omit a link."""

@@ -7,6 +7,8 @@ from typing import NamedTuple, Protocol
 
 from sarah.robot.reading import GRAVITY, SensorReading, Side, Vector
 
+LEVEL_GRAVITY = (0.0, 0.0, -GRAVITY)
+"""Acceleration of gravity on level ground, in the world's frame, in m/s^2."""
 LARGEST_STATE = 1e3
 """Largest state of a torso, in any SI unit: a larger one means that the simulation diverges."""
 
@@ -26,15 +28,10 @@ class TorsoState(NamedTuple):
     angular_velocity: Vector
 
     @property
-    def upright(self) -> float:
-        """Cosine of the angle between the torso's axis and the vertical."""
-        x, y, _, _ = self.orientation
-        return 1.0 - 2.0 * (x * x + y * y)
-
-    @property
-    def tilt(self) -> float:
-        """Angle between the torso's axis and the vertical, in rad."""
-        return math.acos(max(-1.0, min(1.0, self.upright)))
+    def axis(self) -> Vector:
+        """Unit vector along the torso, from the legs to the head."""
+        x, y, z, w = self.orientation
+        return (2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y))
 
     @property
     def is_finite(self) -> bool:
@@ -44,7 +41,10 @@ class TorsoState(NamedTuple):
 
 
 class Simulator(Protocol):
-    """A robot in its world, built for one episode: it stands on a plane, its soles touch it, all joints are at zero."""
+    """A robot in its world, built for one episode: it stands on a plane, its soles touch it, all joints are at zero.
+
+    In the world's frame the plane is z = 0, also where it slopes: gravity is tilted instead.
+    """
 
     @property
     def time(self) -> float:
@@ -118,14 +118,19 @@ def rotate_to_world(orientation: tuple[float, float, float, float], vector: Vect
     return rotate_to_body((-x, -y, -z, w), vector)
 
 
-def specific_force(torso: TorsoState, velocity_before: Vector, dt: float) -> Vector:
+def specific_force(torso: TorsoState, velocity_before: Vector, dt: float, gravity: Vector = LEVEL_GRAVITY) -> Vector:
     """Mean specific force over a control tick, which an ideal accelerometer in the torso reads.
 
     :param torso: state of the torso at the end of the tick
     :param velocity_before: velocity at the beginning of the tick, in the world's frame, in m/s
     :param dt: duration of the tick, in s
-    :return: specific force in the torso's frame, in m/s^2; (0, 0, 9.81) at rest
+    :param gravity: acceleration of gravity, in the world's frame, in m/s^2
+    :return: specific force in the torso's frame, in m/s^2; (0, 0, 9.81) at rest on level ground
     """
     now, before = torso.velocity, velocity_before
-    force = ((now[0] - before[0]) / dt, (now[1] - before[1]) / dt, (now[2] - before[2]) / dt + GRAVITY)
+    force = (
+        (now[0] - before[0]) / dt - gravity[0],
+        (now[1] - before[1]) / dt - gravity[1],
+        (now[2] - before[2]) / dt - gravity[2],
+    )
     return rotate_to_body(torso.orientation, force)

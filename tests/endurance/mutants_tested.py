@@ -76,7 +76,7 @@ EXPLAINED: dict[str, dict[str, str]] = {
         'if form <= "printed":': "there are two forms, and 'symmetric' sorts behind 'printed'",
     },
     "sarah/episode/ending.py": {
-        "if tick.torso.upright <= LEAST_UPRIGHT:": "differs at 45 degrees to the last bit only",
+        "if tick.upright <= LEAST_UPRIGHT:": "differs at 45 degrees to the last bit only",
     },
     "sarah/simulation/sensors.py": {
         "TICKS_AT_ONCE = 257": AT_ONCE,
