@@ -38,6 +38,9 @@ def test_with_underscores_and_deep_within() -> None:
     episode = parse_options(EpisodeOptions, "sarah-eval", words, PUSHED).episode
     assert episode.push.at_seconds == (3.0, 3.0)  # type: ignore[attr-defined]
     assert episode.randomisation.actuator_bandwidth == (40.0, 40.0)
+    words = ["--episode.terrain.slope-degrees", "0", "5", "--episode.terrain.direction-degrees", "90"]
+    terrain = parse_options(EpisodeOptions, "sarah-eval", words, PUSHED).episode.terrain
+    assert terrain == sarah.Terrain(slope_degrees=(0.0, 5.0), direction_degrees=(90.0, 90.0))
     train = parse_options(TrainOptions, "sarah-train", ["--agent.exploration-std", "0.2"], TrainOptions())
     assert train.training.agent.exploration_std == (0.2, 0.2)  # type: ignore[attr-defined]
 
@@ -47,9 +50,12 @@ def test_in_python_and_in_a_file(tmp_path: Path) -> None:
     assert Randomisation(friction=0.8).friction == (0.8, 0.8)  # type: ignore[arg-type]
     assert NAFSettings(elite_std=0.2).elite_std == (0.2, 0.2)  # type: ignore[arg-type]
     path = tmp_path / "mine.yaml"
-    path.write_text("task: balance\nepisode: {push: {newtons: 80}, randomisation: {friction: 0.8}}\n")
+    path.write_text(
+        "task: balance\nepisode: {push: {newtons: 80}, randomisation: {friction: 0.8}, terrain: {slope_degrees: 3}}\n"
+    )
     episode = read_config(TrainingConfig, path).episode
     assert episode.push.newtons == (80.0, 80.0) and episode.randomisation.friction == (0.8, 0.8)  # type: ignore[attr-defined]
+    assert episode.terrain.slope_degrees == (3.0, 3.0)
 
 
 @pytest.mark.parametrize("newtons", [True, "80", None, (1.0,), [1, 2, 3], {"low": 1}, float("nan")])

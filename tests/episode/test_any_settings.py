@@ -15,11 +15,12 @@ from sarah.episode.push import Push
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BalanceConfig
 from sarah.episode.workers import begin_episode
-from sarah.simulation import randomisation
+from sarah.simulation import randomisation, terrain
 from sarah.simulation.physics import Physics
 from sarah.simulation.randomisation import Randomisation
+from sarah.simulation.terrain import Terrain
 
-PLAUSIBLE = {**randomisation.PLAUSIBLE, **push.PLAUSIBLE, **constants.PLAUSIBLE}
+PLAUSIBLE = {**randomisation.PLAUSIBLE, **terrain.PLAUSIBLE, **push.PLAUSIBLE, **constants.PLAUSIBLE}
 P = st.tuples(*[st.floats(0.0, 2.0)] * 5)
 V = st.tuples(*[st.floats(-2.0, 2.0)] * 4)
 
@@ -46,11 +47,18 @@ CONFIG = st.builds(
         delay_ticks=st.sampled_from([0, 1, 100]),
         **{name: plausible(name) for name in SINGLE},
     ),
+    terrain=st.builds(Terrain, **{name: plausible_range(name) for name in terrain.PLAUSIBLE}),
     controller=st.builds(ControllerConstants, **{name: plausible(name) for name in constants.PLAUSIBLE}),
     time_limit=st.sampled_from([1.1, 1.5]),
     reward_form=st.sampled_from(["symmetric", "printed"]),
     stepping=P,
-    push=st.builds(Push, newtons=plausible_range("newtons"), at_seconds=st.just((1.0, 1.05)), duration=st.just(10.0)),
+    push=st.builds(
+        Push,
+        newtons=plausible_range("newtons"),
+        at_seconds=st.just((1.0, 1.05)),
+        duration=st.just(10.0),
+        sagittal_share=plausible("sagittal_share"),
+    ),
     dimensions=st.sampled_from([{}, {"ankle_damping": 3.0}, {"contact_radius": 0.0013}, {"leg_effort": 1e4}]),
 )
 

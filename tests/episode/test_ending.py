@@ -21,11 +21,12 @@ SHORT = EpisodeConfig(time_limit=6.0)
 AT_REST = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (75.0,) * 4, (0.0,) * 6)
 
 
-def ending(state: TorsoState, start: Vector, steps: int, time: float) -> str | None:
+def ending(state: TorsoState, start: Vector, steps: int, time: float, vertical: Vector = (0.0, 0.0, 1.0)) -> str | None:
     """How an episode ends in which a tick has brought the torso there."""
     nobody: Any = None  # the endings do not ask the simulator
     return paper_ending(
-        Tick(time, start, state, steps, 3.0, Phase.SHIFT, Side.LEFT, AT_REST, AT_REST, nobody), EpisodeConfig()
+        Tick(time, start, state, steps, 3.0, Phase.SHIFT, Side.LEFT, AT_REST, AT_REST, nobody, vertical),
+        EpisodeConfig(),
     )
 
 
@@ -78,6 +79,16 @@ def test_criteria_of_the_box_it_ends_25_cm_from_the_start(axis: int, sign: float
 def test_criteria_of_a_fall_it_is_a_tilt_beyond_45_degrees(degrees: float, expected: str | None) -> None:
     start = (0.0, 0.0, 0.84)
     assert ending(standing(start, degrees), start, 9, 10.0) == expected
+
+
+@pytest.mark.parametrize(
+    ("degrees", "expected"), [(0.0, None), (24.5, None), (25.5, "fell"), (-64.5, None), (-65.5, "fell")]
+)
+def test_criteria_of_a_fall_on_a_slope_the_tilt_is_from_gravitys_vertical(degrees: float, expected: str | None) -> None:
+    """Where 20 degrees lead uphill in front, a torso along the ground's normal already leans backward by as much."""
+    start, slope = (0.0, 0.0, 0.84), math.radians(20.0)
+    vertical = (0.0, math.sin(slope), math.cos(slope))
+    assert ending(standing(start, degrees), start, 9, 10.0, vertical) == expected
 
 
 @pytest.mark.parametrize(

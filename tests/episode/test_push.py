@@ -1,16 +1,21 @@
 """The push: what is drawn of it, how long it lasts, what it does."""
 
+import math
+import random
+from typing import Any
+
 import numpy as np
 import pytest
 from laboratory import NoPhysics
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import Episode, simulate
-from sarah.episode.push import Push, draw_push
+from sarah.episode.push import SAGITTAL_DEGREES, DrawnPush, Push, draw_push
 from sarah.episode.result import EpisodeResult
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
+from sarah.errors import ConfigurationError
 from sarah.robot.reading import Vector
 from sarah.simulation.randomisation import Randomisation
 
@@ -29,9 +34,10 @@ def test_hard_push_throws_the_robot_over_and_a_soft_one_does_not() -> None:
 
 def test_push_is_the_only_difference_between_forces() -> None:
     """The force changes neither direction nor time of the push, nor the episode's other draws."""
-    soft, hard = (draw_push(Push(newtons=(newtons, newtons)), seed=5) for newtons in (50.0, 100.0))
-    assert hard.begin == soft.begin
-    assert hard.force == pytest.approx(tuple(2 * component for component in soft.force))
+    for share in (0.0, 1.0):
+        soft, hard = (draw_push(Push((force, force), sagittal_share=share), seed=5) for force in (50.0, 100.0))
+        assert hard.begin == soft.begin
+        assert hard.force == pytest.approx(tuple(2 * component for component in soft.force))
 
 
 def test_pushes_cover_every_direction_force_and_time() -> None:
@@ -42,6 +48,50 @@ def test_pushes_cover_every_direction_force_and_time() -> None:
     assert len(quadrants) == 4 and all(push.force[2] == 0.0 for push in pushes)
     begins = [push.begin for push in pushes]
     assert 1.0 <= min(begins) < 1.1 and 3.9 < max(begins) <= 4.0
+
+
+def from_right(push: DrawnPush) -> float:
+    """Direction in degrees, from 0 to the right, against the clock."""
+    return math.degrees(math.atan2(push.force[1], push.force[0])) % 360.0
+
+
+def test_sagittal_share_of_the_pushes_points_within_30_degrees_of_forward_or_backward() -> None:
+    """All others point to the right here."""
+    push = Push(newtons=(80.0, 80.0), degrees=(0.0, 0.0), sagittal_share=0.5)
+    directions = [from_right(draw_push(push, seed)) for seed in range(1000)]
+    forward = [d for d in directions if abs(d - 90.0) <= SAGITTAL_DEGREES]
+    backward = [d for d in directions if abs(d - 270.0) <= SAGITTAL_DEGREES]
+    assert len(forward) + len(backward) + directions.count(0.0) == 1000
+    assert len(forward) == pytest.approx(250, abs=50) and len(backward) == pytest.approx(250, abs=50)
+    for group, middle in ((forward, 90.0), (backward, 270.0)):
+        assert min(group) < middle - 28.0 and max(group) > middle + 28.0
+
+
+def test_sagittal_share_of_one_leaves_no_other_push_and_of_zero_changes_none() -> None:
+    every = [from_right(draw_push(Push(newtons=(80.0, 80.0), sagittal_share=1.0), seed)) for seed in range(200)]
+    assert all(abs(direction % 180.0 - 90.0) <= SAGITTAL_DEGREES for direction in every)
+    for seed in range(200):
+        numbers = random.Random(f"push {seed}")
+        newtons, degrees = numbers.uniform(0.0, 100.0), numbers.uniform(0.0, 360.0)
+        direction = math.radians(degrees)
+        force = (newtons * math.cos(direction), newtons * math.sin(direction), 0.0)
+        assert draw_push(Push(sagittal_share=0.0), seed) == DrawnPush(force, numbers.uniform(1.0, 4.0), 0.15)
+
+
+def test_larger_sagittal_share_turns_some_pushes_and_leaves_the_others_alone() -> None:
+    """It changes neither force nor time; and a push that is sagittal at one share is the same at a larger one."""
+    some, more = ([draw_push(Push(sagittal_share=share), seed) for seed in range(200)] for share in (0.3, 0.6))
+    drawn = [draw_push(Push(), seed) for seed in range(200)]
+    assert [push.begin for push in some] == [push.begin for push in drawn]
+    assert [math.hypot(*push.force) for push in some] == pytest.approx([math.hypot(*push.force) for push in drawn])
+    for plain, first, second in zip(drawn, some, more, strict=True):
+        assert first in (plain, second)
+
+
+@pytest.mark.parametrize("share", [-0.1, 1.1, math.nan, "half", True])
+def test_what_is_no_share_is_refused(share: Any) -> None:
+    with pytest.raises(ConfigurationError, match=r"^push\.sagittal_share must be between 0 and 1, not .*$"):
+        Push(sagittal_share=share)
 
 
 def test_push_lasts_as_long_as_it_says() -> None:

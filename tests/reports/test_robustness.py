@@ -11,6 +11,7 @@ from laboratory import RESULT
 
 from sarah.cli import eval as eval_command
 from sarah.episode.episode import simulate
+from sarah.episode.push import Push
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BalanceConfig
@@ -45,6 +46,15 @@ def test_controllers_meet_the_same_pushes_and_can_be_repeated(monkeypatch: pytes
     push = dataclasses.replace(BalanceConfig().push, newtons=(80.0, 80.0), at_seconds=robustness.PUSHED_BETWEEN)
     config = BalanceConfig(push=push, time_limit=4.25)
     assert simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.0), 1, "balance", config)) == moving[3].result
+
+
+def test_pushes_come_from_everywhere_whatever_those_of_the_training(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(robustness, "SECONDS_AFTER", 0.1)
+    everywhere, sagittal = (
+        push_many([(0.0,) * 4], BalanceConfig(push=Push(sagittal_share=share)), Workers(), forces=(40.0,), episodes=2)
+        for share in (0.0, 1.0)
+    )
+    assert everywhere == sagittal
 
 
 def test_pushes_within_45_degrees_of_the_sides_are_lateral() -> None:

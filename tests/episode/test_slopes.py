@@ -1,0 +1,98 @@
+"""Episodes on slopes: what a slope changes, and what it leaves alone."""
+
+import dataclasses
+import math
+
+import pytest
+from laboratory import NoPhysics, need, turned
+
+import sarah
+from sarah.control.parameters import PAPER_STEPPING
+from sarah.episode.episode import Episode, simulate
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks.balance import TRAINED_STEPPING
+from sarah.robot.description import RobotDescription
+from sarah.simulation.engines import Engine
+from sarah.simulation.physics import Physics
+from sarah.simulation.randomisation import Conditions, Randomisation
+from sarah.simulation.simulator import LEVEL_GRAVITY, TorsoState
+from sarah.simulation.terrain import Terrain, draw_gravity
+
+UPHILL_IN_FRONT = Terrain((20.0, 20.0), (90.0, 90.0))
+
+
+class Leaning(NoPhysics):
+    """A simulator whose robot leans backward all the time; it keeps the conditions that it was built with."""
+
+    degrees = 0.0
+
+    def __init__(self, robot: RobotDescription, physics: Physics, conditions: Conditions) -> None:
+        super().__init__()
+        self.conditions = conditions
+
+    def torso_state(self) -> TorsoState:
+        return super().torso_state()._replace(orientation=turned(0.0, math.radians(self.degrees)))
+
+
+def conditions_of(config: EpisodeConfig, seed: int = 3) -> Conditions:
+    episode = Episode(config, seed, build=Leaning)
+    assert isinstance(episode.simulation, Leaning)
+    return episode.simulation.conditions
+
+
+@pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
+def test_direction_of_level_ground_changes_no_byte(engine: Engine) -> None:
+    need(engine)
+    level = EpisodeConfig(engine=engine, time_limit=3.0)
+    turned_round = dataclasses.replace(level, terrain=Terrain((0.0, 0.0), (200.0, 210.0)))
+    expected = simulate(EpisodeSpec(PAPER_STEPPING, 2, config=level))
+    assert simulate(EpisodeSpec(PAPER_STEPPING, 2, config=turned_round)) == expected
+
+
+def test_slope_changes_nothing_else_that_the_seed_draws() -> None:
+    level, slope = conditions_of(EpisodeConfig()), conditions_of(EpisodeConfig(terrain=UPHILL_IN_FRONT))
+    assert level.gravity == LEVEL_GRAVITY and slope.gravity == draw_gravity(UPHILL_IN_FRONT, 3) != LEVEL_GRAVITY
+    assert dataclasses.replace(slope, gravity=LEVEL_GRAVITY) == level
+
+
+def test_slope_is_no_matter_of_randomisation() -> None:
+    config = EpisodeConfig(terrain=Terrain((0.0, 10.0)), randomisation=Randomisation(enabled=False))
+    assert conditions_of(config, 1).gravity != conditions_of(config, 2).gravity
+
+
+@pytest.mark.parametrize(("degrees", "ending"), [(24.0, "no_oscillation"), (26.0, "fell"), (-64.0, "no_oscillation")])
+def test_fall_is_judged_by_gravity(degrees: float, ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Uphill is in front, so a robot that leans backward from the ground's normal leans the way it would fall."""
+    monkeypatch.setattr(Leaning, "degrees", degrees)
+    episode = Episode(EpisodeConfig(terrain=UPHILL_IN_FRONT), 0, build=Leaning)
+    episode.stand()
+    assert episode.run(TRAINED_STEPPING).termination == ending
+
+
+def test_tilt_of_a_tick_is_from_gravitys_vertical() -> None:
+    tilts = []
+
+    def reward(tick: sarah.Tick, config: EpisodeConfig) -> float:
+        tilts.append(math.degrees(tick.tilt))
+        return 1.0
+
+    task = dataclasses.replace(sarah.STEPPING, name="watched", reward=reward, best_reward=1.0)
+    episode = Episode(EpisodeConfig(terrain=UPHILL_IN_FRONT), 0, task, build=Leaning)
+    episode.stand()
+    episode.start(TRAINED_STEPPING)
+    episode.tick()
+    assert tilts == pytest.approx([20.0])
+
+
+@pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
+def test_robot_steps_on_a_gentle_slope_and_leaves_its_place_on_a_steep_one(
+    engine: Engine,
+) -> None:
+    need(engine)
+    gentle, steep = (
+        simulate(EpisodeSpec(TRAINED_STEPPING, 0, config=EpisodeConfig(engine=engine, time_limit=8.0, terrain=terrain)))
+        for terrain in (Terrain((3.0, 3.0), (90.0, 90.0)), UPHILL_IN_FRONT)
+    )
+    assert gentle.survived and gentle.score > 0.8
+    assert steep.termination == "left_box" and steep.final_position[1] < -0.25
