@@ -74,6 +74,7 @@ def _film(arguments: Sequence[str]) -> None:
     from sarah.episode.ending import ending_words
     from sarah.episode.episode import simulate
     from sarah.robot.description import describe_robot
+    from sarah.simulation.terrain import draw_gravity
 
     result = simulate(spec, record_trace=True)
     assert result.trace is not None
@@ -86,7 +87,9 @@ def _film(arguments: Sequence[str]) -> None:
     check_renderer()
     times = frame_times(begin, end, FRAMES_PER_SECOND[options.out.suffix], options.speed)
     robot = describe_robot(spec.config.dimensions)
-    pictures = frames(result.trace, robot, tqdm(times, desc="filming", unit=" frames"), _caption(spec, result))
+    progress = tqdm(times, desc="filming", unit=" frames")
+    gravity = draw_gravity(spec.config.terrain, spec.seed)
+    pictures = frames(result.trace, robot, progress, _caption(spec, result), gravity)
     write_video(pictures, options.out)
     print(options.out)
 

@@ -17,6 +17,7 @@ from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, RobotDescript
 from sarah.robot.reading import Vector
 from sarah.simulation.renderer import Renderer
 from sarah.simulation.scenery import Camera, View, size_of
+from sarah.simulation.simulator import LEVEL_GRAVITY
 
 SUFFIXES = (".mp4", ".gif")
 WIDTH, HEIGHT = 1024, 576
@@ -48,18 +49,25 @@ def frame_times(begin: float, end: float, frames_per_second: float, speed: float
     return begin + np.arange(count) * speed / frames_per_second
 
 
-def frames(trace: Trace, robot: RobotDescription, times: Iterable[float], caption: str = "") -> Iterator[Image.Image]:
+def frames(
+    trace: Trace,
+    robot: RobotDescription,
+    times: Iterable[float],
+    caption: str = "",
+    gravity: Vector = LEVEL_GRAVITY,
+) -> Iterator[Image.Image]:
     """Draw frames of an episode.
 
     :param trace: trace of the episode
     :param robot: robot of the episode
     :param times: simulated times of the frames, in s
     :param caption: text below the robot
+    :param gravity: acceleration of gravity in the episode, in the world's frame, in m/s^2: a slope is seen as one
     :return: RGB pictures of 1024 x 576 pixels
     """
     renderer = Renderer(robot, SAMPLES)
     try:
-        camera, feet_camera = cameras(trace, robot, renderer)
+        camera, feet_camera = cameras(trace, robot, renderer, gravity)
         caption_end = WIDTH - FEET_WIDTH - 2 * FEET_MARGIN
         overlay = Overlay(trace, View(WIDTH, HEIGHT, camera), caption, caption_end, size_of(robot))
         for time in times:
@@ -78,7 +86,9 @@ def frames(trace: Trace, robot: RobotDescription, times: Iterable[float], captio
         renderer.close()
 
 
-def cameras(trace: Trace, robot: RobotDescription, renderer: Renderer) -> tuple[Camera, Camera]:
+def cameras(
+    trace: Trace, robot: RobotDescription, renderer: Renderer, gravity: Vector = LEVEL_GRAVITY
+) -> tuple[Camera, Camera]:
     """Cameras of an episode's frames: one sees the robot and its push the whole time, the other one its feet.
 
     Both stand still. They stand farther away than usual only if the episode needs it.
@@ -86,6 +96,7 @@ def cameras(trace: Trace, robot: RobotDescription, renderer: Renderer) -> tuple[
     :param trace: trace of the episode
     :param robot: robot of the episode
     :param renderer: renderer of the robot
+    :param gravity: acceleration of gravity in the episode, in the world's frame, in m/s^2
     """
     size = size_of(robot)
     seen, feet = [], []
@@ -93,14 +104,15 @@ def cameras(trace: Trace, robot: RobotDescription, renderer: Renderer) -> tuple[
         tick = trace.tick_at(time)
         seen.append(renderer.corners(*_pose(trace, tick)))
         feet.append(renderer.soles())
-    camera = renderer.camera.seeing(np.concatenate(seen), WIDTH - 2 * TEXT_WIDTH, HEIGHT)
+    camera = renderer.camera._replace(gravity=gravity).seeing(np.concatenate(seen), WIDTH - 2 * TEXT_WIDTH, HEIGHT)
     forces = np.linalg.norm(trace.push, axis=1)
     if forces.any():
         begin = int(np.argmax(forces > 0.0))
         shown = (trace.time >= trace.time[begin]) & (trace.time < trace.time[begin] + PUSH_SHOWN_SECONDS)
         arrows = [arrow(position, trace.push[begin], size) for position in trace.position[shown]]
         camera = camera.seeing(np.concatenate(arrows), WIDTH, HEIGHT)
-    return camera, FEET_CAMERA.scaled(size).seeing(np.concatenate(feet), FEET_WIDTH, FEET_HEIGHT)
+    feet_camera = FEET_CAMERA.scaled(size)._replace(gravity=gravity)
+    return camera, feet_camera.seeing(np.concatenate(feet), FEET_WIDTH, FEET_HEIGHT)
 
 
 def _pose(trace: Trace, tick: int) -> Pose:

@@ -10,6 +10,8 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFilter
 
 from sarah.robot.description import RobotDescription, describe_robot
+from sarah.robot.reading import Vector
+from sarah.simulation.simulator import LEVEL_GRAVITY
 
 TILE = 0.25
 """Length of the floor's tiles, in m; a torso that moves by one tile from its start has left the episode's box."""
@@ -36,9 +38,10 @@ class Camera(NamedTuple):
 
     :param height: height of that point over the floor, in m
     :param distance: distance of the camera from that point, in m
-    :param yaw: direction of the view about the vertical, in degrees; 180 looks at the robot from its front
-    :param pitch: direction of the view over the horizon, in degrees; negative looks down
+    :param yaw: direction of the view about the floor's normal, in degrees; 180 looks at the robot from its front
+    :param pitch: direction of the view over the floor, in degrees; negative looks down
     :param field_of_view: angle of the view from the lower to the upper edge of the picture, in degrees
+    :param gravity: acceleration of gravity in the world's frame, which points down in the picture, in m/s^2
     """
 
     height: float = 0.48
@@ -46,6 +49,7 @@ class Camera(NamedTuple):
     yaw: float = 162.0
     pitch: float = -7.0
     field_of_view: float = 35.0
+    gravity: Vector = LEVEL_GRAVITY
 
     def scaled(self, factor: float) -> Camera:
         """Camera that sees a robot of another size in the same way.
@@ -93,9 +97,12 @@ class View:
         self.focal_length = height / 2 / math.tan(math.radians(camera.field_of_view) / 2)
         """Focal length, in pixels."""
         yaw, pitch = math.radians(camera.yaw), math.radians(camera.pitch)
-        right = (math.cos(yaw), math.sin(yaw), 0.0)
-        ahead = (-math.sin(yaw) * math.cos(pitch), math.cos(yaw) * math.cos(pitch), math.sin(pitch))
-        self.axes = np.array((right, np.cross(right, ahead), ahead))
+        right = np.array((math.cos(yaw), math.sin(yaw), 0.0))
+        ahead = np.array((-math.sin(yaw) * math.cos(pitch), math.cos(yaw) * math.cos(pitch), math.sin(pitch)))
+        up = np.cross(right, ahead)
+        roll = math.atan2(-right @ camera.gravity, -up @ camera.gravity)
+        right, up = math.cos(roll) * right - math.sin(roll) * up, math.cos(roll) * up + math.sin(roll) * right
+        self.axes = np.array((right, up, ahead))
         """Unit vectors to the right, upward and ahead, as rows."""
         self.position = np.array((0.0, 0.0, camera.height)) - camera.distance * self.axes[2]
 
