@@ -53,6 +53,7 @@ def make(name: str, arguments: Sequence[str]) -> None:
     :param name: name of the result
     :param arguments: options
     """
+    from experiments.shipped_parameters import ShippedParameters, ship
     from experiments.table import TABLE
 
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
@@ -71,6 +72,8 @@ def make(name: str, arguments: Sequence[str]) -> None:
     command = shlex.join([*COMMAND.split(), name, *arguments])
     record.write(name, rows, maker.question, command, made_with() if maker.of_robot else None, folder)
     print(folder / f"{name}.csv")
+    if isinstance(experiment, ShippedParameters) and folder == record.RESULTS:
+        ship(record.read(name))
 
 
 def makes_the_result(experiment: Experiment, full: Experiment) -> bool:

@@ -105,7 +105,7 @@ def write(
         "versions": versions(),
         "made_with": made_with,
     }
-    _write_json(folder / f"{name}.json", about)
+    write_json(folder / f"{name}.json", about)
 
 
 def mark_stale(name: str, reason: str, folder: Path = RESULTS) -> None:
@@ -116,7 +116,7 @@ def mark_stale(name: str, reason: str, folder: Path = RESULTS) -> None:
     :param folder: folder of the files
     """
     path = folder / f"{name}.json"
-    _write_json(path, json.loads(path.read_text(encoding="utf-8")) | {"stale": reason})
+    write_json(path, json.loads(path.read_text(encoding="utf-8")) | {"stale": reason})
 
 
 def commit() -> str:
@@ -136,7 +136,12 @@ def cell(value: Any) -> str:
     return f"{value:.5g}" if isinstance(value, float) else str(value)
 
 
-def _write_json(path: Path, about: Mapping[str, Any]) -> None:
+def write_json(path: Path, about: Mapping[str, Any]) -> None:
+    """Write a JSON file, with each list of numbers on one line.
+
+    :param path: the file
+    :param about: its content
+    """
     text = json.dumps(about, indent=2, ensure_ascii=False)
     text = re.sub(r"\[[^\[\]]*\]", lambda numbers: " ".join(numbers[0].split()), text)  # a list on one line
     path.write_text(f"{text}\n", encoding="utf-8")

@@ -28,6 +28,7 @@ from experiments.robot_dimensions import RobotDimensions
 from experiments.robustness import Robustness
 from experiments.second_training import SecondTraining
 from experiments.sensor_faults import SensorFaults
+from experiments.shipped_parameters import ShippedParameters
 from experiments.slots import SlotsSchedule
 from experiments.slots_cost import SlotsCost
 from experiments.standard_tasks import StandardTask
@@ -77,6 +78,11 @@ TABLE: dict[str, Maker] = {
         "Does the robot learn to come back after a push, and where do V1 to V4 settle?",
         SecondTraining(),
         {**TRAINED, "seeds": 1, "pushes": 2, "reference_pushes": 1, "unpushed": 1},
+    ),
+    "shipped_parameters": Maker(
+        "Which parameters does the package ship, and how well do they do?",
+        ShippedParameters(),
+        {**TRAINED, "balance_budget": 5, "episodes": 1},
     ),
     "robustness": Maker(
         "How hard a push does the robot come back from?",

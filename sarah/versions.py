@@ -16,7 +16,7 @@ LEARNING = (*SIMULATING, "torch", "stable-baselines3", "gymnasium", "cma", "optu
 """Packages that a training's bytes depend on, beside this one."""
 LONGEST_SHOWN = 100
 """Largest number of characters of a value in a message."""
-SOURCES = (".py", ".xacro")
+SOURCES = (".json", ".py", ".xacro")
 """Endings of the names of files that are hashed."""
 
 

@@ -40,7 +40,14 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
 
 def test_wheel_holds_the_robot_and_the_agent_and_claims_one_name(built: tuple[Path, Path]) -> None:
     names = zipfile.ZipFile(built[1]).namelist()
-    for name in ("urdf/sarah.urdf.xacro", "urdf/__init__.py", "agents/local_naf.py", "cli/train.py", "py.typed"):
+    for name in (
+        "urdf/sarah.urdf.xacro",
+        "urdf/__init__.py",
+        "agents/local_naf.py",
+        "cli/train.py",
+        "py.typed",
+        "episode/parameter_sets.json",
+    ):
         assert f"sarah/{name}" in names
     assert sorted(names) == sorted(set(names))
     modules = {str(path.relative_to(ROOT)) for path in (ROOT / "sarah").rglob("*.py")}

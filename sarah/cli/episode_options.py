@@ -102,7 +102,7 @@ def parse_episode_options(
     given = given_options(arguments, "task", "which", "engine", "episode.engine")
     task = named_task(given.get("task"))
     subject = subject or _subject_among(arguments, default, given)
-    own = episode_of(subject, given.get("which"), task).spec.config if subject else (task or STEPPING).episode
+    own = _settings_of(subject, given.get("which"), task) if subject else (task or STEPPING).episode
     if type(own) is EpisodeConfig:  # any robot can be pushed, whether its task has a push or not
         own = PushedConfig(**vars(own), push=NOBODY)
     episode = with_given_engine(own, given)
@@ -115,17 +115,37 @@ def _subject_among(arguments: Sequence[str], default: EpisodeOptions, given: Map
 
     Where that fails, or help is wanted, the first argument that could be it will do.
     """
+    without = None if "task" in given else getattr(default, "subject", None)
     if {"-h", "--help"} & set(arguments):
-        return next(filter(_is_there, arguments), None)
+        return next(filter(_is_there, arguments), without)
     every = dataclasses.replace(default, episode=with_given_engine(BALANCE.episode, given))
     try:
         with contextlib.redirect_stderr(io.StringIO()):
             options: Any = parse_options(type(default), "", arguments, every)
     except (SystemExit, ConfigurationError):  # the real parser will say so
-        return next(filter(_is_there, arguments), None)
+        return next(filter(_is_there, arguments), without)
     subjects = getattr(options, "subjects", None)
     subject: str | None = subjects[0] if subjects else getattr(options, "subject", None)
     return subject if subject is not None and _is_there(subject) else None
+
+
+def _settings_of(subject: str, which: str | None, task: Task[Any] | None) -> EpisodeConfig:
+    """Settings to begin from; those of shipped parameters are found without what run folders need."""
+    from sarah.episode.parameter_sets import PARAMETER_SETS
+
+    if task is None and is_shipped(subject):
+        return PARAMETER_SETS[subject].spec.config
+    return episode_of(subject, which, task).spec.config
+
+
+def is_shipped(subject: str) -> bool:
+    """Whether a subject is the name of shipped parameters; a run folder of that name goes before.
+
+    :param subject: path of a run folder, numbers separated by commas, or the name of shipped parameters
+    """
+    from sarah.episode.parameter_sets import PARAMETER_SETS
+
+    return subject in PARAMETER_SETS and not Path(subject).is_dir()
 
 
 def _is_there(subject: str) -> bool:
@@ -158,7 +178,9 @@ def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tupl
     if subject in PARAMETER_SETS:
         given = RunEpisode(subject, f"{subject} · seed 0", PARAMETER_SETS[subject].spec)
         if task not in (None, given.spec.task):
-            raise ConfigurationError(f"{subject!r} are parameters of task {given.spec.task.name!r}: leave --task out")
+            raise ConfigurationError(
+                f"{subject!r} are parameters of task {given.spec.task.name!r}: give others, or leave --task out"
+            )
     elif subject.strip(" +-.")[:1].isdigit():
         given = episode_of_parameters(numbers("parameters", subject), task)
     else:

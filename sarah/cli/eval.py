@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
-from sarah.cli.episode_options import EpisodeOptions, episode_of, parse_episode_options
+from sarah.cli.episode_options import EpisodeOptions, episode_of, is_shipped, parse_episode_options
 from sarah.cli.options import named_task, run_command, say_engine
+from sarah.episode.push import PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig, Task
@@ -33,7 +34,8 @@ class EvalOptions(EpisodeOptions):
     """Simulate learned, given or shipped parameters on unseen seeds, and summarise the episodes.
 
     :param subject: run folder of a finished training, numbers separated by commas (P1 to P5 for stepping, or V1 to V4
-        for the task balance), or the name of shipped parameters: ``paper``, ``stepping`` or ``balance``
+        for the task balance), or the name of shipped parameters: ``paper``, ``stepping`` or ``balance``, which comes
+        back from a push
     :param robustness: folder for a table and a polar plot of survival by force and direction of the push, for these
         parameters and the baseline. --episodes is the number at each force
     :param forces: forces of the pushes of --robustness, in N
@@ -45,9 +47,7 @@ class EvalOptions(EpisodeOptions):
     :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
     """
 
-    subject: Annotated[
-        str | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN|NUMBERS|NAME", help_behavior_hint="(required)")
-    ] = None
+    subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"
     robustness: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     forces: Annotated[tuple[float, ...], tyro.conf.arg(metavar="FLOAT...")] = (25.0, 50.0, 75.0, 100.0, 125.0, 150.0)
     episodes: int = 20
@@ -101,7 +101,7 @@ def _evaluate(arguments: Sequence[str]) -> None:
         print(json_format.dumps(content))
         return
     seeds = f"{options.seeds[0]} to {options.seeds[-1]}, which no training has seen"
-    for label, text in [("seeds", seeds), *_rows(named, evaluation)]:
+    for label, text in [*_subject_rows(options.subject, spec.config), ("seeds", seeds), *_rows(named, evaluation)]:
         print(f"{label:17}{text}")
     if baseline is not None:
         for label, text in _comparison(spec.task, evaluation, baseline):
@@ -110,8 +110,6 @@ def _evaluate(arguments: Sequence[str]) -> None:
 
 def _subject(options: EvalOptions) -> tuple[EpisodeSpec, str | None]:
     """Episode to evaluate, on any seed, and the algorithm that learned its parameters."""
-    if options.subject is None:
-        raise ConfigurationError("give a run folder, numbers or a name")
     task, algorithm = named_task(options.task), None
     if Path(options.subject).is_dir():
         from sarah.runs.run_folder import RunFolder
@@ -119,6 +117,17 @@ def _subject(options: EvalOptions) -> tuple[EpisodeSpec, str | None]:
         algorithm = RunFolder.open(Path(options.subject), task=task).config().algo  # not of an unfinished training
     spec = episode_of(options.subject, None, task).spec
     return options.applied_to(spec), algorithm
+
+
+def _subject_rows(subject: str, config: EpisodeConfig) -> list[tuple[str, str]]:
+    """Rows about what is evaluated, if it has a name."""
+    from sarah.episode.parameter_sets import PARAMETER_SETS
+
+    if not is_shipped(subject):
+        return []
+    low, high = config.push.newtons if isinstance(config, PushedConfig) else (0.0, 0.0)
+    pushed = f"pushed by {low:g} to {high:g} N" if high else "not pushed"
+    return [("subject", f"{subject}, {pushed}"), ("origin", PARAMETER_SETS[subject].origin)]
 
 
 def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[str, str]]:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.episode_options import EpisodeOptions, episodes_of, parse_episode_options
+from sarah.cli.episode_options import EpisodeOptions, episodes_of, is_shipped, parse_episode_options
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.errors import ConfigurationError
 
@@ -30,8 +30,8 @@ class ViewOptions(EpisodeOptions):
     """Play episodes on a page in the browser, where sliders change all parameters and a button pushes the robot.
 
     :param subject: run folder, of a training that need not be finished; numbers separated by commas, P1 to P5 for
-        stepping, or V1 to V4 for the task balance; or the name of shipped parameters: ``paper``, ``stepping`` (the
-        default) or ``balance``
+        stepping, or V1 to V4 for the task balance; or the name of shipped parameters: ``paper``, ``stepping`` or
+        ``balance``, which comes back from a push
     :param which: episode of a run folder: ``learned`` for the learned parameters, ``best``, or an index of its
         episodes.csv; by default ``learned``, or ``best`` if the training is not finished
     :param seed: seed of the episode, by which robot, sensors and push vary; by default the episode's own, or 0
@@ -41,7 +41,7 @@ class ViewOptions(EpisodeOptions):
     :param port: port to serve the page at; the next free one if it is taken
     """
 
-    subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "stepping"
+    subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"
     which: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
     seed: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
     export: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
@@ -96,12 +96,15 @@ def _export(path: Path, chosen: RunEpisode) -> None:
 
 
 def _serve(options: ViewOptions, choices: list[RunEpisode], chosen: RunEpisode) -> None:
+    from sarah.episode.parameter_sets import PARAMETER_SETS
     from sarah.viewer.page import Page
     from sarah.viewer.server import serving
 
     with serving(options.host, options.port) as server:
         page = Page(server, choices, chosen)
         say_engine(chosen.spec.config, options.engine)
+        if is_shipped(options.subject):
+            print(f"{options.subject}: {PARAMETER_SETS[options.subject].origin}")
         if not _is_local(options.host):
             print(f"warning: everyone who can reach {options.host} can use this page, as there is no password")
         print(f"SARAH is at http://{options.host}:{server.get_port()} (Ctrl-C ends)", flush=True)

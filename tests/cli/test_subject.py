@@ -1,10 +1,13 @@
 """What a command looks at is its argument, whatever the values of its options are called."""
 
 import json
+import subprocess
 from pathlib import Path
 
 import pytest
-from terminal import run
+from terminal import BIN, run
+
+from sarah.episode.parameter_sets import PARAMETER_SETS
 
 QUICK = ("--episodes", "2", "--json", "--episode.time-limit", "3")
 
@@ -27,6 +30,23 @@ def test_shipped_parameters_come_with_their_settings(tmp_path: Path) -> None:
     own = shown("balance", folder=tmp_path)
     other = shown("1.09,0.17,0.65,1.13", folder=tmp_path)  # on other legs, pushed less
     assert own["parameters"] == other["parameters"] and own["score_mean"] != other["score_mean"]
+
+
+def test_without_a_subject_it_is_what_comes_back_from_a_push(tmp_path: Path) -> None:
+    text = run("sarah-eval", "--episodes", "2", "--episode.time-limit", "4", cwd=tmp_path).stdout
+    assert "balance, pushed by 75 to 125 N\n" in text and f" {PARAMETER_SETS['balance'].origin}\n" in text
+    assert shown(folder=tmp_path) == shown("balance", folder=tmp_path)
+    help_text = run("sarah-eval", "--help", cwd=tmp_path).stdout
+    assert "75.0 125.0" in help_text and "--episode.stepping" in help_text
+
+
+def test_the_page_says_where_shipped_parameters_come_from(tmp_path: Path) -> None:
+    pytest.importorskip("viser")
+    with subprocess.Popen([BIN / "sarah-view"], stdout=subprocess.PIPE, text=True, cwd=tmp_path) as server:
+        assert server.stdout is not None
+        assert server.stdout.readline() == f"balance: {PARAMETER_SETS['balance'].origin}\n"
+        assert "SARAH is at http://127.0.0.1:" in server.stdout.readline()
+        server.terminate()
 
 
 @pytest.mark.parametrize("numbers", ["-1,0,1,0", "1, 0.2, 0.1, 0", " -.5,0,1,-1"])

@@ -276,13 +276,13 @@ def test_the_hash_of_the_sources_tells_states_of_the_code_apart(tmp_path: Path) 
 
     assert source_hash(copy("same")) == source_hash()
     hashes = {source_hash()}
-    for name in ("control/hip_law.py", "agents/naf.py", "urdf/sarah.urdf.xacro"):
+    for name in ("control/hip_law.py", "agents/naf.py", "urdf/sarah.urdf.xacro", "episode/parameter_sets.json"):
         file = copy(name.replace("/", " ")) / name
         file.write_text(file.read_text() + "\n")
         hashes.add(source_hash(file.parents[1]))
     moved = copy("moved")
     (moved / "control" / "hip_law.py").rename(moved / "control" / "hips.py")
-    assert len(hashes | {source_hash(moved)}) == 5
+    assert len(hashes | {source_hash(moved)}) == 6
     described = copy("described")
     (described / "notes.txt").write_text("no source")
     assert source_hash(described) == source_hash()

@@ -1,6 +1,7 @@
 """The tasks: one file each, and an entry here. A task of your own needs no entry: it is a file of yours.
 
-A task may import errors, robot, control, and from the episode its settings, push, ending, reward and tick.
+A task may import errors, robot, control, and from the episode its settings, push, ending, reward, tick
+and shipped parameters.
 """
 
 from pathlib import Path

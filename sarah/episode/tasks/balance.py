@@ -10,11 +10,12 @@ from sarah.control.pattern_generator import SteppingParameters
 from sarah.episode.ending import paper_ending
 from sarah.episode.push import PushedConfig
 from sarah.episode.reward import equation_2
+from sarah.episode.shipped import shipped
 from sarah.episode.tasks.stepping import STEPPING
 from sarah.episode.tasks.task import ControllerParameters, Task
 
-TRAINED_STEPPING = (0.41, 0.52, 0.62, 1.17, 1.37)
-"""Default values of P1 to P5: those that NAF learned in one training, to two digits."""
+TRAINED_STEPPING: tuple[float, float, float, float, float] = tuple(shipped()["stepping"]["parameters"].values())
+"""Default values of P1 to P5: those that the package ships as ``stepping``."""
 
 
 @dataclass(frozen=True)
