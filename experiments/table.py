@@ -28,6 +28,7 @@ from experiments.robot_dimensions import RobotDimensions
 from experiments.robustness import Robustness
 from experiments.second_training import SecondTraining
 from experiments.sensor_faults import SensorFaults
+from experiments.shift_endings import ShiftEndings
 from experiments.shipped_parameters import ShippedParameters
 from experiments.slots import SlotsSchedule
 from experiments.slots_cost import SlotsCost
@@ -160,6 +161,11 @@ TABLE: dict[str, Maker] = {
         "What does each of V1 to V4 do, one at a time around (1, 0, 0, 0) under pushes of 100 N?",
         Landscape("balance", seeds=12, time_limit=8.0),
         {**SHORT, "seeds": 1, "points": 1},
+    ),
+    "shift_endings": Maker(
+        "Which of its conditions ends SHIFT?",
+        ShiftEndings(),
+        {"time_limit": 3.0, "episodes": 1, "steady_from": 1.0, "p3": ()},
     ),
     "clock": Maker(
         "Can a learner use the time-outs as a clock?",
