@@ -160,10 +160,10 @@ class HipLaw:
 
     def _moved(self, now: float, goal: float, joints: tuple[int, ...], periods: int) -> float:
         constants = self._constants
-        goal = clipped(goal, constants.largest_hip_angle)
+        wanted = goal = clipped(goal, constants.largest_hip_angle)
         for joint in joints:
             low, high = self._limits[joint]
-            if not low <= goal <= high:
+            if not low <= wanted <= high:
                 self.limited.add(joint)
                 goal = max(low, min(high, goal))
         return ramped(now, goal, constants.hip_speed * self._dt * periods)
