@@ -29,7 +29,7 @@ from sarah.simulation.randomisation import NOMINAL, Randomisation
 from sarah.training.optimisers import Start
 
 ROOT = Path(__file__).parent.parent
-AS_DESIGNED = Randomisation(enabled=False, start_speed=0.0)
+AS_DESIGNED = Randomisation(enabled=False)
 LEARNED = {
     "stepping": {"task": "stepping", "parameters": dict(P1=0.4, P2=1.3, P3=0.1, P4=1.0, P5=1.0), "stepping": None},
     "balance": {
