@@ -20,7 +20,8 @@ from sarah.episode.result import METRICS
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS, Task
 from sarah.episode.tick import Tick
-from sarah.robot.description import ACTUATED_JOINTS, JOINT_TYPES, describe_robot
+from sarah.robot.description import JOINT_TYPES, describe_robot
+from sarah.robot.reading import ACTUATED_JOINTS
 from sarah.runs import agent_settings
 from sarah.runs.agent_settings import AGENT_SETTINGS, LearnerSettings, NAFSettings
 from sarah.runs.config import TrainingConfig

@@ -29,9 +29,8 @@ from sarah.control.baselines import Baselines
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.hip_law import LOCKED_HIPS, NO_LIMITS, BalanceParameters, HipLaw
 from sarah.errors import ConfigurationError
-from sarah.robot.description import ACTUATED_JOINTS
 from sarah.robot.filters import LowPass, clipped, ramped
-from sarah.robot.reading import GRAVITY, STANDING, SensorReading, Side
+from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, STANDING, SensorReading, Side
 
 STAND_SECONDS = 1.0
 """Duration of standing before the robot begins to step, in s; it is the paper's."""

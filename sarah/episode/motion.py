@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from sarah.robot.description import ACTUATED_JOINTS
-from sarah.robot.reading import Vector
+from sarah.robot.reading import ACTUATED_JOINTS, Vector
 
 CHATTER_BAND = (20.0, 50.0)
 """Frequencies between which motion counts as vibration, in Hz: above the gait's harmonics, and the same at all control

@@ -11,8 +11,8 @@ from sarah.control.constants import ControllerConstants
 from sarah.control.hip_law import BalanceParameters
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import LONGEST_GAP, PatternGenerator, Phase, SteppingParameters
-from sarah.robot.description import ACTUATED_JOINTS, describe_robot
-from sarah.robot.reading import SensorReading
+from sarah.robot.description import describe_robot
+from sarah.robot.reading import ACTUATED_JOINTS, SensorReading
 
 STANDING = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (75.0,) * 4, (0.0,) * 6)  # type: ignore[arg-type]
 LIMITS = [describe_robot().limits[name] for name in ACTUATED_JOINTS]

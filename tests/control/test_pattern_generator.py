@@ -401,8 +401,8 @@ def test_new_v1_to_v4_come_at_the_speed_of_the_ramp_and_arrive() -> None:
     for tick in range(1, 39):
         generator.tick(reading())
         v = generator.hips.parameters
-        assert v.V1 == pytest.approx(max(0.0, 1.0 - 0.04 * tick)) and (v.V2, v.V3) == (0.0, 0.5)
-        assert v.V4 == pytest.approx(max(-1.5, -0.04 * tick))
+        assert pytest.approx(max(0.0, 1.0 - 0.04 * tick)) == v.V1 and (v.V2, v.V3) == (0.0, 0.5)
+        assert pytest.approx(max(-1.5, -0.04 * tick)) == v.V4
     assert v == goal and generator.parameters == SteppingParameters(*PAPER_STEPPING)
 
 

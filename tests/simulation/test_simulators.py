@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from laboratory import NEEDS_PYBULLET, BulletLaboratory, MujocoLaboratory, laboratory
 
-from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, GROUPS, PLATES, describe_robot
-from sarah.robot.reading import Side, Vector
+from sarah.robot.description import ANKLE_JOINTS, GROUPS, PLATES, describe_robot
+from sarah.robot.reading import ACTUATED_JOINTS, Side
 from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
 from sarah.simulation.pybullet_client import pybullet
