@@ -144,7 +144,7 @@ def examples_page() -> Iterator[str]:
 SIGNALS = (
     ("acceleration[0]", "m/s²", "a push to the right; negative while the standing robot leans to the right", "yes"),
     ("acceleration[1]", "m/s²", "a push forward; negative while the standing robot leans forward", "no"),
-    ("acceleration[2]", "m/s²", "up: 9.81 at rest", "no"),
+    ("acceleration[2]", "m/s²", "up: 9.81 at rest", "for falls"),
     ("angular_rate[0]", "rad/s", "the torso tips backward", "by V3"),
     ("angular_rate[1]", "rad/s", "the torso tips to the right", "yes"),
     ("angular_rate[2]", "rad/s", "the torso turns to the left", "no"),

@@ -1,7 +1,7 @@
 """The smoothness of an episode's motion, and the load on the actuators.
 
 A controller chatters if it shakes the robot at frequencies that no real actuator follows. Reward and survival do not
-show that, but the torso's acceleration above 20 Hz does.
+show that, but the torso's acceleration from 20 to 50 Hz does.
 """
 
 from __future__ import annotations
