@@ -49,8 +49,8 @@ def test_a_robot_that_is_pushed_over_is_noticed_within_half_a_second_of_60_degre
 
 @pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
 def test_no_push_that_the_robot_survives_is_taken_for_a_fall(engine: str) -> None:
-    """Measured in 300 episodes with 50 to 125 N, 100 of them of random P and 95 of random V as well: the low-passed
-    vertical acceleration of those that survive stays above 8.1 m/s^2, and a fall is recognised below 5.
+    """Measured in 388 episodes that robots survived, 237 of them with pushes of 50 to 125 N and 246 with random P or V:
+    the low-passed vertical acceleration stays above 8.1 m/s^2, and a fall is recognised below 5.
     """
     need(engine)
     survived = 0
