@@ -94,16 +94,16 @@ class Candidate(HipLaw):
         self._sample = 0.0
         self._kept = dict(self.flexion)
 
-    def sense(self, reading: SensorReading) -> None:
+    def sense(self, reading: SensorReading, periods: int = 1) -> None:
         """Filter one reading without acting on it, as while standing."""
-        super().sense(reading)
+        super().sense(reading, periods)
         x, y, z = reading.acceleration
         self._acceleration(clipped(y, self._largest))
         self._angle(math.asin(y / max(math.sqrt(x * x + y * y + z * z), abs(y), 1e-9)))
 
-    def tick(self) -> None:
+    def tick(self, periods: int = 1) -> None:
         """Move the targets by one control tick."""
-        super().tick()  # for the abduction
+        super().tick(periods)  # for the abduction
         swing = self._generator.swing
         signals = {"acceleration": self._acceleration.value, "angle": self._angle.value, "pitch": self.pitch}
         goal = self._gain * signals[self._law.signal]
@@ -129,13 +129,11 @@ def simulate(law: Law, seed: int, config: BalanceConfig) -> EpisodeResult:
     """
     episode = Episode(config, seed, BALANCE)
     try:
+        if law.signal in SCALES:
+            episode.generator.hips = Candidate(law, episode.generator, config.physics.control_dt)
         episode.stand()
         v1, v2, _, v4 = V
         episode.start((v1, v2, law.v3, v4))
-        if law.signal in SCALES:
-            episode.generator.hips = Candidate(law, episode.generator, config.physics.control_dt)
-            for reading in episode.standing_readings:  # through the generator, which knows the baselines
-                episode.generator.sense(reading)
         while episode.termination is None:
             episode.tick()
         return episode.result()

@@ -17,8 +17,8 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING, Task, controller_of, ending_of, push_of, reward_of
 from sarah.episode.tick import Tick
 from sarah.episode.trace import Trace
-from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, describe_robot
-from sarah.robot.reading import GRAVITY, SensorReading, Vector
+from sarah.robot.description import ANKLE_JOINTS, describe_robot
+from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, SensorReading, Vector
 from sarah.simulation.build import BuildSimulator, simulator_of
 from sarah.simulation.randomisation import draw_conditions
 from sarah.simulation.sensors import ImperfectSensors

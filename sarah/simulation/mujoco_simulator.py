@@ -13,8 +13,8 @@ from functools import lru_cache
 import mujoco
 import numpy as np
 
-from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, PLATES, RobotDescription
-from sarah.robot.reading import SensorReading, Side, Vector
+from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
+from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Side, Vector
 from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.randomisation import NOMINAL, Conditions
 from sarah.simulation.simulator import TorsoState, rotate_to_world, specific_force

@@ -11,8 +11,8 @@ import xml.etree.ElementTree as ElementTree
 from itertools import product
 
 from sarah.errors import SimulationError
-from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, PLATES, RobotDescription
-from sarah.robot.reading import SensorReading, Side, Vector
+from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
+from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Side, Vector
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
 from sarah.simulation.pybullet_client import give_back_client, load_robot, pybullet, take_client
 from sarah.simulation.randomisation import NOMINAL, Conditions
