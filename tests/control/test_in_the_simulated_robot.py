@@ -37,7 +37,7 @@ def test_a_robot_that_is_pushed_over_is_noticed_within_half_a_second_of_60_degre
         if 250 <= tick < 280:
             simulation.push((200.0 * math.cos(direction), 200.0 * math.sin(direction), 0.0))
         simulation.advance()
-        tilts.append(math.degrees(simulation.torso_state().tilt))
+        tilts.append(math.degrees(math.acos(simulation.torso_state().axis[2])))
         targets.append(generator.targets)
         fallen.append(generator.has_fallen)
     simulation.close()

@@ -126,7 +126,8 @@ def test_each_condition_holds_just_beyond_its_threshold() -> None:
     """
     held = ControllerConstants(baseline_time_constant=10_000.0)
     beyond, met = started(constants=held), started(constants=held)
-    for generator, tilt, rate, load, rate_back in ((beyond, -1.31, 0.0052, 30.1, -0.41), (met, -1.3, 0.005, 30.0, -0.4)):
+    cases = (beyond, -1.31, 0.0052, 30.1, -0.41), (met, -1.3, 0.005, 30.0, -0.4)
+    for generator, tilt, rate, load, rate_back in cases:
         by_sensors = [
             tick_until_change(generator, steady)[0].by_sensors
             for steady in (
