@@ -14,6 +14,7 @@ from benchmarks.throughput import Throughput
 from benchmarks.updates import Updates
 from benchmarks.viewer import Viewer
 from experiments.clock import Clock
+from experiments.conditions import Conditions
 from experiments.engines import Engines
 from experiments.experiment import Experiment, OnWorkers
 from experiments.first_training import FirstTraining
@@ -82,6 +83,11 @@ TABLE: dict[str, Maker] = {
         "How hard a push does the robot come back from?",
         Robustness(),
         {**TRAINED, "seed": 0, "episodes": 2, "forces": (150.0,)},
+    ),
+    "conditions": Maker(
+        "What do the shipped parameters do on slopes, with faulty sensors and under pushes?",
+        Conditions(),
+        {"episodes": 1, "reference_episodes": 0, "time_limit": 1.2, "pushed_seconds": 1.2},
     ),
     "transfer_stepping": Maker(
         "How much of its score does a First Training keep in the other engine?",

@@ -102,6 +102,23 @@ def robustness(rows: Rows) -> Figure:
     return figure
 
 
+def conditions(rows: Rows) -> Figure:
+    """Survival of pushes by each controller, a panel for each engine."""
+    engines = grouped(chosen(rows, "push_n>0 and physics=standard"), "{engine}")
+    figure, axes = panels(len(engines), 0.4, sharey=True)
+    for axis, (name, group) in zip(axes, engines.items(), strict=True):
+        for index, (hips, judged) in enumerate(grouped(group, "{hips}").items()):
+            heights = [len(judged) - place - 0.2 * index for place in range(len(judged))]
+            axis.hlines(
+                heights, numbers(judged, "survival_low"), numbers(judged, "survival_high"), color=COLOURS[index]
+            )
+            axis.plot(numbers(judged, "survival"), heights, "o", color=COLOURS[index], markersize=4, label=hips)
+        axis.set_yticks(range(len(judged), 0, -1), [row["situation"] for row in judged])
+        axis.set(title=name, xlabel=heading("survival"))
+    legend(figure, axes[0])
+    return figure
+
+
 def flexion_laws(rows: Rows) -> Figure:
     """Survival under each law, a panel for each setting."""
     settings = grouped(rows, "{control_rate_hz} Hz; {physics_rate_hz} Hz x {solver_iterations}")
@@ -247,6 +264,7 @@ PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
     "naf_inverted_pendulum": (("naf_inverted_pendulum",), standard_task),
     "naf_preset": (("naf_preset",), naf_preset),
     "robustness": (("robustness",), robustness),
+    "conditions": (("conditions",), conditions),
     "flexion_laws": (("flexion_laws",), flexion_laws),
     "stepping_and_hips": (("stepping_and_hips",), stepping_and_hips),
     "landscape_stepping": (("landscape_stepping",), landscape),
