@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import NamedTuple, get_args
 
-from experiments.experiment import OnWorkers, engines, survival
+from experiments.experiment import OnWorkers, survival
 from experiments.record import Row
 from sarah.episode.ending import paper_ending
 from sarah.episode.episode import Episode, conditions_of
@@ -20,6 +20,7 @@ from sarah.episode.spec import FIRST_EVALUATION_SEED
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.tick import Tick
 from sarah.episode.workers import Workers
+from sarah.simulation.engines import Engine
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.terrain import Terrain
 
@@ -133,12 +134,17 @@ class Conditions(OnWorkers):
         """A row for each engine, physics, situation and values of V1 to V4."""
         cases = [(situation, "learned") for situation in UNPUSHED]
         cases += [(situation, hips) for situation in PUSHED for hips in HIPS]
+        judges: list[tuple[Engine, str, int]] = [(engine, "standard", self.episodes) for engine in get_args(Engine)]
+        if self.reference_episodes:
+            judges.append(("pybullet", "reference", self.reference_episodes))
         with Workers(self.workers) as workers:
-            for engine, physics, count in engines(self.episodes, self.reference_episodes):
+            for engine, physics, count in judges:
                 flat_score = math.nan
                 for situation, hips in cases:
                     limit = self.pushed_seconds if situation.newtons else self.time_limit
-                    config = BalanceConfig(PHYSICS[physics], engine, stepping=LEARNED.config.stepping, time_limit=limit)
+                    config = BALANCE.config_of(
+                        LEARNED.config, physics=PHYSICS[physics], engine=engine, time_limit=limit
+                    )
                     jobs = [workers.submit(simulate, situation, hips, index, count, config) for index in range(count)]
                     found = Evaluation(tuple(job.result() for job in jobs))
                     score = found.mean("score")

@@ -14,7 +14,6 @@ from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS
 from sarah.reports.robustness import wilson_interval
-from sarah.simulation.engines import Engine
 
 
 class Experiment(Protocol):
@@ -44,18 +43,6 @@ def settings_of(task: str, newtons: tuple[float, float], **shared: Any) -> Episo
     if TASKS[task].has_push:
         shared["push"] = Push(newtons=newtons)
     return dataclasses.replace(TASKS[task].episode, **shared)
-
-
-def engines(episodes: int, reference_episodes: int) -> Iterator[tuple[Engine, str, int]]:
-    """Engines and named settings of the physics that judge a controller, each with a number of episodes.
-
-    :param episodes: number of episodes in each engine at the standard physics
-    :param reference_episodes: number of episodes in PyBullet at the reference physics; with 0 it is left out
-    """
-    yield "pybullet", "standard", episodes
-    yield "mujoco", "standard", episodes
-    if reference_episodes:
-        yield "pybullet", "reference", reference_episodes
 
 
 def survival(found: Evaluation) -> Row:

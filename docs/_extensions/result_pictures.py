@@ -120,14 +120,14 @@ def conditions(rows: Rows) -> Figure:
 
 
 def flexion_laws(rows: Rows) -> Figure:
-    """Survival under each law, a panel for each setting."""
-    settings = grouped(rows, "{control_rate_hz} Hz; {physics_rate_hz} Hz x {solver_iterations}")
-    figure, axes = panels(len(settings), 0.3, sharey=True, sharex=True)
-    for axis, (name, group) in zip(axes, settings.items(), strict=True):
-        labels = [f"{row['signal']}, {row['legs']}" if float(row["V3"]) else "no flexion" for row in group]
-        draw_intervals(axis, labels, *(numbers(group, f"survival{end}") for end in ("", "_low", "_high")))
-        axis.set_title(name, fontsize="medium")
-    figure.supxlabel("survival", fontsize="medium")
+    """Survival by force under each law, a panel for each engine."""
+    engines = grouped(chosen(rows, "push_n>0 and physics=standard"), "{engine}")
+    figure, axes = panels(len(engines), 0.4, sharey=True)
+    for axis, (name, group) in zip(axes, engines.items(), strict=True):
+        draw_lines(axis, group, "push_n", "survival", "{law}, V3 = {V3}")
+        axis.set_title(name)
+    axes[1].set_ylabel("")
+    legend(figure, axes[0])
     return figure
 
 
