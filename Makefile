@@ -5,7 +5,8 @@ BIN := $(VENV)/bin
 EPISODES ?= 100
 BALANCE_EPISODES ?= 300
 BALANCE_SECONDS ?= 10
-BALANCE_NEWTONS ?= 75 125
+BALANCE_NEWTONS ?= 100 125
+SAGITTAL_SHARE ?= 0.5
 PUSHES ?= 8
 WORKERS ?= $(shell nproc)
 SEED ?= 1
@@ -34,6 +35,7 @@ train: install  ## both trainings with NAF, figures, reports and robustness tabl
 		--workers $(WORKERS) --run-dir $(RUN)/stepping
 	$(BIN)/sarah-train --task balance --from $(RUN)/stepping --episodes $(BALANCE_EPISODES) --seed $(SEED) \
 		--episode.time-limit $(BALANCE_SECONDS) --episode.push.newtons $(BALANCE_NEWTONS) \
+		--episode.push.sagittal-share $(SAGITTAL_SHARE) \
 		--workers $(WORKERS) --run-dir $(RUN)/balance
 	$(BIN)/sarah-figures $(RUN)/stepping $(RUN)/balance --out $(RUN)/figures
 	$(BIN)/sarah-report $(RUN)/stepping --workers $(WORKERS)

@@ -27,8 +27,8 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.episode.workers import Executor, Job, Workers, finish_episode
-from sarah.robot.description import ACTUATED_JOINTS, PLATES
-from sarah.robot.reading import Side
+from sarah.robot.description import PLATES
+from sarah.robot.reading import ACTUATED_JOINTS, Side
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import PHYSICS, PyBulletPhysics

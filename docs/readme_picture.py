@@ -21,7 +21,8 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.trace import Trace
 from sarah.pictures.colours import PUSH
 from sarah.pictures.overlay import INK, METRES_PER_NEWTON, PUSH_SHOWN_SECONDS
-from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, describe_robot
+from sarah.robot.description import ANKLE_JOINTS, describe_robot
+from sarah.robot.reading import ACTUATED_JOINTS
 from sarah.simulation.renderer import Renderer
 from sarah.simulation.scenery import Camera, View
 

@@ -9,9 +9,11 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from experiments.record import Row
+from sarah.episode.evaluation import Evaluation
 from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS
+from sarah.reports.robustness import wilson_interval
 
 
 class Experiment(Protocol):
@@ -41,3 +43,17 @@ def settings_of(task: str, newtons: tuple[float, float], **shared: Any) -> Episo
     if TASKS[task].has_push:
         shared["push"] = Push(newtons=newtons)
     return dataclasses.replace(TASKS[task].episode, **shared)
+
+
+def survival(found: Evaluation) -> Row:
+    """Columns of a survival with its 95 % interval.
+
+    :param found: episodes
+    """
+    low, high = wilson_interval(found.survivors, found.episodes)
+    return {
+        "episodes": found.episodes,
+        "survival": found.survival_rate,
+        "survival_low": low,
+        "survival_high": high,
+    }

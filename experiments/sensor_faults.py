@@ -34,6 +34,8 @@ Heard = SensorReading | None
 Change = Callable[[SensorReading, SensorReading, int], Heard]
 """What the controller hears, of the reading, of the last one before the fault, and of the ticks since the fault began;
 None if its tick does not take place."""
+NOTHING = SensorReading((math.nan,) * 3, (math.nan,) * 3, (math.nan,) * 4, (math.nan,) * 6)
+"""A reading of which no signal has come."""
 
 
 def exact(reading: SensorReading, before: SensorReading, ticks: int) -> Heard:
@@ -75,6 +77,11 @@ def repeated(reading: SensorReading, before: SensorReading, ticks: int) -> Heard
     return before
 
 
+def lost(reading: SensorReading, before: SensorReading, ticks: int) -> Heard:
+    """No signal is finite."""
+    return NOTHING
+
+
 def missed(reading: SensorReading, before: SensorReading, ticks: int) -> Heard:
     """No tick: the targets stay."""
     return None
@@ -84,22 +91,28 @@ class Fault(NamedTuple):
     """A fault.
 
     :param change: what it does to readings
-    :param delay_ticks: delay of all readings, in control ticks
+    :param delay_seconds: delay of all readings, in s
     :param to_zero: whether targets go to zero, at the speeds of the controller, while its ticks do not take place
+    :param is_told: whether the controller is told how much time has passed since its last tick
     """
 
     change: Change = exact
-    delay_ticks: int = 1
+    delay_seconds: float = 0.01
     to_zero: bool = False
+    is_told: bool = False
 
 
-NOT_FINITE = signal("joints", (0,), math.nan)
 FAULTS = {
     "none": Fault(),
-    "one reading in ten is not finite": Fault(at_times(lambda ticks: ticks % 10 == 0, NOT_FINITE)),
-    "every second reading is not finite": Fault(at_times(lambda ticks: ticks % 2 == 0, NOT_FINITE)),
-    "no reading is finite for 0.5 s": Fault(at_times(lambda ticks: ticks < 50, NOT_FINITE)),
-    "no reading is finite any more": Fault(NOT_FINITE),
+    "one reading in ten is not finite": Fault(at_times(lambda ticks: ticks % 10 == 0, lost)),
+    "every second reading is not finite": Fault(at_times(lambda ticks: ticks % 2 == 0, lost)),
+    "no reading is finite for 0.5 s": Fault(at_times(lambda ticks: ticks < 50, lost)),
+    "no reading is finite any more": Fault(lost),
+    "lateral acceleration: not finite any more": Fault(signal("acceleration", (0,), math.nan)),
+    "rate about y: not finite any more": Fault(signal("angular_rate", (1,), math.nan)),
+    "one pad: not finite any more": Fault(signal("pressures", (0,), math.nan)),
+    "left flexion joint: not finite any more": Fault(signal("joints", (2,), math.nan)),
+    "all joints: not finite any more": Fault(signal("joints", (0, 1, 2, 3, 4, 5), math.nan)),
     "the same reading comes for 0.1 s": Fault(at_times(lambda ticks: ticks < 10, repeated)),
     "the same reading comes for 0.5 s": Fault(at_times(lambda ticks: ticks < 50, repeated)),
     "the same reading comes for ever": Fault(repeated),
@@ -117,12 +130,16 @@ FAULTS = {
     "one pad: stuck at 300 N": Fault(signal("pressures", (0,), STUCK_PAD)),
     "one tick in ten is missed": Fault(at_times(lambda ticks: ticks % 10 == 0, missed)),
     "every second tick is missed": Fault(at_times(lambda ticks: ticks % 2 == 0, missed)),
+    "every second tick is missed, and time is told": Fault(
+        at_times(lambda ticks: ticks % 2 == 0, missed), is_told=True
+    ),
     "ten ticks are missed, once": Fault(at_times(lambda ticks: ticks < 10, missed)),
+    "ten ticks are missed, once, and time is told": Fault(at_times(lambda ticks: ticks < 10, missed), is_told=True),
     "no tick any more, targets stay": Fault(missed),
     "no tick any more, targets go to zero": Fault(missed, to_zero=True),
-    "delay of 2 ticks": Fault(delay_ticks=2),
-    "delay of 3 ticks": Fault(delay_ticks=3),
-    "delay of 5 ticks": Fault(delay_ticks=5),
+    "delay of 20 ms": Fault(delay_seconds=0.02),
+    "delay of 30 ms": Fault(delay_seconds=0.03),
+    "delay of 50 ms": Fault(delay_seconds=0.05),
 }
 """Faults, by what happens; a delay is there from the beginning."""
 
@@ -145,6 +162,8 @@ class BehindFault:
         self._fault = fault
         self._largest_moves = [constants.hip_speed * dt] * 4 + [constants.leg_speed * dt] * 2
         self._before: SensorReading | None = None
+        self._dt = dt
+        self._missed = 0
 
     def __getattr__(self, name: str) -> Any:
         """Anything else is the pattern generator's."""
@@ -165,9 +184,11 @@ class BehindFault:
                 if self._fault.to_zero:
                     moves = zip(self.targets, self._largest_moves, strict=True)
                     self.targets = tuple(ramped(target, 0.0, largest) for target, largest in moves)
+                self._missed += 1
                 return None
             heard = changed
-        change = self._generator.tick(heard)
+        change = self._generator.tick(heard, (1 + self._missed) * self._dt if self._fault.is_told else None)
+        self._missed = 0
         self.targets = self._generator.targets
         if since >= 0 and change is not None:
             self.changes.append(change)
@@ -197,7 +218,7 @@ def simulate(name: str, hips: str, seed: int, time_limit: float) -> Outcome:
     """
     fault = FAULTS[name]
     config = BalanceConfig(engine="pybullet", push=Push(newtons=(0.0, 0.0)), time_limit=time_limit)
-    config = replace(config, randomisation=replace(config.randomisation, delay_ticks=fault.delay_ticks))
+    config = replace(config, randomisation=replace(config.randomisation, delay_seconds=fault.delay_seconds))
     episode = Episode(config, seed, BALANCE)
     try:
         episode.stand()

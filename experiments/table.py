@@ -14,10 +14,11 @@ from benchmarks.throughput import Throughput
 from benchmarks.updates import Updates
 from benchmarks.viewer import Viewer
 from experiments.clock import Clock
+from experiments.conditions import Conditions
 from experiments.engines import Engines
 from experiments.experiment import Experiment, OnWorkers
 from experiments.first_training import FirstTraining
-from experiments.flexion_laws import FlexionLaws, FlexionLawsToday
+from experiments.flexion_laws import FlexionLaws
 from experiments.landscape import Landscape
 from experiments.naf_preset import NafPreset
 from experiments.noise_limit import NoiseLimit
@@ -89,6 +90,11 @@ TABLE: dict[str, Maker] = {
         "How hard a push does the robot come back from?",
         Robustness(),
         {**TRAINED, "seed": 0, "episodes": 2, "forces": (150.0,)},
+    ),
+    "conditions": Maker(
+        "What do the shipped parameters do on slopes, with faulty sensors and under pushes?",
+        Conditions(),
+        {"episodes": 1, "reference_episodes": 0, "time_limit": 1.2, "pushed_seconds": 1.2},
     ),
     "transfer_stepping": Maker(
         "How much of its score does a First Training keep in the other engine?",
@@ -180,12 +186,7 @@ TABLE: dict[str, Maker] = {
     "flexion_laws": Maker(
         "Which flexion law saves the robot from pushes from front and back?",
         FlexionLaws(),
-        {"settings": 1, "pushes": 1, "unpushed": 1},
-    ),
-    "flexion_laws_today": Maker(
-        "How many pushes of 105 N from front and back does the robot survive with V3 and without?",
-        FlexionLawsToday(),
-        {"pushes": 1},
+        {"newtons": (105.0,), "pushes": 1, "reference_pushes": 0, "unpushed": 1, "time_limit": 1.2},
     ),
     "sensor_faults": Maker(
         "Does the robot go on stepping when its sensors or its control loop fail?",

@@ -20,8 +20,8 @@ from sarah.versions import versions
 
 EPISODES: dict[str, EpisodeConfig] = {
     "stepping": EpisodeConfig(),
-    # Softer pushes hardly tell controllers apart, and who falls does so soon.
-    "balance": BalanceConfig(push=Push(newtons=(75.0, 125.0)), time_limit=10.0),
+    # Softer pushes hardly tell controllers apart, V3 answers those from front and back, and who falls does so soon.
+    "balance": BalanceConfig(push=Push(newtons=(100.0, 125.0), sagittal_share=0.5), time_limit=10.0),
 }
 """Settings of the trainings' episodes, by task."""
 

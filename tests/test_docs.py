@@ -9,7 +9,6 @@ import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from importlib import import_module
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -22,14 +21,14 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig, load_task
 from sarah.robot.description import describe_robot
-from sarah.robot.reading import SensorReading
+from sarah.robot.reading import ACTUATED_JOINTS
 from sarah.simulation.build import simulator_of
 from sarah.simulation.engines import is_installed
 from sarah.simulation.randomisation import NOMINAL, Randomisation
 from sarah.training.optimisers import Start
 
 ROOT = Path(__file__).parent.parent
-AS_DESIGNED = Randomisation(enabled=False, start_speed=0.0)
+AS_DESIGNED = Randomisation(enabled=False)
 LEARNED = {
     "stepping": {"task": "stepping", "parameters": dict(P1=0.4, P2=1.3, P3=0.1, P4=1.0, P5=1.0), "stepping": None},
     "balance": {
@@ -81,10 +80,30 @@ def test_the_tasks_of_the_tutorial_run(tmp_path: Path, monkeypatch: pytest.Monke
     assert names["env"].unwrapped.config.time_limit == 10.0
 
 
+class Clock:
+    """A clock that only sleeping moves, beyond what reading takes."""
+
+    def __init__(self) -> None:
+        self.now = 10.0
+
+    def monotonic(self) -> float:
+        """Seconds of now."""
+        return self.now
+
+    def sleep(self, seconds: float) -> None:
+        """Let time pass."""
+        self.now += seconds
+
+
 def loop_of_the_page() -> dict[str, Any]:
     names: dict[str, Any] = {}
     exec(blocks("how_to/real_robot.md")[0], names)
+    names["time"] = Clock()
     return names
+
+
+class AllSentError(Exception):
+    """The loop has run long enough."""
 
 
 @pytest.mark.parametrize("task", LEARNED)
@@ -98,31 +117,48 @@ def test_the_loop_for_a_real_robot_drives_the_simulated_one_as_an_episode_does(t
     parameters = tuple(learned["parameters"].values())
     trace = simulate(EpisodeSpec(parameters, 0, task, config), record_trace=True).trace
     assert trace is not None and set(trace.phase) == {"shift", "lift", "land"}
-    robot = simulator_of(config.engine)(describe_robot(), config.physics, NOMINAL)
-
-    def readings() -> Iterator[SensorReading]:
-        for _ in range(round(config.time_limit / names["DT"])):
-            yield robot.read()
-            robot.advance()
-
-    sent = []
+    description = describe_robot()
+    robot = simulator_of(config.engine)(description, config.physics, NOMINAL)
+    sent: list[tuple[float, ...]] = []
 
     def send(targets: tuple[float, ...]) -> None:
         sent.append(targets)
         robot.set_targets(targets)
+        robot.advance()
+        if len(sent) == round(config.time_limit / names["DT"]):
+            raise AllSentError
 
-    names["drive"](names["controller"](tmp_path / "parameters.json", NOMINAL.pad_threshold), readings(), send)
+    limits = [description.limits[joint] for joint in ACTUATED_JOINTS]
+    with pytest.raises(AllSentError):
+        names["drive"](names["controller"](tmp_path / "parameters.json", limits), robot.read, send)
     robot.close()
     assert np.array_equal(sent[-len(trace) :], trace.targets) and not np.any(sent[: -len(trace)])
 
 
-def test_the_loop_for_a_real_robot_reads_once_in_every_control_period() -> None:
-    names, now = loop_of_the_page(), [10.0]
-    waits: list[float] = []
-    names["time"] = type("Clock", (), {"monotonic": lambda: now[0], "sleep": waits.append})
-    for _ in islice(names["every_tick"](lambda: None), 3):
-        now[0] += 0.004
-    assert waits == pytest.approx([0.006, 0.012])  # a clock that sleeping does not move
+def test_the_loop_for_a_real_robot_says_when_a_reading_was_late_and_ends_with_a_fall() -> None:
+    """Readings take 4 ms, and the third one 34 ms: the loop sleeps for the rest of a period, and says what passed."""
+    names, told = loop_of_the_page(), []
+    clock = names["time"]
+
+    class Generator:
+        targets = (0.0,) * 6
+        has_fallen = False
+
+        def tick(self, reading: None, seconds: float) -> None:
+            told.append(seconds)
+            self.has_fallen = len(told) == 6
+
+    def read() -> None:
+        clock.now += 0.034 if len(told) == 2 else 0.004
+
+    names["drive"](Generator(), read, lambda targets: None)
+    assert told == pytest.approx([0.01, 0.01, 0.01, 0.034, 0.01, 0.01])
+
+
+def test_the_limits_on_the_page_are_the_robots() -> None:
+    names: dict[str, Any] = {"drive": lambda *_: None, "controller": lambda *_: None, "Path": Path}
+    exec(blocks("how_to/real_robot.md")[1], {**names, "read": None, "send": None}, names)
+    assert names["LIMITS"] == [describe_robot().limits[joint] for joint in ACTUATED_JOINTS]
 
 
 def test_what_a_robot_needs_runs_with_the_standard_library_alone(tmp_path: Path) -> None:
@@ -131,11 +167,11 @@ def test_what_a_robot_needs_runs_with_the_standard_library_alone(tmp_path: Path)
     program = "\n".join(
         [
             blocks("how_to/real_robot.md")[0],
-            "from sarah.robot.reading import SensorReading",
-            "reading = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (75.0,) * 4, (0.0,) * 6)",
-            "sent = []",
-            "drive(controller(Path('parameters.json'), 30.0), [reading] * 300, sent.append)",
-            "assert len(sent) == 300 and any(sent[-1])",
+            "from sarah.robot.reading import STANDING",
+            "generator, sent = controller(Path('parameters.json'), [(-1.0, 1.0)] * 6), []",
+            "lying = STANDING._replace(acceleration=(9.81, 0.0, 0.0))",
+            "drive(generator, lambda: lying if len(sent) > 120 else STANDING, sent.append)",
+            "assert generator.has_fallen and 120 < len(sent) < 220 and any(sent[-1])",
         ]
     )
     (tmp_path / "robot" / "program.py").write_text(program)

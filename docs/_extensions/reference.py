@@ -20,7 +20,8 @@ from sarah.episode.result import METRICS
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS, Task
 from sarah.episode.tick import Tick
-from sarah.robot.description import ACTUATED_JOINTS, JOINT_TYPES, describe_robot
+from sarah.robot.description import JOINT_TYPES, describe_robot
+from sarah.robot.reading import ACTUATED_JOINTS
 from sarah.runs import agent_settings
 from sarah.runs.agent_settings import AGENT_SETTINGS, LearnerSettings, NAFSettings
 from sarah.runs.config import TrainingConfig
@@ -143,7 +144,7 @@ def examples_page() -> Iterator[str]:
 SIGNALS = (
     ("acceleration[0]", "m/s²", "a push to the right; negative while the standing robot leans to the right", "yes"),
     ("acceleration[1]", "m/s²", "a push forward; negative while the standing robot leans forward", "no"),
-    ("acceleration[2]", "m/s²", "up: 9.81 at rest", "no"),
+    ("acceleration[2]", "m/s²", "up: 9.81 at rest", "for falls"),
     ("angular_rate[0]", "rad/s", "the torso tips backward", "by V3"),
     ("angular_rate[1]", "rad/s", "the torso tips to the right", "yes"),
     ("angular_rate[2]", "rad/s", "the torso turns to the left", "no"),

@@ -102,15 +102,32 @@ def robustness(rows: Rows) -> Figure:
     return figure
 
 
+def conditions(rows: Rows) -> Figure:
+    """Survival of pushes by each controller, a panel for each engine."""
+    engines = grouped(chosen(rows, "push_n>0 and physics=standard"), "{engine}")
+    figure, axes = panels(len(engines), 0.4, sharey=True)
+    for axis, (name, group) in zip(axes, engines.items(), strict=True):
+        for index, (hips, judged) in enumerate(grouped(group, "{hips}").items()):
+            heights = [len(judged) - place - 0.2 * index for place in range(len(judged))]
+            axis.hlines(
+                heights, numbers(judged, "survival_low"), numbers(judged, "survival_high"), color=COLOURS[index]
+            )
+            axis.plot(numbers(judged, "survival"), heights, "o", color=COLOURS[index], markersize=4, label=hips)
+        axis.set_yticks(range(len(judged), 0, -1), [row["situation"] for row in judged])
+        axis.set(title=name, xlabel=heading("survival"))
+    legend(figure, axes[0])
+    return figure
+
+
 def flexion_laws(rows: Rows) -> Figure:
-    """Survival under each law, a panel for each setting."""
-    settings = grouped(rows, "{control_rate_hz} Hz; {physics_rate_hz} Hz x {solver_iterations}")
-    figure, axes = panels(len(settings), 0.3, sharey=True, sharex=True)
-    for axis, (name, group) in zip(axes, settings.items(), strict=True):
-        labels = [f"{row['signal']}, {row['legs']}" if float(row["V3"]) else "no flexion" for row in group]
-        draw_intervals(axis, labels, *(numbers(group, f"survival{end}") for end in ("", "_low", "_high")))
-        axis.set_title(name, fontsize="medium")
-    figure.supxlabel("survival", fontsize="medium")
+    """Survival by force under each law, a panel for each engine."""
+    engines = grouped(chosen(rows, "push_n>0 and physics=standard"), "{engine}")
+    figure, axes = panels(len(engines), 0.4, sharey=True)
+    for axis, (name, group) in zip(axes, engines.items(), strict=True):
+        draw_lines(axis, group, "push_n", "survival", "{law}, V3 = {V3}")
+        axis.set_title(name)
+    axes[1].set_ylabel("")
+    legend(figure, axes[0])
     return figure
 
 
@@ -247,6 +264,7 @@ PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
     "naf_inverted_pendulum": (("naf_inverted_pendulum",), standard_task),
     "naf_preset": (("naf_preset",), naf_preset),
     "robustness": (("robustness",), robustness),
+    "conditions": (("conditions",), conditions),
     "flexion_laws": (("flexion_laws",), flexion_laws),
     "stepping_and_hips": (("stepping_and_hips",), stepping_and_hips),
     "landscape_stepping": (("landscape_stepping",), landscape),

@@ -32,6 +32,7 @@ PLAUSIBLE = {
     "pad_threshold": (0.0, 1000.0, "N"),
     "largest_rate": (0.1, 1000.0, "rad/s"),
     "balance_ramp": (0.01, 1000.0, "per second"),
+    "largest_blow": (0.1, 1000.0, "m/s^2"),
     "upright_time_constant": (1e-4, 100.0, "s"),
     "least_upright": (-20.0, 20.0, "m/s^2"),
 }
@@ -70,8 +71,10 @@ class ControllerConstants:
         flex against the fall
     :param largest_rate: limit to which rates about x and y are clipped before all filters, in rad/s
     :param balance_ramp: speed at which V1 to V4 move to new values while the robot steps, per second
+    :param largest_blow: limit to which the vertical acceleration is clipped before it is low-passed, in m/s^2: as much
+        as feet that land cause, because what is clipped on one side only would count as leaning
     :param upright_time_constant: time constant of the low-pass of the vertical acceleration that recognises a fall,
-        in s
+        in s: long beside a step, in which the acceleration swings about that of gravity
     :param least_upright: low-passed vertical acceleration of the torso below which the robot has fallen, in m/s^2
     """
 
@@ -100,7 +103,8 @@ class ControllerConstants:
     pad_threshold: float = 30.0
     largest_rate: float = 10.0
     balance_ramp: float = 4.0
-    upright_time_constant: float = 0.3
+    largest_blow: float = 40.0
+    upright_time_constant: float = 0.5
     least_upright: float = 5.0
 
     def __post_init__(self) -> None:

@@ -141,18 +141,22 @@ class HipLaw:
 
         :param periods: control periods to move them by
         """
-        v, constants = self.parameters, self._constants
+        abduction, flexion = self._wanted()
         self.limited = set()
         before = self.abduction
-        self.abduction = self._moved(
-            before, -constants.abduction_scale * (v.V1 * self.stable_x + v.V2), (0, 1), periods
-        )
+        self.abduction = self._moved(before, abduction, (0, 1), periods)
         self.abduction_rate = (self.abduction - before) / (periods * self._dt)
         for joint, side in enumerate(Side, start=2):
-            goal = self._constant_flexion
+            self.flexion[side] = self._moved(self.flexion[side], flexion[side], (joint,), periods)
+
+    def _wanted(self) -> tuple[float, dict[Side, float]]:
+        """Abduction and flexions that the law asks for, before limits and ramps."""
+        v, constants = self.parameters, self._constants
+        flexion = dict.fromkeys(Side, self._constant_flexion)
+        for side in Side:
             if self.loads[side] < constants.pad_threshold:
-                goal = -constants.capture_gain * v.V3 * self.fall + goal
-            self.flexion[side] = self._moved(self.flexion[side], goal, (joint,), periods)
+                flexion[side] = -constants.capture_gain * v.V3 * self.fall + flexion[side]
+        return -constants.abduction_scale * (v.V1 * self.stable_x + v.V2), flexion
 
     @property
     def _constant_flexion(self) -> float:
@@ -160,10 +164,10 @@ class HipLaw:
 
     def _moved(self, now: float, goal: float, joints: tuple[int, ...], periods: int) -> float:
         constants = self._constants
-        goal = clipped(goal, constants.largest_hip_angle)
+        wanted = goal = clipped(goal, constants.largest_hip_angle)
         for joint in joints:
             low, high = self._limits[joint]
-            if not low <= goal <= high:
+            if not low <= wanted <= high:
                 self.limited.add(joint)
                 goal = max(low, min(high, goal))
         return ramped(now, goal, constants.hip_speed * self._dt * periods)

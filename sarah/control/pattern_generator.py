@@ -13,9 +13,9 @@ y axis, and the sensors, not a clock, decide when each phase of a step ends::
 
 Tilt is the low-passed lateral acceleration and rate the low-passed angular rate about y, both positive towards the
 stance leg and without their slow baselines. The hip law's abduction, which the torso does not feel, is added to both.
-The time-outs are slow on
-purpose: with faster ones a learner uses them as an open-loop clock and ignores the sensors (``make results NAME=clock``
-compares 0.3 s and 0.5 s). The code uses plain floats only, because it runs once per control tick, and on a robot.
+The time-outs are slow on purpose: with faster ones a learner uses them as an open-loop clock and ignores the sensors
+(``make results NAME=clock`` compares 0.3 s and 0.5 s). The code uses plain floats only, because it runs once per
+control tick, and on a robot.
 """
 
 from __future__ import annotations
@@ -29,14 +29,13 @@ from sarah.control.baselines import Baselines
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.hip_law import LOCKED_HIPS, NO_LIMITS, BalanceParameters, HipLaw
 from sarah.errors import ConfigurationError
-from sarah.robot.description import ACTUATED_JOINTS
 from sarah.robot.filters import LowPass, clipped, ramped
-from sarah.robot.reading import GRAVITY, STANDING, SensorReading, Side
+from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, STANDING, SensorReading, Side
 
 STAND_SECONDS = 1.0
 """Duration of standing before the robot begins to step, in s; it is the paper's."""
 LONGEST_GAP = 1.0
-"""Longest time between two ticks that the controller makes up for, in s."""
+"""Longest time between two ticks that counts, in s."""
 
 
 class Phase(Enum):
@@ -84,7 +83,8 @@ class PatternGenerator:
     """The controller of the robot. Call :meth:`tick` once per control period with a new reading, from standing on.
 
     It stands for its first second, in which it learns the baselines of its sensors, and then steps. A signal that is
-    not finite keeps its last value. Once the robot has fallen, the targets stay where they are.
+    not finite keeps its last value. Once the robot has fallen, the targets stay where they are for good; a robot that
+    has been put up again stands, and needs a new generator.
 
     :param parameters: values of P1 to P5
     :param balance: values of V1 to V4; zeros lock the hips, as in the First Training
@@ -125,6 +125,7 @@ class PatternGenerator:
         self._dt = dt
         self._limits = limits
         self._ticks_in_phase = 0
+        self._rounded_off = 0.0
         self._swing_foot_was_off = False
         self._reading = STANDING
         self._baselines = Baselines(dt, constants)
@@ -180,10 +181,14 @@ class PatternGenerator:
         """Advance by one control tick.
 
         :param reading: sensor reading of this tick; a signal that is not finite keeps its last value
-        :param seconds: time since the last tick in s, if the loop was late or missed some; by default a control period
+        :param seconds: measured time since the last tick, in s; by default, and if it is negative or no number, a
+            control period. It is rounded to whole periods, of which an early tick has none and does nothing; what was
+            rounded off counts at the next tick
         :return: the phase change that this tick made, if it made one; :attr:`targets` follow the new phase
         """
-        periods = 1 if seconds is None else max(1, round(min(seconds, LONGEST_GAP) / self._dt))
+        periods = self._periods(seconds)
+        if periods == 0:
+            return None
         self._sense(reading, periods)
         if self.has_fallen:
             return None
@@ -211,18 +216,27 @@ class PatternGenerator:
         """Names of the joints whose limits keep their targets from where the controller wants them."""
         return tuple(ACTUATED_JOINTS[joint] for joint in sorted(self.hips.limited | self._limited_legs))
 
+    def _periods(self, seconds: float | None) -> int:
+        """Control periods that this tick makes up for."""
+        if seconds is None or math.isnan(seconds) or seconds < 0.0:
+            return 1
+        self._rounded_off += min(seconds, LONGEST_GAP)
+        periods = round(self._rounded_off / self._dt)
+        self._rounded_off -= periods * self._dt
+        return periods
+
     def _sense(self, reading: SensorReading, periods: int) -> None:
         reading = self._reading = reading.repaired(self._reading)
         is_standing = self.phase is Phase.STAND
-        up = clipped(reading.acceleration[2], self.constants.largest_acceleration)
         corrected = reading
         for _ in range(periods):
             corrected = self._baselines.corrected(reading, is_standing)
             self._stable_x(corrected.acceleration[0])
             self._rate_y(corrected.angular_rate[1])
-            self._upright(up)
         self.hips.sense(corrected, periods)
-        if self._upright.value < self.constants.least_upright:
+        up = clipped(reading.acceleration[2], self.constants.largest_blow)
+        # Once, however many ticks were missed: a single reading is no fall.
+        if self._upright(up) < self.constants.least_upright:
             self.has_fallen = True
 
     def _phase_change(self) -> PhaseChange | None:

@@ -17,10 +17,10 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING, Task, controller_of, ending_of, push_of, reward_of
 from sarah.episode.tick import Tick
 from sarah.episode.trace import Trace
-from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, describe_robot
-from sarah.robot.reading import GRAVITY, SensorReading, Vector
+from sarah.robot.description import ANKLE_JOINTS, describe_robot
+from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, SensorReading, Vector
 from sarah.simulation.build import BuildSimulator, simulator_of
-from sarah.simulation.randomisation import draw_conditions
+from sarah.simulation.randomisation import Conditions, draw_conditions
 from sarah.simulation.sensors import ImperfectSensors
 from sarah.simulation.simulator import TorsoState
 from sarah.simulation.terrain import draw_gravity
@@ -38,6 +38,7 @@ class Episode:
     :param record_trace: whether to record every control tick in a trace
     :param build: function that makes the simulator from robot, physics and conditions; by default that of the
         configuration's engine
+    :param conditions: properties of robot and world; by default those that :func:`conditions_of` draws from the seed
     """
 
     generator: PatternGenerator
@@ -52,15 +53,16 @@ class Episode:
         task: Task = STEPPING,
         record_trace: bool = False,
         build: BuildSimulator | None = None,
+        conditions: Conditions | None = None,
     ) -> None:
         self.config = config
         self.task = task
         self.push = push_of(task, task.checked_config(config, True), seed)
         self.termination: str | None = None
         self.robot = describe_robot(config.dimensions)
-        gravity_x, gravity_y, gravity_z = gravity = draw_gravity(config.terrain, seed)
+        conditions = conditions or conditions_of(config, seed)
+        gravity_x, gravity_y, gravity_z = conditions.gravity
         self._vertical = (-gravity_x / GRAVITY, -gravity_y / GRAVITY, -gravity_z / GRAVITY)
-        conditions = dataclasses.replace(draw_conditions(config.randomisation, seed), gravity=gravity)
         self.simulation = (build or simulator_of(config.engine))(self.robot, config.physics, conditions)
         self._truth = self.last_reading = self.simulation.read()
         self._dt = config.physics.control_dt
@@ -224,6 +226,16 @@ class Episode:
                 "score": self._return / self._highest_return,
             }
         )
+
+
+def conditions_of(config: EpisodeConfig, seed: int) -> Conditions:
+    """Draw an episode's robot and world.
+
+    :param config: settings of the episode
+    :param seed: seed of the episode
+    """
+    gravity = draw_gravity(config.terrain, seed)
+    return dataclasses.replace(draw_conditions(config.randomisation, seed), gravity=gravity)
 
 
 def simulate(spec: EpisodeSpec, record_trace: bool = False) -> EpisodeResult:

@@ -27,7 +27,7 @@ SMALLEST_SENSOR_SHARE = 0.9
 SMALLEST_CLEARANCE = 0.010
 """Sole clearance below which a gait is a shuffle, in m."""
 LARGEST_ACCELERATION_RATIO = 1.5
-"""Ratio of the torso's acceleration above 20 Hz to the baseline's, beyond which a controller chatters."""
+"""Ratio of the torso's acceleration from 20 to 50 Hz to the baseline's, beyond which a controller chatters."""
 
 
 @dataclass(frozen=True)

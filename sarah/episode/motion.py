@@ -1,7 +1,7 @@
 """The smoothness of an episode's motion, and the load on the actuators.
 
 A controller chatters if it shakes the robot at frequencies that no real actuator follows. Reward and survival do not
-show that, but the torso's acceleration above 20 Hz does.
+show that, but the torso's acceleration from 20 to 50 Hz does.
 """
 
 from __future__ import annotations
@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from sarah.robot.description import ACTUATED_JOINTS
-from sarah.robot.reading import Vector
+from sarah.robot.reading import ACTUATED_JOINTS, Vector
 
 CHATTER_BAND = (20.0, 50.0)
 """Frequencies between which motion counts as vibration, in Hz: above the gait's harmonics, and the same at all control

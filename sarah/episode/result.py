@@ -110,7 +110,7 @@ class EpisodeResult:
     vibration: float = _metric(
         "vibration",
         "m²/s⁴",
-        "mean square of the torso's acceleration above 20 Hz: chatter",
+        "mean square of the torso's acceleration from 20 to 50 Hz: chatter",
         "median",
         group="actuators",
         shown=(1.0, 1, "m²/s⁴"),

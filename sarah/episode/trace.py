@@ -21,7 +21,7 @@ class Trace:
     :param position: position of the torso's centre in the world's frame, in m; shape (ticks, 3)
     :param orientation: orientation of the torso, as unit quaternions (x, y, z, w); shape (ticks, 4)
     :param joints: true positions of the actuated joints in the order of
-        :data:`~sarah.robot.description.ACTUATED_JOINTS`, in rad and m; leg lengths are positive when retracted; shape
+        :data:`~sarah.robot.reading.ACTUATED_JOINTS`, in rad and m; leg lengths are positive when retracted; shape
         (ticks, 6)
     :param ankles: true positions of :data:`~sarah.robot.description.ANKLE_JOINTS`, in rad; shape (ticks, 4)
     :param targets: targets of the actuated joints, in rad and m; shape (ticks, 6)

@@ -139,7 +139,8 @@ def _observe(
 ) -> list[tuple[Phase, float, dict[Side, float], Side]]:
     """Phase, duration in s, final leg lengths in m, swing leg: for one step without sensors and the phase after it."""
     generator = PatternGenerator(SteppingParameters(1.0, 1.0, 1.0, p4, p5), dt=DT, constants=constants)
-    generator.tick(SILENCE)
+    while generator.phase is Phase.STAND:
+        generator.tick(SILENCE)
     seen: list[tuple[Phase, float, dict[Side, float], Side]] = []
     while len(seen) < 4:
         phase, swing, ticks = generator.phase, generator.swing, 0
@@ -184,21 +185,20 @@ def read_hip_law(constants: ControllerConstants = STANDARD_CONSTANTS) -> dict[st
     noted: list[str] = []
     parameters = BalanceParameters(*(Name(name, noted) for name in BalanceParameters.__dataclass_fields__))  # type: ignore[arg-type]
     stand_in: Any = SimpleNamespace(
-        _parameters=parameters,
+        parameters=parameters,
         _constants=constants,
         stable_x=Name("stable_x", noted),
         fall=Name("fall", noted),
         _constant_flexion=constants.flexion_scale * parameters.V4,
-        _loads={Side.LEFT: 0.0, Side.RIGHT: math.inf},
-        abduction=0.0,
-        flexion=dict.fromkeys(Side, 0.0),
-        _moved=lambda now, goal: goal,
+        loads={Side.LEFT: 0.0, Side.RIGHT: math.inf},
     )
-    HipLaw.tick(stand_in)
+    abduction: Any
+    flexion: Any
+    abduction, flexion = HipLaw._wanted(stand_in)
     return {
-        "abduction of both hips": stand_in.abduction.text,
-        "flexion of an unloaded leg": stand_in.flexion[Side.LEFT].text,
-        "flexion of a loaded leg": stand_in.flexion[Side.RIGHT].text,
+        "abduction of both hips": abduction.text,
+        "flexion of an unloaded leg": flexion[Side.LEFT].text,
+        "flexion of a loaded leg": flexion[Side.RIGHT].text,
     }
 
 

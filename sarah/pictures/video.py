@@ -13,8 +13,8 @@ from sarah.episode.trace import Trace
 from sarah.errors import ConfigurationError
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.pictures.overlay import PUSH_SHOWN_SECONDS, Overlay, arrow
-from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, RobotDescription
-from sarah.robot.reading import Vector
+from sarah.robot.description import ANKLE_JOINTS, RobotDescription
+from sarah.robot.reading import ACTUATED_JOINTS, Vector
 from sarah.simulation.renderer import Renderer
 from sarah.simulation.scenery import Camera, View, size_of
 from sarah.simulation.simulator import LEVEL_GRAVITY

@@ -62,7 +62,7 @@ class Robustness:
     :param survival_high: upper end of the 95 % interval of that share
     :param score_median: median score
     :param drift_median: median horizontal distance from the start at the end, in m
-    :param vibration_median: median mean square of the torso's acceleration above 20 Hz, in m^2/s^4
+    :param vibration_median: median mean square of the torso's acceleration from 20 to 50 Hz, in m^2/s^4
     """
 
     newtons: float

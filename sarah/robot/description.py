@@ -17,11 +17,9 @@ from importlib import resources
 from typing import Any
 
 from sarah.errors import DescriptionError, shortened, unknown_name
-from sarah.robot.reading import Side
+from sarah.robot.reading import ACTUATED_JOINTS, Side
 
 PLATES = ("forefoot", "hindfoot")
-ACTUATED_JOINTS = tuple(f"{side}_{joint}" for joint in ("hip_abduction", "hip_flexion", "leg_length") for side in Side)
-"""The six actuators, in the order of every list of joint values: left before right."""
 ANKLE_JOINTS = tuple(f"{side}_{plate}" for side in Side for plate in PLATES)
 """The four ankle joints, each named like the plate it carries."""
 JOINT_TYPES = {

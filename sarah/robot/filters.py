@@ -51,4 +51,4 @@ def ramped(now: float, goal: float, largest_change: float) -> float:
     change = goal - now
     if change > largest_change:
         return now + largest_change
-    return now + change if change > -largest_change else now - largest_change
+    return goal if change >= -largest_change else now - largest_change

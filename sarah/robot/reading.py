@@ -31,6 +31,10 @@ class Side(Enum):
         return Side.LEFT if self is Side.RIGHT else Side.RIGHT
 
 
+ACTUATED_JOINTS = tuple(f"{side}_{joint}" for joint in ("hip_abduction", "hip_flexion", "leg_length") for side in Side)
+"""The six actuators, in the order of every list of joint values: left before right."""
+
+
 class SensorReading(NamedTuple):
     """The 16 sensor signals of one control tick.
 
@@ -38,7 +42,7 @@ class SensorReading(NamedTuple):
     :param angular_rate: angular rate of the torso in its own frame, in rad/s
     :param pressures: loads on the four ankle pads, in N: left forefoot, left hindfoot, right forefoot, right hindfoot
         (the paper's LFP, LBP, RFP, RBP)
-    :param joints: actuator positions in the order of :data:`sarah.robot.description.ACTUATED_JOINTS`: left and right
+    :param joints: actuator positions in the order of :data:`ACTUATED_JOINTS`: left and right
         abduction and flexion in rad, left and right leg length in m, positive = retracted
     """
 

@@ -13,8 +13,8 @@ from functools import lru_cache
 import mujoco
 import numpy as np
 
-from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, PLATES, RobotDescription
-from sarah.robot.reading import SensorReading, Side, Vector
+from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
+from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Side, Vector
 from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.randomisation import NOMINAL, Conditions
 from sarah.simulation.simulator import TorsoState, rotate_to_world, specific_force
@@ -30,7 +30,7 @@ HIP_DAMPING, LEG_DAMPING = 10_000.0, 20_000.0
 """Effort per deviation from the speed that a servo demands, in Nms/rad and Ns/m."""
 JOINT_DAMPING = 2.0
 """Factor on the URDF's joint damping, which PyBullet, the reference, applies twice."""
-LOWEST_RATE = 300
+LOWEST_RATE = 500
 """Lowest number of physics steps per second: contacts are softer at lower rates."""
 STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS | mujoco.mjtState.mjSTATE_WARMSTART
 """State that a physics step begins with."""
@@ -43,7 +43,7 @@ class MujocoSimulator:
     """A :class:`~sarah.simulation.simulator.Simulator` in MuJoCo.
 
     :param robot: checked robot
-    :param physics: resolution in time, at least 300 Hz; the solver may converge, and stop, before its last iteration
+    :param physics: resolution in time, at least 500 Hz; the solver may converge, and stop, before its last iteration
     :param conditions: friction, masses, servo bandwidth and gravity of this episode
     """
 

@@ -16,13 +16,13 @@ LARGEST_ADDED_INERTIA = 1.0
 class Physics:
     """Resolution of the physics in time.
 
-    :param rate: physics steps per second, a multiple of the control rate; MuJoCo takes at least 300
+    :param rate: physics steps per second, a multiple of the control rate; MuJoCo takes at least 500
     :param solver_iterations: iterations of the physics engine's constraint solver, per physics step
     :param control_rate: control ticks per second; the paper's pattern generator ran at 100
     """
 
-    rate: int = 200
-    solver_iterations: int = 32
+    rate: int = 400
+    solver_iterations: int = 16
     control_rate: int = 100
 
     def __post_init__(self) -> None:
@@ -53,11 +53,11 @@ class Physics:
 class PyBulletPhysics(Physics):
     """Resolution of PyBullet's physics in time, and an added inertia with which few solver iterations are enough.
 
-    :param added_plate_inertia: inertia added to each foot plate about its hinge while its leg is not retracted, in
-        kg m^2; 0 leaves the robot as it is
+    :param added_plate_inertia: inertia added to each foot plate about its hinge while it presses on its pad, in kg m^2;
+        0 leaves the robot as it is
     """
 
-    added_plate_inertia: float = 0.008
+    added_plate_inertia: float = 0.012
 
     def __post_init__(self) -> None:
         """Refuse values that cannot be simulated."""

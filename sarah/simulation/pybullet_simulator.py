@@ -11,8 +11,8 @@ import xml.etree.ElementTree as ElementTree
 from itertools import product
 
 from sarah.errors import SimulationError
-from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, PLATES, RobotDescription
-from sarah.robot.reading import SensorReading, Side, Vector
+from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
+from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Side, Vector
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
 from sarah.simulation.pybullet_client import give_back_client, load_robot, pybullet, take_client
 from sarah.simulation.randomisation import NOMINAL, Conditions
@@ -104,7 +104,7 @@ class PyBulletSimulator:
             for links, _ in self._feet.values()
             for link in links
         }
-        self._retracted = dict.fromkeys(Side, True)
+        self._carries = [False] * len(self._plate_inertias)
         # PyBullet takes efforts as impulses over the whole tick, and lets every substep spend all of it.
         self._efforts = [self.robot.efforts[name] / self._substeps for name in ACTUATED_JOINTS]
         self.look()
@@ -178,22 +178,20 @@ class PyBulletSimulator:
             positionGains=self._gains,
             physicsClientId=self.client,
         )
-        for side, length in zip(Side, targets[-len(Side) :], strict=True):  # the leg lengths come last
-            if (length > 0.0) != self._retracted[side]:
-                self._retract(side, length > 0.0)
 
-    def _retract(self, side: Side, retracted: bool) -> None:
-        """Give the plates of a retracted leg their own inertia, and those of another leg the added one as well.
+    def _add_plate_inertia(self) -> None:
+        """Give the plates that press on their pads the added inertia, and the others their own.
 
         Light plates between the floor and pads that carry a whole robot make the solver converge slowly. While a plate
-        stands it hardly turns, so its inertia changes little else (docs/explanation/physics.md says how much).
+        carries it hardly turns, so its inertia changes little else (docs/explanation/physics.md says how much).
         """
-        self._retracted[side] = retracted
-        added = 0.0 if retracted else self._added_plate_inertia
-        for link in self._feet[side][0]:
-            about_hinge, *others = self._plate_inertias[link]
-            inertia = (about_hinge + added, *others)
-            pybullet.changeDynamics(self.body, link, localInertiaDiagonal=inertia, physicsClientId=self.client)
+        for index, ((link, inertias), load) in enumerate(zip(self._plate_inertias.items(), self._loads, strict=True)):
+            carries = load > 0.0
+            if carries != self._carries[index]:
+                self._carries[index] = carries
+                about_hinge, *others = inertias
+                inertia = (about_hinge + (self._added_plate_inertia if carries else 0.0), *others)
+                pybullet.changeDynamics(self.body, link, localInertiaDiagonal=inertia, physicsClientId=self.client)
 
     def push(self, force: Vector) -> None:
         """Push the torso at its centre during the next control tick.
@@ -210,6 +208,8 @@ class PyBulletSimulator:
         pybullet.stepSimulation(physicsClientId=self.client)
         self.time += self._dt
         self.look()
+        if self._added_plate_inertia:
+            self._add_plate_inertia()
 
     def torso_state(self) -> TorsoState:
         """True state of the torso, which no sensor of the robot measures."""
@@ -221,7 +221,7 @@ class PyBulletSimulator:
         return SensorReading(
             specific_force(torso, self._velocity_before, self._dt, self._gravity),
             rotate_to_body(torso.orientation, torso.angular_velocity),
-            self._pressures(),
+            self._loads,
             self._positions,
         )
 
@@ -240,7 +240,7 @@ class PyBulletSimulator:
         return self._speeds, tuple([effort * self._substeps for effort in self._joint_efforts])
 
     def look(self) -> None:
-        """Query the motion of the torso and of the actuators from PyBullet, after whatever changed it."""
+        """Query motion of torso and actuators, and the pads' loads, from PyBullet, after whatever changed them."""
         position, orientation = pybullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client)
         velocity, rate = pybullet.getBaseVelocity(self.body, physicsClientId=self.client)
         if self._mass_offset != NOMINAL.mass_offset:  # PyBullet gives the motion of the centre of mass
@@ -255,8 +255,9 @@ class PyBulletSimulator:
         self._positions, self._speeds, _, self._joint_efforts = zip(
             *pybullet.getJointStates(self.body, self._joints, self.client), strict=True
         )
+        self._loads = self._pad_loads()
 
-    def _pressures(self) -> tuple[float, float, float, float]:
+    def _pad_loads(self) -> tuple[float, float, float, float]:
         loads = [0.0, 0.0, 0.0, 0.0]
         for contact in pybullet.getContactPoints(self.body, self.body, physicsClientId=self.client):
             # PyBullet divides the impulse of the last substep by the whole tick.

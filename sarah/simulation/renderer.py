@@ -10,8 +10,8 @@ import numpy as np
 from PIL import Image
 
 from sarah.errors import ConfigurationError
-from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, PLATES, RobotDescription
-from sarah.robot.reading import Side, Vector
+from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
+from sarah.robot.reading import ACTUATED_JOINTS, Side, Vector
 from sarah.simulation.engines import INSTALLATION, is_installed
 from sarah.simulation.pybullet_client import give_back_client, load_robot, pybullet, take_client
 from sarah.simulation.scenery import STANDARD_CAMERA, Camera, View, floor, shaded, size_of

@@ -14,7 +14,8 @@ from viser.extras import ViserUrdf
 
 from sarah.episode.trace import Trace
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
-from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, RobotDescription
+from sarah.robot.description import ANKLE_JOINTS, RobotDescription
+from sarah.robot.reading import ACTUATED_JOINTS
 from sarah.simulation.scenery import Camera, View, size_of
 
 Colour = tuple[int, int, int]

@@ -126,7 +126,8 @@ def test_each_condition_holds_just_beyond_its_threshold() -> None:
     """
     held = ControllerConstants(baseline_time_constant=10_000.0)
     beyond, met = started(constants=held), started(constants=held)
-    for generator, tilt, rate, load, rate_back in ((beyond, -1.31, 0.0052, 30.1, -0.41), (met, -1.3, 0.005, 30.0, -0.4)):
+    cases = (beyond, -1.31, 0.0052, 30.1, -0.41), (met, -1.3, 0.005, 30.0, -0.4)
+    for generator, tilt, rate, load, rate_back in cases:
         by_sensors = [
             tick_until_change(generator, steady)[0].by_sensors
             for steady in (
@@ -364,3 +365,215 @@ def test_offsets_that_were_there_while_standing_change_no_step(offset: float) ->
         change = level.tick(reading(lateral, rate, left, right))
         assert askew.tick(reading(lateral + offset, rate + offset / 10, left, right)) == change
         assert askew.tilt == pytest.approx(level.tilt) and askew.rate == pytest.approx(level.rate)
+
+
+BALANCE = BalanceParameters(1.0, 0.0, 0.5, 0.0)
+
+
+def rocking(tick: int, dt: float = DT) -> SensorReading:
+    """A reading of a robot that rocks from foot to foot at 1.5 Hz, and falls a little forward and backward."""
+    phase = 2.0 * math.pi * 1.5 * tick * dt
+    lateral, rate = -3.0 * math.sin(phase), 0.5 * math.cos(phase)
+    left, right = (LOADED, UNLOADED) if lateral > 0.0 else (UNLOADED, LOADED)
+    at_the_feet = reading(lateral, rate, 2 * left, 2 * right)
+    return at_the_feet._replace(
+        angular_rate=(0.2 * math.sin(phase / 2.0), rate, 0.0),
+        joints=(0.0, 0.0, 0.02 * math.sin(phase), -0.02 * math.sin(phase), 0.0, 0.0),
+    )
+
+
+def test_new_p1_to_p5_hold_from_the_next_tick_on() -> None:
+    """A tilt of nearly 1.25 is not above P2 = 1.3, and above P2 = 1.1; the V that were given before stay."""
+    v = BalanceParameters(0.0, 0.0, 0.5, 0.0)
+    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), v, DT))
+    for _ in range(50):
+        assert generator.tick(reading(lateral=-1.25, rate=0.3)) is None
+    generator.set_parameters(SteppingParameters(0.4, 1.1, 0.1, 1.0, 1.0))
+    assert generator.tick(reading(lateral=-1.25, rate=0.3)) == PhaseChange(Phase.SHIFT, by_sensors=True)
+    assert generator.hips.parameters == v
+
+
+def test_new_v1_to_v4_come_at_the_speed_of_the_ramp_and_arrive() -> None:
+    """4 per second are 0.04 in a tick: V1 goes by 1 in 25 ticks, and V4 by 1.5 in 38. P1 to P5 stay."""
+    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
+    goal = BalanceParameters(0.0, 0.0, 0.5, -1.5)
+    generator.set_parameters(balance=goal)
+    assert generator.hips.parameters == BALANCE
+    for tick in range(1, 39):
+        generator.tick(reading())
+        v = generator.hips.parameters
+        assert pytest.approx(max(0.0, 1.0 - 0.04 * tick)) == v.V1 and (v.V2, v.V3) == (0.0, 0.5)
+        assert pytest.approx(max(-1.5, -0.04 * tick)) == v.V4
+    assert v == goal and generator.parameters == SteppingParameters(*PAPER_STEPPING)
+
+
+def test_while_the_robot_stands_new_parameters_hold_at_once() -> None:
+    generator = PatternGenerator(SteppingParameters(0.0, 0.0, 0.0, 0.0, 0.0), dt=DT)
+    generator.tick(reading())
+    generator.set_parameters(SteppingParameters(*PAPER_STEPPING), BALANCE)
+    assert generator.parameters == SteppingParameters(*PAPER_STEPPING) and generator.hips.parameters == BALANCE
+    given = PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT)
+    given.tick(reading())
+    for tick in range(300):
+        assert generator.tick(rocking(tick)) == given.tick(rocking(tick)) and generator.targets == given.targets
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_parameters_that_are_not_finite_are_refused_and_none_changes(bad: float) -> None:
+    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
+    others = SteppingParameters(1.0, 1.0, 1.0, 1.0, 1.0), BalanceParameters(0.0, 0.0, 0.0, 0.0)
+    for refused in (
+        (SteppingParameters(0.4, bad, 0.1, 1.0, 1.0), others[1]),
+        (others[0], BalanceParameters(1.0, 0.0, bad, 0.0)),
+    ):
+        with pytest.raises(ConfigurationError, match="parameters must be finite numbers, not"):
+            generator.set_parameters(*refused)
+        with pytest.raises(ConfigurationError, match="parameters must be finite numbers, not"):
+            PatternGenerator(*refused)
+    for _ in range(30):
+        generator.tick(reading())
+    assert generator.parameters == SteppingParameters(*PAPER_STEPPING) and generator.hips.parameters == BALANCE
+
+
+def phase_ends(dt: float, every: int, told: bool) -> list[tuple[float, PhaseChange]]:
+    """When phases end in 8 s of rocking, by the ticks that take place: one in ``every``."""
+    generator, ends = PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, dt), []
+    for tick in range(every, round(8.0 / dt) + 1, every):
+        change = generator.tick(rocking(tick, dt), every * dt if told else None)
+        if change is not None:
+            ends.append((tick * dt, change))
+    return ends
+
+
+def test_who_is_told_that_every_second_tick_is_missed_steps_as_at_half_the_control_rate() -> None:
+    """Phases end at the same times, and for the same reasons. Who is not told takes seconds for two."""
+    missed, slow = phase_ends(DT, 2, told=True), phase_ends(2 * DT, 1, told=False)
+    assert [change for _, change in missed] == [change for _, change in slow]
+    assert [seconds for seconds, _ in missed] == pytest.approx([seconds for seconds, _ in slow])
+    assert sum(change.is_step for _, change in missed) > 5
+    assert phase_ends(DT, 2, told=False)[0][0] == pytest.approx(2.02)
+
+
+def test_late_and_early_ticks_count_by_their_times() -> None:
+    """Loops of 14 ms, of 1 ms, and of 16 and 4 ms in turn all stand for a second; an early tick does nothing."""
+    for times in ((0.014,), (0.001,), (0.016, 0.004)):
+        generator, elapsed = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT), 0.0
+        while generator.phase is Phase.STAND:
+            for seconds in times:
+                before = generator.targets
+                assert generator.tick(reading(), seconds) is None or elapsed > 0.98
+                elapsed += seconds
+                assert generator.phase is not Phase.STAND or generator.targets == before
+        assert elapsed == pytest.approx(1.01, abs=0.015)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "ticks"),
+    [(None, 1), (DT, 1), (0.03, 3), (1.0, 100), (60.0, 100), (math.inf, 100), (math.nan, 1), (-5, 1)],
+)
+def test_a_gap_counts_up_to_a_second_and_what_is_no_time_as_a_tick(seconds: float | None, ticks: int) -> None:
+    late, punctual = started(), started()
+    late.tick(OVER_RIGHT, seconds)
+    for _ in range(ticks):
+        punctual.tick(OVER_RIGHT)
+    assert late.stable_x == pytest.approx(punctual.stable_x)
+    assert late.rate == pytest.approx(punctual.rate, rel=0.01)
+
+
+NARROW = ((-0.01, 0.3), (-0.02, 0.3), (-0.005, 0.005), (-0.8, 0.8), (-0.004, 0.02), (-0.05, 0.12))
+
+
+def test_targets_stay_within_the_limits_and_the_joints_that_they_limit_are_named() -> None:
+    """The robot is pushed to the right, so abduction is negative; V4 flexes by 0.02 rad, and the left leg swings."""
+    v = BalanceParameters(2.0, 0.0, 0.0, 1.0)
+    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), v, DT, limits=NARROW))
+    assert generator.limited_joints == ("left_hip_flexion", "left_leg_length")
+    named = set()
+    for _ in range(400):
+        generator.tick(reading(lateral=3.0))
+        named |= set(generator.limited_joints)
+        for target, (low, high) in zip(generator.targets, NARROW, strict=True):
+            assert low <= target <= high
+    assert named == {"left_hip_abduction", "right_hip_abduction", "left_hip_flexion", "left_leg_length"}
+    assert generator.targets[:2] == (-0.01, -0.01)  # one abduction for both
+
+
+def test_without_limits_no_joint_is_limited() -> None:
+    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
+    for tick in range(300):
+        generator.tick(rocking(tick))
+        assert generator.limited_joints == ()
+
+
+@pytest.mark.parametrize(
+    "limits", [NARROW[:5], ((0.1, 0.3), *NARROW[1:]), ((-0.1, math.nan), *NARROW[1:]), ((0.1, -0.1), *NARROW[1:])]
+)
+def test_limits_that_are_not_six_ranges_around_zero_are_refused(limits: tuple[tuple[float, float], ...]) -> None:
+    with pytest.raises(ConfigurationError, match="limits must be 6 ranges around zero, not"):
+        PatternGenerator(SteppingParameters(*PAPER_STEPPING), limits=limits)
+
+
+SIGNALS = [
+    (field, index)
+    for field, values in zip(SensorReading._fields, reading(), strict=True)
+    for index in range(len(values))
+]
+
+
+@pytest.mark.parametrize(("field", "index"), SIGNALS)
+def test_a_signal_that_is_not_finite_keeps_its_last_value_and_the_others_live(field: str, index: int) -> None:
+    """The same as if that one signal were stuck."""
+
+    def with_signal(whole: SensorReading, value: float) -> SensorReading:
+        values = list(getattr(whole, field))
+        values[index] = value
+        return whole._replace(**{field: tuple(values)})
+
+    lost, stuck = (stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT)) for _ in range(2))
+    for generator in (lost, stuck):
+        generator.tick(rocking(5))
+    last = getattr(rocking(5), field)[index]
+    moved = set()
+    for tick in range(6, 300):
+        bad = (math.nan, math.inf, -math.inf, 1e300)[tick % 4]
+        assert lost.tick(with_signal(rocking(tick), bad)) == stuck.tick(with_signal(rocking(tick), last))
+        assert lost.targets == stuck.targets and lost.tilt == stuck.tilt and lost.rate == stuck.rate
+        moved.add(lost.targets)
+    assert len(moved) > 20
+
+
+def lying(x: float = 0.0, y: float = 0.0, z: float = 0.0) -> SensorReading:
+    """A reading of a robot that lies, with gravity's reaction along these axes, and whose feet carry nothing."""
+    return reading(left=UNLOADED, right=UNLOADED)._replace(acceleration=(x, y, z))
+
+
+@pytest.mark.parametrize(
+    "fallen", [lying(x=9.81), lying(x=-9.81), lying(y=9.81), lying(y=-9.81), lying(z=-9.81), lying(y=9.0, z=4.0)]
+)
+def test_a_robot_that_lies_on_any_side_or_at_66_degrees_has_fallen_within_a_second_and_holds_still(
+    fallen: SensorReading,
+) -> None:
+    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
+    for tick in range(100):
+        generator.tick(rocking(tick))
+    assert not generator.has_fallen
+    for _ in range(100):
+        generator.tick(fallen)
+    assert generator.has_fallen
+    held = generator.targets
+    generator.set_parameters(balance=BalanceParameters(-1.0, 1.0, 1.0, 1.0))
+    for tick in range(300):  # also when it has been put up again: it then stands, and needs a new generator
+        assert generator.tick(rocking(tick)) is None and generator.targets == held
+    assert generator.has_fallen
+
+
+def test_a_blow_or_a_long_gap_before_it_is_no_fall() -> None:
+    """0.1 s of free fall, and a single reading of -20 m/s^2 after a second without readings."""
+    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
+    for _ in range(10):
+        generator.tick(lying())
+    for tick in range(100):
+        generator.tick(rocking(tick))
+    generator.tick(lying(z=-1e5), 60.0)
+    generator.tick(reading())
+    assert not generator.has_fallen

@@ -193,8 +193,8 @@ PROTECTIONS = (
     Protection(
         "readings that are no numbers are passed over",
         "control/pattern_generator.py",
-        "if not reading.is_finite:",
-        "if False:",
+        "self._reading = reading.repaired(self._reading)",
+        "self._reading = reading",
         "test_a_sensor_that_drops_out_does_not_stop_the_stepping_by_sensors",
     ),
     Protection(

@@ -35,17 +35,13 @@ def plausible_range(name: str) -> st.SearchStrategy[tuple[float, ...]]:
     return st.tuples(plausible(name), plausible(name)).map(lambda ends: tuple(sorted(ends)))
 
 
-SINGLE = ("mass_deviation", "acceleration_noise", "angular_rate_noise", "imu_bandwidth", "pad_noise", "start_speed")
+RANGES = ("friction", "actuator_bandwidth")
 CONFIG = st.builds(
     BalanceConfig,
     physics=st.sampled_from([Physics(50, 1, 50), Physics(100, 1), Physics(300, 200), Physics(2000, 1, 1000)]),
     randomisation=st.builds(
         Randomisation,
-        friction=plausible_range("friction"),
-        actuator_bandwidth=plausible_range("actuator_bandwidth"),
-        pad_threshold=plausible_range("pad_threshold"),
-        delay_ticks=st.sampled_from([0, 1, 100]),
-        **{name: plausible(name) for name in SINGLE},
+        **{name: plausible_range(name) if name in RANGES else plausible(name) for name in randomisation.PLAUSIBLE},
     ),
     terrain=st.builds(Terrain, **{name: plausible_range(name) for name in terrain.PLAUSIBLE}),
     controller=st.builds(ControllerConstants, **{name: plausible(name) for name in constants.PLAUSIBLE}),

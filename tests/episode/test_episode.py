@@ -1,5 +1,7 @@
 """One episode: the paper's parameters, clocks, another control rate, and a simulator without physics."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from laboratory import NoPhysics
@@ -7,7 +9,7 @@ from laboratory import NoPhysics
 import sarah
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import STAND_SECONDS
-from sarah.episode.episode import Episode, simulate
+from sarah.episode.episode import Episode, conditions_of, simulate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
@@ -67,6 +69,14 @@ def test_episode_runs_on_any_simulator() -> None:
     assert result.termination == "no_oscillation" and result.duration == 5.0
     assert result.steps == 0 and result.shifts_by_sensors == 0.0
     assert result.final_position == (0.0, 0.0, 0.84)
+
+
+def test_an_episode_takes_given_conditions_in_place_of_those_that_its_seed_draws() -> None:
+    drawn = conditions_of(SHORT, 0)
+    biased = replace(drawn, sensors=replace(drawn.sensors, angular_rate_bias=(5.0, 0.0, 0.0)))
+    episodes = {bias: Episode(SHORT, 0, build=NoPhysics, conditions=given) for bias, given in ((0, None), (5, biased))}
+    rates = {bias: episode.stand().angular_rate[0] for bias, episode in episodes.items()}
+    assert rates[5] - rates[0] == pytest.approx(5.0 - drawn.sensors.angular_rate_bias[0])
 
 
 def test_package_offers_the_simulation_by_name() -> None:

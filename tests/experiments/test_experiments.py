@@ -15,7 +15,6 @@ from sarah.errors import ConfigurationError
 from tests.endurance.protections import PROTECTIONS, Protection
 
 LONG = {
-    "flexion_laws",
     "killed_workers",
     "kills",
     "long_training",

@@ -36,14 +36,14 @@ def pushed(degrees: float, result: EpisodeResult = RESULT, newtons: float = 100.
 def test_controllers_meet_the_same_pushes_and_can_be_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(robustness, "SECONDS_AFTER", 0.1)
     still, moving = push_many(
-        [(0.0,) * 4, (1.0, 0.0, 1.0, 0.0)], BalanceConfig(), Workers(), forces=(40.0, 80.0), episodes=2
+        [(0.0,) * 4, (1.0, 0.0, 1.0, 0.0)], BalanceConfig(), Workers(), forces=(20.0, 40.0), episodes=2
     )
-    assert [e.newtons for e in still] == [40.0, 40.0, 80.0, 80.0]
+    assert [e.newtons for e in still] == [20.0, 20.0, 40.0, 40.0]
     assert [e.radians for e in still] == [e.radians for e in moving]
     assert still[0].radians == pytest.approx(still[2].radians) != still[1].radians
     assert [e.result for e in still] != [e.result for e in moving]
     assert {e.result.duration for e in still} == {4.25}
-    push = dataclasses.replace(BalanceConfig().push, newtons=(80.0, 80.0), at_seconds=robustness.PUSHED_BETWEEN)
+    push = dataclasses.replace(BalanceConfig().push, newtons=(40.0, 40.0), at_seconds=robustness.PUSHED_BETWEEN)
     config = BalanceConfig(push=push, time_limit=4.25)
     assert simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.0), 1, "balance", config)) == moving[3].result
 

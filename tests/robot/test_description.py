@@ -6,14 +6,8 @@ from collections.abc import Callable
 import pytest
 
 from sarah.errors import DescriptionError
-from sarah.robot.description import (
-    ACTUATED_JOINTS,
-    ANKLE_JOINTS,
-    GROUPS,
-    check_urdf,
-    default_dimensions,
-    describe_robot,
-)
+from sarah.robot.description import ANKLE_JOINTS, GROUPS, check_urdf, default_dimensions, describe_robot
+from sarah.robot.reading import ACTUATED_JOINTS
 
 
 @pytest.fixture

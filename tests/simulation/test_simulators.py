@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from laboratory import NEEDS_PYBULLET, BulletLaboratory, MujocoLaboratory, laboratory
 
-from sarah.robot.description import ACTUATED_JOINTS, ANKLE_JOINTS, GROUPS, PLATES, describe_robot
-from sarah.robot.reading import Side
+from sarah.robot.description import ANKLE_JOINTS, GROUPS, PLATES, describe_robot
+from sarah.robot.reading import ACTUATED_JOINTS, Side
 from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
 from sarah.simulation.pybullet_client import pybullet
@@ -87,6 +87,55 @@ def test_standing_pads_carry_a_steady_and_symmetric_load(build: BuildSimulation)
     left, right = pads[:, :2].sum(axis=1).mean(), pads[:, 2:].sum(axis=1).mean()
     assert abs(left - right) < 0.03 * weight
     assert (pads > 0.15 * weight).all()
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize(("axis", "heavier"), [(0, (2, 3)), (1, (0, 2))])
+def test_pads_carry_more_where_the_torsos_mass_is_offset_to(
+    lab: Laboratory, build: BuildSimulation, axis: int, heavier: tuple[int, int], sign: float
+) -> None:
+    """20 mm of 8 kg are a moment of 1.57 Nm.
+
+    Forward, the soles' contacts stand 0.28 m apart, so fore and hind ones differ by 2 x 1.57 / 0.28 = 11.2 N. To the
+    side, the feet are 0.26 m apart, and 12.1 N would carry it all; but each foot is wide enough to carry some itself.
+    """
+    shifts = []
+    for metres in (0.0, sign * 0.02):
+        simulation = build(Conditions(mass_offset=(metres, 0.0, 0.0) if axis == 0 else (0.0, metres, 0.0)))
+        loads = []
+        for tick in range(4 * SECOND):
+            simulation.advance()
+            if tick >= SECOND:
+                loads.append(simulation.read().pressures)
+        pads = np.array(loads).mean(axis=0)
+        shifts.append(2.0 * pads[list(heavier)].sum() - pads.sum())
+        assert simulation.torso_state().position == pytest.approx((0.0, 0.0, 0.84), abs=0.005)
+    shift = sign * (shifts[1] - shifts[0])
+    if axis == 1:
+        assert shift == pytest.approx(2 * 8.0 * 0.02 * GRAVITY / 0.28, rel=0.1)
+    else:
+        assert 1.0 < shift < 2 * 8.0 * 0.02 * GRAVITY / 0.26
+
+
+def test_state_is_that_of_the_torsos_frame_wherever_its_mass_is(lab: Laboratory, build: BuildSimulation) -> None:
+    """In the air, turning at 3 rad/s: velocity is that of the position, and the hips stay where they are built."""
+    offset = (0.02, -0.03, 0.01)
+    for conditions in (NOMINAL, Conditions(mass_offset=offset)):
+        simulation = build(conditions, PyBulletPhysics(rate=2000))
+        lab.place(simulation, roll=0.3, pitch=-0.2)
+        hip = lab.link_position(simulation, "left_hip") - simulation.torso_state().position
+        assert rotate_to_body(simulation.torso_state().orientation, tuple(hip)) == pytest.approx(
+            (-0.13, 0.0, -0.17), abs=1e-6
+        )
+        lab.turn(simulation, (1.0, 2.0, 2.0))
+        simulation.advance()
+        before = simulation.torso_state()
+        simulation.advance()
+        after = simulation.torso_state()
+        for then, now, speeds in zip(
+            before.position, after.position, zip(before.velocity, after.velocity, strict=True), strict=True
+        ):
+            assert (now - then) * SECOND == pytest.approx(sum(speeds) / 2.0, abs=0.004)
 
 
 def test_pads_stop_the_plates(lab: Laboratory, build: BuildSimulation) -> None:
@@ -281,7 +330,7 @@ def test_plates_have_the_added_inertia_unless_their_leg_is_retracted() -> None:
 def test_two_simulations_repeat_bit_for_bit(build: BuildSimulation) -> None:
     states = []
     for _ in range(2):
-        simulation = build(Conditions(start_velocity=(0.01, 0.02)))
+        simulation = build(Conditions(mass_offset=(0.01, -0.02, 0.005), friction=0.8))
         for _ in range(SECOND):
             simulation.advance()
         states.append((simulation.torso_state(), simulation.read()))
