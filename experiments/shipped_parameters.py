@@ -146,5 +146,6 @@ def _chosen(row: Mapping[str, str]) -> dict[str, Any]:
         return {"parameters": stepping, "settings": {}}
     config = EPISODES["balance"]
     assert isinstance(config, BalanceConfig)
-    settings = {"stepping": list(stepping.values()), "push": {"newtons": list(config.push.newtons)}}
+    push = {"newtons": list(config.push.newtons), "sagittal_share": config.push.sagittal_share}
+    settings = {"stepping": list(stepping.values()), "push": push}
     return {"parameters": {name: float(row[name]) for name in BALANCE_NAMES}, "settings": settings}

@@ -34,10 +34,12 @@ def test_shipped_parameters_come_with_their_settings(tmp_path: Path) -> None:
 
 def test_without_a_subject_it_is_what_comes_back_from_a_push(tmp_path: Path) -> None:
     text = run("sarah-eval", "--episodes", "2", "--episode.time-limit", "4", cwd=tmp_path).stdout
-    assert "balance, pushed by 75 to 125 N\n" in text and f" {PARAMETER_SETS['balance'].origin}\n" in text
+    low, high = PARAMETER_SETS["balance"].spec.config.push.newtons
+    assert f"balance, pushed by {low:g} to {high:g} N\n" in text
+    assert f" {PARAMETER_SETS['balance'].origin}\n" in text
     assert shown(folder=tmp_path) == shown("balance", folder=tmp_path)
     help_text = run("sarah-eval", "--help", cwd=tmp_path).stdout
-    assert "75.0 125.0" in help_text and "--episode.stepping" in help_text
+    assert f"{low} {high}" in help_text and "--episode.stepping" in help_text
 
 
 def test_the_page_says_where_shipped_parameters_come_from(tmp_path: Path) -> None:

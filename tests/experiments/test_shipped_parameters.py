@@ -3,23 +3,26 @@
 import dataclasses
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from experiments import record
-from experiments.shipped_parameters import CONDITIONS, DIGITS, sets_of
+from experiments.shipped_parameters import CONDITIONS, DIGITS, ship
+from sarah.episode.episode import simulate
 from sarah.episode.evaluation import evaluate
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import Push, PushedConfig
-from sarah.episode.shipped import shipped
+from sarah.episode.shipped import FILE, shipped
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 
 SEEDS = range(1000, 1004)
 
 
-def test_the_packages_file_says_what_the_result_says() -> None:
-    assert shipped() == sets_of(record.read("shipped_parameters"))
+def test_the_packages_file_says_what_the_result_says(tmp_path: Path) -> None:
+    ship(record.read("shipped_parameters"), tmp_path / FILE.name)
+    assert (tmp_path / FILE.name).read_text(encoding="utf-8") == FILE.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("name", shipped())
@@ -52,6 +55,12 @@ def test_every_set_survives_most_pushes_of_its_kind(name: str, newtons: float) -
     shared = {**vars(spec.config), "time_limit": 8.0, "push": push}
     config = BalanceConfig(**shared) if name == "balance" else PushedConfig(**shared)
     assert evaluate(spec.task, spec.parameters, config, SEEDS).survival_rate > 0.5
+
+
+def test_what_commands_show_without_arguments_comes_back_from_its_push() -> None:
+    spec = PARAMETER_SETS["balance"].spec
+    result = simulate(dataclasses.replace(spec, config=dataclasses.replace(spec.config, time_limit=12.0)))
+    assert spec.config.push.newtons[0] > 0.0 and result.survived
 
 
 def test_importing_the_package_does_not_read_the_file() -> None:
