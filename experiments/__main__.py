@@ -72,7 +72,7 @@ def make(name: str, arguments: Sequence[str]) -> None:
     command = shlex.join([*COMMAND.split(), name, *arguments])
     record.write(name, rows, maker.question, command, made_with() if maker.of_robot else None, folder)
     print(folder / f"{name}.csv")
-    if isinstance(experiment, ShippedParameters) and folder == record.RESULTS:
+    if isinstance(experiment, ShippedParameters) and folder.resolve() == record.RESULTS:
         ship(record.read(name))
 
 
