@@ -7,49 +7,48 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from statistics import mean, stdev
 
-from experiments.experiment import OnWorkers, settings_of
+from experiments.experiment import OnWorkers
 from experiments.record import Row
 from sarah.control.parameters import PAPER_STEPPING
+from sarah.episode.parameter_sets import PARAMETER_SETS
+from sarah.episode.push import Push
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks.balance import TRAINED_STEPPING
+from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.workers import Workers
-from sarah.simulation.physics import PyBulletPhysics
+from sarah.simulation.engines import Engine
+from sarah.simulation.physics import PHYSICS, PyBulletPhysics
+from sarah.simulation.randomisation import Randomisation
 
-SETTINGS = (
-    PyBulletPhysics(1000, 100, added_plate_inertia=0.0),
-    PyBulletPhysics(1000, 100),
-    PyBulletPhysics(500, 30, added_plate_inertia=0.0),
-    PyBulletPhysics(200, 40, added_plate_inertia=0.0),
-    PyBulletPhysics(),
-)
-"""The finest, what its plates do with added inertia, coarser ones, and the standard."""
-SETS = {
-    "stepping": (
-        PAPER_STEPPING,
-        TRAINED_STEPPING,
-        (0.02, 0.05, 0.55, 1.8, 1.3),
-        (0.15, 0.3, 0.25, 0.5, 0.5),
-        (0.42, 0.39, 0.91, 0.5, 1.2),
-        (0.5, 0.8, 0.1, 1.0, 1.0),
-        (0.8, 1.2, 0.1, 1.0, 1.0),
-        (0.2, 0.0, 2.0, 0.0, 0.0),
-    ),
-    "balance": (
-        (0.0, 0.0, 0.0, 0.0),
-        (1.1, 0.34, -0.04, -1.72),
-        (1.8, 0.0, 1.0, 0.0),
-        (1.1, 0.0, 0.0, 0.0),
-        (0.8, 0.0, 0.4, 0.0),
-        (1.29, 0.23, -0.02, -1.97),
-        (0.4, 0.0, 0.0, 0.0),
-        (0.5, 0.0, 0.0, 0.0),
-    ),
+STANDARD = PyBulletPhysics()
+SETTINGS: dict[str, tuple[Engine, PyBulletPhysics]] = {
+    "reference": ("pybullet", PyBulletPhysics(1000, 100, added_plate_inertia=0.0)),
+    "500 Hz x 30": ("pybullet", PyBulletPhysics(500, 30, added_plate_inertia=0.0)),
+    "no added inertia": ("pybullet", replace(STANDARD, added_plate_inertia=0.0)),
+    "standard": ("pybullet", STANDARD),
+    "mujoco": ("mujoco", STANDARD),
 }
-"""Good sets, poor ones, and what trainings at a cheap physics learned."""
+"""Engine and physics by name: the finest, a coarser one, the standard without and with its added inertia, MuJoCo's."""
+NO_HIPS = (0.0, 0.0, 0.0, 0.0)
+LOW_P1 = (0.02, 0.05, 0.55, 1.8, 1.3)
+"""P1 to P5 that NAF learned in one training, with a P1 near zero."""
+
+
+def parameter_sets() -> dict[str, tuple[tuple[float, ...], tuple[float, ...]]]:
+    """P1 to P5 and V1 to V4 that score well, by name."""
+    shipped = PARAMETER_SETS["balance"].spec
+    assert isinstance(shipped.config, BalanceConfig)
+    return {
+        "paper, V = 0": (PAPER_STEPPING, NO_HIPS),
+        "shipped, V = 0": (shipped.config.stepping, NO_HIPS),
+        "low P1, V = 0": (LOW_P1, NO_HIPS),
+        "paper, V1 = V3 = 1": (PAPER_STEPPING, (1.0, 0.0, 1.0, 0.0)),
+        "shipped": (shipped.config.stepping, shipped.parameters),
+        "low P1, V1 = V3 = 1": (LOW_P1, (1.0, 0.0, 1.0, 0.0)),
+    }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,73 +59,71 @@ class AtEverySetting(OnWorkers):
     :param time_limit: time limit of an episode, in s
     """
 
-    seeds: int = 20
+    seeds: int = 6
     time_limit: float = 12.0
 
     def results(
-        self, task: str, parameters: tuple[float, ...], newtons: float, workers: Workers
-    ) -> Iterator[tuple[Row, list[EpisodeResult]]]:
-        """Each setting's columns, and the results of a parameter set there.
+        self,
+        stepping: tuple[float, ...],
+        balance: tuple[float, ...],
+        workers: Workers,
+        control_rate: int = 100,
+        randomisation: Randomisation = Randomisation(),
+    ) -> Iterator[tuple[str, list[EpisodeResult]]]:
+        """Each setting's name, and the results of a parameter set there, without a push.
 
-        :param task: name of the task
-        :param parameters: values of its parameters
-        :param newtons: force of the pushes, if the task has some, in N
+        :param stepping: values of P1 to P5
+        :param balance: values of V1 to V4
         :param workers: who simulates
+        :param control_rate: control ticks per second
+        :param randomisation: what the seeds draw
         """
-        for physics in SETTINGS:
-            config = settings_of(
-                task, (newtons, newtons), engine="pybullet", physics=physics, time_limit=self.time_limit
+        for name, (engine, physics) in SETTINGS.items():
+            config = BalanceConfig(
+                physics.at_control_rate(control_rate),
+                engine,
+                randomisation=randomisation,
+                time_limit=self.time_limit,
+                stepping=stepping,  # type: ignore[arg-type]
+                push=Push(newtons=(0.0, 0.0)),
             )
-            specs = [EpisodeSpec(parameters, seed, task, config) for seed in range(self.seeds)]
-            yield setting(physics), list(workers.simulate_all(specs))
+            specs = [EpisodeSpec(balance, seed, BALANCE, config) for seed in range(self.seeds)]
+            yield name, list(workers.simulate_all(specs))
 
 
 @dataclass(frozen=True)
-class Fineness(AtEverySetting):
-    """Good sets and poor ones of both tasks, without a push.
+class FinenessInConditions(AtEverySetting):
+    """Good sets at two control rates, with delays, and as designed: without noise, errors and delay.
 
-    :param sets: number of the sets of each task, from the first
+    :param sets: number of the sets, from the first
+    :param control_rates: control ticks per second
+    :param delays: delays from sensing to acting, in s
     """
 
-    sets: int = 8
+    sets: int = 6
+    control_rates: tuple[int, ...] = (100, 200)
+    delays: tuple[float, ...] = (0.0, 0.010, 0.020)
 
     def rows(self) -> Iterator[Row]:
-        """A row for each set and setting."""
+        """A row for each set, condition and setting."""
+        conditions = {f"{1000 * delay:g} ms": Randomisation(delay_seconds=delay) for delay in self.delays}
+        conditions["as designed"] = Randomisation(enabled=False)
         with Workers(self.workers) as workers:
-            for task, parameters in ((task, set_) for task, sets in SETS.items() for set_ in sets[: self.sets]):
-                finest = None
-                for columns, results in self.results(task, parameters, 0.0, workers):
-                    yield {
-                        "task": task,
-                        "parameters": ", ".join(f"{value:g}" for value in parameters),
-                        **columns,
-                        **compared(results, finest),
-                        "steps_per_second": mean(result.steps_per_second for result in results),
-                        "sole_clearance_mm": 1000.0 * mean(result.sole_clearance for result in results),
-                        "survival": mean(result.survived for result in results),
-                    }
-                    finest = finest or results
-
-
-@dataclass(frozen=True)
-class FinenessAtSlowGaits(AtEverySetting):
-    """Several V1 under pushes; some of them make the robot step slowly.
-
-    :param v1: values of V1
-    :param newtons: force of the pushes, in N
-    """
-
-    v1: tuple[float, ...] = (0.2, 0.3, 0.4, 0.5, 0.6, 0.7)
-    newtons: float = 100.0
-
-    def rows(self) -> Iterator[Row]:
-        """A row for each V1 and setting."""
-        with Workers(self.workers) as workers:
-            for v1 in self.v1:
-                finest = None
-                for columns, results in self.results("balance", (v1, 0.0, 0.0, 0.0), self.newtons, workers):
-                    yield {"V1": f"{v1:g}", **columns, **compared(results, finest)}
-                    finest = finest or results
+            for name, (stepping, balance) in list(parameter_sets().items())[: self.sets]:
+                for control_rate in self.control_rates:
+                    for condition, randomisation in conditions.items():
+                        finest = None
+                        for setting, results in self.results(stepping, balance, workers, control_rate, randomisation):
+                            yield {
+                                "parameters": name,
+                                "control_rate_hz": control_rate,
+                                "sensors": condition,
+                                "setting": setting,
+                                **compared(results, finest),
+                                "steps_per_second": mean(result.steps_per_second for result in results),
+                                "sole_clearance_mm": 1000.0 * mean(result.sole_clearance for result in results),
+                            }
+                            finest = finest or results
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,36 +139,23 @@ class FinenessAnywhere(AtEverySetting):
     def rows(self) -> Iterator[Row]:
         """A row for each setting."""
         generator = random.Random(7)
-        scores: list[list[float]] = [[] for _ in SETTINGS]
+        scores: dict[str, list[float]] = {name: [] for name in SETTINGS}
         with Workers(self.workers) as workers:
             for _ in range(self.sets):
                 parameters = tuple(generator.uniform(0.0, 2.0) for _ in range(5))
-                for column, (_, results) in zip(
-                    scores, self.results("stepping", parameters, 0.0, workers), strict=True
-                ):
-                    column.append(mean(result.score for result in results))
-        for physics, column in zip(SETTINGS, scores, strict=True):
-            distances = [abs(score - finest) for score, finest in zip(column, scores[0], strict=True)]
+                for name, results in self.results(parameters, NO_HIPS, workers):
+                    scores[name].append(mean(result.score for result in results))
+        finest = next(iter(scores.values()))
+        for name, column in scores.items():
+            distances = [abs(score - fine) for score, fine in zip(column, finest, strict=True)]
             yield {
-                **setting(physics),
+                "setting": name,
                 "sets": self.sets,
                 "mean_score": mean(column),
                 "rms_distance": mean(distance**2 for distance in distances) ** 0.5,
                 "largest_distance": max(distances),
                 "sets_within_0_02": sum(distance < 0.02 for distance in distances),
             }
-
-
-def setting(physics: PyBulletPhysics) -> Row:
-    """Columns of a setting of the physics.
-
-    :param physics: the setting
-    """
-    return {
-        "physics_rate_hz": physics.rate,
-        "solver_iterations": physics.solver_iterations,
-        "added_plate_inertia_kg_m2": f"{physics.added_plate_inertia:g}",
-    }
 
 
 def compared(results: Sequence[EpisodeResult], finest: Sequence[EpisodeResult] | None) -> Row:

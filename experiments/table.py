@@ -22,7 +22,7 @@ from experiments.flexion_laws import FlexionLaws
 from experiments.landscape import Landscape
 from experiments.naf_preset import NafPreset
 from experiments.noise_limit import NoiseLimit
-from experiments.physics import Fineness, FinenessAnywhere, FinenessAtSlowGaits
+from experiments.physics import FinenessAnywhere, FinenessInConditions
 from experiments.race import Race
 from experiments.rank_replay import RankReplay
 from experiments.robot_dimensions import RobotDimensions
@@ -200,19 +200,14 @@ TABLE: dict[str, Maker] = {
     ),
     # The physics.
     "physics": Maker(
-        "How far are the scores of coarser physics from those of the finest?",
-        Fineness(),
-        {"time_limit": 1.2, "seeds": 2, "sets": 1},
+        "How far are the scores of coarser physics from those of the finest, with delay and without?",
+        FinenessInConditions(),
+        {"time_limit": 1.2, "seeds": 2, "sets": 1, "control_rates": (100,), "delays": (0.010,)},
     ),
     "physics_anywhere": Maker(
         "How far are the scores of P1 to P5 from anywhere in their box from those of the finest physics?",
         FinenessAnywhere(),
         {"time_limit": 1.2, "seeds": 2, "sets": 1},
-    ),
-    "physics_slow_gait": Maker(
-        "At which V1 does each setting of the physics step slowly, under pushes of 100 N?",
-        FinenessAtSlowGaits(),
-        {"time_limit": 1.2, "seeds": 2, "v1": (0.7,)},
     ),
     "engines": Maker(
         "How far do the two physics engines agree?",

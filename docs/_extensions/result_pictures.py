@@ -152,28 +152,18 @@ def landscape(rows: Rows) -> Figure:
     return figure
 
 
-SETTING = "{physics_rate_hz} Hz x {solver_iterations}, +{added_plate_inertia_kg_m2} kg m²"
-
-
 def physics(rows: Rows) -> Figure:
-    """Score at each setting against the score at the finest."""
-    finest = {row["parameters"]: row["score"] for row in rows if not row["difference"]}
-    coarser = [{**row, "finest_score": finest[row["parameters"]]} for row in rows if row["difference"]]
-    settings = grouped(coarser, SETTING)
+    """Score at each setting against the score at the finest, of each set in each condition."""
+    condition = "{parameters}, {control_rate_hz}, {sensors}"
+    finest = {condition.format(**row): row["score"] for row in rows if not row["difference"]}
+    coarser = [{**row, "finest_score": finest[condition.format(**row)]} for row in rows if row["difference"]]
+    settings = grouped(coarser, "{setting}")
     figure, axes = panels(len(settings), 0.35, sharey=True)
     for axis, (name, group) in zip(axes, settings.items(), strict=True):
-        draw_against(axis, group, "finest_score", "score", "{task}")
+        draw_against(axis, group, "finest_score", "score", "{sensors}")
         axis.set_title(name, fontsize="small")
         axis.set(xlabel="score at the finest", ylabel="score" if axis is axes[0] else "")
     legend(figure, axes[0])
-    return figure
-
-
-def slow_gait(rows: Rows) -> Figure:
-    """Score against V1 at each setting."""
-    figure, (axis,) = panels(1, 0.4)
-    draw_lines(axis, rows, "V1", "score", SETTING)
-    legend(figure, axis)
     return figure
 
 
@@ -270,7 +260,6 @@ PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
     "landscape_stepping": (("landscape_stepping",), landscape),
     "landscape_balance": (("landscape_balance",), landscape),
     "physics": (("physics",), physics),
-    "physics_slow_gait": (("physics_slow_gait",), slow_gait),
     "engines": (("engines",), between_engines("{task}")),
     "transfer": (("transfer_stepping", "transfer_balance"), between_engines("{task}, learned in {learned_in}")),
     "clock": (("clock",), clock),
