@@ -20,7 +20,7 @@ from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.errors import ConfigurationError
 from sarah.reports.transfer import LearnedParameters, Transfer
 from sarah.robot.description import describe_robot
-from sarah.robot.reading import Side
+from sarah.robot.reading import GRAVITY, Side
 from sarah.simulation import engines
 from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import Physics
@@ -80,16 +80,17 @@ def test_mujoco_takes_at_least_500_steps_a_second(mujoco_engine: None, asked: Ph
     assert results[0] == results[1] != results[2]
 
 
-@pytest.mark.parametrize(("rate", "micrometres"), [(500, 1.94), (1000, 1.32)])
-def test_soles_sink_a_few_micrometres_into_mujocos_floor(mujoco_engine: None, rate: int, micrometres: float) -> None:
+@pytest.mark.parametrize("rate", [500, 1000])
+def test_soles_sink_a_few_micrometres_into_mujocos_floor(mujoco_engine: None, rate: int) -> None:
     """A contact of impedance d and stiffness k lets a standing body sink by (1 - d) a / k.
 
-    d is 0.99, and k is 2 / (15 ms) times the rate. a is what the sole would fall with: 1.3 g or 1.8 g, with its plate.
+    d is 0.99, and k is 2 / (15 ms) times the rate. a is what the sole would fall with: with its plate, 1.5 g to 1.8 g.
     """
     simulation = simulator_of("mujoco")(describe_robot(), Physics(rate, solver_iterations=100), NOMINAL)
     for _ in range(300):
         simulation.advance()
-    assert [simulation.sole_height(side) for side in Side] == pytest.approx([-1e-6 * micrometres] * 2, rel=0.02)
+    low, high = (0.01 * a * GRAVITY / (2.0 / 0.015 * rate) for a in (1.5, 1.85))
+    assert all(low < -simulation.sole_height(side) < high for side in Side)
 
 
 def test_episodes_that_stand_side_by_side_do_not_touch_each_other(mujoco_engine: None) -> None:
