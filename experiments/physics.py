@@ -20,10 +20,11 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.workers import Workers
 from sarah.simulation.engines import Engine
-from sarah.simulation.physics import PHYSICS, PyBulletPhysics
+from sarah.simulation.physics import PyBulletPhysics
 from sarah.simulation.randomisation import Randomisation
 
 STANDARD = PyBulletPhysics()
+RANDOM = Randomisation()
 SETTINGS: dict[str, tuple[Engine, PyBulletPhysics]] = {
     "reference": ("pybullet", PyBulletPhysics(1000, 100, added_plate_inertia=0.0)),
     "500 Hz x 30": ("pybullet", PyBulletPhysics(500, 30, added_plate_inertia=0.0)),
@@ -68,7 +69,7 @@ class AtEverySetting(OnWorkers):
         balance: tuple[float, ...],
         workers: Workers,
         control_rate: int = 100,
-        randomisation: Randomisation = Randomisation(),
+        randomisation: Randomisation = RANDOM,
     ) -> Iterator[tuple[str, list[EpisodeResult]]]:
         """Each setting's name, and the results of a parameter set there, without a push.
 
@@ -76,7 +77,7 @@ class AtEverySetting(OnWorkers):
         :param balance: values of V1 to V4
         :param workers: who simulates
         :param control_rate: control ticks per second
-        :param randomisation: what the seeds draw
+        :param randomisation: ranges that the seeds draw from
         """
         for name, (engine, physics) in SETTINGS.items():
             config = BalanceConfig(

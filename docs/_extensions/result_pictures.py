@@ -47,7 +47,7 @@ def second_training(rows: Rows) -> Figure:
     learned = chosen(rows, "run!=V = 0")
     (neutral,) = chosen(rows, "run=V = 0")
     figure, (left, right) = panels(2, 0.35, width_ratios=(4, 3))
-    survival = {"survival": "all", "lateral_survival": "lateral", "sagittal_survival": "sagittal"}
+    survival = {"push_100_survival": "100 N", "push_125_survival": "125 N", "sagittal_115_survival": "115 N sagittal"}
     for axis, columns in ((left, {name: name for name in ("V1", "V2", "V3", "V4")}), (right, survival)):
         values = {label: numbers(learned, column) for column, label in columns.items()}
         draw_strips(axis, values, {label: float(neutral[column]) for column, label in columns.items()}, "V = 0")
