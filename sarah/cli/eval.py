@@ -81,6 +81,7 @@ def _evaluate(arguments: Sequence[str]) -> None:
     spec, algorithm = _subject(options)
     if options.robustness is not None and spec.task is not BALANCE:
         raise ConfigurationError(f"--robustness is for --task {BALANCE.name}")
+    from sarah.episode.accuracy import physics_warning
     from sarah.episode.evaluation import evaluate
     from sarah.episode.workers import Workers
 
@@ -106,6 +107,9 @@ def _evaluate(arguments: Sequence[str]) -> None:
     if baseline is not None:
         for label, text in _comparison(spec.task, evaluation, baseline):
             print(f"{label:17}{text}")
+    warning = physics_warning(spec.task, spec.parameters, spec.config)
+    if warning is not None:
+        print(f"{'physics':17}{warning}")
 
 
 def _subject(options: EvalOptions) -> tuple[EpisodeSpec, str | None]:

@@ -272,13 +272,15 @@ def _on_learned_stepping(path: Path, episode: EpisodeConfig) -> EpisodeConfig:
 
 
 def _summarise(task: Task[Any], learned: Learned, path: Path) -> None:
+    from sarah.episode.accuracy import physics_warning
     from sarah.runs.run_folder import RunFolder
     from sarah.training.warm_up import describe_warm_up
 
+    config = RunFolder.open(path).config()
     evaluation, baseline = learned.evaluation, learned.baseline
     named = zip(task.parameter_names, learned.parameters, strict=True)
     print("\nlearned     " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
-    print(f"warm-up     {describe_warm_up(RunFolder.open(path).config())}")
+    print(f"warm-up     {describe_warm_up(config)}")
     score = f"{evaluation.median('score'):.3f}"
     print(f"score       {score} (median of {evaluation.episodes} unseen seeds; 1 is the ceiling)")
     print(f"steps       {evaluation.mean('steps_per_second'):.2f} per second")
@@ -294,4 +296,7 @@ def _summarise(task: Task[Any], learned: Learned, path: Path) -> None:
         print("            no valid gait: the robot steps to a clock, or does not lift its feet")
     if baseline is not None and evaluation.chatters(baseline):
         print("            the hips chatter: no real actuator could follow that")
+    warning = physics_warning(task, learned.parameters, config.episode)
+    if warning is not None:
+        print(f"physics     {warning}")
     print(f"run folder  {path}")

@@ -1,0 +1,29 @@
+"""Where the fast settings of PyBullet are known to mislead (docs/explanation/physics.md)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.tasks import Task, controller_of
+from sarah.simulation.physics import PHYSICS
+
+LOW_P1 = 0.1
+"""P1 below which LIFT ends at the first sign of rocking back, in rad/s."""
+LATE_SECONDS = 0.015
+"""Delay of the signals from which a robot with a low P1 steps too fast, in s."""
+
+
+def physics_warning(task: Task[Any], parameters: tuple[float, ...], config: EpisodeConfig) -> str | None:
+    """Sentence that says why a score at this physics is too high; ``None`` where it is known to be right.
+
+    :param task: task that owns the parameters
+    :param parameters: values of the task's parameters, in order
+    :param config: settings of the episodes
+    """
+    stepping, _ = controller_of(task, parameters, config)
+    is_coarse = config.engine == "pybullet" and config.physics.rate < PHYSICS["reference"].rate
+    is_late = config.randomisation.enabled and config.randomisation.delay_seconds >= LATE_SECONDS
+    if is_coarse and is_late and stepping.P1 < LOW_P1:
+        return f"P1 below {LOW_P1:g} with late signals scores too high here: check it with --physics reference"
+    return None

@@ -1,0 +1,50 @@
+"""Commands say where the fast physics is known to mislead."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from laboratory import NEEDS_PYBULLET
+from terminal import run
+
+from sarah.episode.accuracy import physics_warning
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
+from sarah.simulation.physics import PHYSICS
+from sarah.simulation.randomisation import Randomisation
+
+LOW, PAPER = (0.02, 0.5, 0.6, 1.0, 1.0), (0.4, 1.3, 0.1, 1.0, 1.0)
+LATE = EpisodeConfig(engine="pybullet", randomisation=Randomisation(delay_seconds=0.02))
+
+
+@NEEDS_PYBULLET
+@pytest.mark.parametrize(
+    ("parameters", "config", "warns"),
+    [
+        (LOW, LATE, True),
+        (PAPER, LATE, False),
+        (LOW, EpisodeConfig(engine="pybullet"), False),  # 10 ms
+        (LOW, replace(LATE, physics=PHYSICS["reference"]), False),
+        (LOW, replace(LATE, randomisation=Randomisation(False, delay_seconds=0.02)), False),
+        (LOW, replace(LATE, engine="mujoco"), False),
+    ],
+)
+def test_a_low_p1_with_late_signals_at_coarse_physics_is_doubted(
+    parameters: tuple[float, ...], config: EpisodeConfig, warns: bool
+) -> None:
+    assert (physics_warning(STEPPING, parameters, config) is not None) == warns
+
+
+@NEEDS_PYBULLET
+def test_the_legs_of_a_second_training_are_asked_too() -> None:
+    config = BalanceConfig(engine="pybullet", stepping=LOW, randomisation=LATE.randomisation)
+    assert physics_warning(BALANCE, (1.0, 0.0, 1.0, 0.0), config) is not None
+
+
+@NEEDS_PYBULLET
+def test_eval_says_it(tmp_path: Path) -> None:
+    arguments = ("sarah-eval", ",".join(map(str, LOW)), "--episodes", "1", "--episode.time-limit", "2")
+    assert (
+        "--physics reference" in run(*arguments, "--episode.randomisation.delay-seconds", "0.02", cwd=tmp_path).stdout
+    )
+    assert "--physics reference" not in run(*arguments, cwd=tmp_path).stdout
