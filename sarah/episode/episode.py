@@ -43,8 +43,6 @@ class Episode:
 
     generator: PatternGenerator
     """Source of the joint targets; :meth:`start` gives it its parameters."""
-    standing_readings: list[SensorReading]
-    """Sensor readings of the first second."""
 
     def __init__(
         self,
@@ -70,7 +68,6 @@ class Episode:
         stepping = SteppingParameters(*PAPER_STEPPING)  # until start() gives it others
         self.generator = PatternGenerator(stepping, dt=self._dt, limits=limits, constants=config.controller)
         self._sensors = ImperfectSensors(conditions.sensors, self._dt)
-        self.standing_readings = []
         self._first = self._last = self.simulation.torso_state()
         self._gait = GaitRecord(config.physics.control_rate)
         self._motion = MotionRecord(config.physics.control_rate)
@@ -90,9 +87,7 @@ class Episode:
         :return: the last reading of that second, which is the observation that the agent acts on
         """
         for _ in range(round(STAND_SECONDS / self._dt)):
-            reading = self._sense()
-            self.standing_readings.append(reading)
-            self.generator.tick(reading)
+            self.generator.tick(self._sense())
             self.simulation.advance()
         return self.last_reading
 
