@@ -98,11 +98,11 @@ class FlexionLaws(OnWorkers):
     :param time_limit: time limit of an episode, in s; a push comes at 2 to 3 s
     """
 
-    newtons: tuple[float, ...] = (105.0, 110.0, 115.0, 120.0, 125.0, 130.0)
+    newtons: tuple[float, ...] = (105.0, 115.0, 130.0)
     pushes: int = 200
-    reference_pushes: int = 100
+    reference_pushes: int = 60
     unpushed: int = 20
-    time_limit: float = 8.0
+    time_limit: float = 6.0
 
     def rows(self) -> Iterator[Row]:
         """A row for each engine, physics, force and law."""

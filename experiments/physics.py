@@ -60,7 +60,7 @@ class AtEverySetting(OnWorkers):
     :param time_limit: time limit of an episode, in s
     """
 
-    seeds: int = 6
+    seeds: int = 4
     time_limit: float = 12.0
 
     def results(
