@@ -81,7 +81,7 @@ class ControllerConstants:
     baseline_time_constant: float = 8.0
     minimum_phase_seconds: float = 0.04
     time_out_seconds: float = 0.5
-    rate_scale: float = 0.05
+    rate_scale: float = 0.01
     shift_extension: float = 0.008
     lift_retraction: float = 0.030
     leg_speed: float = 1.0

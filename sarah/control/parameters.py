@@ -45,7 +45,9 @@ MATTERS, CONSTANT = "matters more than V2 and V4", "a constant that may be neede
 STEPPING_PARAMETERS = (
     Parameter("P1", 0.0, 2.0, "rad/s", "rate of rocking back at which the swing foot is put down", "about 0.4"),
     Parameter("P2", 0.0, 2.0, "m/s²", "tilt over the stance leg at which the swing foot may leave", "1.3"),
-    Parameter("P3", 0.0, 2.0, "rad/s", "twenty times the rate over the stance leg at which it may leave", "about 0.1"),
+    Parameter(
+        "P3", 0.0, 2.0, "rad/s", "a hundred times the rate over the stance leg at which it may leave", "about 0.1"
+    ),
     Parameter("P4", 0.0, 2.0, "", "stretch of the time-out of LIFT", "hardly matters"),
     Parameter("P5", 0.0, 2.0, "", "stretch of the time-outs of SHIFT and LAND", "hardly matters"),
 )

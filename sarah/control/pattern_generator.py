@@ -5,7 +5,7 @@ y axis, and the sensors, not a clock, decide when each phase of a step ends::
 
     STAND   for the first second                                                             -> SHIFT
     SHIFT   the swing leg pushes the robot over the stance leg                              -> LIFT
-            until tilt > P2, rate > 0.05 P3 and the stance foot is loaded, or 0.5 (1 + P5) s
+            until tilt > P2, rate > 0.01 P3 and the stance foot is loaded, or 0.5 (1 + P5) s
     LIFT    the swing leg retracts                                                           -> LAND
             until rate < -P1 (the robot rocks back), or 0.5 (1 + P4) s
     LAND    both legs straight                                                               -> SHIFT, legs swapped
@@ -53,7 +53,7 @@ class SteppingParameters:
 
     :param P1: rate of rocking back at which the swing foot is put down, in rad/s
     :param P2: tilt (lateral acceleration) over the stance leg at which the swing foot may leave, in m/s^2
-    :param P3: twenty times the rate towards the stance leg at which it may leave, in rad/s
+    :param P3: a hundred times the rate towards the stance leg at which it may leave, in rad/s
     :param P4: stretch of the time-out of LIFT
     :param P5: stretch of the time-outs of SHIFT and LAND
     """

@@ -57,7 +57,7 @@ class PyBulletPhysics(Physics):
         0 leaves the robot as it is
     """
 
-    added_plate_inertia: float = 0.008
+    added_plate_inertia: float = 0.003
 
     def __post_init__(self) -> None:
         """Refuse values that cannot be simulated."""

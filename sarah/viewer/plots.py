@@ -81,7 +81,7 @@ CHARTS = (
         "rate (rad/s)",
         (
             Line("rate", DARK, lambda trace, _: trace.rate),
-            Line("0.05 P3: SHIFT ends above", UPPER, _least_rate, dashed=True),
+            Line("0.01 P3: SHIFT ends above", UPPER, _least_rate, dashed=True),
             Line("-P1: LIFT ends below", LOWER, lambda _, scenario: -scenario.stepping[0], dashed=True),
         ),
     ),

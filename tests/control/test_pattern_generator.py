@@ -108,7 +108,7 @@ def test_shift_ends_when_the_robot_leans_over_the_stance_leg() -> None:
     [
         reading(lateral=-1.2, rate=0.3, right=2 * LOADED),  # tilt below P2 = 1.3
         reading(lateral=3.0, rate=0.3, right=2 * LOADED),  # leaning the other way
-        reading(lateral=-3.0, rate=0.0048, right=2 * LOADED),  # rate below 0.05 P3 = 0.005
+        reading(lateral=-3.0, rate=0.00098, right=2 * LOADED),  # rate below 0.01 P3 = 0.001
         reading(lateral=-3.0, rate=0.3, right=29.0),  # stance foot not loaded
     ],
 )
@@ -120,13 +120,13 @@ def test_shift_waits_for_tilt_rate_and_load(steady: SensorReading) -> None:
 
 
 def test_each_condition_holds_just_beyond_its_threshold() -> None:
-    """P1 = 0.4, P2 = 1.3, 0.05 P3 = 0.005 and 30 N, each surpassed by a few per cent, and none of them met.
+    """P1 = 0.4, P2 = 1.3, 0.01 P3 = 0.001 and 30 N, each surpassed by a few per cent, and none of them met.
 
     The baselines all but stand still: they would follow signals that are held as long as here.
     """
     held = ControllerConstants(baseline_time_constant=10_000.0)
     beyond, met = started(constants=held), started(constants=held)
-    cases = (beyond, -1.31, 0.0052, 30.1, -0.41), (met, -1.3, 0.005, 30.0, -0.4)
+    cases = (beyond, -1.31, 0.0011, 30.1, -0.41), (met, -1.3, 0.001, 30.0, -0.4)
     for generator, tilt, rate, load, rate_back in cases:
         by_sensors = [
             tick_until_change(generator, steady)[0].by_sensors
