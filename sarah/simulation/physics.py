@@ -22,7 +22,7 @@ class Physics:
     """
 
     rate: int = 400
-    solver_iterations: int = 16
+    solver_iterations: int = 20
     control_rate: int = 100
 
     def __post_init__(self) -> None:
