@@ -130,7 +130,8 @@ def _subject_rows(subject: str, config: EpisodeConfig) -> list[tuple[str, str]]:
     if not is_shipped(subject):
         return []
     low, high = config.push.newtons if isinstance(config, PushedConfig) else (0.0, 0.0)
-    pushed = f"pushed by {low:g} to {high:g} N" if high else "not pushed"
+    newtons = f"{low:g} N" if low == high else f"{low:g} to {high:g} N"
+    pushed = f"pushed by {newtons}" if high else "not pushed"
     return [("subject", f"{subject}, {pushed}"), ("origin", PARAMETER_SETS[subject].origin)]
 
 
@@ -156,12 +157,15 @@ def _comparison(task: Task[Any], evaluation: Evaluation, baseline: Evaluation) -
     """Rows about the baseline: the same episodes with the parameters that do nothing, such as V1 to V4 at zero."""
     score, steps = baseline.median("score"), baseline.mean("steps_per_second")
     chatter = "the hips chatter" if evaluation.chatters(baseline) else "no chatter"
+    vibrations = (
+        f"{evaluation.median('vibration'):.1f} m²/s⁴ median, {baseline.median('vibration'):.1f} of the baseline"
+    )
     return [
         (
             "baseline (V = 0)" if task is BALANCE else "neutral",
             f"score {score:.3f} median, {baseline.survivors} of {baseline.episodes} survive, {steps:.2f} steps/s",
         ),
-        ("", f"vibration {baseline.median('vibration'):.1f} m²/s⁴: {chatter}"),
+        ("vibration", f"{vibrations}: {chatter}"),
     ]
 
 
