@@ -3,7 +3,7 @@
 A reconstruction of the paper's Figure 3, which is not public. The robot rocks from foot to foot about the torso's
 y axis, and the sensors, not a clock, decide when each phase of a step ends::
 
-    STAND   for the first second                                                             -> SHIFT
+    STAND   for a second of readings                                                         -> SHIFT
     SHIFT   the swing leg pushes the robot over the stance leg                              -> LIFT
             until tilt > P2, rate > 0.05 P3 and the stance foot is loaded, or 0.5 (1 + P5) s
     LIFT    the swing leg retracts                                                           -> LAND
@@ -82,8 +82,8 @@ class PhaseChange:
 class PatternGenerator:
     """The controller of the robot. Call :meth:`tick` once per control period with a new reading, from standing on.
 
-    It stands for its first second, in which it learns the baselines of its sensors, and then steps. A signal that is
-    not finite keeps its last value. Once the robot has fallen, the targets stay where they are for good; a robot that
+    It stands for its first second, in which it learns the baselines of its sensors, and then steps; a gap between two
+    readings prolongs that second. A signal that is not finite keeps its last value. Once the robot has fallen, the targets stay where they are for good; a robot that
     has been put up again stands, and needs a new generator.
 
     :param parameters: values of P1 to P5
@@ -192,7 +192,7 @@ class PatternGenerator:
         self._sense(reading, periods)
         if self.has_fallen:
             return None
-        self._ticks_in_phase += periods
+        self._ticks_in_phase += 1 if self.phase is Phase.STAND else periods
         if self.phase in (Phase.LIFT, Phase.LAND) and not self._is_loaded(self.swing):
             self._swing_foot_was_off = True
         change = self._phase_change()
@@ -226,11 +226,13 @@ class PatternGenerator:
         return periods
 
     def _sense(self, reading: SensorReading, periods: int) -> None:
+        measured = reading
         reading = self._reading = reading.repaired(self._reading)
         is_standing = self.phase is Phase.STAND
         corrected = reading
-        for _ in range(periods):
-            corrected = self._baselines.corrected(reading, is_standing)
+        for period in range(periods):
+            if period == 0 or not is_standing:  # a mean counts a reading once
+                corrected = self._baselines.corrected(reading, is_standing, measured)
             self._stable_x(corrected.acceleration[0])
             self._rate_y(corrected.angular_rate[1])
         self.hips.sense(corrected, periods)
