@@ -29,13 +29,15 @@ from sarah.control.baselines import Baselines
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.hip_law import LOCKED_HIPS, NO_LIMITS, BalanceParameters, HipLaw
 from sarah.errors import ConfigurationError
-from sarah.robot.filters import LowPass, clipped, ramped
+from sarah.robot.filters import LowPass, clipped, low_pass_gain, ramped
 from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, STANDING, SensorReading, Side
 
 STAND_SECONDS = 1.0
 """Duration of standing before the robot begins to step, in s; it is the paper's."""
 LONGEST_GAP = 1.0
 """Longest time between two ticks that counts, in s."""
+LONGEST_BLOW = 0.03
+"""Longest time that a single reading counts when a fall is recognised, in s: a blow at its limit is then no fall."""
 
 
 class Phase(Enum):
@@ -131,7 +133,7 @@ class PatternGenerator:
         self._baselines = Baselines(dt, constants)
         self._stable_x = LowPass(constants.tilt_time_constant, dt)
         self._rate_y = LowPass(constants.rate_time_constant, dt)
-        self._upright = LowPass(constants.upright_time_constant, dt, GRAVITY)
+        self._upright = GRAVITY
         self._lengths = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
         self._limited_legs: set[int] = set()
         self.set_parameters(parameters, balance)
@@ -236,9 +238,15 @@ class PatternGenerator:
             self._stable_x(corrected.acceleration[0])
             self._rate_y(corrected.angular_rate[1])
         self.hips.sense(corrected, periods)
-        up = clipped(reading.acceleration[2], self.constants.largest_blow)
-        # Once, however many ticks were missed: a single reading is no fall.
-        if self._upright(up) < self.constants.least_upright:
+        self._notice_a_fall(reading.acceleration[2], periods)
+
+    def _notice_a_fall(self, up: float, periods: int) -> None:
+        """Low-pass the vertical acceleration, as far as a single reading is no fall."""
+        constants = self.constants
+        seconds = min(periods * self._dt, max(LONGEST_BLOW, self._dt))
+        gain = low_pass_gain(constants.upright_time_constant, seconds)
+        self._upright += gain * (clipped(up, constants.largest_blow) - self._upright)
+        if self._upright < constants.least_upright:
             self.has_fallen = True
 
     def _phase_change(self) -> PhaseChange | None:

@@ -612,3 +612,24 @@ def test_a_blow_or_a_long_gap_before_it_is_no_fall() -> None:
     generator.tick(lying(z=-1e5), 60.0)
     generator.tick(reading())
     assert not generator.has_fallen
+
+
+@pytest.mark.parametrize("dt", [0.001, 0.01, 0.02])
+@pytest.mark.parametrize("up", [0.0, -9.81, 40.0, -40.0, -1e5])
+def test_a_single_reading_after_a_second_without_any_is_no_fall(up: float, dt: float) -> None:
+    """Nor does the low-pass remember it for long: a second one, a second later, is no fall either."""
+    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, dt))
+    for _ in range(2):
+        generator.tick(lying(z=up), 1.0)
+        for _ in range(round(1.0 / dt)):
+            generator.tick(reading())
+    assert not generator.has_fallen
+
+
+@pytest.mark.parametrize(("every", "longest"), [(1, 0.4), (2, 0.4), (3, 0.4), (10, 1.2)])
+def test_who_lies_is_recognised_though_most_ticks_are_missed(every: int, longest: float) -> None:
+    generator, elapsed = started(), 0.0
+    while not generator.has_fallen:
+        generator.tick(lying(y=9.81), every * DT)
+        elapsed += every * DT
+    assert elapsed < longest
