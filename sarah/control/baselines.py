@@ -19,6 +19,7 @@ class Baselines:
 
     :param dt: control period, in s
     :param constants: time constant and limits of the controller
+    :raises ConfigurationError: if the period is not finite and above zero
     """
 
     def __init__(self, dt: float, constants: ControllerConstants = STANDARD_CONSTANTS) -> None:

@@ -64,6 +64,7 @@ class HipLaw:
     :param dt: control period, in s
     :param constants: gains, limits, speeds and time constants of the controller
     :param limits: lowest and highest position of the joints in the order of ``ACTUATED_JOINTS``, each around zero
+    :raises ConfigurationError: if the period is not finite and above zero
     """
 
     parameters: BalanceParameters

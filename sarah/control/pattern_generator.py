@@ -94,7 +94,8 @@ class PatternGenerator:
     :param limits: lowest and highest position of the joints in the order of ``ACTUATED_JOINTS``, in rad and m, which no
         target leaves
     :param constants: time-outs, lengths, speeds and time constants of the controller
-    :raises ConfigurationError: if a parameter is not finite, or zero is not within a joint's limits
+    :raises ConfigurationError: if a parameter or the period is not finite, the period is not above zero, or zero is not
+        within a joint's limits
     """
 
     parameters: SteppingParameters

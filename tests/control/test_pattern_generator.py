@@ -6,9 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sarah.control.baselines import Baselines
 from sarah.control.constants import STANDARD_CONSTANTS as CONSTANTS
 from sarah.control.constants import ControllerConstants
-from sarah.control.hip_law import BalanceParameters
+from sarah.control.hip_law import BalanceParameters, HipLaw
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import (
     STAND_SECONDS,
@@ -546,6 +547,17 @@ def test_without_limits_no_joint_is_limited() -> None:
 def test_limits_that_are_not_six_ranges_around_zero_are_refused(limits: tuple[tuple[float, float], ...]) -> None:
     with pytest.raises(ConfigurationError, match="limits must be 6 ranges around zero, not"):
         PatternGenerator(SteppingParameters(*PAPER_STEPPING), limits=limits)
+
+
+@pytest.mark.parametrize("dt", [0.0, -0.01, math.nan, math.inf])
+def test_control_periods_that_are_not_finite_and_above_zero_are_refused(dt: float) -> None:
+    for make in (
+        lambda: PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=dt),
+        lambda: HipLaw(BALANCE, dt),
+        lambda: Baselines(dt),
+    ):
+        with pytest.raises(ConfigurationError, match=f"dt must be finite and above zero, not {dt}"):
+            make()
 
 
 SIGNALS = [
