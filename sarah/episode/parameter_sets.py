@@ -24,8 +24,12 @@ class ParameterSet:
     origin: str
 
 
-def _learned(name: str) -> ParameterSet:
-    """A set of the package's file."""
+def learned_set(name: str) -> ParameterSet:
+    """A set of the package's file.
+
+    :param name: name of the set
+    :raises ConfigurationError: naming the file and what is wrong in it
+    """
     reference, settings = [shipped_value(name, key) for key in ("task", "settings")]
     command, commit, date = [shipped_value(name, "origin", key) for key in ("command", "commit", "date")]
     try:
@@ -39,6 +43,6 @@ def _learned(name: str) -> ParameterSet:
 
 PARAMETER_SETS = {
     "paper": ParameterSet(EpisodeSpec(PAPER_STEPPING, 0, STEPPING), "P1 to P3 of the paper, with P4 = P5 = 1"),
-    **{name: _learned(name) for name in shipped()},
+    **{name: learned_set(name) for name in shipped()},
 }
 """Shipped parameters, by the name that commands take."""

@@ -12,7 +12,7 @@ import pytest
 
 from sarah.control.parameters import STEPPING_PARAMETERS
 from sarah.episode import shipped as module
-from sarah.episode.parameter_sets import _learned
+from sarah.episode.parameter_sets import learned_set
 from sarah.episode.shipped import FILE, shipped, shipped_parameters
 from sarah.errors import ConfigurationError
 
@@ -73,7 +73,7 @@ def test_damaged_parameters_are_refused(text: str | None, message: str, damaged:
 def test_damaged_sets_are_refused(change: Callable[[Any], Any], message: str, damaged: Path) -> None:
     damaged.write_text(changed(change))
     with pytest.raises(ConfigurationError, match=message):
-        _learned("balance")
+        learned_set("balance")
 
 
 def test_the_order_of_the_parameters_in_the_file_does_not_matter(damaged: Path) -> None:
