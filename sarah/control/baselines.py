@@ -2,16 +2,16 @@
 
     corrected = signal - baseline
 
-While the robot stands, a baseline is the mean of all readings so far; once it steps, a low-pass of some seconds, slow
-beside steps and falls. Without it, an inertial measurement unit mounted 4 degrees askew reads 0.7 m/s^2 to the side.
-The hip law would hold that for a push, and the pattern generator would wait for a tilt that never comes.
+While the robot stands, a baseline is the mean of all finite readings so far; once it steps, a low-pass of some
+seconds, slow beside steps and falls. Without it, an inertial measurement unit mounted 4 degrees askew reads 0.7 m/s^2
+to the side. The hip law would hold that for a push, and the pattern generator would wait for a tilt that never comes.
 """
 
 from __future__ import annotations
 
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.robot.filters import clipped, low_pass_gain
-from sarah.robot.reading import SensorReading
+from sarah.robot.reading import LARGEST_SIGNAL, SensorReading
 
 
 class Baselines:
@@ -19,6 +19,7 @@ class Baselines:
 
     :param dt: control period, in s
     :param constants: time constant and limits of the controller
+    :raises ConfigurationError: if the period is not finite and above zero
     """
 
     def __init__(self, dt: float, constants: ControllerConstants = STANDARD_CONSTANTS) -> None:
@@ -30,30 +31,41 @@ class Baselines:
         """Baseline of the angular rate about y, in rad/s."""
         self._constants = constants
         self._slow_gain = low_pass_gain(constants.baseline_time_constant, dt)
-        self._standing_readings = 0
+        self._standing_readings = [0, 0, 0]
 
-    def corrected(self, reading: SensorReading, is_standing: bool) -> SensorReading:
+    def corrected(
+        self, reading: SensorReading, is_standing: bool, measured: SensorReading | None = None
+    ) -> SensorReading:
         """Follow one reading, and subtract the baselines from it.
 
         :param reading: finite sensor reading of this tick; outliers are clipped, before a baseline learns from them
         :param is_standing: whether the robot stands and does not yet step
+        :param measured: the reading as it came, by default the same; the mean of a signal leaves out what is not finite
         :return: the same reading with corrected lateral acceleration and rates about x and y
         """
-        gain = self._slow_gain
+        gain_x, gain_rate_x, gain_rate_y = [self._slow_gain] * 3
         if is_standing:
-            self._standing_readings += 1
-            gain = 1.0 / self._standing_readings
+            gain_x, gain_rate_x, gain_rate_y = self._gains_of_means(measured or reading)
         constants = self._constants
         (acceleration_x, acceleration_y, acceleration_z), (rate_x, rate_y, rate_z), pressures, joints = reading
         acceleration_x = clipped(acceleration_x, constants.largest_acceleration)
         rate_x = clipped(rate_x, constants.largest_rate)
         rate_y = clipped(rate_y, constants.largest_rate)
-        self.acceleration_x += gain * (acceleration_x - self.acceleration_x)
-        self.rate_x += gain * (rate_x - self.rate_x)
-        self.rate_y += gain * (rate_y - self.rate_y)
+        self.acceleration_x += gain_x * (acceleration_x - self.acceleration_x)
+        self.rate_x += gain_rate_x * (rate_x - self.rate_x)
+        self.rate_y += gain_rate_y * (rate_y - self.rate_y)
         return SensorReading(
             (acceleration_x - self.acceleration_x, acceleration_y, acceleration_z),
             (rate_x - self.rate_x, rate_y - self.rate_y, rate_z),
             pressures,
             joints,
         )
+
+    def _gains_of_means(self, measured: SensorReading) -> list[float]:
+        """Weights with which three signals enter the means of their finite readings so far."""
+        signals = measured.acceleration[0], measured.angular_rate[0], measured.angular_rate[1]
+        are_finite = [abs(signal) < LARGEST_SIGNAL for signal in signals]
+        numbers = self._standing_readings = [
+            number + is_finite for number, is_finite in zip(self._standing_readings, are_finite, strict=True)
+        ]
+        return [is_finite / max(1, number) for number, is_finite in zip(numbers, are_finite, strict=True)]

@@ -64,6 +64,7 @@ class HipLaw:
     :param dt: control period, in s
     :param constants: gains, limits, speeds and time constants of the controller
     :param limits: lowest and highest position of the joints in the order of ``ACTUATED_JOINTS``, each around zero
+    :raises ConfigurationError: if the period is not finite and above zero
     """
 
     parameters: BalanceParameters
@@ -108,8 +109,11 @@ class HipLaw:
 
     @property
     def sway(self) -> float:
-        """Abduction without V2's constant, in rad: the part that comes and goes with the rocking."""
-        return self.abduction + self._constants.abduction_scale * self.parameters.V2
+        """Abduction without V2's constant, in rad: the part that comes and goes with the rocking.
+
+        The constant counts as far as the limits let it.
+        """
+        return self.abduction - self._within_limits(-self._constants.abduction_scale * self.parameters.V2, (0, 1))
 
     def sense(self, reading: SensorReading, periods: int = 1) -> None:
         """Filter one reading without acting on it, as while standing.
@@ -163,11 +167,17 @@ class HipLaw:
         return self._constants.flexion_scale * self.parameters.V4
 
     def _moved(self, now: float, goal: float, joints: tuple[int, ...], periods: int) -> float:
-        constants = self._constants
-        wanted = goal = clipped(goal, constants.largest_hip_angle)
+        wanted = clipped(goal, self._constants.largest_hip_angle)
         for joint in joints:
             low, high = self._limits[joint]
             if not low <= wanted <= high:
                 self.limited.add(joint)
-                goal = max(low, min(high, goal))
-        return ramped(now, goal, constants.hip_speed * self._dt * periods)
+        return ramped(now, self._within_limits(goal, joints), self._constants.hip_speed * self._dt * periods)
+
+    def _within_limits(self, angle: float, joints: tuple[int, ...]) -> float:
+        """Nearest angle that the largest hip angle and the limits of all these joints allow."""
+        angle = clipped(angle, self._constants.largest_hip_angle)
+        for joint in joints:
+            low, high = self._limits[joint]
+            angle = max(low, min(high, angle))
+        return angle

@@ -3,7 +3,7 @@
 A reconstruction of the paper's Figure 3, which is not public. The robot rocks from foot to foot about the torso's
 y axis, and the sensors, not a clock, decide when each phase of a step ends::
 
-    STAND   for the first second                                                             -> SHIFT
+    STAND   for a second of readings                                                         -> SHIFT
     SHIFT   the swing leg pushes the robot over the stance leg                              -> LIFT
             until tilt > P2, rate > 0.01 P3 and the stance foot is loaded, or 0.5 (1 + P5) s
     LIFT    the swing leg retracts                                                           -> LAND
@@ -29,13 +29,15 @@ from sarah.control.baselines import Baselines
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.hip_law import LOCKED_HIPS, NO_LIMITS, BalanceParameters, HipLaw
 from sarah.errors import ConfigurationError
-from sarah.robot.filters import LowPass, clipped, ramped
+from sarah.robot.filters import LowPass, clipped, low_pass_gain, ramped
 from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, STANDING, SensorReading, Side
 
 STAND_SECONDS = 1.0
 """Duration of standing before the robot begins to step, in s; it is the paper's."""
 LONGEST_GAP = 1.0
 """Longest time between two ticks that counts, in s."""
+LONGEST_BLOW = 0.03
+"""Longest time that a single reading counts when a fall is recognised, in s: a blow at its limit is then no fall."""
 
 
 class Phase(Enum):
@@ -82,9 +84,9 @@ class PhaseChange:
 class PatternGenerator:
     """The controller of the robot. Call :meth:`tick` once per control period with a new reading, from standing on.
 
-    It stands for its first second, in which it learns the baselines of its sensors, and then steps. A signal that is
-    not finite keeps its last value. Once the robot has fallen, the targets stay where they are for good; a robot that
-    has been put up again stands, and needs a new generator.
+    It stands for its first second, in which it learns the baselines of its sensors, and then steps; a gap between two
+    readings prolongs that second. A signal that is not finite keeps its last value. Once the robot has fallen, the
+    targets stay where they are for good; a robot that has been put up again stands, and needs a new generator.
 
     :param parameters: values of P1 to P5
     :param balance: values of V1 to V4; zeros lock the hips, as in the First Training
@@ -92,7 +94,8 @@ class PatternGenerator:
     :param limits: lowest and highest position of the joints in the order of ``ACTUATED_JOINTS``, in rad and m, which no
         target leaves
     :param constants: time-outs, lengths, speeds and time constants of the controller
-    :raises ConfigurationError: if a parameter is not finite, or zero is not within a joint's limits
+    :raises ConfigurationError: if a parameter or the period is not finite, the period is not above zero, or zero is not
+        within a joint's limits
     """
 
     parameters: SteppingParameters
@@ -131,7 +134,7 @@ class PatternGenerator:
         self._baselines = Baselines(dt, constants)
         self._stable_x = LowPass(constants.tilt_time_constant, dt)
         self._rate_y = LowPass(constants.rate_time_constant, dt)
-        self._upright = LowPass(constants.upright_time_constant, dt, GRAVITY)
+        self._upright = GRAVITY
         self._lengths = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
         self._limited_legs: set[int] = set()
         self.set_parameters(parameters, balance)
@@ -192,7 +195,7 @@ class PatternGenerator:
         self._sense(reading, periods)
         if self.has_fallen:
             return None
-        self._ticks_in_phase += periods
+        self._ticks_in_phase += 1 if self.phase is Phase.STAND else periods
         if self.phase in (Phase.LIFT, Phase.LAND) and not self._is_loaded(self.swing):
             self._swing_foot_was_off = True
         change = self._phase_change()
@@ -226,17 +229,25 @@ class PatternGenerator:
         return periods
 
     def _sense(self, reading: SensorReading, periods: int) -> None:
+        measured = reading
         reading = self._reading = reading.repaired(self._reading)
         is_standing = self.phase is Phase.STAND
         corrected = reading
-        for _ in range(periods):
-            corrected = self._baselines.corrected(reading, is_standing)
+        for period in range(periods):
+            if period == 0 or not is_standing:  # a mean counts a reading once
+                corrected = self._baselines.corrected(reading, is_standing, measured)
             self._stable_x(corrected.acceleration[0])
             self._rate_y(corrected.angular_rate[1])
         self.hips.sense(corrected, periods)
-        up = clipped(reading.acceleration[2], self.constants.largest_blow)
-        # Once, however many ticks were missed: a single reading is no fall.
-        if self._upright(up) < self.constants.least_upright:
+        self._notice_a_fall(reading.acceleration[2], periods)
+
+    def _notice_a_fall(self, up: float, periods: int) -> None:
+        """Low-pass the vertical acceleration, as far as a single reading is no fall."""
+        constants = self.constants
+        seconds = min(periods * self._dt, max(LONGEST_BLOW, self._dt))
+        gain = low_pass_gain(constants.upright_time_constant, seconds)
+        self._upright += gain * (clipped(up, constants.largest_blow) - self._upright)
+        if self._upright < constants.least_upright:
             self.has_fallen = True
 
     def _phase_change(self) -> PhaseChange | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from typing import Any
 
 from sarah.control.hip_law import LOCKED_HIPS
@@ -60,7 +61,8 @@ class Episode:
         self.robot = describe_robot(config.dimensions)
         conditions = conditions or conditions_of(config, seed)
         gravity_x, gravity_y, gravity_z = conditions.gravity
-        self._vertical = (-gravity_x / GRAVITY, -gravity_y / GRAVITY, -gravity_z / GRAVITY)
+        strength = math.hypot(gravity_x, gravity_y, gravity_z) or GRAVITY
+        self._vertical = (-gravity_x / strength, -gravity_y / strength, -gravity_z / strength)
         self.simulation = (build or simulator_of(config.engine))(self.robot, config.physics, conditions)
         self._truth = self.last_reading = self.simulation.read()
         self._dt = config.physics.control_dt

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from sarah.errors import ConfigurationError
+
 
 class LowPass:
     """First-order low-pass filter.
@@ -28,7 +30,10 @@ def low_pass_gain(time_constant: float, dt: float) -> float:
 
     :param time_constant: time constant, in s
     :param dt: control period, in s
+    :raises ConfigurationError: if the period is not finite and above zero
     """
+    if not 0.0 < dt < math.inf:
+        raise ConfigurationError(f"dt must be finite and above zero, not {dt!r}")
     return 1.0 - math.exp(-dt / time_constant)
 
 

@@ -18,7 +18,9 @@ TICKS_AT_ONCE = 256
 
 
 class ImperfectSensors:
-    """Model of real sensors. Signals are delayed, get their constant errors, and then the noise.
+    """Model of real sensors. Signals are band-limited, delayed, get their constant errors, and then the noise.
+
+    Before its first reading the robot has been at rest for long, so the band limit begins at that reading.
 
     :param conditions: errors of the sensors in this episode
     :param dt: control period, in s
@@ -42,7 +44,7 @@ class ImperfectSensors:
         self._pending: deque[SensorReading] = deque(maxlen=whole + 1)
         bandwidth = conditions.imu_bandwidth
         self._imu_gain = low_pass_gain(1.0 / (2.0 * math.pi * bandwidth), dt) if bandwidth < math.inf else 1.0
-        self._imu = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self._imu: tuple[float, ...] | None = None
 
     def __call__(self, truth: SensorReading) -> SensorReading:
         """Take the true reading of this tick, and return the reading that the controller sees."""
@@ -78,8 +80,8 @@ class ImperfectSensors:
         gain = self._imu_gain
         if gain == 1.0:
             return truth
-        x, y, z, about_x, about_y, about_z = self._imu
         (ax, ay, az), (wx, wy, wz), pressures, joints = truth
+        x, y, z, about_x, about_y, about_z = self._imu or (*truth.acceleration, *truth.angular_rate)
         # The same filter as LowPass: six calls of it would cost a microsecond per tick.
         x += gain * (ax - x)
         y += gain * (ay - y)

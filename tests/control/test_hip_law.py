@@ -50,6 +50,20 @@ def test_abduction_settles_where_the_law_says() -> None:
     assert settled.abduction == pytest.approx(-0.05 * (1.5 * 2.0 + 0.4), rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("limits", "largest", "expected"),
+    [(0.05, 0.3, -0.05), (0.5, 0.04, -0.04), (0.5, 0.3, -0.1)],
+)
+def test_a_constant_abduction_is_no_sway_however_far_the_limits_let_it(
+    limits: float, largest: float, expected: float
+) -> None:
+    """V2 = 2 asks for -0.1 rad."""
+    constants = ControllerConstants(largest_hip_angle=largest)
+    constant = HipLaw(BalanceParameters(0.0, 2.0, 0.0, 0.0), DT, constants, [(-limits, limits)] * 6)
+    after(constant, reading(), ticks=50)
+    assert constant.abduction == pytest.approx(expected) and constant.sway == pytest.approx(0.0)
+
+
 def test_pitch_is_the_rate_integrated_and_forgets() -> None:
     turned, memory = after(law(), reading(rate_x=0.5), ticks=20), CONSTANTS.pitch_time_constant
     assert turned.pitch == pytest.approx(0.5 * memory * (1 - math.exp(-0.2 / memory)), rel=0.01)

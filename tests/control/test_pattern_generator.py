@@ -6,9 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sarah.control.baselines import Baselines
 from sarah.control.constants import STANDARD_CONSTANTS as CONSTANTS
 from sarah.control.constants import ControllerConstants
-from sarah.control.hip_law import BalanceParameters
+from sarah.control.hip_law import BalanceParameters, HipLaw
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import (
     STAND_SECONDS,
@@ -436,8 +437,8 @@ def test_parameters_that_are_not_finite_are_refused_and_none_changes(bad: float)
 
 
 def phase_ends(dt: float, every: int, told: bool) -> list[tuple[float, PhaseChange]]:
-    """When phases end in 8 s of rocking, by the ticks that take place: one in ``every``."""
-    generator, ends = PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, dt), []
+    """When phases end in 8 s of rocking after standing, by the ticks that take place: one in ``every``."""
+    generator, ends = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, dt)), []
     for tick in range(every, round(8.0 / dt) + 1, every):
         change = generator.tick(rocking(tick, dt), every * dt if told else None)
         if change is not None:
@@ -446,25 +447,60 @@ def phase_ends(dt: float, every: int, told: bool) -> list[tuple[float, PhaseChan
 
 
 def test_who_is_told_that_every_second_tick_is_missed_steps_as_at_half_the_control_rate() -> None:
-    """Phases end at the same times, and for the same reasons. Who is not told takes seconds for two."""
+    """Phases end at the same times, and for the same reasons. Who is not told times out after twice the seconds."""
     missed, slow = phase_ends(DT, 2, told=True), phase_ends(2 * DT, 1, told=False)
     assert [change for _, change in missed] == [change for _, change in slow]
     assert [seconds for seconds, _ in missed] == pytest.approx([seconds for seconds, _ in slow])
     assert sum(change.is_step for _, change in missed) > 5
-    assert phase_ends(DT, 2, told=False)[0][0] == pytest.approx(2.02)
+    assert phase_ends(DT, 2, told=False) != missed
+
+
+@pytest.mark.parametrize("seconds", [0.02, 0.1, 1.0, math.inf])
+def test_it_stands_for_a_second_of_readings_however_far_apart_they_are(seconds: float) -> None:
+    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT)
+    generator.tick(reading(), DT)
+    for _ in range(100):
+        assert generator.phase is Phase.STAND and generator.targets == (0.0,) * 6
+        generator.tick(reading(), seconds)
+    assert generator.phase is Phase.SHIFT
+
+
+def test_a_reading_after_a_long_gap_weighs_no_more_in_a_mean_than_another() -> None:
+    """Of 0 and 1 the mean is 0.5, which leaves 0.5 for the low-pass."""
+    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT)
+    generator.tick(reading())
+    generator.tick(reading(lateral=1.0), 1.0)
+    assert generator.stable_x == pytest.approx(0.5, rel=1e-3)
+
+
+@pytest.mark.parametrize("field", ["acceleration", "angular_rate"])
+def test_signals_that_come_late_while_it_stands_have_the_baselines_of_what_came(field: str) -> None:
+    """The first half of the readings is lost, and the other half is constant: the hips find no push in it."""
+    v = BalanceParameters(1.0, 0.0, 1.0, 0.0)
+    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), v, DT)
+    constant = reading(lateral=0.7, rate=0.05, left=UNLOADED)
+    lost = constant._replace(**{field: (math.nan,) * 3})
+    for tick in range(200):
+        generator.tick(lost if tick < 50 else constant)
+    assert generator.targets[:4] == pytest.approx((0.0,) * 4, abs=1e-9)
+    assert generator.tilt == pytest.approx(0.0) and generator.rate == pytest.approx(0.0)
 
 
 def test_late_and_early_ticks_count_by_their_times() -> None:
-    """Loops of 14 ms, of 1 ms, and of 16 and 4 ms in turn all stand for a second; an early tick does nothing."""
+    """A SHIFT that times out lasts a second in loops of 14 ms, of 1 ms, and of 16 and 4 ms in turn."""
     for times in ((0.014,), (0.001,), (0.016, 0.004)):
-        generator, elapsed = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT), 0.0
-        while generator.phase is Phase.STAND:
+        generator, elapsed = started(), 0.0
+        while generator.phase is Phase.SHIFT:
             for seconds in times:
-                before = generator.targets
-                assert generator.tick(reading(), seconds) is None or elapsed > 0.98
+                generator.tick(reading(), seconds)
                 elapsed += seconds
-                assert generator.phase is not Phase.STAND or generator.targets == before
-        assert elapsed == pytest.approx(1.01, abs=0.015)
+        assert elapsed == pytest.approx(1.0, abs=0.016)
+
+
+def test_an_early_tick_does_nothing() -> None:
+    early, other = started(), started()
+    assert early.tick(OVER_RIGHT, 0.004) is None
+    assert early.tilt == other.tilt and early.targets == other.targets
 
 
 @pytest.mark.parametrize(
@@ -511,6 +547,17 @@ def test_without_limits_no_joint_is_limited() -> None:
 def test_limits_that_are_not_six_ranges_around_zero_are_refused(limits: tuple[tuple[float, float], ...]) -> None:
     with pytest.raises(ConfigurationError, match="limits must be 6 ranges around zero, not"):
         PatternGenerator(SteppingParameters(*PAPER_STEPPING), limits=limits)
+
+
+@pytest.mark.parametrize("dt", [0.0, -0.01, math.nan, math.inf])
+def test_control_periods_that_are_not_finite_and_above_zero_are_refused(dt: float) -> None:
+    for make in (
+        lambda: PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=dt),
+        lambda: HipLaw(BALANCE, dt),
+        lambda: Baselines(dt),
+    ):
+        with pytest.raises(ConfigurationError, match=f"dt must be finite and above zero, not {dt}"):
+            make()
 
 
 SIGNALS = [
@@ -577,3 +624,24 @@ def test_a_blow_or_a_long_gap_before_it_is_no_fall() -> None:
     generator.tick(lying(z=-1e5), 60.0)
     generator.tick(reading())
     assert not generator.has_fallen
+
+
+@pytest.mark.parametrize("dt", [0.001, 0.01, 0.02])
+@pytest.mark.parametrize("up", [0.0, -9.81, 40.0, -40.0, -1e5])
+def test_a_single_reading_after_a_second_without_any_is_no_fall(up: float, dt: float) -> None:
+    """Nor does the low-pass remember it for long: a second one, a second later, is no fall either."""
+    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, dt))
+    for _ in range(2):
+        generator.tick(lying(z=up), 1.0)
+        for _ in range(round(1.0 / dt)):
+            generator.tick(reading())
+    assert not generator.has_fallen
+
+
+@pytest.mark.parametrize(("every", "longest"), [(1, 0.4), (2, 0.4), (3, 0.4), (10, 1.3)])
+def test_who_lies_is_recognised_though_most_ticks_are_missed(every: int, longest: float) -> None:
+    generator, elapsed = started(), 0.0
+    while not generator.has_fallen:
+        generator.tick(lying(y=9.81), every * DT)
+        elapsed += every * DT
+    assert elapsed < longest

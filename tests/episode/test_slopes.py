@@ -70,7 +70,9 @@ def test_fall_is_judged_by_gravity(degrees: float, ending: str, monkeypatch: pyt
     assert episode.run(TRAINED_STEPPING).termination == ending
 
 
-def test_tilt_of_a_tick_is_from_gravitys_vertical() -> None:
+@pytest.mark.parametrize("strength", [1.0, 0.165, 2.5])
+def test_tilt_of_a_tick_is_from_gravitys_vertical(strength: float) -> None:
+    """However strong gravity is."""
     tilts = []
 
     def reward(tick: sarah.Tick, config: EpisodeConfig) -> float:
@@ -78,7 +80,11 @@ def test_tilt_of_a_tick_is_from_gravitys_vertical() -> None:
         return 1.0
 
     task = dataclasses.replace(sarah.STEPPING, name="watched", reward=reward, best_reward=1.0)
-    episode = Episode(EpisodeConfig(terrain=UPHILL_IN_FRONT), 0, task, build=Leaning)
+    config = EpisodeConfig(terrain=UPHILL_IN_FRONT)
+    conditions = conditions_of(config, 0)
+    x, y, z = conditions.gravity
+    other = dataclasses.replace(conditions, gravity=(strength * x, strength * y, strength * z))
+    episode = Episode(config, 0, task, build=Leaning, conditions=other)
     episode.stand()
     episode.start(TRAINED_STEPPING)
     episode.tick()

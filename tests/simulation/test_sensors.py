@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from laboratory import laboratory
 
+from sarah.control.parameters import PAPER_STEPPING
+from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
 from sarah.robot.description import describe_robot
 from sarah.robot.filters import LowPass
 from sarah.robot.reading import SensorReading
@@ -99,14 +101,26 @@ def test_constant_errors_are_added_to_what_a_sensor_mounted_askew_reads() -> Non
 
 @pytest.mark.parametrize("bandwidth", [5.0, 40.0])
 def test_inertial_signals_follow_a_step_at_their_bandwidth(bandwidth: float) -> None:
-    """A first-order lag from zero: 1 - exp(-2 pi f t) of the way. Pads and joints are not slowed down."""
+    """A first-order lag from the reading before: 1 - exp(-2 pi f t) of the way. Pads and joints are not slowed down."""
     limited = sensors(imu_bandwidth=bandwidth)
+    level = STILL._replace(acceleration=(0.0, 0.0, GRAVITY))
+    assert limited(level) == limited(level) == level
     for tick in range(1, 5):
         seen = limited(TRUTH)
         share = 1.0 - math.exp(-2.0 * math.pi * bandwidth * tick * DT)
-        assert seen.acceleration == pytest.approx([share * a for a in TRUTH.acceleration], rel=1e-9)
+        acceleration = [g + share * (a - g) for g, a in zip(level.acceleration, TRUTH.acceleration, strict=True)]
+        assert seen.acceleration == pytest.approx(acceleration, rel=1e-9)
         assert seen.angular_rate == pytest.approx([share * rate for rate in TRUTH.angular_rate], rel=1e-9)
         assert (seen.pressures, seen.joints) == (TRUTH.pressures, TRUTH.joints)
+
+
+def test_a_robot_with_the_slowest_sensors_stands_and_has_not_fallen() -> None:
+    slow = sensors(imu_bandwidth=0.1)
+    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT)
+    level = STILL._replace(acceleration=(0.0, 0.0, GRAVITY))
+    for _ in range(200):
+        generator.tick(slow(level))
+    assert not generator.has_fallen
 
 
 def test_noise_is_white_and_has_its_standard_deviation() -> None:

@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from sarah.control.hip_law import BalanceParameters
-from sarah.control.parameters import BALANCE_PARAMETERS
+from sarah.control.parameters import BALANCE_PARAMETERS, STEPPING_PARAMETERS
 from sarah.control.pattern_generator import SteppingParameters
 from sarah.episode.ending import paper_ending
 from sarah.episode.push import PushedConfig
 from sarah.episode.reward import equation_2
-from sarah.episode.shipped import shipped
+from sarah.episode.shipped import shipped_parameters
 from sarah.episode.tasks.stepping import STEPPING
 from sarah.episode.tasks.task import ControllerParameters, Task
 
-TRAINED_STEPPING: tuple[float, float, float, float, float] = tuple(shipped()["stepping"]["parameters"].values())
+TRAINED_STEPPING: tuple[float, float, float, float, float] = shipped_parameters("stepping", STEPPING_PARAMETERS)
 """Default values of P1 to P5: those that the package ships as ``stepping``."""
 
 
