@@ -28,7 +28,8 @@ def test_an_option_before_or_after_it_changes_nothing(tmp_path: Path) -> None:
 
 def test_shipped_parameters_come_with_their_settings(tmp_path: Path) -> None:
     own = shown("balance", folder=tmp_path)
-    other = shown("1.09,0.17,0.65,1.13", folder=tmp_path)  # on other legs, pushed less
+    numbers = ",".join(map(str, PARAMETER_SETS["balance"].spec.parameters))
+    other = shown(numbers, folder=tmp_path)  # pushed less
     assert own["parameters"] == other["parameters"] and own["score_mean"] != other["score_mean"]
 
 
