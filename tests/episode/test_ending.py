@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from sarah.control.constants import ControllerConstants
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import Phase
 from sarah.episode.ending import TERMINATIONS, ending_words, paper_ending
@@ -32,7 +33,8 @@ def ending(state: TorsoState, start: Vector, steps: int, time: float, vertical: 
 
 def test_robot_that_does_not_step_is_stopped_after_5_seconds() -> None:
     """With conditions that no rocking meets and the slowest time-outs it makes no two steps in time."""
-    result = simulate(EpisodeSpec((2.0, 2.0, 2.0, 2.0, 2.0), seed=0))
+    config = EpisodeConfig(controller=ControllerConstants(rate_scale=10.0))
+    result = simulate(EpisodeSpec((2.0, 2.0, 2.0, 2.0, 2.0), seed=0, config=config))
     assert result.termination == "no_oscillation"
     assert result.duration == 5.0
     assert result.score < 0.01
