@@ -4,7 +4,7 @@ The laboratories do to a simulated robot what no episode does, in each physics e
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import product
 from typing import Any
 
@@ -17,7 +17,7 @@ from sarah.robot.reading import SensorReading, Side, Vector
 from sarah.simulation.engines import is_installed
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.pybullet_client import pybullet
-from sarah.simulation.simulator import TorsoState
+from sarah.simulation.simulator import Simulator, TorsoState
 
 CONTROL_DT = PHYSICS["standard"].control_dt
 RESULT = EpisodeResult(
@@ -175,7 +175,12 @@ def turned(roll: float, pitch: float) -> tuple[float, float, float, float]:
     return w_y * x, y * w_x, -y * x, w_y * w_x
 
 
-def laboratory(engine: str) -> BulletLaboratory | MujocoLaboratory:
+Laboratory = BulletLaboratory | MujocoLaboratory
+BuildSimulation = Callable[..., Simulator]
+"""Function that builds a simulation of conditions and physics, which are both optional."""
+
+
+def laboratory(engine: str) -> Laboratory:
     """An engine's laboratory; a test of an engine that is not installed is skipped."""
     need(engine)
     return BulletLaboratory() if engine == "pybullet" else MujocoLaboratory()

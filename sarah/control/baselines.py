@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.robot.filters import clipped, low_pass_gain
-from sarah.robot.reading import LARGEST_SIGNAL, SensorReading
+from sarah.robot.reading import LARGEST_SIGNAL, STANDING, SensorReading
 
 
 class Baselines:
@@ -32,20 +32,18 @@ class Baselines:
         self._constants = constants
         self._slow_gain = low_pass_gain(constants.baseline_time_constant, dt)
         self._standing_readings = [0, 0, 0]
+        self._reading = STANDING
 
-    def corrected(
-        self, reading: SensorReading, is_standing: bool, measured: SensorReading | None = None
-    ) -> SensorReading:
+    def corrected(self, reading: SensorReading, is_standing: bool) -> SensorReading:
         """Follow one reading, and subtract the baselines from it.
 
-        :param reading: finite sensor reading of this tick; outliers are clipped, before a baseline learns from them
+        :param reading: sensor reading of this tick. A signal that is not finite keeps its last value, and enters no
+            mean; outliers are clipped, before a baseline learns from them
         :param is_standing: whether the robot stands and does not yet step
-        :param measured: the reading as it came, by default the same; the mean of a signal leaves out what is not finite
-        :return: the same reading with corrected lateral acceleration and rates about x and y
+        :return: the same reading, finite, with corrected lateral acceleration and rates about x and y
         """
-        gain_x, gain_rate_x, gain_rate_y = [self._slow_gain] * 3
-        if is_standing:
-            gain_x, gain_rate_x, gain_rate_y = self._gains_of_means(measured or reading)
+        gain_x, gain_rate_x, gain_rate_y = self._gains_of_means(reading) if is_standing else [self._slow_gain] * 3
+        reading = self._reading = reading.repaired(self._reading)
         constants = self._constants
         (acceleration_x, acceleration_y, acceleration_z), (rate_x, rate_y, rate_z), pressures, joints = reading
         acceleration_x = clipped(acceleration_x, constants.largest_acceleration)
@@ -61,9 +59,9 @@ class Baselines:
             joints,
         )
 
-    def _gains_of_means(self, measured: SensorReading) -> list[float]:
+    def _gains_of_means(self, reading: SensorReading) -> list[float]:
         """Weights with which three signals enter the means of their finite readings so far."""
-        signals = measured.acceleration[0], measured.angular_rate[0], measured.angular_rate[1]
+        signals = reading.acceleration[0], reading.angular_rate[0], reading.angular_rate[1]
         are_finite = [abs(signal) < LARGEST_SIGNAL for signal in signals]
         numbers = self._standing_readings = [
             number + is_finite for number, is_finite in zip(self._standing_readings, are_finite, strict=True)

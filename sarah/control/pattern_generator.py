@@ -30,7 +30,7 @@ from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.hip_law import LOCKED_HIPS, NO_LIMITS, BalanceParameters, HipLaw
 from sarah.errors import ConfigurationError
 from sarah.robot.filters import LowPass, clipped, low_pass_gain, ramped
-from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, STANDING, SensorReading, Side
+from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, SensorReading, Side
 
 STAND_SECONDS = 1.0
 """Duration of standing before the robot begins to step, in s; it is the paper's."""
@@ -130,7 +130,6 @@ class PatternGenerator:
         self._ticks_in_phase = 0
         self._rounded_off = 0.0
         self._swing_foot_was_off = False
-        self._reading = STANDING
         self._baselines = Baselines(dt, constants)
         self._stable_x = LowPass(constants.tilt_time_constant, dt)
         self._rate_y = LowPass(constants.rate_time_constant, dt)
@@ -229,17 +228,14 @@ class PatternGenerator:
         return periods
 
     def _sense(self, reading: SensorReading, periods: int) -> None:
-        measured = reading
-        reading = self._reading = reading.repaired(self._reading)
         is_standing = self.phase is Phase.STAND
-        corrected = reading
         for period in range(periods):
             if period == 0 or not is_standing:  # a mean counts a reading once
-                corrected = self._baselines.corrected(reading, is_standing, measured)
+                corrected = self._baselines.corrected(reading, is_standing)
             self._stable_x(corrected.acceleration[0])
             self._rate_y(corrected.angular_rate[1])
         self.hips.sense(corrected, periods)
-        self._notice_a_fall(reading.acceleration[2], periods)
+        self._notice_a_fall(corrected.acceleration[2], periods)
 
     def _notice_a_fall(self, up: float, periods: int) -> None:
         """Low-pass the vertical acceleration, as far as a single reading is no fall."""

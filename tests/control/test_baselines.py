@@ -33,8 +33,8 @@ def test_while_standing_baselines_are_the_means_so_far() -> None:
 def test_a_mean_is_that_of_the_finite_readings_of_its_signal(bad: float) -> None:
     """Rate about x has come twice, as 1 and as 5; in between the value before stands in for it."""
     baselines = Baselines(DT)
-    for measured, held in ((bad, 0.0), (1.0, 1.0), (bad, 1.0), (bad, 1.0), (5.0, 5.0)):
-        corrected = baselines.corrected(reading(2.0, held, 4.0), True, reading(2.0, measured, 4.0))
+    for measured in (bad, 1.0, bad, bad, 5.0):
+        corrected = baselines.corrected(reading(2.0, measured, 4.0), True)
     assert (baselines.acceleration_x, baselines.rate_x, baselines.rate_y) == pytest.approx((2.0, 3.0, 4.0))
     assert signals(corrected) == pytest.approx((0.0, 2.0, 0.0))
 

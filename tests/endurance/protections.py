@@ -192,8 +192,8 @@ PROTECTIONS = (
     ),
     Protection(
         "readings that are no numbers are passed over",
-        "control/pattern_generator.py",
-        "self._reading = reading.repaired(self._reading)",
+        "control/baselines.py",
+        "reading = self._reading = reading.repaired(self._reading)",
         "self._reading = reading",
         "test_a_sensor_that_drops_out_does_not_stop_the_stepping_by_sensors",
     ),

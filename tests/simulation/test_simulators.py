@@ -1,16 +1,14 @@
 """Physics facts about the robot standing, falling, pushed and mirrored, in each engine."""
 
 import math
-from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
-from laboratory import NEEDS_PYBULLET, BulletLaboratory, MujocoLaboratory, laboratory
+from laboratory import NEEDS_PYBULLET, BuildSimulation, Laboratory
 
 from sarah.robot.description import ANKLE_JOINTS, GROUPS, PLATES, describe_robot
-from sarah.robot.reading import ACTUATED_JOINTS, Side
-from sarah.simulation.build import simulator_of
-from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
+from sarah.robot.reading import Side
+from sarah.simulation.physics import PHYSICS, PyBulletPhysics
 from sarah.simulation.pybullet_client import pybullet
 from sarah.simulation.pybullet_simulator import PyBulletSimulator
 from sarah.simulation.randomisation import LINKS, NOMINAL, Conditions
@@ -18,28 +16,6 @@ from sarah.simulation.renderer import Renderer
 from sarah.simulation.simulator import GRAVITY, Simulator, rotate_to_body
 
 SECOND = PHYSICS["standard"].control_rate
-BuildSimulation = Callable[..., Simulator]
-Laboratory = BulletLaboratory | MujocoLaboratory
-
-
-@pytest.fixture(params=["pybullet", "mujoco"])
-def lab(request: pytest.FixtureRequest) -> Laboratory:
-    """Each engine in turn."""
-    return laboratory(request.param)
-
-
-@pytest.fixture
-def build(lab: Laboratory) -> Iterator[BuildSimulation]:
-    """Simulations that are closed after the test."""
-    built: list[Simulator] = []
-
-    def build_one(conditions: Conditions = NOMINAL, physics: Physics = PHYSICS["standard"]) -> Simulator:
-        built.append(simulator_of(lab.engine)(describe_robot(), physics, conditions))
-        return built[-1]
-
-    yield build_one
-    for simulation in built:
-        simulation.close()
 
 
 def momentum(lab: Laboratory, simulation: Simulator) -> np.ndarray:
@@ -248,29 +224,6 @@ def test_mirrored_push_gives_mirrored_motion(
     assert deviation < accuracy * largest
 
 
-def test_servos_follow_their_targets_at_their_bandwidth(lab: Laboratory, build: BuildSimulation) -> None:
-    """A first-order lag: after 1 / bandwidth, 63 % of the way. So short that no effort reaches its limit."""
-    simulation = build()
-    lab.place(simulation)
-    simulation.set_targets((0.0, 0.0, 0.0, 0.0, 0.005, 0.0))
-    for _ in range(2):
-        simulation.advance()
-    assert simulation.joint_positions(ACTUATED_JOINTS)[4] == pytest.approx(0.005 * (1 - math.exp(-1.0)), rel=0.05)
-    for _ in range(SECOND // 2):
-        simulation.advance()
-    assert simulation.joint_positions(ACTUATED_JOINTS)[4] == pytest.approx(0.005, abs=1e-5)
-
-
-def test_retracting_a_leg_lifts_its_sole(lab: Laboratory, build: BuildSimulation) -> None:
-    simulation = build()
-    assert [simulation.sole_height(side) for side in Side] == pytest.approx([0.0, 0.0], abs=1e-9)
-    lab.place(simulation, height=simulation.robot.standing_height + 1.0)
-    simulation.set_targets((0.0, 0.0, 0.0, 0.0, 0.05, 0.0))
-    for _ in range(20):
-        simulation.advance()
-    assert simulation.sole_height(Side.LEFT) - simulation.sole_height(Side.RIGHT) == pytest.approx(0.05, abs=0.005)
-
-
 @NEEDS_PYBULLET
 def test_plates_have_the_added_inertia_while_they_press_on_their_pads() -> None:
     """About the hinge only, and on the masses of this episode; whatever the targets of the legs are."""
@@ -316,52 +269,3 @@ def test_picture_shows_the_robot(build: BuildSimulation) -> None:
     red, _, blue = picture.reshape(-1, 3).astype(int).T
     right_leg, left_leg = (red > blue + 60).sum(), (blue > red + 60).sum()
     assert right_leg > 100 and left_leg > 100
-
-
-@pytest.mark.parametrize(
-    ("joints", "axis", "direction"),
-    [(("left_hip_abduction", "right_hip_abduction"), 0, -1), (("left_hip_flexion",), 1, 1)],
-)
-def test_positive_abduction_turns_feet_left_and_positive_flexion_forward(
-    lab: Laboratory, build: BuildSimulation, joints: tuple[str, ...], axis: int, direction: int
-) -> None:
-    simulation = build()
-    lab.place(simulation, 2.0)
-    feet = [f"{name.split('_')[0]}_shank" for name in joints]
-
-    def positions() -> list[float]:
-        """Of the shanks along the axis, in the torso's frame, which turns too in the air."""
-        torso = simulation.torso_state()
-        offsets = [lab.link_position(simulation, foot) - torso.position for foot in feet]
-        return [rotate_to_body(torso.orientation, tuple(offset))[axis] for offset in offsets]
-
-    before = positions()
-    simulation.set_targets(tuple(0.2 if name in joints else 0.0 for name in ACTUATED_JOINTS))
-    for _ in range(30):
-        simulation.advance()
-    assert all(direction * (now - then) > 0.03 for now, then in zip(positions(), before, strict=True))
-
-
-@pytest.mark.parametrize("rate", [1000, 2000])
-def test_standing_legs_push_with_the_weight_that_they_carry(build: BuildSimulation, rate: int) -> None:
-    """Each leg's actuator carries half of torso, hips and thighs, 20 kg, whatever the substeps: measured 96 of 98 N."""
-    simulation = build(physics=PyBulletPhysics(rate=rate, solver_iterations=50))
-    for _ in range(2 * SECOND):
-        simulation.advance()
-    speeds, efforts = simulation.actuator_motion()
-    assert [-effort for effort in efforts[4:]] == pytest.approx([10.0 * GRAVITY] * 2, rel=0.05)
-    assert max(map(abs, speeds)) < 0.01
-
-
-@pytest.mark.parametrize("rate", [100, 300, 1000])
-def test_actuators_push_no_harder_than_they_can(lab: Laboratory, rate: int) -> None:
-    """Legs of 100 N, which hardly carry the torso, stretch with all their force, whatever the substeps."""
-    weak = describe_robot({"leg_effort": 100.0})
-    simulation = simulator_of(lab.engine)(weak, PyBulletPhysics(rate=rate, solver_iterations=50), NOMINAL)
-    simulation.set_targets((0.0, 0.0, 0.0, 0.0, -0.05, -0.05))
-    efforts = []
-    for _ in range(SECOND // 5):
-        simulation.advance()
-        efforts.append(max(map(abs, simulation.actuator_motion()[1][4:])))
-    simulation.close()
-    assert max(efforts) == pytest.approx(100.0, rel=1e-3)

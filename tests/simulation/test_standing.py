@@ -1,37 +1,18 @@
 """A standing robot stays where it is, in both engines, whatever it weighs and however the ground slopes."""
 
 import math
-from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from laboratory import need
+from laboratory import BuildSimulation
 
-from sarah.robot.description import describe_robot
-from sarah.simulation.build import simulator_of
-from sarah.simulation.physics import PHYSICS, Physics
-from sarah.simulation.randomisation import NOMINAL, Conditions, Randomisation, draw_conditions
+from sarah.simulation.physics import PHYSICS
+from sarah.simulation.randomisation import Randomisation, draw_conditions
 from sarah.simulation.simulator import GRAVITY, Simulator
 from sarah.simulation.terrain import Terrain, draw_gravity
 
 SECOND = PHYSICS["standard"].control_rate
-BuildSimulation = Callable[..., Simulator]
-
-
-@pytest.fixture(params=["pybullet", "mujoco"])
-def build(request: pytest.FixtureRequest) -> Iterator[BuildSimulation]:
-    """Simulations of each engine in turn, which are closed after the test."""
-    need(request.param)
-    built: list[Simulator] = []
-
-    def build_one(conditions: Conditions = NOMINAL, physics: Physics = PHYSICS["standard"]) -> Simulator:
-        built.append(simulator_of(request.param)(describe_robot(), physics, conditions))
-        return built[-1]
-
-    yield build_one
-    for simulation in built:
-        simulation.close()
 
 
 @pytest.mark.parametrize("physics", ["standard", pytest.param("reference", marks=pytest.mark.slow)])

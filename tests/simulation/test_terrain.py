@@ -1,15 +1,12 @@
 """Slopes: what is drawn of them, and what they do to a robot in each engine."""
 
 import math
-from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
-from laboratory import BulletLaboratory, MujocoLaboratory, laboratory
+from laboratory import BuildSimulation, Laboratory
 
 from sarah.errors import ConfigurationError
-from sarah.robot.description import describe_robot
-from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
 from sarah.simulation.randomisation import Conditions
 from sarah.simulation.simulator import GRAVITY, LEVEL_GRAVITY, Simulator
@@ -17,47 +14,36 @@ from sarah.simulation.terrain import Terrain, draw_gravity
 
 SECOND = PHYSICS["standard"].control_rate
 RIGHT, FORWARD, LEFT, BACKWARD = 0.0, 90.0, 180.0, 270.0
-BuildOnSlope = Callable[..., Simulator]
 
 
 def slope(degrees: float, uphill: float) -> Terrain:
     return Terrain((degrees, degrees), (uphill, uphill))
 
 
-@pytest.fixture(params=["pybullet", "mujoco"])
-def lab(request: pytest.FixtureRequest) -> BulletLaboratory | MujocoLaboratory:
-    """Each engine in turn."""
-    return laboratory(request.param)
-
-
 @pytest.fixture
-def build(lab: BulletLaboratory | MujocoLaboratory) -> Iterator[BuildOnSlope]:
-    """Robots on slopes, which are removed after the test."""
-    built: list[Simulator] = []
+def build_on(build: BuildSimulation) -> BuildSimulation:
+    """Function that builds a robot on a slope, and lets it stand there."""
 
     def build_one(
         terrain: Terrain, friction: float = 0.9, physics: Physics = PHYSICS["standard"], seconds: float = 0.0
     ) -> Simulator:
-        conditions = Conditions(friction=friction, gravity=draw_gravity(terrain, 0))
-        built.append(simulator_of(lab.engine)(describe_robot(), physics, conditions))
+        simulation = build(Conditions(friction=friction, gravity=draw_gravity(terrain, 0)), physics)
         for _ in range(round(seconds * SECOND)):
-            built[-1].advance()
-        return built[-1]
+            simulation.advance()
+        return simulation
 
-    yield build_one
-    for simulation in built:
-        simulation.close()
+    return build_one
 
 
 @pytest.mark.parametrize(
     ("uphill", "x", "y"), [(RIGHT, 1.0, 0.0), (FORWARD, 0.0, 1.0), (LEFT, -1.0, 0.0), (BACKWARD, 0.0, -1.0)]
 )
 def test_standing_robot_feels_gravity_as_if_it_leaned_downhill(
-    build: BuildOnSlope, uphill: float, x: float, y: float
+    build_on: BuildSimulation, uphill: float, x: float, y: float
 ) -> None:
     """Mean of a second: in PyBullet a standing robot trembles by 0.01 m/s^2."""
     angle = math.radians(5.0)
-    simulation = build(slope(5.0, uphill), seconds=1.0)
+    simulation = build_on(slope(5.0, uphill), seconds=1.0)
     readings = []
     for _ in range(SECOND):
         simulation.advance()
@@ -67,34 +53,32 @@ def test_standing_robot_feels_gravity_as_if_it_leaned_downhill(
 
 
 @pytest.mark.parametrize(("uphill", "lower"), [(FORWARD, (1, 3)), (BACKWARD, (0, 2))])
-def test_pads_carry_more_downhill(build: BuildOnSlope, uphill: float, lower: tuple[int, int]) -> None:
+def test_pads_carry_more_downhill(build_on: BuildSimulation, uphill: float, lower: tuple[int, int]) -> None:
     """On 5 degrees the lower ends of the feet carry 1.8 times as much as the upper ones or more, in both engines."""
-    pads = build(slope(5.0, uphill), seconds=2.0).read().pressures
+    pads = build_on(slope(5.0, uphill), seconds=2.0).read().pressures
     below = sum(pads[index] for index in lower)
     assert below > 1.5 * (sum(pads) - below) > 0.0
 
 
 @pytest.mark.parametrize(("uphill", "axis", "sign"), [(RIGHT, 0, -1), (LEFT, 0, 1), (FORWARD, 1, -1), (BACKWARD, 1, 1)])
 def test_robot_on_ice_slides_downhill_by_g_sin_minus_mu_g_cos(
-    build: BuildOnSlope, uphill: float, axis: int, sign: int
+    build_on: BuildSimulation, uphill: float, axis: int, sign: int
 ) -> None:
     angle, friction = math.radians(15.0), 0.1
-    place = build(slope(15.0, uphill), friction=friction, seconds=1.0).torso_state().position
+    place = build_on(slope(15.0, uphill), friction=friction, seconds=1.0).torso_state().position
     acceleration = GRAVITY * (math.sin(angle) - friction * math.cos(angle))
     assert sign * place[axis] == pytest.approx(0.5 * acceleration, rel=0.02)
     assert abs(place[1 - axis]) < 0.001
 
 
-def test_robot_with_friction_to_spare_stays_where_it_is(build: BuildOnSlope) -> None:
-    simulation = build(slope(5.0, FORWARD), seconds=5.0)
+def test_robot_with_friction_to_spare_stays_where_it_is(build_on: BuildSimulation) -> None:
+    simulation = build_on(slope(5.0, FORWARD), seconds=5.0)
     assert math.hypot(*simulation.torso_state().position[:2]) < 0.01
 
 
-def test_falling_robot_accelerates_with_gravity_and_feels_nothing(
-    lab: BulletLaboratory | MujocoLaboratory, build: BuildOnSlope
-) -> None:
+def test_falling_robot_accelerates_with_gravity_and_feels_nothing(lab: Laboratory, build_on: BuildSimulation) -> None:
     terrain = slope(10.0, 30.0)
-    simulation = build(terrain)
+    simulation = build_on(terrain)
     lab.place(simulation)
     for _ in range(SECOND // 10):
         simulation.advance()
@@ -103,21 +87,21 @@ def test_falling_robot_accelerates_with_gravity_and_feels_nothing(
     assert simulation.read().acceleration == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)
 
 
-def test_robots_that_slide_to_both_sides_are_mirror_images(build: BuildOnSlope) -> None:
+def test_robots_that_slide_to_both_sides_are_mirror_images(build_on: BuildSimulation) -> None:
     physics = PyBulletPhysics(rate=2000, solver_iterations=200)
     (x_left, *others_left), (x_right, *others_right) = (
-        build(slope(15.0, uphill), 0.1, physics, seconds=0.5).torso_state().position for uphill in (RIGHT, LEFT)
+        build_on(slope(15.0, uphill), 0.1, physics, seconds=0.5).torso_state().position for uphill in (RIGHT, LEFT)
     )
     assert x_left < -0.1
     assert x_right == pytest.approx(-x_left, rel=0.002)
     assert others_right == pytest.approx(others_left, abs=0.0005)
 
 
-def test_one_simulation_leaves_the_next_on_its_own_slope(build: BuildOnSlope) -> None:
+def test_one_simulation_leaves_the_next_on_its_own_slope(build_on: BuildSimulation) -> None:
     """The engines keep worlds and models from one simulation to the next."""
-    before = build(Terrain(), seconds=0.2).read()
-    build(slope(20.0, RIGHT), seconds=0.2).close()
-    assert build(Terrain(), seconds=0.2).read() == before
+    before = build_on(Terrain(), seconds=0.2).read()
+    build_on(slope(20.0, RIGHT), seconds=0.2).close()
+    assert build_on(Terrain(), seconds=0.2).read() == before
 
 
 @pytest.mark.parametrize(("degrees", "uphill"), [(12.0, 0.0), (12.0, 90.0), (30.0, 215.0)])
