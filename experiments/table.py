@@ -20,6 +20,7 @@ from experiments.experiment import Experiment, OnWorkers
 from experiments.first_training import FirstTraining
 from experiments.flexion_laws import FlexionLaws
 from experiments.landscape import Landscape
+from experiments.lateral_limit import LateralLimit
 from experiments.naf_preset import NafPreset
 from experiments.noise_limit import NoiseLimit
 from experiments.physics import FinenessAnywhere, FinenessInConditions
@@ -187,6 +188,11 @@ TABLE: dict[str, Maker] = {
         "Which flexion law saves the robot from pushes from front and back?",
         FlexionLaws(),
         {"newtons": (105.0,), "pushes": 1, "reference_pushes": 0, "unpushed": 1, "time_limit": 1.2},
+    ),
+    "lateral_limit": Maker(
+        "What decides whether the robot survives a push to the side?",
+        LateralLimit(),
+        {"newtons": (125.0,), "pushes": 1, "time_limit": 3.5},
     ),
     "sensor_faults": Maker(
         "Does the robot go on stepping when its sensors or its control loop fail?",

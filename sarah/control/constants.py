@@ -24,11 +24,15 @@ PLAUSIBLE = {
     "largest_hip_angle": (0.0, 1.5, "rad"),
     "hip_speed": (0.01, 100.0, "rad/s"),
     "stable_time_constant": (1e-4, 100.0, "s"),
-    "pitch_time_constant": (1e-4, 100.0, "s"),
+    "lean_time_constant": (1e-4, 100.0, "s"),
     "fall_time_constant": (1e-4, 100.0, "s"),
     "fall_rate": (0.1, 100.0, "1/s"),
     "fall_dead_band": (0.0, 1.5, "rad"),
     "capture_gain": (0.0, 10.0, ""),
+    "spread_gain": (0.0, 10.0, ""),
+    "spread_dead_band": (0.0, 1.5, "rad"),
+    "spread_speed": (0.01, 100.0, "rad/s"),
+    "spread_return_speed": (0.01, 100.0, "rad/s"),
     "pad_threshold": (0.0, 1000.0, "N"),
     "largest_rate": (0.1, 1000.0, "rad/s"),
     "balance_ramp": (0.01, 1000.0, "per second"),
@@ -61,12 +65,16 @@ class ControllerConstants:
     :param largest_hip_angle: limit of either hip target, in rad
     :param hip_speed: speed of the ramp that hip targets follow, in rad/s
     :param stable_time_constant: time constant of the hips' own low-pass of the lateral acceleration, in s
-    :param pitch_time_constant: time constant of the leaky integral that gives the pitch, in s: longer than a fall, and
-        short enough to forget an error of the gyroscope
-    :param fall_time_constant: time constant of the two low-passes of the fall, of its rate and of the whole, in s
+    :param lean_time_constant: time constant of the leaky integral of a rate that belongs to a lean, in s: longer than a
+        fall, and short enough to forget an error of the gyroscope
+    :param fall_time_constant: time constant of the low-passes of a lean's rate and of the fall, in s
     :param fall_rate: rate at which a fall over a foot grows, in 1/s; a rate of leaning counts divided by it
     :param fall_dead_band: fall below which the flexion does not react, in rad
     :param capture_gain: flexion of an unloaded leg against the fall at V3 = 1, in rad per rad
+    :param spread_gain: angle by which either leg spreads for the lean outward at V1 = 1, in rad per rad
+    :param spread_dead_band: lean outward below which the legs do not spread, in rad: more than steps lean
+    :param spread_speed: speed at which the legs spread, in rad/s
+    :param spread_return_speed: speed at which they close again, in rad/s: a quick return would tip the robot over
     :param pad_threshold: sum of a foot's two pads above which it counts as loaded, in N; a leg with less is free to
         flex against the fall
     :param largest_rate: limit to which rates about x and y are clipped before all filters, in rad/s
@@ -95,11 +103,15 @@ class ControllerConstants:
     largest_hip_angle: float = 0.3
     hip_speed: float = 6.0
     stable_time_constant: float = 0.30
-    pitch_time_constant: float = 1.0
+    lean_time_constant: float = 1.0
     fall_time_constant: float = 0.03
     fall_rate: float = 4.0
     fall_dead_band: float = 0.03
     capture_gain: float = 0.6
+    spread_gain: float = 2.0
+    spread_dead_band: float = 0.15
+    spread_speed: float = 1.5
+    spread_return_speed: float = 1.0
     pad_threshold: float = 30.0
     largest_rate: float = 10.0
     balance_ramp: float = 4.0

@@ -1,6 +1,6 @@
 """The hip law: how V1 to V4 move the hips so that the robot steps back to where it stood.
 
-    abduction of both hips        -0.05 (V1 stable_x + V2)
+    abduction of either hip       -0.05 (V1 stable_x + V2), and outward by the spread
     flexion of an unloaded leg    -0.6 V3 fall + 0.02 V4
     flexion of a loaded leg       0.02 V4                     each within 0.3 rad, at 6 rad/s
 
@@ -8,15 +8,14 @@ Positive abduction turns both feet to the left of the torso, positive flexion tu
 lateral acceleration after a low-pass of the hips' own, slower than the pattern generator's. With V1 above zero both
 feet go to the side that the torso was pushed to.
 
-The fall is the angle at which the leg that carries leans back over its foot, and will lean soon::
+Spread and fall answer the lean of the leg that carries (:class:`~sarah.control.lean.Lean`), about y and about x::
 
-    lean = pitch + its flexion joint - 0.02 V4 + low-pass of (rate about x + speed of that joint) / 4
-    fall = low-pass of (lean beyond 0.03 rad)
+    spread = 2 V1 (lean outward beyond 0.15 rad)               at 1.5 rad/s, back at 1 rad/s
+    fall = low-pass of (lean beyond 0.03 rad)                  falling backward is positive
 
-pitch is how far the torso has lately turned about its x axis: the leaky integral of that rate. The joint's angle, and
-not its target, belongs to the lean, because a servo gives way when the robot falls. A lean and a quarter of its rate
-say where a pendulum that falls over its foot is going (the capture point). With V3 above zero the foot in the air steps
-there: forward when the robot falls forward.
+A robot that tips over the outer edge of its foot spreads both legs: the torso turns over the leg that carries and so
+pulls it back, and the other foot waits wide where the robot comes down. A robot that falls forward or backward steps
+there with the foot in the air, if V3 is above zero.
 
 The law is a reconstruction. The paper says only that V1 and V3 multiply signals of the x and the y axis, that V2 and
 V4 are constants, and that the sums adjust abduction and flexion. Laws with the forward acceleration did not help, for
@@ -31,6 +30,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
+from sarah.control.lean import Lean
 from sarah.robot.filters import LowPass, clipped, ramped
 from sarah.robot.reading import SensorReading, Side
 
@@ -39,7 +39,7 @@ from sarah.robot.reading import SensorReading, Side
 class BalanceParameters:
     """The four parameters of the Second Training, each within -2 and 2; zeros lock the hips.
 
-    :param V1: gain from the lateral acceleration to the abduction of both hips
+    :param V1: gain from the lateral acceleration to the abduction of both hips, and from tipping over to their spread
     :param V2: constant added to that acceleration, in m/s^2
     :param V3: gain from a fall forward or backward to the step of a leg in the air
     :param V4: constant flexion of both legs, in units of 0.02 rad
@@ -82,10 +82,13 @@ class HipLaw:
         limits: Sequence[tuple[float, float]] = NO_LIMITS,
     ) -> None:
         self.abduction = 0.0
+        """Abduction that both hips share, in rad."""
+        self.spread = 0.0
+        """Angle by which either leg is turned outward, in rad."""
+        self.abductions = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
         self.flexion = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
-        self.pitch = 0.0
         self.abduction_rate = 0.0
-        """Speed of the abduction target in the last tick, in rad/s."""
+        """Speed of the shared abduction in the last tick, in rad/s."""
         self.parameters = parameters
         self.loads = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
         self.limited = set()
@@ -93,14 +96,21 @@ class HipLaw:
         self._dt = dt
         self._limits = limits
         self._stable_x = LowPass(constants.stable_time_constant, dt)
-        self._lean_rate = LowPass(constants.fall_time_constant, dt)
+        self._pitch, self._roll = Lean(dt, constants), Lean(dt, constants)
         self._fall = LowPass(constants.fall_time_constant, dt)
-        self._joints: dict[Side, float] | None = None
+        self._outward = 0.0
+        self._carrying = Side.LEFT
+        self._joints: tuple[float, ...] | None = None
 
     @property
     def stable_x(self) -> float:
         """The hips' low-passed lateral acceleration, in m/s^2."""
         return self._stable_x.value
+
+    @property
+    def pitch(self) -> float:
+        """Angle by which the torso has lately turned about its x axis, in rad; backward is positive."""
+        return self._pitch.turned
 
     @property
     def fall(self) -> float:
@@ -113,7 +123,7 @@ class HipLaw:
 
         The constant counts as far as the limits let it.
         """
-        return self.abduction - self._within_limits(-self._constants.abduction_scale * self.parameters.V2, (0, 1))
+        return self.abduction - self._constant_abduction
 
     def sense(self, reading: SensorReading, periods: int = 1) -> None:
         """Filter one reading without acting on it, as while standing.
@@ -124,21 +134,21 @@ class HipLaw:
         """
         left_fore, left_hind, right_fore, right_hind = reading.pressures
         loads = self.loads = {Side.LEFT: left_fore + left_hind, Side.RIGHT: right_fore + right_hind}
-        carrying = Side.LEFT if loads[Side.LEFT] > loads[Side.RIGHT] else Side.RIGHT
-        joints = {Side.LEFT: reading.joints[2], Side.RIGHT: reading.joints[3]}
-        speed = (joints[carrying] - (self._joints or joints)[carrying]) / (periods * self._dt)
+        if max(loads.values()) > self._constants.pad_threshold:
+            self._carrying = Side.LEFT if loads[Side.LEFT] > loads[Side.RIGHT] else Side.RIGHT
+        joints, before = reading.joints, self._joints or reading.joints
         self._joints = joints
+        abduction, flexion = (0, 2) if self._carrying is Side.LEFT else (1, 3)
+        seconds = periods * self._dt
+        abduction_speed = (joints[abduction] - before[abduction]) / seconds
+        flexion_speed = (joints[flexion] - before[flexion]) / seconds
+        rate_x, rate_y, _ = reading.angular_rate
         for _ in range(periods):
-            self._filter(reading.acceleration[0], reading.angular_rate[0], joints[carrying], speed)
-
-    def _filter(self, acceleration: float, rate: float, joint: float, speed: float) -> None:
-        """Advance all filters by a control period: lateral acceleration, rate about x, carrying joint and its speed."""
-        constants = self._constants
-        self._stable_x(acceleration)
-        self.pitch += self._dt * (rate - self.pitch / constants.pitch_time_constant)
-        lean_rate = self._lean_rate(clipped(rate + speed, constants.largest_rate))
-        lean = self.pitch + joint - self._constant_flexion + lean_rate / constants.fall_rate
-        self._fall(lean - clipped(lean, constants.fall_dead_band))
+            self._stable_x(reading.acceleration[0])
+            lean = self._pitch(rate_x, joints[flexion] - self._constant_flexion, flexion_speed)
+            self._fall(lean - clipped(lean, self._constants.fall_dead_band))
+            roll = self._roll(rate_y, joints[abduction] - self._constant_abduction, abduction_speed)
+        self._outward = self._carrying.value * roll
 
     def tick(self, periods: int = 1) -> None:
         """Move the targets.
@@ -150,8 +160,18 @@ class HipLaw:
         before = self.abduction
         self.abduction = self._moved(before, abduction, (0, 1), periods)
         self.abduction_rate = (self.abduction - before) / (periods * self._dt)
-        for joint, side in enumerate(Side, start=2):
-            self.flexion[side] = self._moved(self.flexion[side], flexion[side], (joint,), periods)
+        self._move_spread(periods)
+        for joint, side in enumerate(Side):
+            outward = self.abduction - side.value * self.spread
+            self.abductions[side] = self._moved(self.abductions[side], outward, (joint,), periods)
+            self.flexion[side] = self._moved(self.flexion[side], flexion[side], (joint + 2,), periods)
+
+    def _move_spread(self, periods: int) -> None:
+        constants = self._constants
+        beyond = max(0.0, self._outward - constants.spread_dead_band)
+        goal = min(constants.largest_hip_angle, max(0.0, constants.spread_gain * self.parameters.V1 * beyond))
+        speed = constants.spread_speed if goal > self.spread else constants.spread_return_speed
+        self.spread = ramped(self.spread, goal, speed * self._dt * periods)
 
     def _wanted(self) -> tuple[float, dict[Side, float]]:
         """Abduction and flexions that the law asks for, before limits and ramps."""
@@ -161,6 +181,11 @@ class HipLaw:
             if self.loads[side] < constants.pad_threshold:
                 flexion[side] = -constants.capture_gain * v.V3 * self.fall + flexion[side]
         return -constants.abduction_scale * (v.V1 * self.stable_x + v.V2), flexion
+
+    @property
+    def _constant_abduction(self) -> float:
+        """V2's part of the abduction, as far as the limits let it."""
+        return self._within_limits(-self._constants.abduction_scale * self.parameters.V2, (0, 1))
 
     @property
     def _constant_flexion(self) -> float:

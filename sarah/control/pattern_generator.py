@@ -209,9 +209,9 @@ class PatternGenerator:
     @property
     def targets(self) -> tuple[float, float, float, float, float, float]:
         """Joint targets in the order of ``ACTUATED_JOINTS``, in rad and m."""
-        abduction, flexion, lengths = self.hips.abduction, self.hips.flexion, self._lengths
+        abductions, flexion, lengths = self.hips.abductions, self.hips.flexion, self._lengths
         left, right = Side.LEFT, Side.RIGHT
-        return (abduction, abduction, flexion[left], flexion[right], lengths[left], lengths[right])
+        return (abductions[left], abductions[right], flexion[left], flexion[right], lengths[left], lengths[right])
 
     @property
     def limited_joints(self) -> tuple[str, ...]:

@@ -65,7 +65,7 @@ def test_a_constant_abduction_is_no_sway_however_far_the_limits_let_it(
 
 
 def test_pitch_is_the_rate_integrated_and_forgets() -> None:
-    turned, memory = after(law(), reading(rate_x=0.5), ticks=20), CONSTANTS.pitch_time_constant
+    turned, memory = after(law(), reading(rate_x=0.5), ticks=20), CONSTANTS.lean_time_constant
     assert turned.pitch == pytest.approx(0.5 * memory * (1 - math.exp(-0.2 / memory)), rel=0.01)
     assert after(turned, reading(), ticks=100).pitch < 0.04
 
@@ -73,7 +73,7 @@ def test_pitch_is_the_rate_integrated_and_forgets() -> None:
 def test_pitch_of_a_steady_rate_is_the_rate_times_its_time_constant() -> None:
     """It is 1 s, unless another is given."""
     locked = BalanceParameters(0.0, 0.0, 0.0, 0.0)
-    for leaky, seconds in ((law(), 1.0), (HipLaw(locked, DT, ControllerConstants(pitch_time_constant=0.5)), 0.5)):
+    for leaky, seconds in ((law(), 1.0), (HipLaw(locked, DT, ControllerConstants(lean_time_constant=0.5)), 0.5)):
         assert after(leaky, reading(rate_x=0.4), ticks=2000).pitch == pytest.approx(0.4 * seconds)
 
 
