@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sarah.control.constants import ControllerConstants
     from sarah.control.hip_law import BalanceParameters
     from sarah.control.parameters import BALANCE_PARAMETERS, STEPPING_PARAMETERS, Parameter
-    from sarah.control.pattern_generator import SteppingParameters
+    from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
     from sarah.episode.ending import paper_ending
     from sarah.episode.episode import simulate
     from sarah.episode.evaluation import Evaluation, evaluate
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, Task, load_task
     from sarah.episode.tick import Tick
     from sarah.errors import SarahError
+    from sarah.robot.reading import SensorReading
     from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
     from sarah.simulation.randomisation import Randomisation
     from sarah.simulation.terrain import Terrain
@@ -49,12 +50,14 @@ _HOMES = {
     "EpisodeSpec": "episode.spec",
     "Evaluation": "episode.evaluation",
     "Parameter": "control.parameters",
+    "PatternGenerator": "control.pattern_generator",
     "Physics": "simulation.physics",
     "Push": "episode.push",
     "PushedConfig": "episode.push",
     "PyBulletPhysics": "simulation.physics",
     "Randomisation": "simulation.randomisation",
     "SarahError": "errors",
+    "SensorReading": "robot.reading",
     "SteppingParameters": "control.pattern_generator",
     "Task": "episode.tasks",
     "Terrain": "simulation.terrain",
@@ -81,12 +84,14 @@ __all__ = [
     "EpisodeSpec",
     "Evaluation",
     "Parameter",
+    "PatternGenerator",
     "Physics",
     "Push",
     "PushedConfig",
     "PyBulletPhysics",
     "Randomisation",
     "SarahError",
+    "SensorReading",
     "SteppingParameters",
     "Task",
     "Terrain",

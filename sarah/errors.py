@@ -95,6 +95,19 @@ def check_fields(key: str, config: object, plausible: Mapping[str, tuple[float, 
         check_range(f"{key}.{name}", getattr(config, name), low, high, unit)
 
 
+def check_types(config: object, **types: type) -> None:
+    """Refuse a configuration if one of its fields is of another type.
+
+    :param config: configuration to check
+    :param types: type of each field, by name
+    :raises ConfigurationError: naming field, type and value
+    """
+    for name, expected in types.items():
+        value = getattr(config, name)
+        if not isinstance(value, expected):
+            raise ConfigurationError(f"{name} must be a {expected.__name__}, not {shortened(value)}")
+
+
 def shortened(value: object) -> str:
     """Representation of a value on one short line, for a message.
 

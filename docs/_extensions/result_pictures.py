@@ -119,6 +119,19 @@ def conditions(rows: Rows) -> Figure:
     return figure
 
 
+def lateral_limit(rows: Rows) -> Figure:
+    """Survival by the energy that a robot lacks to tip over, for each controller."""
+    figure, (axis,) = panels(1, 0.35)
+    for index, (name, group) in enumerate(grouped(rows, "{controller}").items()):
+        places = [place + 0.12 * (index - 1) for place in range(len(group))]
+        axis.vlines(places, numbers(group, "survival_low"), numbers(group, "survival_high"), color=COLOURS[index])
+        axis.plot(places, numbers(group, "survival"), "o", color=COLOURS[index], markersize=4, label=name)
+    axis.set_xticks(range(len(group)), [row["lacking"] for row in group])
+    axis.set(xlabel="energy that the robot lacks to tip over when the push ends", ylabel=heading("survival"))
+    legend(figure, axis)
+    return figure
+
+
 def flexion_laws(rows: Rows) -> Figure:
     """Survival by force under each law, a panel for each engine."""
     engines = grouped(chosen(rows, "push_n>0 and physics=standard"), "{engine}")
@@ -255,6 +268,7 @@ PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
     "naf_preset": (("naf_preset",), naf_preset),
     "robustness": (("robustness",), robustness),
     "conditions": (("conditions",), conditions),
+    "lateral_limit": (("lateral_limit",), lateral_limit),
     "flexion_laws": (("flexion_laws",), flexion_laws),
     "stepping_and_hips": (("stepping_and_hips",), stepping_and_hips),
     "landscape_stepping": (("landscape_stepping",), landscape),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.settings import LONGEST_EPISODE, EpisodeConfig
-from sarah.errors import ConfigurationError, check_fields, to_ranges
+from sarah.errors import ConfigurationError, check_fields, check_types, to_ranges
 from sarah.robot.reading import Vector
 
 PLAUSIBLE = {
@@ -98,6 +98,7 @@ class PushedConfig(EpisodeConfig):
     def __post_init__(self) -> None:
         """Refuse settings that cannot be simulated, and a push shorter than a control tick."""
         super().__post_init__()
+        check_types(self, push=Push)
         if self.push.duration < self.physics.control_dt:
             tick = f"a control tick, {self.physics.control_dt:g} s"
             raise ConfigurationError(f"push.duration must be at least {tick}, not {self.push.duration!r}")

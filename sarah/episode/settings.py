@@ -9,7 +9,7 @@ from typing import Any, get_args
 from sarah.control.constants import ControllerConstants
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.reward import RewardForm
-from sarah.errors import ConfigurationError, check_range, unknown_name
+from sarah.errors import ConfigurationError, check_range, check_types, unknown_name
 from sarah.robot.description import check_dimensions
 from sarah.simulation.engines import Engine, default_engine
 from sarah.simulation.physics import PHYSICS, Physics, physics_for
@@ -48,6 +48,8 @@ class EpisodeConfig:
 
     def __post_init__(self) -> None:
         """Refuse settings that cannot be simulated."""
+        check_types(self, physics=Physics, randomisation=Randomisation, terrain=Terrain)
+        check_types(self, controller=ControllerConstants, dimensions=Mapping)
         if self.dimensions:
             check_dimensions(self.dimensions)
         if self.engine not in get_args(Engine):

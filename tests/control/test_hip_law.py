@@ -1,6 +1,8 @@
 """The hip law against hand-made readings: which way the hips go, how far and how fast."""
 
 import math
+from itertools import pairwise
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -26,10 +28,12 @@ def reading(
     left: float = 150.0,
     right: float = 150.0,
     flexion: tuple[float, float] = (0.0, 0.0),
+    rate_y: float = 0.0,
+    abduction: tuple[float, float] = (0.0, 0.0),
 ) -> SensorReading:
-    """A reading with a lateral acceleration, a rate about x, and load and flexion of both legs."""
+    """A reading with a lateral acceleration, rates about x and y, and load, flexion and abduction of both legs."""
     pads = (left / 2, left / 2, right / 2, right / 2)
-    return SensorReading((lateral, 0.0, 9.81), (rate_x, 0.0, 0.0), pads, (0.0, 0.0, *flexion, 0.0, 0.0))
+    return SensorReading((lateral, 0.0, 9.81), (rate_x, rate_y, 0.0), pads, (*abduction, *flexion, 0.0, 0.0))
 
 
 def after(law: HipLaw, steady: SensorReading, ticks: int) -> HipLaw:
@@ -43,7 +47,7 @@ def law(v1: float = 0.0, v2: float = 0.0, v3: float = 0.0, v4: float = 0.0) -> H
     return HipLaw(BalanceParameters(v1, v2, v3, v4), DT)
 
 
-def test_abduction_settles_where_the_law_says() -> None:
+def test_abduction_settles_where_the_tippedsays() -> None:
     """A push to the right reads positive, and both feet then go to the right: a negative angle."""
     settled = after(law(v1=1.5, v2=0.4), reading(lateral=2.0), ticks=300)
     assert settled.stable_x == pytest.approx(2.0, rel=1e-3)
@@ -162,6 +166,60 @@ def test_an_outlier_of_gyroscope_or_joint_is_soon_forgotten() -> None:
     assert abs(after(hit, reading(left=0.0), ticks=100).fall) < 0.05
 
 
+TIPS = 0.2
+"""Rate about y in rad/s at which the torso has turned by 0.2 rad in the end, and leans on by 0.2 / 4 rad."""
+
+
+@pytest.mark.parametrize("v1", [0.5, 1.0])
+@pytest.mark.parametrize(("side", "loads"), [(Side.RIGHT, (0.0, 300.0)), (Side.LEFT, (300.0, 0.0))])
+def test_a_robot_that_tips_over_its_outer_edge_spreads_its_legs(
+    side: Side, loads: tuple[float, float], v1: float
+) -> None:
+    """Both legs outward, by 2 V1 (0.25 - 0.15) rad; it tips to the right at a positive rate."""
+    tipping = reading(0.0, 0.0, *loads, rate_y=side.value * TIPS)
+    spread = after(law(v1=v1), tipping, ticks=2000)
+    assert spread.abductions == {Side.LEFT: pytest.approx(0.2 * v1), Side.RIGHT: pytest.approx(-0.2 * v1)}
+    assert spread.abduction == spread.sway == 0.0
+
+
+@pytest.mark.parametrize(
+    ("v1", "rate"),
+    [
+        (0.0, TIPS),  # locked hips
+        (-1.0, TIPS),
+        (1.0, -TIPS),  # back over the foot
+        (1.0, 0.11),  # as far as steps lean
+    ],
+)
+def test_who_does_not_tip_over_does_not_spread(v1: float, rate: float) -> None:
+    still = after(law(v1=v1), reading(left=0.0, rate_y=rate), ticks=2000)
+    assert set(still.abductions.values()) == {0.0}
+
+
+def test_a_leg_that_gives_way_outward_tips_and_v2_does_not() -> None:
+    """The right leg carries, and its foot has gone 0.2 rad to the left: 2 (0.2 - 0.15) rad."""
+    given_way = reading(left=0.0, abduction=(0.0, 0.2))
+    assert after(law(v1=1.0), given_way, ticks=100).spread == pytest.approx(0.1)
+    assert after(law(v1=1.0, v2=-2.0), reading(left=0.0, abduction=(0.1, 0.1)), ticks=100).spread == 0.0
+
+
+def test_legs_spread_and_close_at_their_speeds() -> None:
+    """0.015 rad a tick, and 0.01 rad back."""
+    tipped = law(v1=1.0)
+    tipping = reading(left=0.0, abduction=(0.0, 0.3))
+    spreads = [after(tipped, tipping, ticks=1).spread for _ in range(3)]
+    assert spreads == pytest.approx([0.015, 0.03, 0.045])
+    closing = [after(tipped, reading(), ticks=1).spread for _ in range(30)]
+    assert max(before - now for before, now in pairwise(closing)) == pytest.approx(0.01)
+    assert closing[-1] == 0.0
+
+
+def test_in_the_air_the_leg_that_carried_last_still_counts() -> None:
+    tipping = after(law(v1=1.0), reading(left=0.0, abduction=(0.0, 0.2)), ticks=100)
+    airborne = after(tipping, reading(left=0.0, right=0.0, abduction=(0.0, 0.2)), ticks=100)
+    assert airborne.spread == pytest.approx(0.1)
+
+
 def test_v4_flexes_both_legs_alike() -> None:
     flexed = after(law(v4=1.5), reading(), ticks=50)
     assert flexed.flexion == {Side.LEFT: pytest.approx(0.03), Side.RIGHT: pytest.approx(0.03)}
@@ -198,19 +256,22 @@ def test_offsets_that_were_there_while_standing_move_no_hip() -> None:
     parameters=st.tuples(*[st.floats(-2.0, 2.0)] * 4),
     signals=st.lists(
         st.tuples(
-            st.floats(-1e6, 1e6), st.floats(-1e4, 1e4), *[st.floats(0.0, 500.0)] * 2, st.tuples(*[st.floats(-1, 1)] * 2)
+            st.floats(-1e6, 1e6),
+            st.floats(-1e4, 1e4),
+            *[st.floats(0.0, 500.0)] * 2,
+            st.tuples(*[st.floats(-1, 1)] * 2),
+            st.floats(-1e4, 1e4),
+            st.tuples(*[st.floats(-1, 1)] * 2),
         ),
         max_size=200,
     ),
 )
-def test_any_readings_keep_hips_bounded_and_slow(
-    parameters: tuple[float, ...], signals: list[tuple[float, float, float, float, tuple[float, float]]]
-) -> None:
+def test_any_readings_keep_hips_bounded_and_slow(parameters: tuple[float, ...], signals: list[tuple[Any, ...]]) -> None:
     moved = law(*parameters)
     for signal in signals:
-        before = (moved.abduction, *moved.flexion.values())
+        before = (*moved.abductions.values(), *moved.flexion.values())
         after(moved, reading(*signal), 1)
-        now = (moved.abduction, *moved.flexion.values())
+        now = (*moved.abductions.values(), *moved.flexion.values())
         assert all(abs(value) <= CONSTANTS.largest_hip_angle for value in now)
         assert all(abs(a - b) <= CONSTANTS.hip_speed * DT + 1e-12 for a, b in zip(now, before, strict=True))
 

@@ -6,7 +6,7 @@ import pytest
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import STEPPING
+from sarah.episode.tasks import STEPPING, BalanceConfig
 from sarah.errors import ConfigurationError
 
 
@@ -28,3 +28,18 @@ def test_parameters_that_cannot_be_are_named(value: object) -> None:
     with pytest.raises(ConfigurationError, match=r"parameter P4 must be between 0 and 2, not"):
         EpisodeSpec((1.0, 1.0, 1.0, value, 1.0), 0)  # type: ignore[arg-type]
     assert STEPPING.checked((0, 2, 1, 1, 1)) == (0.0, 2.0, 1.0, 1.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "expected"),
+    [
+        ("push", 100, "push must be a Push, not 100"),
+        ("physics", "standard", "physics must be a Physics, not 'standard'"),
+        ("randomisation", False, "randomisation must be a Randomisation, not False"),
+        ("dimensions", 3, "dimensions must be a Mapping, not 3"),
+        ("stepping", 3, r"stepping must be 5 numbers \(P1 to P5\), not 3"),
+    ],
+)
+def test_settings_of_another_type_are_named(field: str, value: object, expected: str) -> None:
+    with pytest.raises(ConfigurationError, match=expected):
+        BalanceConfig(**{field: value})  # type: ignore[arg-type]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Sequence, Sized
 from dataclasses import dataclass, fields
 from numbers import Real
 from typing import Any, Generic, TypeVar
@@ -187,10 +187,9 @@ class Task(Generic[ConfigType]):
         :raises ConfigurationError: naming the first value that is not a number within its range
         """
         names = self.parameter_names
-        if len(values) != len(names):
-            raise ConfigurationError(
-                f"{name} must be {len(names)} numbers ({names[0]} to {names[-1]}), not {len(values)}"
-            )
+        if not isinstance(values, Sized) or len(values) != len(names):
+            found = len(values) if isinstance(values, Sized) else shortened(values)
+            raise ConfigurationError(f"{name} must be {len(names)} numbers ({names[0]} to {names[-1]}), not {found}")
         for parameter, value in zip(self.parameters, values, strict=True):
             low, high = parameter.low, parameter.high
             if not isinstance(value, Real) or isinstance(value, bool) or not low <= value <= high:
