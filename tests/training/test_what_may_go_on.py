@@ -2,26 +2,22 @@
 
 import dataclasses
 import hashlib
-import os
 import re
 import shutil
 import subprocess
 import sys
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
-from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+from interrupted import EPISODE, INTERRUPTED, begun, content, go_on, interrupted
 
-from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS
 from sarah.episode.workers import Workers
-from sarah.errors import ConfigurationError, ResumeError, RunFolderError, TrainingInterruptedError
-from sarah.pictures import gait_snapshot
-from sarah.pictures.gait_snapshot import Picture
+from sarah.errors import ConfigurationError, ResumeError, RunFolderError
 from sarah.runs import origin as origin_module
 from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import ALGORITHMS, TrainingConfig
@@ -29,40 +25,11 @@ from sarah.runs.config_files import read_config, settings_by_key
 from sarah.runs.journal import Journal
 from sarah.runs.origin import compact_json
 from sarah.runs.run_folder import RunFolder
-from sarah.simulation.physics import Physics
 from sarah.training import train as training
 from sarah.training.train import train
 from sarah.versions import LEARNING, source_hash, versions
 
 COMMAND = Path(sys.executable).with_name("sarah-train")
-EPISODE = EpisodeConfig(
-    time_limit=1.2, physics=Physics(rate=100, solver_iterations=5, control_rate=50), dimensions={"thigh_length": 0.34}
-)
-INTERRUPTED = 3
-"""Number of episodes after which a training of these tests is interrupted."""
-
-
-def begun(path: Path, config: TrainingConfig) -> RunFolder:
-    """The run folder of a training that nobody has simulated an episode of."""
-    run = RunFolder.create(path, config)
-    with Journal(run.journal_path, config, Workers()):
-        return run
-
-
-def interrupted(path: Path, config: TrainingConfig, episodes: int = INTERRUPTED) -> RunFolder:
-    run = RunFolder.create(path, config)
-    go_on(run, episodes)
-    return run
-
-
-def go_on(run: RunFolder, episodes: int) -> None:
-    countdown = iter(range(episodes))
-    with pytest.raises(TrainingInterruptedError):
-        train(run.config(), run, interrupted=lambda: next(countdown, None) is None)
-
-
-def content(run: RunFolder) -> dict[str, bytes]:
-    return {path.name: path.read_bytes() for path in run.path.iterdir()}
 
 
 def others(value: Any) -> Iterator[Any]:
@@ -292,81 +259,3 @@ def test_who_begins_in_the_folder_of_an_interrupted_training_is_told_how_to_go_o
     run = begun(tmp_path / "run", TrainingConfig())
     with pytest.raises(RunFolderError, match=r"run is not empty: .*, or go on with sarah-train --resume \S+run$"):
         RunFolder.create(run.path, TrainingConfig())
-
-
-class Artist:
-    """Draws nothing, and remembers after how many drawings."""
-
-    def __init__(self) -> None:
-        self.drawn = 0
-
-    def __call__(self, *_: Any) -> list[Picture]:
-        self.drawn += 1
-        return [Picture("gait/cycle", 1, 1, b"picture %d" % self.drawn)]
-
-
-@pytest.fixture
-def artist(monkeypatch: pytest.MonkeyPatch) -> Artist:
-    made = Artist()
-    monkeypatch.setattr(gait_snapshot, "draw_gait", made)
-    return made
-
-
-def pictures(run: RunFolder) -> list[tuple[int, bytes]]:
-    (events,) = run.path.glob("events.out.tfevents.*")
-    curves = EventAccumulator(str(events), size_guidance={"images": 0})
-    curves.Reload()
-    return [(event.step, event.encoded_image_string) for event in curves.Images("gait/cycle")]
-
-
-def test_a_resumed_training_keeps_its_pictures_and_draws_on(artist: Artist, tmp_path: Path) -> None:
-    config = TrainingConfig(algo="random", episodes=10, slots=1, episode=EPISODE, pictures=2)
-    run = interrupted(tmp_path / "run", config, 5)
-    assert artist.drawn == len(pictures(run)) == 2
-    train(run.config(), run)
-    assert artist.drawn == 5
-    assert pictures(run) == [(2 * number, b"picture %d" % number) for number in (1, 2, 3, 4, 5)]
-
-
-def test_pictures_that_were_lost_are_drawn_again(artist: Artist, tmp_path: Path) -> None:
-    config = TrainingConfig(algo="random", episodes=10, slots=1, episode=EPISODE, pictures=2)
-    run = interrupted(tmp_path / "run", config, 3)
-    (events,) = run.path.glob("events.out.tfevents.*")
-    events.write_bytes(events.read_bytes()[:-60])
-    train(run.config(), run)
-    assert [step for step, _ in pictures(run)] == [2, 4, 6, 8, 10]
-    assert pictures(run)[0] == (2, b"picture 1")
-
-
-def rubbish(events: Path) -> None:
-    events.write_bytes(b"rubbish" * 1000)
-
-
-def gigabytes(events: Path) -> None:
-    with events.open("wb") as file:
-        file.truncate(20 * 2**30)
-
-
-def fifo(events: Path) -> None:
-    events.unlink()
-    os.mkfifo(events)
-
-
-@pytest.mark.parametrize("harm", [rubbish, gigabytes, fifo])
-def test_a_hostile_file_of_curves_is_no_obstacle(harm: Callable[[Path], None], artist: Artist, tmp_path: Path) -> None:
-    config = TrainingConfig(algo="random", episodes=10, slots=1, episode=EPISODE, pictures=2)
-    run = interrupted(tmp_path / "run", config, 5)
-    (events,) = run.path.glob("events.out.tfevents.*")
-    harm(events)
-    train(run.config(), run)
-    assert artist.drawn == 2 + 5
-
-
-@pytest.mark.parametrize(("before", "after", "steps"), [(5, 0, [5]), (0, 5, [5, 10]), (4, 5, [4, 5, 8, 10])])
-def test_other_pictures_may_be_asked_for(
-    before: int, after: int, steps: list[int], artist: Artist, tmp_path: Path
-) -> None:
-    config = TrainingConfig(algo="random", episodes=10, slots=1, episode=EPISODE, pictures=before)
-    run = interrupted(tmp_path / "run", config, 8)
-    train(dataclasses.replace(config, pictures=after), run)
-    assert [step for step, _ in pictures(run)] == steps
