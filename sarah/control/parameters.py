@@ -53,7 +53,9 @@ STEPPING_PARAMETERS = (
 )
 """P1 to P5. The paper observed that they must be positive; the upper ends are this project's."""
 BALANCE_PARAMETERS = (
-    Parameter("V1", -2.0, 2.0, "", "gain from lateral acceleration to abduction of both hips", MATTERS),
+    Parameter(
+        "V1", -2.0, 2.0, "", "gain from lateral acceleration to abduction, and from tipping over to spread", MATTERS
+    ),
     Parameter("V2", -2.0, 2.0, "m/s²", "constant added to that acceleration", CONSTANT),
     Parameter("V3", -2.0, 2.0, "", "gain from a fall forward or backward to the step of a leg in the air", MATTERS),
     Parameter("V4", -2.0, 2.0, "", "constant flexion of both legs, in units of 0.02 rad", CONSTANT),
