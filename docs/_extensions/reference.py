@@ -166,7 +166,7 @@ def signals_page() -> Iterator[str]:
     """A table of the signals of a reading, in order."""
     positions = []
     for index, joint in enumerate(ACTUATED_JOINTS):
-        used = "by V3" if joint.endswith("flexion") else "no"
+        used = "no" if joint.endswith("length") else "by V3" if joint.endswith("flexion") else "by V1"
         positions.append([f"`joints[{index}]`", unit_of(joint), f"position of `{joint}`, positive as its target", used])
     yield from table(
         ["signal", "unit", "positive", "used"], [[f"`{name}`", *rest] for name, *rest in SIGNALS] + positions
