@@ -28,6 +28,7 @@ PLAUSIBLE = {
     "fall_time_constant": (1e-4, 100.0, "s"),
     "fall_rate": (0.1, 100.0, "1/s"),
     "fall_dead_band": (0.0, 1.5, "rad"),
+    "largest_servo_error": (0.0, 10.0, "rad"),
     "capture_gain": (0.0, 10.0, ""),
     "spread_gain": (0.0, 10.0, ""),
     "spread_dead_band": (0.0, 1.5, "rad"),
@@ -70,6 +71,8 @@ class ControllerConstants:
     :param fall_time_constant: time constant of the low-passes of a lean's rate and of the fall, in s
     :param fall_rate: rate at which a fall over a foot grows, in 1/s; a rate of leaning counts divided by it
     :param fall_dead_band: fall below which the flexion does not react, in rad
+    :param largest_servo_error: difference between a hip joint's position and its target beyond which the position is not
+        believed, in rad: more than a servo gives way under a robot that falls
     :param capture_gain: flexion of an unloaded leg against the fall at V3 = 1, in rad per rad
     :param spread_gain: angle by which either leg spreads for the lean outward at V1 = 1, in rad per rad
     :param spread_dead_band: lean outward below which the legs do not spread, in rad: more than steps lean
@@ -107,6 +110,7 @@ class ControllerConstants:
     fall_time_constant: float = 0.03
     fall_rate: float = 4.0
     fall_dead_band: float = 0.03
+    largest_servo_error: float = 0.1
     capture_gain: float = 0.6
     spread_gain: float = 2.0
     spread_dead_band: float = 0.15

@@ -136,8 +136,8 @@ class HipLaw:
         loads = self.loads = {Side.LEFT: left_fore + left_hind, Side.RIGHT: right_fore + right_hind}
         if max(loads.values()) > self._constants.pad_threshold:
             self._carrying = Side.LEFT if loads[Side.LEFT] > loads[Side.RIGHT] else Side.RIGHT
-        joints, before = reading.joints, self._joints or reading.joints
-        self._joints = joints
+        joints = self._plausible(reading.joints)
+        before, self._joints = self._joints or joints, joints
         abduction, flexion = (0, 2) if self._carrying is Side.LEFT else (1, 3)
         seconds = periods * self._dt
         abduction_speed = (joints[abduction] - before[abduction]) / seconds
@@ -149,6 +149,16 @@ class HipLaw:
             self._fall(lean - clipped(lean, self._constants.fall_dead_band))
             roll = self._roll(rate_y, joints[abduction] - self._constant_abduction, abduction_speed)
         self._outward = self._carrying.value * roll
+
+    def _plausible(self, joints: Sequence[float]) -> tuple[float, ...]:
+        """Hip positions as far as a servo that carries the robot can be from its target: a sensor that is off by more
+        would make the robot fall for good.
+        """
+        largest = self._constants.largest_servo_error
+        targets = (*self.abductions.values(), *self.flexion.values())
+        return tuple(
+            [target + clipped(joint - target, largest) for target, joint in zip(targets, joints, strict=False)]
+        )
 
     def tick(self, periods: int = 1) -> None:
         """Move the targets.
