@@ -71,8 +71,8 @@ class ControllerConstants:
     :param fall_time_constant: time constant of the low-passes of a lean's rate and of the fall, in s
     :param fall_rate: rate at which a fall over a foot grows, in 1/s; a rate of leaning counts divided by it
     :param fall_dead_band: fall below which the flexion does not react, in rad
-    :param largest_servo_error: difference between a hip joint's position and its target beyond which the position is not
-        believed, in rad: more than a servo gives way under a robot that falls
+    :param largest_servo_error: difference of a hip joint's position from its target beyond which it is not believed, in
+        rad: more than a servo gives way under a robot that steps or is pushed
     :param capture_gain: flexion of an unloaded leg against the fall at V3 = 1, in rad per rad
     :param spread_gain: angle by which either leg spreads for the lean outward at V1 = 1, in rad per rad
     :param spread_dead_band: lean outward below which the legs do not spread, in rad: more than steps lean

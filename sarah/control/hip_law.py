@@ -151,14 +151,10 @@ class HipLaw:
         self._outward = self._carrying.value * roll
 
     def _plausible(self, joints: Sequence[float]) -> tuple[float, ...]:
-        """Hip positions as far as a servo that carries the robot can be from its target: a sensor that is off by more
-        would make the robot fall for good.
-        """
+        """Positions of the hip joints, as far as a servo can be from its target: a stuck sensor is not a fall."""
         largest = self._constants.largest_servo_error
         targets = (*self.abductions.values(), *self.flexion.values())
-        return tuple(
-            [target + clipped(joint - target, largest) for target, joint in zip(targets, joints, strict=False)]
-        )
+        return tuple([target + clipped(joints[index] - target, largest) for index, target in enumerate(targets)])
 
     def tick(self, periods: int = 1) -> None:
         """Move the targets.
