@@ -148,9 +148,11 @@ class PatternGenerator:
 
         :param parameters: values of P1 to P5; without them the present ones stay
         :param balance: values of V1 to V4; without them the present ones stay
-        :raises ConfigurationError: if a value is not finite; all values stay as they were
+        :raises ConfigurationError: if a value is not finite or of another type; all values stay as they were
         """
-        for given in (parameters, balance):
+        for given, kind in ((parameters, SteppingParameters), (balance, BalanceParameters)):
+            if given is not None and not isinstance(given, kind):
+                raise ConfigurationError(f"parameters must be {kind.__name__}, not {given!r}")
             if given is not None and not all(map(math.isfinite, astuple(given))):
                 raise ConfigurationError(f"parameters must be finite numbers, not {given!r}")
         if parameters is not None:

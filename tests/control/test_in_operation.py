@@ -64,6 +64,15 @@ def test_parameters_that_are_not_finite_are_refused_and_none_changes(bad: float)
     assert generator.parameters == SteppingParameters(*PAPER_STEPPING) and generator.hips.parameters == BALANCE
 
 
+def test_values_of_the_other_task_are_refused_and_none_changes() -> None:
+    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
+    with pytest.raises(ConfigurationError, match="parameters must be SteppingParameters, not BalanceParameters"):
+        generator.set_parameters(BALANCE)  # type: ignore[arg-type]
+    with pytest.raises(ConfigurationError, match="parameters must be BalanceParameters, not"):
+        generator.set_parameters(SteppingParameters(1, 1, 1, 1, 1), (0.0,) * 4)  # type: ignore[arg-type]
+    assert generator.parameters == SteppingParameters(*PAPER_STEPPING)
+
+
 def phase_ends(dt: float, every: int, told: bool) -> list[tuple[float, PhaseChange]]:
     """When phases end in 8 s of rocking after standing, by the ticks that take place: one in ``every``."""
     generator, ends = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, dt)), []
