@@ -27,7 +27,7 @@ FIRST_TICKS, TICKS_LATER = 200, 3
 robot in any phase."""
 STUCK_PAD = 300.0
 """Load that a stuck pad reports, in N: about the weight of the robot."""
-HIPS = {"locked": (0.0, 0.0, 0.0, 0.0), "V1 = 0.8, V3 = 0.2": (0.8, 0.0, 0.2, 0.0)}
+HIPS = {"locked": (0.0, 0.0, 0.0, 0.0), "V1 = 1, V3 = 0.7": (1.0, 0.0, 0.7, 0.0)}
 """Values of V1 to V4."""
 
 Heard = SensorReading | None
@@ -128,6 +128,8 @@ FAULTS = {
     "both pads of a foot: 0 N": Fault(signal("pressures", (0, 1), 0.0)),
     "all pads: 0 N": Fault(signal("pressures", (0, 1, 2, 3), 0.0)),
     "one pad: stuck at 300 N": Fault(signal("pressures", (0,), STUCK_PAD)),
+    "right abduction joint: stuck at 0.3 rad": Fault(signal("joints", (1,), 0.3)),
+    "right abduction joint: 0.1 rad off": Fault(signal("joints", (1,), added=0.1)),
     "one tick in ten is missed": Fault(at_times(lambda ticks: ticks % 10 == 0, missed)),
     "every second tick is missed": Fault(at_times(lambda ticks: ticks % 2 == 0, missed)),
     "every second tick is missed, and time is told": Fault(
