@@ -98,7 +98,8 @@ class HipLaw:
         self._stable_x = LowPass(constants.stable_time_constant, dt)
         self._pitch, self._roll = Lean(dt, constants), Lean(dt, constants)
         self._fall = LowPass(constants.fall_time_constant, dt)
-        self._outward = 0.0
+        self.outward_lean = 0.0
+        """Angle at which the leg that carries leans outward over its foot, and soon will, in rad."""
         self._carrying = Side.LEFT
         self._joints: tuple[float, ...] | None = None
 
@@ -148,7 +149,7 @@ class HipLaw:
             lean = self._pitch(rate_x, joints[flexion] - self._constant_flexion, flexion_speed)
             self._fall(lean - clipped(lean, self._constants.fall_dead_band))
             roll = self._roll(rate_y, joints[abduction] - self._constant_abduction, abduction_speed)
-        self._outward = self._carrying.value * roll
+        self.outward_lean = self._carrying.value * roll
 
     def _plausible(self, joints: Sequence[float]) -> tuple[float, ...]:
         """Positions of the hip joints, as far as a servo can be from its target: a stuck sensor is not a fall."""
@@ -174,7 +175,7 @@ class HipLaw:
 
     def _move_spread(self, periods: int) -> None:
         constants = self._constants
-        beyond = max(0.0, self._outward - constants.spread_dead_band)
+        beyond = max(0.0, self.outward_lean - constants.spread_dead_band)
         goal = min(constants.largest_hip_angle, max(0.0, constants.spread_gain * self.parameters.V1 * beyond))
         speed = constants.spread_speed if goal > self.spread else constants.spread_return_speed
         self.spread = ramped(self.spread, goal, speed * self._dt * periods)
