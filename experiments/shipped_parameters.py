@@ -56,7 +56,7 @@ class ShippedParameters(OfTrainings):
     """
 
     seed: int = 9
-    balance_seed: int = 9
+    balance_seed: int = 2
     budget: int = 100
     balance_budget: int = 300
     episodes: int = 100

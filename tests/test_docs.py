@@ -45,6 +45,14 @@ def blocks(page: str, language: str = "python") -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", (ROOT / "docs" / page).read_text(), re.DOTALL)
 
 
+def test_readme_has_the_figures_of_the_shipped_parameters() -> None:
+    readme = " ".join((ROOT / "README.md").read_text().split())
+    said = re.search(r"Of pushes of 125 N from anywhere .* survive (\d+) %, a robot with locked hips (\d+) %", readme)
+    shipped = json.loads((ROOT / "sarah/episode/parameter_sets.json").read_text())
+    survival = [shipped[name]["figures"]["pybullet"]["125 N"]["survival"] for name in ("balance", "stepping")]
+    assert said is not None and [int(said[1]), int(said[2])] == [round(100 * share) for share in survival]
+
+
 @pytest.mark.parametrize("page", ["README.md", "CONTRIBUTING.md", "runs/README.md"])
 def test_links_lead_to_files(page: str) -> None:
     path = ROOT / page
