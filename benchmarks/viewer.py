@@ -102,8 +102,8 @@ def seconds_until_served() -> float:
     process = subprocess.Popen([command], stdout=subprocess.PIPE, text=True)
     try:
         assert process.stdout is not None
-        url = re.search(r"http://\S+", process.stdout.readline())
-        assert url
+        urls = (re.search(r"http://\S+", line) for line in process.stdout)
+        url = next(url for url in urls if url)
         urllib.request.urlopen(url[0]).read()
         return time.perf_counter() - start
     finally:
