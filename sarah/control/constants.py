@@ -75,7 +75,8 @@ class ControllerConstants:
         rad: more than a servo gives way under a robot that steps or is pushed
     :param capture_gain: flexion of an unloaded leg against the fall at V3 = 1, in rad per rad
     :param spread_gain: angle by which either leg spreads for the lean outward at V1 = 1, in rad per rad
-    :param spread_dead_band: lean outward below which the legs do not spread, in rad: more than steps lean
+    :param spread_dead_band: lean outward below which the legs do not spread, in rad: more than steps lean if
+        V1 is near 1
     :param spread_speed: speed at which the legs spread, in rad/s
     :param spread_return_speed: speed at which they close again, in rad/s: a quick return would tip the robot over
     :param pad_threshold: sum of a foot's two pads above which it counts as loaded, in N; a leg with less is free to

@@ -86,6 +86,7 @@ class HipLaw:
         self.spread = 0.0
         """Angle by which either leg is turned outward, in rad."""
         self.abductions = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
+        """Abduction of each leg, in rad: what both share, and its spread."""
         self.flexion = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
         self.abduction_rate = 0.0
         """Speed of the shared abduction in the last tick, in rad/s."""
