@@ -3,14 +3,14 @@
 An agent's own choice stops at the edge of a flat crest. The best single episode was lucky. And the reward does not show
 a robot that steps to a clock or drags its feet, so an episode without a valid gait has less merit here than its score.
 For all algorithms, therefore, parameters are judged by the merit of the episodes around them. The last episodes of a
-budget compare the best candidates, all on the same new seeds.
+budget compare the best candidates, all on the same new seeds; the first of them stays unless another is clearly better.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from statistics import mean
+from collections.abc import Iterable, Mapping, Sequence
+from statistics import mean, stdev
 
 import numpy as np
 
@@ -21,8 +21,10 @@ from sarah.episode.tasks import Task
 
 Parameters = tuple[float, ...]
 
-NEIGHBOURHOOD = 0.075
+NEIGHBOURHOOD = 0.1
 """Distance up to which an episode counts for other parameters than its own, as a share of each parameter's range."""
+CLEARLY = 2.0
+"""Number of standard errors by which a candidate must be better than the first to take its place."""
 DISTINCT = 0.1
 """Smallest distance between candidates, as a share of each parameter's range."""
 SMALLEST_ROOM = 64
@@ -136,17 +138,35 @@ def squared_lengths(differences: np.ndarray) -> np.ndarray:
     return lengths
 
 
-def rank(results: Sequence[EpisodeResult], baseline: Evaluation | None, must_step: bool = True) -> tuple[bool, float]:
-    """Rank a candidate: valid gaits that do not chatter rank first, and among equals the best mean merit.
+def best_compared(
+    results: Mapping[Parameters, Sequence[EpisodeResult]], baseline: Evaluation | None, must_step: bool = True
+) -> Parameters:
+    """Choose a candidate after the comparison: the first, unless another one is better for certain.
 
-    :param results: results of the candidate's episodes
+    The first had the best neighbourhood, which often is more episodes than the comparison has: a larger mean alone
+    would be luck where episodes differ much. So another candidate must be better by two standard errors of the
+    difference on the same seeds. A valid gait that does not chatter comes before one that is not.
+
+    :param results: results of each candidate's episodes, on the same seeds in turn; the best neighbourhood's come first
     :param baseline: evaluation that chatter is judged against; without one nothing chatters
     :param must_step: whether the task wants a gait; otherwise every gait is valid
-    :return: what is larger for the better candidate
     """
+    merits = {candidate: [merit(result, must_step) for result in found] for candidate, found in results.items()}
+    valid = [candidate for candidate, found in results.items() if _is_valid(found, baseline, must_step)]
+    first, *others = valid or results
+    better = [candidate for candidate in others if _is_clearly_larger(merits[candidate], merits[first])]
+    return max(better, key=lambda candidate: mean(merits[candidate]), default=first)
+
+
+def _is_valid(results: Sequence[EpisodeResult], baseline: Evaluation | None, must_step: bool) -> bool:
     if not results:
-        return (False, -math.inf)
+        return False
     evaluation = Evaluation(tuple(results))
     chatters = baseline is not None and evaluation.chatters(baseline)
-    is_valid = evaluation.is_gait or not must_step
-    return (is_valid and not chatters, mean(merit(result, must_step) for result in results))
+    return (evaluation.is_gait or not must_step) and not chatters
+
+
+def _is_clearly_larger(merits: Sequence[float], others: Sequence[float]) -> bool:
+    """Whether merits are larger than others on the same seeds, by the mean of at least two differences."""
+    differences = [merit - other for merit, other in zip(merits, others, strict=False)]
+    return len(differences) > 1 and mean(differences) > CLEARLY * stdev(differences) / math.sqrt(len(differences))

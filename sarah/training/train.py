@@ -19,7 +19,7 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 from sarah.training.learners import make_learner
-from sarah.training.recommendation import Parameters, rank
+from sarah.training.recommendation import Parameters, best_compared
 from sarah.training.recorder import EpisodeRecorder
 from sarah.training.seeds import seeds_of
 
@@ -137,4 +137,4 @@ def _compare(
         results[spec.parameters].append(result)
     neutral, must_step = config.task.neutral, config.task.must_step
     baseline = None if neutral is None else evaluate(config.task, neutral, config.episode, seeds, workers)
-    return max(best, key=lambda candidate: rank(results[candidate], baseline, must_step))
+    return best_compared(results, baseline, must_step)

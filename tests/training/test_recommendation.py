@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 from laboratory import RESULT
 
 from sarah.episode.evaluation import Evaluation
+from sarah.episode.result import EpisodeResult
 from sarah.episode.tasks import STEPPING
 from sarah.runs.config import TrainingConfig
-from sarah.training.recommendation import DISTINCT, Tried, merit, rank
+from sarah.training.recommendation import DISTINCT, Tried, best_compared, merit
 
 CHOICE = (1.0, 1.0, 1.0, 1.0, 1.0)
 WIDTH = 2.0
@@ -81,7 +82,7 @@ def test_candidates_are_those_of_the_definition() -> None:
             continue
         places = np.array([CHOICE, *(parameters for parameters, _ in episodes[:count])]) / WIDTH
         distances = np.linalg.norm(places[:, None] - places[1:], axis=2)
-        weights = np.exp(-0.5 * (distances / 0.075) ** 2)
+        weights = np.exp(-0.5 * (distances / 0.1) ** 2)
         means = weights @ [merit for _, merit in episodes[:count]] / (weights.sum(axis=1) + 0.25)
         (best,) = tried.best(CHOICE, 1)
         assert best == tuple(places[np.argmax(means)] * WIDTH)
@@ -115,11 +116,32 @@ def test_a_small_budget_affords_no_comparison() -> None:
     assert {count: budget.compared_episodes for count, budget in budgets.items()} == {1: 0, 99: 0, 160: 15}
 
 
+def compared(**candidates: list[EpisodeResult]) -> str:
+    """Name of the candidate that a comparison chooses, beside a baseline that does not shake."""
+    results = {(float(index),): found for index, found in enumerate(candidates.values())}
+    return list(candidates)[int(best_compared(results, Evaluation((RESULT,)))[0])]
+
+
+def scoring(*scores: float) -> list[EpisodeResult]:
+    return [dataclasses.replace(RESULT, score=score) for score in scores]
+
+
 def test_what_chatters_or_is_no_gait_comes_last() -> None:
-    baseline = Evaluation((RESULT,))
-    dragging = dataclasses.replace(RESULT, score=0.95, sole_clearance=0.0099)
-    chattering = dataclasses.replace(RESULT, score=0.95, vibration=2.5 * RESULT.vibration)
-    ranks = [rank([result], baseline) for result in (RESULT, dragging, chattering)]
-    assert max(ranks) == ranks[0]
-    assert rank([chattering], None) > ranks[0]  # where there is nothing to chatter against
-    assert rank([], baseline) < ranks[1]
+    dragging = [dataclasses.replace(RESULT, score=0.95, sole_clearance=0.0099)] * 5
+    chattering = [dataclasses.replace(RESULT, score=0.95, vibration=2.5 * RESULT.vibration)] * 5
+    assert compared(dragging=dragging, chattering=chattering, valid=scoring(0.5) * 5) == "valid"
+    assert best_compared({(0.0,): chattering, (1.0,): scoring(0.5) * 5}, None) == (0.0,)  # nothing to chatter against
+    assert best_compared({(0.0,): dragging, (1.0,): scoring(0.5) * 5}, None, must_step=False) == (0.0,)
+
+
+def test_the_first_candidate_stays_unless_another_is_clearly_better() -> None:
+    first, better = scoring(0.9, 0.2, 0.9, 0.3, 0.9), scoring(0.92, 0.23, 0.91, 0.33, 0.92)
+    assert compared(first=first, luckier=scoring(0.9, 0.9, 0.9, 0.2, 0.9)) == "first"
+    assert compared(first=first, better=better) == "better"
+    assert compared(first=first, better=better, luckier=scoring(*[0.95] * 5)) == "better"
+    assert compared(first=first, better=better, best=scoring(1.0, 0.4, 1.0, 0.5, 1.0)) == "best"
+
+
+def test_a_single_episode_or_none_is_no_clear_difference() -> None:
+    assert compared(first=scoring(0.1), other=scoring(0.9)) == "first"
+    assert compared(first=scoring(0.1), missing=[]) == "first"
