@@ -29,7 +29,6 @@ from sarah.robot.reading import GRAVITY
 from sarah.simulation.engines import Engine, is_installed
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import Randomisation
-from sarah.simulation.terrain import Terrain
 
 TOLERANCE = 1e-6
 PROBE_SECONDS = 4.0
@@ -120,7 +119,7 @@ def _physics() -> dict[str, list[Any]]:
     """Values of the named physics and of what is drawn for each episode, and each engine's constants."""
     named = [astuple(physics) for physics in PHYSICS.values()]
     engines = {engine: _constants(engine) for engine in installed_engines()}
-    return {"settings": [named, GRAVITY, astuple(Randomisation()), astuple(Terrain())], **engines}
+    return {"settings": [named, GRAVITY, astuple(Randomisation())], **engines}
 
 
 def _constants(engine: Engine) -> list[float]:

@@ -92,7 +92,7 @@ def _ranges_of(config: Any) -> Iterator[str]:
         value, name = getattr(config, item.name), item.name.replace("_", "-")
         if dataclasses.is_dataclass(value) and not isinstance(value, Task):
             yield from (f"{name}.{inner}" if name != "training" else inner for inner in _ranges_of(value))
-        elif types[item.name] == tuple[float, float]:
+        elif types[item.name] in (tuple[float, float], tuple[float, float] | None):
             yield name
 
 

@@ -74,7 +74,7 @@ def _film(arguments: Sequence[str]) -> None:
     from sarah.episode.ending import ending_words
     from sarah.episode.episode import simulate
     from sarah.robot.description import describe_robot
-    from sarah.simulation.terrain import draw_gravity
+    from sarah.simulation.terrain import draw_ground
 
     result = simulate(spec, record_trace=True)
     assert result.trace is not None
@@ -88,8 +88,8 @@ def _film(arguments: Sequence[str]) -> None:
     times = frame_times(begin, end, FRAMES_PER_SECOND[options.out.suffix], options.speed)
     robot = describe_robot(spec.config.dimensions)
     progress = tqdm(times, desc="filming", unit=" frames")
-    gravity = draw_gravity(spec.config.terrain, spec.seed)
-    pictures = frames(result.trace, robot, progress, _caption(spec, result), gravity)
+    ground = draw_ground(spec.config.terrain, spec.seed)
+    pictures = frames(result.trace, robot, progress, _caption(spec, result), ground)
     write_video(pictures, options.out)
     print(options.out)
 

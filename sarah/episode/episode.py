@@ -24,7 +24,7 @@ from sarah.simulation.build import BuildSimulator, simulator_of
 from sarah.simulation.randomisation import Conditions, draw_conditions
 from sarah.simulation.sensors import ImperfectSensors
 from sarah.simulation.simulator import TorsoState
-from sarah.simulation.terrain import draw_gravity
+from sarah.simulation.terrain import draw_ground
 
 
 class Episode:
@@ -60,7 +60,7 @@ class Episode:
         self.termination: str | None = None
         self.robot = describe_robot(config.dimensions)
         conditions = conditions or conditions_of(config, seed)
-        gravity_x, gravity_y, gravity_z = conditions.gravity
+        gravity_x, gravity_y, gravity_z = conditions.ground.gravity
         strength = math.hypot(gravity_x, gravity_y, gravity_z) or GRAVITY
         self._vertical = (-gravity_x / strength, -gravity_y / strength, -gravity_z / strength)
         self.simulation = (build or simulator_of(config.engine))(self.robot, config.physics, conditions)
@@ -231,8 +231,8 @@ def conditions_of(config: EpisodeConfig, seed: int) -> Conditions:
     :param config: settings of the episode
     :param seed: seed of the episode
     """
-    gravity = draw_gravity(config.terrain, seed)
-    return dataclasses.replace(draw_conditions(config.randomisation, seed), gravity=gravity)
+    ground = draw_ground(config.terrain, seed)
+    return dataclasses.replace(draw_conditions(config.randomisation, seed), ground=ground)
 
 
 def simulate(spec: EpisodeSpec, record_trace: bool = False) -> EpisodeResult:

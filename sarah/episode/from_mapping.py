@@ -46,6 +46,9 @@ def _converted(expected: Any, value: Any, key: str) -> Any:
     """Convert a value to the expected type, or raise an error that names the key."""
     if hasattr(value, "tolist"):  # numpy's numbers and arrays
         value = value.tolist()
+    if type(None) in get_args(expected):
+        (expected,) = (one for one in get_args(expected) if one is not type(None))
+        return None if value is None else _converted(expected, value, key)
     if get_origin(expected) is Task:
         return value if isinstance(value, Task) else task_named(_converted(str, value, key))
     if get_origin(expected) is tuple:

@@ -18,7 +18,7 @@ from sarah.errors import ConfigurationError, SimulationError
 from sarah.pictures.gait_figure import draw_gait_cycle
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
 from sarah.robot.description import describe_robot
-from sarah.simulation.terrain import draw_gravity
+from sarah.simulation.terrain import draw_ground
 
 EPISODE_SECONDS = 10.0
 """Longest duration of the simulated episode, in s."""
@@ -61,8 +61,8 @@ def draw_gait(parameters: tuple[float, ...], task: Task[Any], config: EpisodeCon
     times = frame_times(max(trace.time[0], end - VIDEO_SECONDS), end, FRAMES_PER_SECOND[".gif"])
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        gravity = draw_gravity(config.terrain, 0)
-        write_video(frames(trace, describe_robot(config.dimensions), times, gravity=gravity), folder / "video.gif")
+        ground = draw_ground(config.terrain, 0)
+        write_video(frames(trace, describe_robot(config.dimensions), times, ground=ground), folder / "video.gif")
         pictures = [_picture("gait/video", folder / "video.gif")]
         try:
             draw_gait_cycle(trace, stepping, folder / "cycle", config.controller)

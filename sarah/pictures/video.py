@@ -15,9 +15,9 @@ from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.pictures.overlay import PUSH_SHOWN_SECONDS, Overlay, arrow
 from sarah.robot.description import ANKLE_JOINTS, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, Vector
+from sarah.simulation.ground import LEVEL, Ground
 from sarah.simulation.renderer import Renderer
 from sarah.simulation.scenery import Camera, View, size_of
-from sarah.simulation.simulator import LEVEL_GRAVITY
 
 SUFFIXES = (".mp4", ".gif")
 WIDTH, HEIGHT = 1024, 576
@@ -54,7 +54,7 @@ def frames(
     robot: RobotDescription,
     times: Iterable[float],
     caption: str = "",
-    gravity: Vector = LEVEL_GRAVITY,
+    ground: Ground = LEVEL,
 ) -> Iterator[Image.Image]:
     """Draw frames of an episode.
 
@@ -62,12 +62,12 @@ def frames(
     :param robot: robot of the episode
     :param times: simulated times of the frames, in s
     :param caption: text below the robot
-    :param gravity: acceleration of gravity in the episode, in the world's frame, in m/s^2: a slope is seen as one
+    :param ground: ground of the episode
     :return: RGB pictures of 1024 x 576 pixels
     """
     renderer = Renderer(robot, SAMPLES)
     try:
-        camera, feet_camera = cameras(trace, robot, renderer, gravity)
+        camera, feet_camera = cameras(trace, robot, renderer, ground)
         caption_end = WIDTH - FEET_WIDTH - 2 * FEET_MARGIN
         overlay = Overlay(trace, View(WIDTH, HEIGHT, camera), caption, caption_end, size_of(robot))
         for time in times:
@@ -86,9 +86,7 @@ def frames(
         renderer.close()
 
 
-def cameras(
-    trace: Trace, robot: RobotDescription, renderer: Renderer, gravity: Vector = LEVEL_GRAVITY
-) -> tuple[Camera, Camera]:
+def cameras(trace: Trace, robot: RobotDescription, renderer: Renderer, ground: Ground = LEVEL) -> tuple[Camera, Camera]:
     """Cameras of an episode's frames: one sees the robot and its push the whole time, the other one its feet.
 
     Both stand still. They stand farther away than usual only if the episode needs it.
@@ -96,7 +94,7 @@ def cameras(
     :param trace: trace of the episode
     :param robot: robot of the episode
     :param renderer: renderer of the robot
-    :param gravity: acceleration of gravity in the episode, in the world's frame, in m/s^2
+    :param ground: ground of the episode
     """
     size = size_of(robot)
     seen, feet = [], []
@@ -104,14 +102,14 @@ def cameras(
         tick = trace.tick_at(time)
         seen.append(renderer.corners(*_pose(trace, tick)))
         feet.append(renderer.soles())
-    camera = renderer.camera._replace(gravity=gravity).seeing(np.concatenate(seen), WIDTH - 2 * TEXT_WIDTH, HEIGHT)
+    camera = renderer.camera._replace(ground=ground).seeing(np.concatenate(seen), WIDTH - 2 * TEXT_WIDTH, HEIGHT)
     forces = np.linalg.norm(trace.push, axis=1)
     if forces.any():
         begin = int(np.argmax(forces > 0.0))
         shown = (trace.time >= trace.time[begin]) & (trace.time < trace.time[begin] + PUSH_SHOWN_SECONDS)
         arrows = [arrow(position, trace.push[begin], size) for position in trace.position[shown]]
         camera = camera.seeing(np.concatenate(arrows), WIDTH, HEIGHT)
-    feet_camera = FEET_CAMERA.scaled(size)._replace(gravity=gravity)
+    feet_camera = FEET_CAMERA.scaled(size)._replace(ground=ground)
     return camera, feet_camera.seeing(np.concatenate(feet), FEET_WIDTH, FEET_HEIGHT)
 
 

@@ -29,7 +29,7 @@ from sarah.robot.description import describe_robot
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.renderer import check_renderer
-from sarah.simulation.terrain import draw_gravity
+from sarah.simulation.terrain import draw_ground
 from sarah.training.recommendation import Parameters
 
 PAPER_CAPTIONS = {
@@ -160,8 +160,8 @@ def _film(spec: EpisodeSpec, folder: Path, seconds: tuple[float, float]) -> tupl
     begin = min(max(seconds[0], trace.time[0]), end)
     times = frame_times(begin, end, FRAMES_PER_SECOND[path.suffix])
     progress = tqdm(times, desc="filming", unit=" frames")
-    gravity = draw_gravity(spec.config.terrain, spec.seed)
-    write_video(frames(trace, describe_robot(spec.config.dimensions), progress, gravity=gravity), path)
+    ground = draw_ground(spec.config.terrain, spec.seed)
+    write_video(frames(trace, describe_robot(spec.config.dimensions), progress, ground=ground), path)
     caption = f"The learned parameters on seed {spec.seed}, from {begin:.1f} to {end:.1f} s of {result.duration:.1f} s."
     return _address(path.read_bytes(), kind), caption
 

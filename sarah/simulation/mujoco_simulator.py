@@ -18,6 +18,7 @@ from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Side, Vector
 from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.randomisation import NOMINAL, Conditions
 from sarah.simulation.simulator import TorsoState, rotate_to_world, specific_force
+from sarah.simulation.terrain import LARGEST_ROUGHNESS, REACH
 
 CONTACT_STEPS = 0.5
 """Time constant with which a contact stops what moves towards it, in physics steps."""
@@ -32,6 +33,8 @@ JOINT_DAMPING = 2.0
 """Factor on the URDF's joint damping, which PyBullet, the reference, applies twice."""
 LOWEST_RATE = 500
 """Lowest number of physics steps per second: contacts are softer at lower rates."""
+QUARTER_TURN = (math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))
+"""Rotation by 90 degrees about z, as MuJoCo's quaternion (w, x, y, z)."""
 STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS | mujoco.mjtState.mjSTATE_WARMSTART
 """State that a physics step begins with."""
 
@@ -61,18 +64,12 @@ class MujocoSimulator:
         self.robot = robot
         self.time = 0.0
         self._dt = physics.control_dt
-        self._gravity = conditions.gravity
+        self._ground = conditions.ground
         self._substeps = math.ceil(max(physics.rate, LOWEST_RATE) / physics.control_rate)
         rate = self._substeps * physics.control_rate
-        self.model = copy.copy(_compiled(robot.urdf, rate, physics.solver_iterations))
+        nodes = len(self._ground.heights)
+        self.model = copy.copy(_compiled(robot.urdf, rate, physics.solver_iterations, nodes))
         self.data = mujoco.MjData(self.model)
-        self._apply_conditions(rate, conditions)
-        self._addresses = {name: int(self.model.joint(name).qposadr[0]) for name in (*ACTUATED_JOINTS, *ANKLE_JOINTS)}
-        self._positions = [self._addresses[name] for name in ACTUATED_JOINTS]
-        self._speeds = [int(self.model.joint(name).dofadr[0]) for name in ACTUATED_JOINTS]
-        self._limits = [robot.efforts[name] for name in ACTUATED_JOINTS]
-        shares = [damping / limit for damping, limit in zip(self._damping, self._limits, strict=True)]
-        self._servos = list(zip(shares, self._positions, self._speeds, strict=True))
         self._feet = {
             side: [
                 self.model.geom(_sole(side, plate, index)).id
@@ -81,8 +78,17 @@ class MujocoSimulator:
             ]
             for side in Side
         }
+        self._apply_conditions(rate, conditions)
+        self._addresses = {name: int(self.model.joint(name).qposadr[0]) for name in (*ACTUATED_JOINTS, *ANKLE_JOINTS)}
+        self._positions = [self._addresses[name] for name in ACTUATED_JOINTS]
+        self._speeds = [int(self.model.joint(name).dofadr[0]) for name in ACTUATED_JOINTS]
+        self._limits = [robot.efforts[name] for name in ACTUATED_JOINTS]
+        shares = [damping / limit for damping, limit in zip(self._damping, self._limits, strict=True)]
+        self._servos = list(zip(shares, self._positions, self._speeds, strict=True))
         self._before = np.empty(mujoco.mj_stateSize(self.model, STATE))
         self.data.qpos[2] = robot.standing_height
+        if self._ground.is_rough:  # the soles touch the ground, and nothing is inside it
+            self.data.qpos[2] -= min(self.sole_height(side) for side in Side)
         # These are views of MuJoCo's memory.
         self._qpos, self._qvel, self._pads = self.data.qpos, self.data.qvel, self.data.sensordata
         self._pushed = self.data.xfrc_applied[self.model.body("torso").id, :3]
@@ -101,13 +107,26 @@ class MujocoSimulator:
         model.body_ipos[model.body("torso").id] += conditions.mass_offset
         mujoco.mj_setConst(model, self.data)  # updates what MuJoCo derives from the masses
         mujoco.mj_resetData(model, self.data)
-        model.pair_friction[:, :2] = conditions.friction
-        model.opt.gravity[:] = conditions.gravity
+        for side, soles in self._feet.items():
+            of_side = np.isin(model.pair_geom1, soles) | np.isin(model.pair_geom2, soles)
+            model.pair_friction[of_side, :2] = conditions.friction_under(side)
+        model.opt.gravity[:] = self._ground.gravity
+        if self._ground.is_rough:
+            self._shape_ground()
         # MuJoCo takes the position at a step's end. With this rate a servo is the same first-order lag at every rate.
         self._rate = (math.exp(conditions.actuator_bandwidth / rate) - 1.0) * rate
         self._damping = [LEG_DAMPING if name.endswith("leg_length") else HIP_DAMPING for name in ACTUATED_JOINTS]
         for actuator in range(len(ACTUATED_JOINTS)):
             self._let_follow(actuator)
+
+    def _shape_ground(self) -> None:
+        """Give the compiled height field this episode's bumps.
+
+        MuJoCo divides a cell along the other diagonal than the ground does, so its field is turned by 90 degrees.
+        """
+        heights, reach = np.array(self._ground.heights), self._ground.reach
+        self.model.hfield_size[0, :2] = reach
+        self.model.hfield_data[:] = (0.5 + 0.5 * heights[:, ::-1].T / LARGEST_ROUGHNESS).ravel()
 
     def _let_follow(self, actuator: int) -> None:
         """Let a servo follow its target."""
@@ -194,13 +213,14 @@ class MujocoSimulator:
         velocity_x, velocity_y, velocity_z, *rate = self._qvel[:6].tolist()
         self._angular_rate: Vector = tuple(rate)  # MuJoCo gives it in the torso's frame
         angular_velocity = rotate_to_world(orientation, self._angular_rate)
-        self._torso = TorsoState((x, y, z), orientation, (velocity_x, velocity_y, velocity_z), angular_velocity)
+        velocity = (velocity_x, velocity_y, velocity_z)
+        self._torso: TorsoState = TorsoState((x, y, z), orientation, velocity, angular_velocity)
 
     def read(self) -> SensorReading:
         """True sensor signals of the last control tick, without noise or delay."""
         positions = self._qpos.tolist()
         return SensorReading(
-            specific_force(self._torso, self._velocity_before, self._dt, self._gravity),
+            specific_force(self._torso, self._velocity_before, self._dt, self._ground.gravity),
             self._angular_rate,
             tuple(self._pads[::3].tolist()),  # the first of three components is the normal force
             tuple([positions[index] for index in self._positions]),
@@ -221,11 +241,14 @@ class MujocoSimulator:
         return tuple([speeds[index] for index in self._speeds]), tuple(efforts)
 
     def sole_height(self, side: Side) -> float:
-        """Height of a foot's lowest sole contact over the floor, in m.
+        """Height of a foot's lowest sole contact over the ground, in m.
 
         :param side: side of the foot
         """
         mujoco.mj_kinematics(self.model, self.data)  # a step leaves the link positions of its beginning
+        if self._ground.is_rough:
+            centres = self.data.geom_xpos.tolist()
+            return min([self._ground.distance(centres[sole]) for sole in self._feet[side]]) - self.robot.contact_radius
         heights = self.data.geom_xpos[:, 2].tolist()
         return min([heights[sole] for sole in self._feet[side]]) - self.robot.contact_radius
 
@@ -237,9 +260,12 @@ def _sole(side: Side, plate: str, index: int) -> str:
     return f"{side}_{plate}_sole_{index}"
 
 
-@lru_cache(maxsize=8)
-def _compiled(urdf: str, rate: int, solver_iterations: int) -> mujoco.MjModel:
-    """Model of a robot on a plane, as designed. Only soles touch the floor, and only pads touch their plates."""
+@lru_cache(maxsize=32)
+def _compiled(urdf: str, rate: int, solver_iterations: int, nodes: int) -> mujoco.MjModel:
+    """Model of a robot, as designed, on a plane or a field of nodes x nodes heights.
+
+    Only soles touch the floor, and only pads touch their plates.
+    """
     spec = mujoco.MjSpec.from_string(urdf)
     spec.compiler.fusestatic = False  # otherwise the torso becomes part of the world
     spec.body("torso").add_freejoint()
@@ -255,7 +281,15 @@ def _compiled(urdf: str, rate: int, solver_iterations: int) -> mujoco.MjModel:
     hardness = {"solref": (-damping / CONTACT_SECONDS, -damping), "solimp": (*[CONTACT_IMPEDANCE] * 2, 0.001, 0.5, 2.0)}
     for geom in spec.geoms:
         geom.contype = geom.conaffinity = 0
-    spec.worldbody.add_geom(name="floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0, 0, 1), contype=0, conaffinity=0)
+    if nodes:
+        size = (2 * REACH, 2 * REACH, 2 * LARGEST_ROUGHNESS, LARGEST_ROUGHNESS)  # half of both sides; over and under 0
+        spec.add_hfield(name="floor", nrow=nodes, ncol=nodes, size=size, userdata=[0.0] * nodes**2)
+        floor = spec.worldbody.add_geom(name="floor", type=mujoco.mjtGeom.mjGEOM_HFIELD, hfieldname="floor")
+        floor.pos = (0.0, 0.0, -LARGEST_ROUGHNESS)
+        floor.quat = QUARTER_TURN
+    else:
+        floor = spec.worldbody.add_geom(name="floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0, 0, 1))
+    floor.contype = floor.conaffinity = 0
     for side in Side:
         # The pads are in the order of the URDF: the forefoot's first.
         for plate, pad in zip(PLATES, spec.body(f"{side}_shank").geoms, strict=True):

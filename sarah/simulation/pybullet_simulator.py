@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import xml.etree.ElementTree as ElementTree
+from collections.abc import Iterator
 from itertools import product
 
 from sarah.errors import SimulationError
@@ -50,7 +51,7 @@ class PyBulletSimulator:
         self.robot = robot
         self.time = 0.0
         self._dt = physics.control_dt
-        self._gravity = conditions.gravity
+        self._ground = conditions.ground
         self._substeps = physics.rate // physics.control_rate
         self.client = take_client()
         try:
@@ -72,7 +73,7 @@ class PyBulletSimulator:
             enableFileCaching=0,
             physicsClientId=self.client,
         )
-        pybullet.setGravity(*conditions.gravity, physicsClientId=self.client)
+        pybullet.setGravity(*self._ground.gravity, physicsClientId=self.client)
         self._build_floor()
         self.body, self.links = load_robot(
             self.client,
@@ -107,6 +108,8 @@ class PyBulletSimulator:
         self._carries = [False] * len(self._plate_inertias)
         # PyBullet takes efforts as impulses over the whole tick, and lets every substep spend all of it.
         self._efforts = [self.robot.efforts[name] / self._substeps for name in ACTUATED_JOINTS]
+        if self._ground.is_rough:
+            self._stand_on_bumps()
         self.look()
         self._velocity_before = self._torso.velocity
         self._targets: tuple[float, ...] = ()
@@ -125,9 +128,27 @@ class PyBulletSimulator:
         return ElementTree.tostring(root, encoding="unicode")
 
     def _build_floor(self) -> None:
-        shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self.client)
-        floor = pybullet.createMultiBody(0.0, shape, physicsClientId=self.client)
+        if self._ground.is_rough:
+            heights = [height for row in self._ground.heights for height in row]
+            shape = pybullet.createCollisionShape(
+                pybullet.GEOM_HEIGHTFIELD,
+                meshScale=(self._ground.cell, self._ground.cell, 1.0),
+                heightfieldData=heights,
+                numHeightfieldRows=len(self._ground.heights),
+                numHeightfieldColumns=len(self._ground.heights),
+                physicsClientId=self.client,
+            )
+            middle = (min(heights) + max(heights)) / 2  # where PyBullet puts the frame of the shape
+        else:
+            shape, middle = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self.client), 0.0
+        floor = pybullet.createMultiBody(0.0, shape, basePosition=(0.0, 0.0, middle), physicsClientId=self.client)
         pybullet.changeDynamics(floor, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=self.client)
+
+    def _stand_on_bumps(self) -> None:
+        """Move the robot along the normal until its soles touch the ground, and nothing is inside it."""
+        gap = min(self.sole_height(side) for side in Side)
+        (x, y, z), orientation = pybullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client)
+        pybullet.resetBasePositionAndOrientation(self.body, (x, y, z - gap), orientation, physicsClientId=self.client)
 
     def _keep_only_pad_contacts(self) -> None:
         links = sorted(set(self.links.values()))
@@ -138,6 +159,7 @@ class PyBulletSimulator:
 
     def _apply_conditions(self, conditions: Conditions) -> None:
         client = self.client
+        frictions = {str(side): conditions.friction_under(side) for side in Side}
         for link, factor in conditions.mass_factors.items():  # contains every link
             index = self.links[link]
             dynamics = pybullet.getDynamicsInfo(self.body, index, physicsClientId=client)
@@ -146,7 +168,7 @@ class PyBulletSimulator:
                 index,
                 mass=dynamics[0] * factor,
                 localInertiaDiagonal=[inertia * factor for inertia in dynamics[2]],
-                lateralFriction=conditions.friction,
+                lateralFriction=frictions.get(link.partition("_")[0], conditions.friction),
                 restitution=0.0,
                 linearDamping=0.0,
                 angularDamping=0.0,
@@ -219,7 +241,7 @@ class PyBulletSimulator:
         """True sensor signals of the last control tick, without noise or delay."""
         torso = self._torso
         return SensorReading(
-            specific_force(torso, self._velocity_before, self._dt, self._gravity),
+            specific_force(torso, self._velocity_before, self._dt, self._ground.gravity),
             rotate_to_body(torso.orientation, torso.angular_velocity),
             self._loads,
             self._positions,
@@ -265,10 +287,12 @@ class PyBulletSimulator:
         return (loads[0], loads[1], loads[2], loads[3])
 
     def sole_height(self, side: Side) -> float:
-        """Height of a foot's lowest sole contact over the floor, in m.
+        """Height of a foot's lowest sole contact over the ground, in m.
 
         :param side: side of the foot
         """
+        if self._ground.is_rough:
+            return min(map(self._ground.distance, self._sole_centres(side))) - self.robot.contact_radius
         lowest = math.inf
         links, soles = self._feet[side]
         states = pybullet.getLinkStates(self.body, links, computeForwardKinematics=1, physicsClientId=self.client)
@@ -280,6 +304,16 @@ class PyBulletSimulator:
                 if height < lowest:
                     lowest = height
         return lowest - self.robot.contact_radius
+
+    def _sole_centres(self, side: Side) -> Iterator[Vector]:
+        """Centres of a foot's sole contacts, in the world's frame, in m."""
+        links, soles = self._feet[side]
+        states = pybullet.getLinkStates(self.body, links, computeForwardKinematics=1, physicsClientId=self.client)
+        for state, contacts in zip(states, soles, strict=True):
+            x, y, z = state[4]
+            for contact in contacts:
+                along_x, along_y, along_z = rotate_to_world(state[5], contact)
+                yield (x + along_x, y + along_y, z + along_z)
 
     def close(self) -> None:
         """Give PyBullet's client back; the simulator cannot be used after that."""

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 
 from sarah.errors import ConfigurationError, check_fields, to_ranges
 from sarah.robot.description import GROUPS
-from sarah.robot.reading import Vector
-from sarah.simulation.simulator import LEVEL_GRAVITY
+from sarah.robot.reading import Side, Vector
+from sarah.simulation.ground import LEVEL, Ground
 
 LINKS = tuple(link for group in GROUPS.values() for link in group)
 PLAUSIBLE = {
@@ -116,7 +116,7 @@ class Conditions:
     :param mass_offset: offset of the torso's centre of mass in its frame, in m
     :param actuator_bandwidth: bandwidth of the position servos, per second
     :param sensors: errors of the sensors
-    :param gravity: acceleration of gravity in the world's frame, whose z axis is the ground's normal, in m/s^2
+    :param ground: ground under the robot; it may have friction coefficients of its own
     """
 
     friction: float = 0.9
@@ -124,12 +124,20 @@ class Conditions:
     mass_offset: Vector = (0.0, 0.0, 0.0)
     actuator_bandwidth: float = 50.0
     sensors: SensorConditions = SensorConditions()
-    gravity: Vector = LEVEL_GRAVITY
+    ground: Ground = LEVEL
 
     def __post_init__(self) -> None:
         """Refuse factors that omit a link."""
         if set(self.mass_factors) != set(LINKS):
             raise ConfigurationError(f"mass_factors must name every link: {', '.join(LINKS)}")
+
+    def friction_under(self, side: Side) -> float:
+        """Coulomb friction coefficient between a foot's soles and the ground.
+
+        :param side: side of the foot
+        """
+        own = self.ground.friction(side)
+        return self.friction if own is None else own
 
 
 NOMINAL = Conditions()

@@ -83,7 +83,8 @@ class Renderer:
         if camera is None:
             camera = self.camera.seeing(corners, width, height)
         view = View(width, height, camera)
-        shadows = [view.pixels(outline * (1.0, 1.0, 0.0)) for outline in np.split(self.soles(), len(Side))]
+        under = np.array([(x, y, camera.ground.height(x, y)) for x, y, _ in self.soles().tolist()])
+        shadows = [view.pixels(outline) for outline in np.split(under, len(Side))]
         picture = shaded(floor(width, height, camera), shadows).copy()
         margin = MARGIN * self._robot.standing_height
         left, top, right, bottom = rectangle = view.rectangle(corners, margin)

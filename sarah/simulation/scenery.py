@@ -10,8 +10,8 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFilter
 
 from sarah.robot.description import RobotDescription, describe_robot
-from sarah.robot.reading import Vector
-from sarah.simulation.simulator import LEVEL_GRAVITY
+from sarah.simulation.bumps import mesh, over
+from sarah.simulation.ground import LEVEL, Ground
 
 TILE = 0.25
 """Length of the floor's tiles, in m; a torso that moves by one tile from its start has left the episode's box."""
@@ -41,7 +41,7 @@ class Camera(NamedTuple):
     :param yaw: direction of the view about the floor's normal, in degrees; 180 looks at the robot from its front
     :param pitch: direction of the view over the floor, in degrees; negative looks down
     :param field_of_view: angle of the view from the lower to the upper edge of the picture, in degrees
-    :param gravity: acceleration of gravity in the world's frame, which points down in the picture, in m/s^2
+    :param ground: ground in the picture, whose gravity points down
     """
 
     height: float = 0.48
@@ -49,7 +49,7 @@ class Camera(NamedTuple):
     yaw: float = 162.0
     pitch: float = -7.0
     field_of_view: float = 35.0
-    gravity: Vector = LEVEL_GRAVITY
+    ground: Ground = LEVEL
 
     def scaled(self, factor: float) -> Camera:
         """Camera that sees a robot of another size in the same way.
@@ -100,7 +100,7 @@ class View:
         right = np.array((math.cos(yaw), math.sin(yaw), 0.0))
         ahead = np.array((-math.sin(yaw) * math.cos(pitch), math.cos(yaw) * math.cos(pitch), math.sin(pitch)))
         up = np.cross(right, ahead)
-        roll = math.atan2(-right @ camera.gravity, -up @ camera.gravity)
+        roll = math.atan2(-right @ camera.ground.gravity, -up @ camera.ground.gravity)
         right, up = math.cos(roll) * right - math.sin(roll) * up, math.cos(roll) * up + math.sin(roll) * right
         self.axes = np.array((right, up, ahead))
         """Unit vectors to the right, upward and ahead, as rows."""
@@ -145,13 +145,30 @@ def floor(width: int, height: int, camera: Camera) -> np.ndarray:
     ray_x, ray_y, ray_z = (right * view.axes[0, i] + up * view.axes[1, i] + view.axes[2, i] for i in range(3))
     length = view.position[2] / np.maximum(-ray_z, 1e-6)  # length of the ray down to the floor
     x, y = length * ray_x, length * ray_y
-    nearness = np.exp(-(x**2 + y**2) / max(FADING_DISTANCE, FADING_SHARE * camera.distance) ** 2)
-    is_dark = (np.floor((view.position[0] + x) / TILE) + np.floor((view.position[1] + y) / TILE)) % 2
+    nearness, is_dark = _tiles(x + view.position[0], y + view.position[1], view, camera)
     shape = (height, SAMPLES, width, SAMPLES)
     light, dark = ((nearness * tile).reshape(shape).mean(axis=(1, 3))[..., None] for tile in (1.0 - is_dark, is_dark))
-    picture = (SKY + light * (LIGHT_TILE - SKY) + dark * (DARK_TILE - SKY)).astype(np.uint8)
+    picture = _coloured(light, dark).astype(np.uint8)
+    if camera.ground.is_rough:
+        nodes, triangles = mesh(camera.ground)
+        x, y, _ = nodes[triangles].mean(axis=1).T
+        nearness, is_dark = (values[:, None] for values in _tiles(x, y, view, camera))
+        picture = over(picture, view, camera.ground, _coloured(nearness * (1.0 - is_dark), nearness * is_dark), SAMPLES)
     picture.flags.writeable = False
     return picture
+
+
+def _tiles(x: np.ndarray, y: np.ndarray, view: View, camera: Camera) -> tuple[np.ndarray, np.ndarray]:
+    """Visibility of places of the floor, from 0 to 1, and whether they are on dark tiles."""
+    distance = (x - view.position[0]) ** 2 + (y - view.position[1]) ** 2
+    nearness = np.exp(-distance / max(FADING_DISTANCE, FADING_SHARE * camera.distance) ** 2)
+    return nearness, (np.floor(x / TILE) + np.floor(y / TILE)) % 2
+
+
+def _coloured(light: np.ndarray, dark: np.ndarray) -> np.ndarray:
+    """Colours of the floor where light and dark tiles have these shares of a pixel, and the sky the rest."""
+    colours: np.ndarray = SKY + light * (LIGHT_TILE - SKY) + dark * (DARK_TILE - SKY)
+    return colours
 
 
 def shaded(picture: np.ndarray, outlines: list[np.ndarray]) -> np.ndarray:

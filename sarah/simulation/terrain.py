@@ -1,4 +1,4 @@
-"""The ground that the robot stands on, and one episode's draw of it."""
+"""The kinds of ground that the robot stands on, and one episode's draw of them."""
 
 from __future__ import annotations
 
@@ -7,46 +7,93 @@ import random
 from dataclasses import dataclass
 
 from sarah.errors import check_fields, to_ranges
-from sarah.robot.reading import Vector
-from sarah.simulation.simulator import GRAVITY, LEVEL_GRAVITY
+from sarah.robot.reading import GRAVITY, Vector
+from sarah.simulation.ground import LEVEL, Ground
+from sarah.simulation.simulator import LEVEL_GRAVITY
 
-PLAUSIBLE = {"slope_degrees": (0.0, 45.0, "degrees"), "direction_degrees": (0.0, 720.0, "degrees")}
+LARGEST_ROUGHNESS = 0.05
+"""Largest height of bumps, in m."""
+REACH = 0.7
+"""Distance from the start, to each side, up to which rough ground reaches, in m, to within half a cell."""
+PLAUSIBLE = {
+    "slope_degrees": (0.0, 45.0, "degrees"),
+    "direction_degrees": (0.0, 720.0, "degrees"),
+    "roughness": (0.0, LARGEST_ROUGHNESS, "m"),
+    "cell": (0.02, 0.1, "m"),
+}
 """Lowest value, highest value and unit of each setting. On more than 45 degrees the robot has fallen at once."""
+PLAUSIBLE_FRICTION = {side: (0.0, 5.0, "") for side in ("friction_left", "friction_right")}
+"""The same for settings that may be ``None``."""
 
 
 @dataclass(frozen=True)
 class Terrain:
-    """The ground, drawn for each episode from its seed: a plane without end. One number for a range fixes the value.
+    """The ground, drawn for each episode from its seed. One number for a range fixes the value.
 
-    The world's frame is the ground's: z is the plane's normal, and the robot begins standing along it. A slope tilts
-    gravity instead, which is the same physics. So heights, the box around the start and a push are along the ground,
-    while the accelerometer reads gravity as it is, and a fall is a tilt from gravity's vertical.
+    The world's frame is the ground's: z is the normal of its mean plane, and the robot begins standing along it. A
+    slope tilts gravity instead, which is the same physics as an endless plane. So heights, the box around the start and
+    a push are along the ground, while the accelerometer reads gravity as it is, and a fall is a tilt from gravity's
+    vertical.
 
     :param slope_degrees: uniform range of the slope, in degrees; 0 is level ground
     :param direction_degrees: uniform range of the direction that leads uphill, in degrees: 0 to the robot's right, 90
         forward
+    :param roughness: uniform range of the largest bumps' height over and under the mean plane, in m; 0 is even ground.
+        Rough ground ends 0.7 m from the start
+    :param cell: uniform range of the distance between neighbouring bumps, in m
+    :param friction_left: uniform range of the friction coefficient under the left foot; by default that of the
+        randomisation
+    :param friction_right: uniform range of the friction coefficient under the right foot; by default that of the
+        randomisation
     """
 
     slope_degrees: tuple[float, float] = (0.0, 0.0)
     direction_degrees: tuple[float, float] = (0.0, 360.0)
+    roughness: tuple[float, float] = (0.0, 0.0)
+    cell: tuple[float, float] = (0.05, 0.05)
+    friction_left: tuple[float, float] | None = None
+    friction_right: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
-        """Refuse slopes that nobody stands on."""
-        to_ranges(self, "slope_degrees", "direction_degrees")
-        check_fields("terrain", self, PLAUSIBLE)
+        """Refuse ground that nobody stands on."""
+        to_ranges(self, *PLAUSIBLE, *PLAUSIBLE_FRICTION)
+        given = {name: limits for name, limits in PLAUSIBLE_FRICTION.items() if getattr(self, name) is not None}
+        check_fields("terrain", self, PLAUSIBLE | given)
 
 
-def draw_gravity(ranges: Terrain, seed: int) -> Vector:
-    """Draw one episode's slope, independently of its conditions and its push.
+def draw_ground(ranges: Terrain, seed: int) -> Ground:
+    """Draw one episode's ground, independently of its conditions and its push.
+
+    Slope, bumps and friction have a generator each, so that a change of one leaves the others alone.
 
     :param ranges: ranges to draw from
-    :param seed: seed of the episode; the same seed draws the same direction on any slope
-    :return: gravity in the ground's frame, in m/s^2
+    :param seed: seed of the episode; the same seed draws the same direction on any slope, and the same bumps at any
+        height
     """
-    generator = random.Random(f"terrain {seed}")
+    heights, cell = _draw_bumps(ranges, random.Random(f"roughness {seed}"))
+    texture = random.Random(f"texture {seed}")
+    shares = (texture.random(), texture.random())
+    frictions = [
+        None if friction is None else friction[0] + share * (friction[1] - friction[0])
+        for friction, share in zip((ranges.friction_left, ranges.friction_right), shares, strict=True)
+    ]
+    gravity = _draw_gravity(ranges, random.Random(f"terrain {seed}"))
+    return Ground(gravity, (frictions[0], frictions[1]), heights, cell)
+
+
+def _draw_gravity(ranges: Terrain, generator: random.Random) -> Vector:
     slope = math.radians(generator.uniform(*ranges.slope_degrees))
     if slope == 0.0:
         return LEVEL_GRAVITY
     uphill = math.radians(generator.uniform(*ranges.direction_degrees))
     downhill = -GRAVITY * math.sin(slope)
     return (downhill * math.cos(uphill), downhill * math.sin(uphill), -GRAVITY * math.cos(slope))
+
+
+def _draw_bumps(ranges: Terrain, generator: random.Random) -> tuple[tuple[tuple[float, ...], ...], float]:
+    """Heights of the nodes, which are uniform and independent, and the distance between them."""
+    roughness, cell = generator.uniform(*ranges.roughness), generator.uniform(*ranges.cell)
+    if roughness == 0.0:
+        return LEVEL.heights, LEVEL.cell
+    count = 2 * round(REACH / cell) + 1
+    return tuple(tuple(roughness * generator.uniform(-1.0, 1.0) for _ in range(count)) for _ in range(count)), cell

@@ -14,10 +14,11 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.robot.description import RobotDescription
 from sarah.simulation.engines import Engine
+from sarah.simulation.ground import LEVEL
 from sarah.simulation.physics import Physics
 from sarah.simulation.randomisation import Conditions, Randomisation
-from sarah.simulation.simulator import LEVEL_GRAVITY, TorsoState
-from sarah.simulation.terrain import Terrain, draw_gravity
+from sarah.simulation.simulator import TorsoState
+from sarah.simulation.terrain import Terrain, draw_ground
 
 UPHILL_IN_FRONT = Terrain((20.0, 20.0), (90.0, 90.0))
 
@@ -52,13 +53,13 @@ def test_direction_of_level_ground_changes_no_byte(engine: Engine) -> None:
 
 def test_slope_changes_nothing_else_that_the_seed_draws() -> None:
     level, slope = conditions_of(EpisodeConfig()), conditions_of(EpisodeConfig(terrain=UPHILL_IN_FRONT))
-    assert level.gravity == LEVEL_GRAVITY and slope.gravity == draw_gravity(UPHILL_IN_FRONT, 3) != LEVEL_GRAVITY
-    assert dataclasses.replace(slope, gravity=LEVEL_GRAVITY) == level
+    assert level.ground == LEVEL and slope.ground == draw_ground(UPHILL_IN_FRONT, 3) != LEVEL
+    assert dataclasses.replace(slope, ground=LEVEL) == level
 
 
 def test_slope_is_no_matter_of_randomisation() -> None:
     config = EpisodeConfig(terrain=Terrain((0.0, 10.0)), randomisation=Randomisation(enabled=False))
-    assert conditions_of(config, 1).gravity != conditions_of(config, 2).gravity
+    assert conditions_of(config, 1).ground != conditions_of(config, 2).ground
 
 
 @pytest.mark.parametrize(("degrees", "ending"), [(24.0, "no_oscillation"), (26.0, "fell"), (-64.0, "no_oscillation")])
@@ -82,8 +83,9 @@ def test_tilt_of_a_tick_is_from_gravitys_vertical(strength: float) -> None:
     task = dataclasses.replace(sarah.STEPPING, name="watched", reward=reward, best_reward=1.0)
     config = EpisodeConfig(terrain=UPHILL_IN_FRONT)
     conditions = conditions_of(config, 0)
-    x, y, z = conditions.gravity
-    other = dataclasses.replace(conditions, gravity=(strength * x, strength * y, strength * z))
+    x, y, z = conditions.ground.gravity
+    ground = dataclasses.replace(conditions.ground, gravity=(strength * x, strength * y, strength * z))
+    other = dataclasses.replace(conditions, ground=ground)
     episode = Episode(config, 0, task, build=Leaning, conditions=other)
     episode.stand()
     episode.start(TRAINED_STEPPING)

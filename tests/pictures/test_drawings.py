@@ -9,7 +9,7 @@ from laboratory import need
 from sarah.robot.description import GROUPS, RobotDescription, describe_robot
 from sarah.simulation.renderer import Renderer
 from sarah.simulation.scenery import STANDARD_CAMERA, Camera, View, floor
-from sarah.simulation.terrain import Terrain, draw_gravity
+from sarah.simulation.terrain import Terrain, draw_ground
 
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 SIZE = (320, 240)
@@ -85,16 +85,18 @@ def test_robot_out_of_the_picture_leaves_the_floor_alone(robot: RobotDescription
 
 @pytest.mark.parametrize("uphill", [0.0, 90.0, 215.0])
 def test_gravity_points_down_in_the_picture_of_a_slope(uphill: float) -> None:
-    gravity = np.array(draw_gravity(Terrain((15.0, 15.0), (uphill, uphill)), 0))
-    camera = STANDARD_CAMERA._replace(gravity=tuple(gravity))
+    ground = draw_ground(Terrain((15.0, 15.0), (uphill, uphill)), 0)
+    camera = STANDARD_CAMERA._replace(ground=ground)
     middle = np.array((0.0, 0.0, camera.height))
-    (x, y), (x_below, y_below) = View(*SIZE, camera).pixels(np.array((middle, middle + 0.01 * gravity)))
+    (x, y), (x_below, y_below) = View(*SIZE, camera).pixels(
+        np.array((middle, middle + 0.01 * np.array(ground.gravity)))
+    )
     assert (x, y) == pytest.approx((SIZE[0] / 2, SIZE[1] / 2))
     assert x_below == pytest.approx(x) and y_below > y + 5.0
 
 
 def test_floor_of_a_slope_rises_uphill() -> None:
     """The camera stands in front of the robot, whose right is on the left of the picture."""
-    camera = Camera(yaw=180.0, gravity=draw_gravity(Terrain((15.0, 15.0), (0.0, 0.0)), 0))
+    camera = Camera(yaw=180.0, ground=draw_ground(Terrain((15.0, 15.0), (0.0, 0.0)), 0))
     (x_right, y_right), (x_left, y_left) = View(*SIZE, camera).pixels(np.array(((0.5, 0.0, 0.0), (-0.5, 0.0, 0.0))))
     assert x_right < x_left and y_right < y_left

@@ -10,7 +10,7 @@ from laboratory import BuildSimulation
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import Randomisation, draw_conditions
 from sarah.simulation.simulator import GRAVITY, Simulator
-from sarah.simulation.terrain import Terrain, draw_gravity
+from sarah.simulation.terrain import Terrain, draw_ground
 
 SECOND = PHYSICS["standard"].control_rate
 
@@ -70,5 +70,5 @@ def test_a_robot_of_other_masses_and_friction_does_not_creep(build: BuildSimulat
 def test_a_robot_that_stands_on_a_slope_hardly_creeps(build: BuildSimulation, degrees: float) -> None:
     """Measured in PyBullet: up to 5 mm in 14 s on 8 degrees; MuJoCo 0.5 mm."""
     drawn = draw_conditions(Randomisation(), 2)
-    gravity = draw_gravity(Terrain((8.0, 8.0), (degrees, degrees)), 0)
-    assert drift(build(replace(drawn, gravity=gravity)), 6) < 0.004
+    ground = draw_ground(Terrain((8.0, 8.0), (degrees, degrees)), 0)
+    assert drift(build(replace(drawn, ground=ground)), 6) < 0.004

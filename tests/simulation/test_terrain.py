@@ -7,10 +7,11 @@ import pytest
 from laboratory import BuildSimulation, Laboratory
 
 from sarah.errors import ConfigurationError
+from sarah.simulation.ground import LEVEL
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
 from sarah.simulation.randomisation import Conditions
-from sarah.simulation.simulator import GRAVITY, LEVEL_GRAVITY, Simulator
-from sarah.simulation.terrain import Terrain, draw_gravity
+from sarah.simulation.simulator import GRAVITY, Simulator
+from sarah.simulation.terrain import Terrain, draw_ground
 
 SECOND = PHYSICS["standard"].control_rate
 RIGHT, FORWARD, LEFT, BACKWARD = 0.0, 90.0, 180.0, 270.0
@@ -27,7 +28,7 @@ def build_on(build: BuildSimulation) -> BuildSimulation:
     def build_one(
         terrain: Terrain, friction: float = 0.9, physics: Physics = PHYSICS["standard"], seconds: float = 0.0
     ) -> Simulator:
-        simulation = build(Conditions(friction=friction, gravity=draw_gravity(terrain, 0)), physics)
+        simulation = build(Conditions(friction=friction, ground=draw_ground(terrain, 0)), physics)
         for _ in range(round(seconds * SECOND)):
             simulation.advance()
         return simulation
@@ -82,7 +83,7 @@ def test_falling_robot_accelerates_with_gravity_and_feels_nothing(lab: Laborator
     lab.place(simulation)
     for _ in range(SECOND // 10):
         simulation.advance()
-    fallen = np.array(draw_gravity(terrain, 0)) * 0.1
+    fallen = np.array(draw_ground(terrain, 0).gravity) * 0.1
     assert simulation.torso_state().velocity == pytest.approx(tuple(fallen), abs=1e-6)
     assert simulation.read().acceleration == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)
 
@@ -106,7 +107,7 @@ def test_one_simulation_leaves_the_next_on_its_own_slope(build_on: BuildSimulati
 
 @pytest.mark.parametrize(("degrees", "uphill"), [(12.0, 0.0), (12.0, 90.0), (30.0, 215.0)])
 def test_gravity_points_downhill(degrees: float, uphill: float) -> None:
-    gravity = np.array(draw_gravity(slope(degrees, uphill), 3))
+    gravity = np.array(draw_ground(slope(degrees, uphill), 3).gravity)
     along = (math.cos(math.radians(uphill)), math.sin(math.radians(uphill)), 0.0)
     assert np.linalg.norm(gravity) == pytest.approx(GRAVITY)
     assert gravity @ along == pytest.approx(-GRAVITY * math.sin(math.radians(degrees)))
@@ -115,20 +116,20 @@ def test_gravity_points_downhill(degrees: float, uphill: float) -> None:
 
 def test_slopes_cover_their_ranges() -> None:
     terrain = Terrain(slope_degrees=(2.0, 10.0), direction_degrees=(0.0, 360.0))
-    drawn = np.array([draw_gravity(terrain, seed) for seed in range(400)])
+    drawn = np.array([draw_ground(terrain, seed).gravity for seed in range(400)])
     degrees = np.degrees(np.arccos(-drawn[:, 2] / GRAVITY))
     assert 2.0 <= degrees.min() < 2.2 and 9.8 < degrees.max() <= 10.0
     assert len({(x > 0.0, y > 0.0) for x, y, _ in drawn}) == 4
 
 
 def test_seed_draws_the_same_direction_on_any_slope() -> None:
-    gentle, steep = (draw_gravity(Terrain((degrees, degrees)), seed=5) for degrees in (3.0, 9.0))
-    assert gentle != draw_gravity(Terrain((3.0, 3.0)), seed=6)
+    gentle, steep = (draw_ground(Terrain((degrees, degrees)), seed=5).gravity for degrees in (3.0, 9.0))
+    assert gentle != draw_ground(Terrain((3.0, 3.0)), seed=6).gravity
     assert math.atan2(gentle[1], gentle[0]) == pytest.approx(math.atan2(steep[1], steep[0]))
 
 
 def test_level_ground_is_exactly_level() -> None:
-    assert all(draw_gravity(Terrain(), seed) == LEVEL_GRAVITY for seed in range(5))
+    assert all(draw_ground(Terrain(), seed) == LEVEL for seed in range(5))
 
 
 @pytest.mark.parametrize(
