@@ -79,6 +79,22 @@ class BulletLaboratory:
         """Of all soles."""
         return {self._dynamics(simulation, f"{side}_{plate}")[1] for side, plate in product(Side, PLATES)}
 
+    def friction_under(self, simulation: Any, side: Side) -> set[float]:
+        """Of a foot's soles."""
+        return {self._dynamics(simulation, f"{side}_{plate}")[1] for plate in PLATES}
+
+    def touches_ground(self, simulation: Any, position: Sequence[float]) -> bool:
+        """Whether a ball as large as a sole's contact touches the ground."""
+        client = simulation.client
+        shape = pybullet.createCollisionShape(
+            pybullet.GEOM_SPHERE, radius=simulation.robot.contact_radius, physicsClientId=client
+        )
+        ball = pybullet.createMultiBody(1.0, shape, basePosition=position, physicsClientId=client)
+        pybullet.performCollisionDetection(physicsClientId=client)
+        contacts = pybullet.getContactPoints(ball, 0, physicsClientId=client)  # the ground is the first body
+        pybullet.removeBody(ball, physicsClientId=client)
+        return any(contact[8] <= 0.0 for contact in contacts)
+
     def link_position(self, simulation: Any, link: str) -> np.ndarray:
         """Of a link's frame, in the world's."""
         if link == "torso":
@@ -145,6 +161,23 @@ class MujocoLaboratory:
         """Of all soles."""
         model = simulation.model
         return {float(friction) for friction in model.pair_friction[model.pair_dim == 3, :2].ravel()}
+
+    def friction_under(self, simulation: Any, side: Side) -> set[float]:
+        """Of a foot's soles."""
+        model = simulation.model
+        soles = [index for index in range(model.ngeom) if model.geom(index).name.startswith(f"{side}_")]
+        pairs = (model.pair_dim == 3) & np.isin(model.pair_geom2, soles)
+        return {float(friction) for friction in model.pair_friction[pairs, :2].ravel()}
+
+    def touches_ground(self, simulation: Any, position: Sequence[float]) -> bool:
+        """Whether a sole's contact would touch the ground somewhere else."""
+        import mujoco
+
+        model, data = simulation.model, simulation.data
+        floor, sole = model.geom("floor").id, model.geom("left_forefoot_sole_0").id
+        data.geom_xpos[sole] = position
+        mujoco.mj_collision(model, data)
+        return any({*contact.geom} == {floor, sole} and contact.dist <= 0.0 for contact in data.contact)
 
     def link_position(self, simulation: Any, link: str) -> np.ndarray:
         """Of a link's frame, in the world's."""

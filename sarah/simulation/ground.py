@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import product
 
 from sarah.robot.reading import Side, Vector
 from sarah.simulation.simulator import LEVEL_GRAVITY
+
+BALL_SAMPLES = 8
+"""Number of samples of the surface from under a ball's centre to its edge."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +64,29 @@ class Ground:
         x, y, z = position
         height, slope_x, slope_y = self._triangle(x, y)
         return (z - height) / math.sqrt(1.0 + slope_x * slope_x + slope_y * slope_y)
+
+    def ball_height(self, x: float, y: float, radius: float) -> float:
+        """Height of the centre of a ball that lies on the surface and can only move up and down, in m.
+
+        The surface is sampled under the ball, at the nodes and between. For soles that is exact to 0.4 mm, and on the
+        steepest bumps to 1 mm.
+
+        :param x: place to the right, in m
+        :param y: place forward, in m
+        :param radius: radius of the ball, in m
+        """
+        steps = [radius * step / BALL_SAMPLES for step in range(-BALL_SAMPLES, BALL_SAMPLES + 1)]
+        columns, rows = self._nodes_within(x, radius), self._nodes_within(y, radius)
+        return max(
+            self.height(x + right, y + forward) + math.sqrt(under)
+            for right, forward in (*product(steps, steps), *product(columns, rows))
+            if (under := radius * radius - right * right - forward * forward) >= 0.0
+        )
+
+    def _nodes_within(self, place: float, radius: float) -> list[float]:
+        """Distances along an axis from a place to the nodes that are not farther away than a radius."""
+        first, last = math.ceil((place - radius) / self.cell), math.floor((place + radius) / self.cell)
+        return [index * self.cell - place for index in range(first, last + 1)]
 
     def _triangle(self, x: float, y: float) -> tuple[float, float, float]:
         """Height at a place, and the slopes along x and y of the triangle there."""

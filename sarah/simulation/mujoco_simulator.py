@@ -87,8 +87,8 @@ class MujocoSimulator:
         self._servos = list(zip(shares, self._positions, self._speeds, strict=True))
         self._before = np.empty(mujoco.mj_stateSize(self.model, STATE))
         self.data.qpos[2] = robot.standing_height
-        if self._ground.is_rough:  # the soles touch the ground, and nothing is inside it
-            self.data.qpos[2] -= min(self.sole_height(side) for side in Side)
+        if self._ground.is_rough:
+            self._stand_on_bumps()
         # These are views of MuJoCo's memory.
         self._qpos, self._qvel, self._pads = self.data.qpos, self.data.qvel, self.data.sensordata
         self._pushed = self.data.xfrc_applied[self.model.body("torso").id, :3]
@@ -127,6 +127,13 @@ class MujocoSimulator:
         heights, reach = np.array(self._ground.heights), self._ground.reach
         self.model.hfield_size[0, :2] = reach
         self.model.hfield_data[:] = (0.5 + 0.5 * heights[:, ::-1].T / LARGEST_ROUGHNESS).ravel()
+
+    def _stand_on_bumps(self) -> None:
+        """Move the robot up or down until a sole touches the ground and none is inside it."""
+        mujoco.mj_kinematics(self.model, self.data)
+        centres, radius = self.data.geom_xpos.tolist(), self.robot.contact_radius
+        soles = [centres[sole] for side in Side for sole in self._feet[side]]
+        self.data.qpos[2] += max(self._ground.ball_height(x, y, radius) - z for x, y, z in soles)
 
     def _let_follow(self, actuator: int) -> None:
         """Let a servo follow its target."""

@@ -145,10 +145,15 @@ class PyBulletSimulator:
         pybullet.changeDynamics(floor, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=self.client)
 
     def _stand_on_bumps(self) -> None:
-        """Move the robot along the normal until its soles touch the ground, and nothing is inside it."""
-        gap = min(self.sole_height(side) for side in Side)
+        """Move the robot up or down until a sole touches the ground and none is inside it."""
+        radius = self.robot.contact_radius
+        lift = max(
+            self._ground.ball_height(sole_x, sole_y, radius) - sole_z
+            for side in Side
+            for sole_x, sole_y, sole_z in self._sole_centres(side)
+        )
         (x, y, z), orientation = pybullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client)
-        pybullet.resetBasePositionAndOrientation(self.body, (x, y, z - gap), orientation, physicsClientId=self.client)
+        pybullet.resetBasePositionAndOrientation(self.body, (x, y, z + lift), orientation, physicsClientId=self.client)
 
     def _keep_only_pad_contacts(self) -> None:
         links = sorted(set(self.links.values()))

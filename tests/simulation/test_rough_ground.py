@@ -1,0 +1,196 @@
+"""Rough ground: one surface for both engines, for spawning and for clearances; and friction of its own per foot."""
+
+import dataclasses
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from laboratory import BuildSimulation, Laboratory, laboratory, need
+
+from sarah.errors import ConfigurationError
+from sarah.robot.description import describe_robot
+from sarah.robot.reading import Side, Vector
+from sarah.simulation.build import simulator_of
+from sarah.simulation.ground import LEVEL, Ground
+from sarah.simulation.physics import PHYSICS
+from sarah.simulation.randomisation import Conditions
+from sarah.simulation.simulator import Simulator
+from sarah.simulation.terrain import Terrain, draw_ground
+
+ROUGH = Terrain(roughness=0.01)  # type: ignore[arg-type]  # one number fixes it
+RADIUS = describe_robot().contact_radius
+HILL = Ground(heights=((0.0, 0.0, 0.0), (0.0, 0.01, 0.0), (0.0, 0.0, 0.0)), cell=0.1)
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "height"),
+    [
+        (0.0, 0.0, 0.01),
+        (0.05, 0.0, 0.005),
+        (0.02, 0.03, 0.005),
+        (-0.05, 0.05, 0.005),  # on the edge between two triangles
+        (-0.02, 0.02, 0.008),
+        (-0.05, -0.05, 0.0),  # and where an edge leads past the hill
+        (-0.02, -0.02, 0.006),
+        (0.1, 0.1, 0.0),
+        (0.2, 0.0, 0.0),  # beyond
+    ],
+)
+def test_height_between_nodes_is_that_of_their_triangle(x: float, y: float, height: float) -> None:
+    assert HILL.height(x, y) == pytest.approx(height)
+
+
+def test_distance_is_along_the_normal_of_the_triangle() -> None:
+    """Right of the hilltop the surface falls by 1 in 10."""
+    assert HILL.distance((0.05, 0.01, 0.105)) == pytest.approx((0.1 + 0.001) / math.sqrt(1.02), rel=1e-3)
+    assert HILL.distance((0.05, 0.0, 0.004)) < 0.0
+    assert LEVEL.distance((3.0, -2.0, 0.25)) == 0.25
+
+
+@settings(max_examples=30)
+@given(
+    roughness=st.floats(1e-4, 0.05),
+    cell=st.floats(0.02, 0.1),
+    seed=st.integers(0, 2**32),
+)
+def test_bumps_stay_within_their_height_and_reach_as_far_as_promised(roughness: float, cell: float, seed: int) -> None:
+    ground = draw_ground(Terrain(roughness=(roughness, roughness), cell=(cell, cell)), seed)
+    heights = np.array(ground.heights)
+    assert heights.shape[0] == heights.shape[1] and heights.shape[0] % 2 == 1
+    assert 0.6 * roughness < np.abs(heights).max() <= roughness
+    assert ground.cell == cell and 0.7 - cell / 2 <= ground.reach <= 0.7 + cell / 2
+
+
+def test_a_seed_draws_the_same_bumps_at_any_height_and_nothing_else_changes() -> None:
+    low, high = (
+        draw_ground(Terrain(slope_degrees=(0.0, 9.0), roughness=(height, height), friction_left=(0.2, 0.4)), 7)
+        for height in (0.01, 0.02)
+    )
+    assert np.array(high.heights) == pytest.approx(2 * np.array(low.heights))
+    assert dataclasses.replace(high, heights=low.heights) == low
+    assert low.gravity == draw_ground(Terrain(slope_degrees=(0.0, 9.0)), 7).gravity
+    assert np.corrcoef(*(np.ravel(draw_ground(ROUGH, seed).heights) for seed in (1, 2)))[0, 1] == pytest.approx(
+        0.0, abs=0.15
+    )
+
+
+@pytest.mark.parametrize("cell", [0.02, 0.05, 0.1])
+def test_a_ball_lies_at_the_same_height_in_both_engines(cell: float) -> None:
+    """At 100 places, found by halving: within 10 um, and near where the robot would be put down."""
+    for engine in ("pybullet", "mujoco"):
+        need(engine)
+    ground = draw_ground(Terrain(roughness=(0.015, 0.015), cell=(cell, cell)), 1)
+    places = np.random.default_rng(0).uniform(-0.65, 0.65, (100, 2)).tolist()
+    heights = {engine: [ball_height(engine, ground, x, y) for x, y in places] for engine in ("pybullet", "mujoco")}
+    assert heights["mujoco"] == pytest.approx(heights["pybullet"], abs=1e-5)
+    put_down = [ground.ball_height(x, y, RADIUS) for x, y in places]
+    assert put_down == pytest.approx(heights["mujoco"], abs=2e-5 / cell)
+
+
+def ball_height(engine: str, ground: Ground, x: float, y: float) -> float:
+    """Height of a ball's centre at which it begins to touch the ground of an engine."""
+    simulation: Any = simulator_of(engine)(describe_robot(), PHYSICS["standard"], Conditions(ground=ground))
+    low, high = ground.height(x, y), 0.04
+    while high - low > 5e-6:
+        middle = (low + high) / 2
+        low, high = (middle, high) if laboratory(engine).touches_ground(simulation, (x, y, middle)) else (low, middle)
+    simulation.close()
+    return high
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_robot_begins_on_the_ground_and_nowhere_inside_it(build: BuildSimulation, seed: int) -> None:
+    simulation = build(Conditions(ground=draw_ground(ROUGH, seed)))
+    lowest = min(simulation.sole_height(side) for side in Side)
+    assert -1e-4 < lowest < 0.001
+    assert not any(simulation.read().pressures)
+    simulation.advance()
+    assert abs(simulation.torso_state().velocity[2]) < 0.15  # of a free fall, and not thrown up
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_soles_of_a_standing_robot_rest_on_the_bumps(build: BuildSimulation, seed: int) -> None:
+    """Each foot's lowest contact is on the surface, a few tenths of a millimetre inside it at most."""
+    simulation = build(Conditions(ground=draw_ground(ROUGH, seed)))
+    advance(simulation, 1.5)
+    for side in Side:
+        assert -0.001 < simulation.sole_height(side) < 0.0005
+    assert simulation.torso_state().axis[2] > math.cos(math.radians(8.0))
+
+
+@pytest.mark.parametrize("side", list(Side))
+def test_a_lifted_foot_clears_the_ground_by_what_the_leg_retracts(build: BuildSimulation, side: Side) -> None:
+    flat, rough = (build(Conditions(ground=draw_ground(Terrain(roughness=height), 2))) for height in (1e-9, 0.01))  # type: ignore[arg-type]
+    for simulation in (flat, rough):
+        place = 2 if side is Side.LEFT else 5
+        simulation.set_targets(tuple(0.02 if index == place else 0.0 for index in range(6)))
+        advance(simulation, 0.1)
+    assert rough.sole_height(side) == pytest.approx(flat.sole_height(side), abs=0.02)
+
+
+def test_bumps_of_no_height_are_a_plane(build: BuildSimulation) -> None:
+    plane, field = build(), build(Conditions(ground=draw_ground(Terrain(roughness=(1e-9, 1e-9)), 0)))
+    for simulation in (plane, field):
+        advance(simulation, 2.0)
+    assert field.torso_state().position == pytest.approx(plane.torso_state().position, abs=3e-4)
+
+
+@pytest.mark.parametrize("slippery", list(Side))
+def test_each_foot_has_the_friction_of_its_ground(lab: Laboratory, build: BuildSimulation, slippery: Side) -> None:
+    terrain = Terrain(**{f"friction_{slippery}": (0.02, 0.02)})  # type: ignore[arg-type]
+    simulation = build(Conditions(friction=0.9, ground=draw_ground(terrain, 0)))
+    assert lab.friction_under(simulation, slippery) == {0.02}
+    assert lab.friction_under(simulation, slippery.other) == {0.9}
+
+
+def test_a_robot_with_both_feet_on_ice_slides(lab: Laboratory, build: BuildSimulation) -> None:
+    """On 8 degrees, with a coefficient of 0.05, by half of g (sin - 0.05 cos) t^2."""
+    terrain = Terrain(
+        slope_degrees=(8.0, 8.0), direction_degrees=(0.0, 0.0), friction_left=(0.05, 0.05), friction_right=(0.05, 0.05)
+    )
+    simulation = build(Conditions(ground=draw_ground(terrain, 0)))
+    advance(simulation, 0.8)
+    angle = math.radians(8.0)
+    expected = -0.5 * 9.81 * (math.sin(angle) - 0.05 * math.cos(angle)) * 0.8**2
+    assert simulation.torso_state().position[0] == pytest.approx(expected, rel=0.1)
+
+
+def advance(simulation: Simulator, seconds: float) -> None:
+    for _ in range(round(seconds * 100)):
+        simulation.advance()
+
+
+def test_frictions_are_drawn_for_each_foot() -> None:
+    terrain = Terrain(friction_left=(0.15, 0.3), friction_right=(1.0, 1.2))
+    drawn = np.array([draw_ground(terrain, seed).frictions for seed in range(200)], dtype=float)
+    assert drawn.min(axis=0) == pytest.approx((0.15, 1.0), abs=0.01)
+    assert drawn.max(axis=0) == pytest.approx((0.3, 1.2), abs=0.01)
+    assert abs(np.corrcoef(drawn.T)[0, 1]) < 0.2
+    alone = draw_ground(Terrain(friction_left=(0.15, 0.3)), 3)
+    assert alone.frictions == (drawn[3, 0], None)
+    conditions = Conditions(friction=0.8, ground=alone)
+    assert (conditions.friction_under(Side.LEFT), conditions.friction_under(Side.RIGHT)) == (drawn[3, 0], 0.8)
+
+
+@pytest.mark.parametrize(
+    ("setting", "message"),
+    [
+        ({"roughness": 0.06}, r"terrain\.roughness must be between 0 and 0\.05 m"),
+        ({"roughness": (0.01, 0.005)}, r"terrain\.roughness .* in rising order"),
+        ({"cell": 0.01}, r"terrain\.cell must be between 0\.02 and 0\.1 m"),
+        ({"friction_left": -0.1}, r"terrain\.friction_left must be between 0 and 5"),
+        ({"friction_right": "ice"}, r"terrain\.friction_right must be between 0 and 5"),
+    ],
+)
+def test_impossible_ground_is_refused(setting: dict[str, Any], message: str) -> None:
+    with pytest.raises(ConfigurationError, match=message):
+        Terrain(**setting)
+
+
+def test_a_place_far_away_has_no_bumps() -> None:
+    ground = draw_ground(ROUGH, 0)
+    far: Vector = (5.0, 5.0, 0.3)
+    assert ground.distance(far) == 0.3 and LEVEL.reach == math.inf
