@@ -39,6 +39,8 @@ class EvalOptions(EpisodeOptions):
     :param robustness: folder for a table and a polar plot of survival by force and direction of the push, for these
         parameters and the baseline. --episodes is the number at each force
     :param forces: forces of the pushes of --robustness, in N
+    :param terrain: folder for a table and a picture of score, steps and survival on slopes, bumps and slippery ground,
+        without a push and with one of 75 N. --episodes is the number on each ground
     :param episodes: number of episodes
     :param first_seed: seed of the first episode; the others follow. No training has seen the default: trainings draw
         seeds from 2^31 up, and their summaries begin at 0
@@ -49,6 +51,7 @@ class EvalOptions(EpisodeOptions):
 
     subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"
     robustness: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
+    terrain: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     forces: Annotated[tuple[float, ...], tyro.conf.arg(metavar="FLOAT...")] = (25.0, 50.0, 75.0, 100.0, 125.0, 150.0)
     episodes: int = 20
     first_seed: int = FIRST_EVALUATION_SEED
@@ -62,8 +65,9 @@ class EvalOptions(EpisodeOptions):
         check_range("first-seed", self.first_seed, 0, LARGEST_SEED)
         for newtons in self.forces:
             check_range("forces", newtons, SMALLEST_FORCE, LARGEST_FORCE, "N")
-        if self.json and self.robustness is not None:
-            raise ConfigurationError("--robustness prints a table, not JSON: leave --json out")
+        for option in ("robustness", "terrain"):
+            if self.json and getattr(self, option) is not None:
+                raise ConfigurationError(f"--{option} prints a table, not JSON: leave --json out")
 
     @property
     def seeds(self) -> range:
@@ -88,6 +92,9 @@ def _evaluate(arguments: Sequence[str]) -> None:
     with Workers(options.workers, options.scheduler) as workers:
         if options.robustness is not None:
             _show_robustness(spec.parameters, spec.config, options, workers)
+        if options.terrain is not None:
+            _show_terrain(spec, options.terrain, options, workers)
+        if options.robustness is not None or options.terrain is not None:
             return
         say_engine(spec.config, options.engine)
         evaluation = evaluate(spec.task, spec.parameters, spec.config, options.seeds, workers)
@@ -178,10 +185,7 @@ def _show_robustness(
 
     folder, neutral = options.robustness, BALANCE.neutral
     assert folder is not None and neutral is not None and isinstance(config, BalanceConfig)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ConfigurationError(f"cannot write folder {folder}: {error.strerror}") from error
+    _make(folder)
     say_engine(config, options.engine)
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
     pushed = push_many((neutral, parameters), config, workers, options.forces, options.episodes, options.first_seed)
@@ -199,3 +203,25 @@ def _show_robustness(
     (folder / "robustness.md").write_text(table + "\n", encoding="utf-8")
     for file in draw_survival(dict(zip(names, pushed, strict=True)), folder / "robustness"):
         print(file)
+
+
+def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers: Workers) -> None:
+    """Print the table as Markdown, and write the table and the picture."""
+    from sarah.reports.terrain import as_markdown, situations, try_terrain
+    from sarah.reports.terrain_figure import draw_terrain
+
+    _make(folder)
+    say_engine(spec.config, options.engine)
+    rows = try_terrain(spec.task, spec.parameters, spec.config, options.seeds, workers, list(situations()))
+    table = as_markdown(rows)
+    print(table)
+    (folder / "terrain.md").write_text(table + "\n", encoding="utf-8")
+    for file in draw_terrain(rows, folder / "terrain"):
+        print(file)
+
+
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ConfigurationError(f"cannot write folder {folder}: {error.strerror}") from error

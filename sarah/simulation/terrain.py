@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from sarah.errors import check_fields, to_ranges
 from sarah.robot.reading import GRAVITY, Vector
-from sarah.simulation.ground import LEVEL, Ground
+from sarah.simulation.ground import Ground
 from sarah.simulation.simulator import LEVEL_GRAVITY
 
 LARGEST_ROUGHNESS = 0.05
@@ -61,39 +61,53 @@ class Terrain:
         check_fields("terrain", self, PLAUSIBLE | given)
 
 
-def draw_ground(ranges: Terrain, seed: int) -> Ground:
-    """Draw one episode's ground, independently of its conditions and its push.
+def draw_terrain(ranges: Terrain, seed: int) -> Terrain:
+    """Draw one episode's settings of the ground, independently of its conditions and its push.
 
     Slope, bumps and friction have a generator each, so that a change of one leaves the others alone.
 
     :param ranges: ranges to draw from
-    :param seed: seed of the episode; the same seed draws the same direction on any slope, and the same bumps at any
-        height
+    :param seed: seed of the episode; the same seed draws the same direction on any slope
+    :return: settings whose ranges are single values, from which the same seed draws the same ground
     """
-    heights, cell = _draw_bumps(ranges, random.Random(f"roughness {seed}"))
+    slope, bumps = random.Random(f"terrain {seed}"), random.Random(f"roughness {seed}")
     texture = random.Random(f"texture {seed}")
-    shares = (texture.random(), texture.random())
-    frictions = [
-        None if friction is None else friction[0] + share * (friction[1] - friction[0])
-        for friction, share in zip((ranges.friction_left, ranges.friction_right), shares, strict=True)
-    ]
-    gravity = _draw_gravity(ranges, random.Random(f"terrain {seed}"))
-    return Ground(gravity, (frictions[0], frictions[1]), heights, cell)
+    shares = {name: texture.random() for name in PLAUSIBLE_FRICTION}
+    given = {name: friction for name in shares if (friction := getattr(ranges, name)) is not None}
+    return Terrain(
+        slope_degrees=_single(slope.uniform(*ranges.slope_degrees)),
+        direction_degrees=_single(slope.uniform(*ranges.direction_degrees)),
+        roughness=_single(bumps.uniform(*ranges.roughness)),
+        cell=_single(bumps.uniform(*ranges.cell)),
+        **{name: _single(low + shares[name] * (high - low)) for name, (low, high) in given.items()},
+    )
 
 
-def _draw_gravity(ranges: Terrain, generator: random.Random) -> Vector:
-    slope = math.radians(generator.uniform(*ranges.slope_degrees))
+def _single(value: float) -> tuple[float, float]:
+    return (value, value)
+
+
+def draw_ground(ranges: Terrain, seed: int) -> Ground:
+    """Make one episode's ground, as :func:`draw_terrain` draws it.
+
+    :param ranges: ranges to draw from
+    :param seed: seed of the episode; the same seed draws the same bumps at any height
+    """
+    drawn = draw_terrain(ranges, seed)
+    frictions = [friction and friction[0] for friction in (drawn.friction_left, drawn.friction_right)]
+    (roughness, _), (cell, _) = drawn.roughness, drawn.cell
+    if roughness == 0.0:
+        return Ground(_gravity_on(drawn), (frictions[0], frictions[1]))
+    count = 2 * round(REACH / cell) + 1
+    nodes = random.Random(f"bumps {seed}")
+    heights = tuple(tuple(roughness * nodes.uniform(-1.0, 1.0) for _ in range(count)) for _ in range(count))
+    return Ground(_gravity_on(drawn), (frictions[0], frictions[1]), heights, cell)
+
+
+def _gravity_on(drawn: Terrain) -> Vector:
+    slope = math.radians(drawn.slope_degrees[0])
     if slope == 0.0:
         return LEVEL_GRAVITY
-    uphill = math.radians(generator.uniform(*ranges.direction_degrees))
+    uphill = math.radians(drawn.direction_degrees[0])
     downhill = -GRAVITY * math.sin(slope)
     return (downhill * math.cos(uphill), downhill * math.sin(uphill), -GRAVITY * math.cos(slope))
-
-
-def _draw_bumps(ranges: Terrain, generator: random.Random) -> tuple[tuple[tuple[float, ...], ...], float]:
-    """Heights of the nodes, which are uniform and independent, and the distance between them."""
-    roughness, cell = generator.uniform(*ranges.roughness), generator.uniform(*ranges.cell)
-    if roughness == 0.0:
-        return LEVEL.heights, LEVEL.cell
-    count = 2 * round(REACH / cell) + 1
-    return tuple(tuple(roughness * generator.uniform(-1.0, 1.0) for _ in range(count)) for _ in range(count)), cell

@@ -2,8 +2,9 @@
 
 An agent's own choice stops at the edge of a flat crest. The best single episode was lucky. And the reward does not show
 a robot that steps to a clock or drags its feet, so an episode without a valid gait has less merit here than its score.
-For all algorithms, therefore, parameters are judged by the merit of the episodes around them. The last episodes of a
-budget compare the best candidates, all on the same new seeds; the first of them stays unless another is clearly better.
+For all algorithms, therefore, parameters are judged by the merit that a Gaussian process expects after all episodes.
+The last episodes of a budget compare the best candidates, all on the same new seeds; the first of them stays unless
+another is clearly better.
 """
 
 from __future__ import annotations
@@ -14,21 +15,22 @@ from statistics import mean, stdev
 
 import numpy as np
 
-from sarah.agents.buffers import DOUBT
 from sarah.episode.evaluation import SMALLEST_CLEARANCE, SMALLEST_SENSOR_SHARE, Evaluation
 from sarah.episode.result import EpisodeResult
 from sarah.episode.tasks import Task
 
 Parameters = tuple[float, ...]
 
-NEIGHBOURHOOD = 0.1
-"""Distance up to which an episode counts for other parameters than its own, as a share of each parameter's range."""
+LENGTH = 0.2
+"""Length scale of the Gaussian process, as a share of each parameter's range."""
+NOISE = 1.0
+"""Variance of an episode's merit by chance, as a share of the variance between parameters."""
+MOST_EPISODES = 1000
+"""Number of episodes that are judged by: the last ones. The time that a choice takes grows with its third power."""
 CLEARLY = 2.0
 """Number of standard errors by which a candidate must be better than the first to take its place."""
 DISTINCT = 0.1
 """Smallest distance between candidates, as a share of each parameter's range."""
-SMALLEST_ROOM = 64
-"""Number of rows for episodes at first. It doubles whenever they are full."""
 
 
 def merit(result: EpisodeResult, must_step: bool = True) -> float:
@@ -51,7 +53,9 @@ def merit(result: EpisodeResult, must_step: bool = True) -> float:
 
 
 class Tried:
-    """Episodes so far, and the mean merit around each: kept up to date, so that a new one costs linear time.
+    """Episodes so far, and the merit that a Gaussian process expects of their parameters.
+
+    Its length scale is a fifth of each range, as fits the landscapes of both tasks.
 
     :param task: task that owns the parameters
     :param episodes: parameters and merit of each episode
@@ -60,11 +64,8 @@ class Tried:
     def __init__(self, task: Task, episodes: Iterable[tuple[Parameters, float]] = ()) -> None:
         self.parameters: list[Parameters] = []
         """Parameters of every episode."""
+        self._merits: list[float] = []
         self._widths = np.array([parameter.width for parameter in task.parameters])
-        # Of the choice, then of every episode, with room for more: the place, the merit, and of the episodes around it
-        # the sums of their weights and of their weighted merits.
-        self._places = np.zeros((SMALLEST_ROOM, len(self._widths)))
-        self._merits, self._weights, self._weighted_merits = np.zeros((3, SMALLEST_ROOM))
         for episode in episodes:
             self.append(episode)
 
@@ -79,63 +80,52 @@ class Tried:
         """
         parameters, merit = episode
         self.parameters.append(parameters)
-        new = len(self)
-        if new == len(self._merits):
-            self._double_room()
-        self._merits[new] = merit
-        weights = self._put(new, parameters)
-        self._weights[1:new] += weights[:-1]
-        self._weighted_merits[1:new] += merit * weights[:-1]
+        self._merits.append(merit)
 
     def best(self, choice: Parameters, count: int) -> list[Parameters]:
-        """Choose the parameters whose neighbourhoods have the highest merit, not too close together.
+        """Choose the parameters of which the highest merit is expected, not too close together.
 
         :param choice: parameters to choose among, beside those of the episodes
         :param count: largest number to choose
         :return: the best first; among equals the choice, then the oldest
         """
-        self._put(0, choice)
-        rows = slice(0, len(self) + 1)
-        places = self._places[rows]
-        # Doubt draws towards 0, or towards the worst of a reward that can be negative.
-        worst = min(0.0, float(self._merits[1 : len(self) + 1].min(initial=0.0)))
-        weights = self._weights[rows]
-        means = (self._weighted_merits[rows] - worst * weights) / (weights + DOUBT)
+        candidates = [choice, *self.parameters[-MOST_EPISODES:]]
+        places = np.array(candidates) / self._widths
+        expected = expected_merits(places[1:], np.array(self._merits[-MOST_EPISODES:]), places)
         chosen: list[Parameters] = []
-        while True:
-            index = int(np.argmax(means))
-            chosen.append(self.parameters[index - 1] if index else choice)
-            if len(chosen) == count:
-                return chosen
-            means[squared_lengths(places - places[index]) < DISTINCT**2] = -np.inf
-            if means.max() == -np.inf:
-                return chosen
-
-    def _put(self, row: int, parameters: Parameters) -> np.ndarray:
-        """Put parameters into a row, with the sums of the episodes around them, whose weights are returned."""
-        self._places[row] = np.array(parameters) / self._widths
-        episodes = slice(1, len(self) + 1)
-        weights: np.ndarray = np.exp(
-            squared_lengths(self._places[episodes] - self._places[row]) / (-2 * NEIGHBOURHOOD**2)
-        )
-        self._weights[row] = weights.sum()
-        self._weighted_merits[row] = weights @ self._merits[episodes]
-        return weights
-
-    def _double_room(self) -> None:
-        self._places = np.vstack((self._places, np.zeros_like(self._places)))
-        self._merits, self._weights, self._weighted_merits = (
-            np.append(values, np.zeros_like(values)) for values in (self._merits, self._weights, self._weighted_merits)
-        )
+        while len(chosen) < count and expected.max() > -np.inf:
+            index = int(np.argmax(expected))
+            chosen.append(candidates[index])
+            expected[_squared_distances(places, places[index : index + 1])[:, 0] < DISTINCT**2] = -np.inf
+        return chosen
 
 
-def squared_lengths(differences: np.ndarray) -> np.ndarray:
-    """Squared length of each row.
+def expected_merits(tried: np.ndarray, merits: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Mean of a Gaussian process (Rasmussen and Williams 2006, equation 2.25).
 
-    :param differences: array of shape (n, dimensions)
+    Its prior mean is doubt: 0, or the worst of merits that can be negative. So what nobody has tried is worth nothing.
+
+    :param tried: parameters of the episodes as shares of their ranges, of shape (n, dimensions)
+    :param merits: merits of the episodes, of shape (n,)
+    :param places: parameters to judge, as shares of their ranges, of shape (m, dimensions)
+    :return: expected merits, of shape (m,)
     """
-    lengths: np.ndarray = np.einsum("ij,ij->i", differences, differences)
-    return lengths
+    if not len(merits):
+        return np.zeros(len(places))
+    doubt = min(0.0, float(merits.min()))
+    covariances = _covariances(tried, tried) + NOISE * np.eye(len(tried))
+    expected: np.ndarray = doubt + _covariances(places, tried) @ np.linalg.solve(covariances, merits - doubt)
+    return expected
+
+
+def _covariances(places: np.ndarray, others: np.ndarray) -> np.ndarray:
+    covariances: np.ndarray = np.exp(_squared_distances(places, others) / (-2.0 * LENGTH**2))
+    return covariances
+
+
+def _squared_distances(places: np.ndarray, others: np.ndarray) -> np.ndarray:
+    distances: np.ndarray = ((places[:, None] - others) ** 2).sum(axis=2)
+    return distances
 
 
 def best_compared(
@@ -143,11 +133,11 @@ def best_compared(
 ) -> Parameters:
     """Choose a candidate after the comparison: the first, unless another one is better for certain.
 
-    The first had the best neighbourhood, which often is more episodes than the comparison has: a larger mean alone
-    would be luck where episodes differ much. So another candidate must be better by two standard errors of the
+    The first is the best after all episodes, which are more than the comparison has: a larger mean alone would be luck
+    where episodes differ much. So another candidate must be better by two standard errors of the
     difference on the same seeds. A valid gait that does not chatter comes before one that is not.
 
-    :param results: results of each candidate's episodes, on the same seeds in turn; the best neighbourhood's come first
+    :param results: results of each candidate's episodes, on the same seeds in turn; the first choice comes first
     :param baseline: evaluation that chatter is judged against; without one nothing chatters
     :param must_step: whether the task wants a gait; otherwise every gait is valid
     """

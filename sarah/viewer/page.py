@@ -12,12 +12,15 @@ from typing import Any, NamedTuple
 import viser
 
 from sarah.episode.ending import ending_words
+from sarah.episode.episode import conditions_of
 from sarah.episode.result import METRICS, EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, Task
 from sarah.episode.trace import Trace
 from sarah.robot.description import describe_robot
+from sarah.robot.reading import Side
 from sarah.runs.run_episodes import RunEpisode
+from sarah.simulation.terrain import draw_ground
 from sarah.viewer.background import BackgroundSimulation, Wish
 from sarah.viewer.playback import Playback
 from sarah.viewer.plots import Plots
@@ -27,6 +30,8 @@ from sarah.viewer.scene import RobotScene, describe_tick
 SPEEDS = {"1/10": 0.1, "1/4": 0.25, "1/2": 0.5, "1": 1.0, "2": 2.0, "4": 4.0}
 SECONDS_BEFORE_PUSH = 0.5
 """Time before a push from which the page plays on when the push is added, in s."""
+LARGEST_SLOPE, HIGHEST_BUMPS, LARGEST_FRICTION = 15.0, 30.0, 1.5
+"""Upper ends of the ground's sliders: degrees, mm, and a coefficient."""
 LARGEST_PUSH = 200.0
 """Upper end of the force's slider, in N."""
 
@@ -103,6 +108,17 @@ class Page:
             )
             self._push_button = gui.add_button("Push now", hint="at the shown time")
             self._no_push_button = gui.add_button("No push", color="gray")
+        with gui.add_folder("Ground"):
+            self._slope = gui.add_slider("Slope (°)", min=0.0, max=LARGEST_SLOPE, step=0.5, initial_value=0.0)
+            self._uphill = gui.add_slider(
+                "Uphill (°)", min=0.0, max=360.0, step=5.0, initial_value=0.0, hint="0 right, 90 forward, 180 left"
+            )
+            self._roughness = gui.add_slider(
+                "Bumps (mm)", min=0.0, max=HIGHEST_BUMPS, step=1.0, initial_value=0.0, hint="another seed has others"
+            )
+            self._friction = gui.add_slider(
+                "Friction", min=0.05, max=LARGEST_FRICTION, step=0.05, initial_value=0.9, hint="0.15 is ice"
+            )
         self._connect()
 
     def _add_sliders(self, task: Task) -> list[viser.GuiSliderHandle[float]]:
@@ -123,6 +139,10 @@ class Page:
                 _on_user(slider, partial(self._change_parameter, name, index))
         _on_user(self._newtons, lambda newtons: self._change_push(newtons=newtons))
         _on_user(self._degrees, lambda degrees: self._change_push(degrees=degrees))
+        _on_user(self._slope, lambda degrees: self._change_ground(slope_degrees=degrees))
+        _on_user(self._uphill, lambda degrees: self._change_ground(direction_degrees=degrees))
+        _on_user(self._roughness, lambda height: self._change_ground(roughness=height / 1000.0))
+        _on_user(self._friction, lambda value: self._change_ground(friction_left=value, friction_right=value))
         self._plots.window.on_update(lambda _: self._playback.seek(self._playback.time))
         self._speed.on_update(lambda _: setattr(self._playback, "speed", SPEEDS[self._speed.value]))
         self._play_button.on_click(lambda _: self._toggle())
@@ -156,6 +176,11 @@ class Page:
             if self._wanted.push.newtons > 0.0:
                 self._change({"push": replace(self._wanted.push, **changes)})
 
+    def _change_ground(self, **values: float) -> None:
+        with self._lock:
+            ranges = {name: (value, value) for name, value in values.items()}
+            self._change({"terrain": replace(self._wanted.terrain, **ranges)})
+
     def _push_now(self) -> None:
         begin = round(min(self._playback.time, self._wanted.config.time_limit), 2)
         push = KnownPush(self._newtons.value, self._degrees.value, begin)
@@ -178,6 +203,11 @@ class Page:
         if scenario.push.newtons > 0.0:
             _set(self._newtons, min(scenario.push.newtons, LARGEST_PUSH))
             _set(self._degrees, scenario.push.degrees)
+        conditions = conditions_of(scenario.spec().config, scenario.seed)
+        _set(self._slope, min(scenario.terrain.slope_degrees[0], LARGEST_SLOPE))
+        _set(self._uphill, scenario.terrain.direction_degrees[0] % 360.0)
+        _set(self._roughness, min(1000.0 * scenario.terrain.roughness[0], HIGHEST_BUMPS))
+        _set(self._friction, min(conditions.friction_under(Side.LEFT), LARGEST_FRICTION))
 
     # -- the content of the page
 
@@ -188,7 +218,7 @@ class Page:
             self._before, self._shown = self._shown, Shown(scenario, result, result.trace)
             begin, end = float(result.trace.time[0]), float(result.trace.time[-1])
             self._time.max = end
-            self._scene.load(result.trace)
+            self._scene.load(result.trace, draw_ground(scenario.terrain, scenario.seed))
             self._plots.load(result.trace, scenario)
             self._news.content = _paragraph("")
             self._table.content = _comparison(self._shown, self._before, self._noted_score(scenario))

@@ -8,6 +8,7 @@ from dataclasses import astuple, dataclass
 from sarah.episode.push import Push
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig, controller_of, push_of
+from sarah.simulation.terrain import Terrain, draw_terrain
 
 
 @dataclass(frozen=True)
@@ -34,13 +35,15 @@ class Scenario:
     :param stepping: values of P1 to P5
     :param balance: values of V1 to V4; zeros lock the hips, as in the First Training
     :param push: push of the episode
-    :param seed: seed of the conditions and the sensor noise
+    :param terrain: ground of the episode, whose settings are single values
+    :param seed: seed of the conditions, the bumps and the sensor noise
     :param config: settings that the sliders do not change
     """
 
     stepping: tuple[float, ...]
     balance: tuple[float, ...]
     push: KnownPush
+    terrain: Terrain
     seed: int
     config: BalanceConfig
 
@@ -48,7 +51,7 @@ class Scenario:
     def of(cls, spec: EpisodeSpec) -> Scenario:
         """Make the scenario of an episode.
 
-        :param spec: specification of any task; a push that its seed draws becomes a given push
+        :param spec: specification of any task; push and ground that its seed draws become given ones
         """
         task = spec.task
         stepping, balance = controller_of(task, spec.parameters, spec.config)
@@ -57,7 +60,8 @@ class Scenario:
             x, y, _ = drawn.force
             push = KnownPush(math.hypot(x, y), math.degrees(math.atan2(y, x)) % 360.0, drawn.begin)
         hips = BALANCE.baseline if balance is None else astuple(balance)
-        return cls(astuple(stepping), hips, push, spec.seed, BALANCE.config_of(spec.config))
+        terrain = draw_terrain(spec.config.terrain, spec.seed)
+        return cls(astuple(stepping), hips, push, terrain, spec.seed, BALANCE.config_of(spec.config))
 
     def spec(self) -> EpisodeSpec:
         """Specification of the episode, in the task balance, which has everything that the sliders can set."""
@@ -67,5 +71,5 @@ class Scenario:
             at_seconds=(self.push.begin, self.push.begin),
             duration=self.config.push.duration,
         )
-        config = BALANCE.config_of(self.config, stepping=self.stepping, push=given)
+        config = BALANCE.config_of(self.config, stepping=self.stepping, push=given, terrain=self.terrain)
         return EpisodeSpec(self.balance, self.seed, BALANCE, config)

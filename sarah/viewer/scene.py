@@ -16,6 +16,8 @@ from sarah.episode.trace import Trace
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.robot.description import ANKLE_JOINTS, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS
+from sarah.simulation.bumps import mesh
+from sarah.simulation.ground import LEVEL, Ground
 from sarah.simulation.scenery import Camera, View, size_of
 
 Colour = tuple[int, int, int]
@@ -31,6 +33,8 @@ def channels(colour: str) -> Colour:
 
 PAD_COLOURS = (LEFT, "#7CBBE6", RIGHT, "#F5B183")
 """Colours of left fore, left hind, right fore and right hind, in the scene and in the plots."""
+BUMPS: Colour = (225, 229, 234)
+"""Colour of rough ground."""
 METRES_PER_NEWTON_OF_LOAD = 0.0008
 METRES_PER_NEWTON_OF_PUSH = 0.005
 """Length of a push's arrow per force, in m/N, beside the standard robot; in proportion for other sizes."""
@@ -73,15 +77,19 @@ class RobotScene:
             "/status", "", position=status_place(robot, self._model), anchor="bottom-center"
         )
         self._arrow: viser.ArrowsHandle | None = None
+        self._ground = LEVEL
+        self._bumps: viser.MeshHandle | None = None
         self._add_surroundings(first_camera(robot, self._model))
         self._trace: Trace | None = None
 
-    def load(self, trace: Trace) -> None:
+    def load(self, trace: Trace, ground: Ground = LEVEL) -> None:
         """Show another episode.
 
         :param trace: trace of the episode
+        :param ground: ground of the episode
         """
         self._trace = trace
+        self._show_ground(ground)
         if self._arrow is not None:
             self._arrow.remove()
             self._arrow = None
@@ -120,8 +128,26 @@ class RobotScene:
         hinge = self._model.get_transform(f"{side}_forefoot", "torso")[:3, 3]
         rotation = viser.transforms.SO3(self._torso.wxyz).as_matrix()
         x, y, _ = self._torso.position + rotation @ hinge
-        self._support.position = np.array([x, y, 0.002])
+        self._support.position = np.array([x, y, self._ground.height(x, y) + 0.002])
         self._support.color = channels(PHASE_COLOURS[trace.phase[tick]])
+
+    def _show_ground(self, ground: Ground) -> None:
+        """Show bumps over a sunken floor, and turn the whole scene until gravity points down."""
+        if ground == self._ground:
+            return
+        self._ground = ground
+        self._scene.set_up_direction(-np.array(ground.gravity))
+        if self._bumps is not None:
+            self._bumps.remove()
+            self._bumps = None
+        lowest = 0.0
+        if ground.is_rough:
+            nodes, triangles = mesh(ground)
+            lowest = float(nodes[:, 2].min())
+            self._bumps = self._scene.add_mesh_simple(
+                "/bumps", nodes, triangles, color=BUMPS, flat_shading=True, cast_shadow=False
+            )
+        self._floor.position = np.array([0.0, 0.0, lowest])
 
     def _show_push(self, trace: Trace, tick: int) -> None:
         if self._arrow is None:
@@ -145,7 +171,7 @@ class RobotScene:
 
     def _add_surroundings(self, view: Camera) -> None:
         scene = self._scene
-        scene.add_grid(
+        self._floor = scene.add_grid(
             "/floor",
             4.0,
             4.0,

@@ -194,7 +194,9 @@ def test_a_slider_changes_the_episode_and_the_old_score_stands_beside_the_new(pa
     eventually(lambda: scores(page)[0] == old)
     slider(page, "P1").press("End")
     scenario = Scenario.of(spec)
-    changed = Scenario((2.0, *scenario.stepping[1:]), scenario.balance, scenario.push, scenario.seed, scenario.config)
+    changed = Scenario(
+        (2.0, *scenario.stepping[1:]), scenario.balance, scenario.push, scenario.terrain, scenario.seed, scenario.config
+    )
     new = f"{simulate(changed.spec()).score:.3f}"
     assert new != old
     eventually(lambda: scores(page) == [new, old])

@@ -16,6 +16,7 @@ from sarah.errors import ConfigurationError, RunFolderError
 from sarah.runs.run_episodes import choose_episode, episodes_of_run
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import default_engine
+from sarah.simulation.terrain import Terrain, draw_ground
 from sarah.viewer.scenario import KnownPush, Scenario
 
 PUSHED = BalanceConfig(time_limit=6.0, push=Push(newtons=(40.0, 60.0), at_seconds=(2.0, 3.0)))
@@ -73,8 +74,18 @@ def test_sliders_that_stand_still_change_nothing() -> None:
     assert again.score == pytest.approx(simulate(pushed).score, abs=0.02) and again.duration == 6.0
 
 
+def test_ground_that_the_seed_drew_stays_when_the_sliders_stand_still() -> None:
+    terrain = Terrain((0.0, 6.0), roughness=(0.0, 0.01), cell=(0.04, 0.08), friction_right=(0.3, 0.6))
+    spec = EpisodeSpec(PAPER_STEPPING, 3, config=EpisodeConfig(time_limit=4.0, terrain=terrain))
+    scenario = Scenario.of(spec)
+    assert draw_ground(scenario.terrain, 3) == draw_ground(terrain, 3)
+    assert simulate(scenario.spec()) == simulate(spec)
+
+
 def test_a_given_push_is_the_push_that_is_simulated() -> None:
-    scenario = Scenario(PAPER_STEPPING, LEARNED, KnownPush(50.0, 90.0, 2.5), 1, BalanceConfig(time_limit=4.0))
+    scenario = Scenario(
+        PAPER_STEPPING, LEARNED, KnownPush(50.0, 90.0, 2.5), Terrain(), 1, BalanceConfig(time_limit=4.0)
+    )
     trace = simulate(scenario.spec(), record_trace=True).trace
     assert trace is not None
     assert trace.push[trace.tick_at(2.55)] == pytest.approx([0.0, 50.0, 0.0])

@@ -1,0 +1,75 @@
+"""The figure of the ground that the robot copes with."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
+
+from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
+from sarah.reports.terrain import UPHILL, OnTerrain, Situation
+
+KINDS = {"slope": ("slope (°)", 1.0), "roughness": ("bumps (mm)", 1000.0), "friction": ("friction", 1.0)}
+"""Label of each kind of ground, and factor from its value to the label's unit."""
+ROWS = {
+    "score": "score",
+    "steps_per_second": "steps per second",
+    "shifts_by_sensors": "SHIFT by sensors",
+    "survival": "survival",
+}
+"""Labels of what is shown, from top to bottom."""
+UPHILL_COLOURS = dict(zip(UPHILL, ("#D55E00", "#009E73", "#0072B2", "#CC79A7"), strict=True))
+"""Colours of the directions that lead uphill (Okabe and Ito): right and left are those of the legs."""
+OTHER_COLOUR = "#000000"
+
+
+def draw_terrain(rows: Sequence[OnTerrain], path: Path) -> list[Path]:
+    """Draw score, steps, phases that sensors end, and survival over slope, bumps and friction.
+
+    Dashed lines are with the push. Survival has its 95 % intervals.
+
+    :param rows: evaluations in situations
+    :param path: path of the picture, without suffix
+    :return: the files, PNG and PDF
+    """
+    with plt.rc_context(STYLE):
+        size = (2 * COLUMN_WIDTH, 2.4 * COLUMN_WIDTH)
+        figure, axes = plt.subplots(
+            len(ROWS), len(KINDS), sharex="col", sharey="row", figsize=size, layout="constrained"
+        )
+        for column, (kind, (label, factor)) in enumerate(KINDS.items()):
+            for axis, (metric, metric_label) in zip(axes[:, column], ROWS.items(), strict=True):
+                _draw(axis, [row for row in rows if _belongs(row.situation, kind)], metric, factor)
+                axis.set_ylim(bottom=0.0)
+                if column == 0:
+                    axis.set_ylabel(metric_label)
+            axes[-1, column].set_xlabel(label)
+        handles, labels = axes[0, 0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper center", ncols=4)
+        return save(figure, path)
+
+
+def _belongs(situation: Situation, kind: str) -> bool:
+    """Whether a situation is of a kind; level ground has no bumps, too."""
+    return situation.kind == kind or (kind == "roughness" and situation.kind == "slope" and situation.value == 0.0)
+
+
+def _draw(axis: Axes, rows: Sequence[OnTerrain], metric: str, factor: float) -> None:
+    """Draw a line for each direction that leads uphill, where there are any, without the push and with it."""
+    directions = dict.fromkeys(row.situation.uphill for row in rows)
+    for newtons in dict.fromkeys(row.situation.newtons for row in rows):
+        for uphill in [name for name in directions if name] or [""]:
+            line = [row for row in rows if row.situation.newtons == newtons and row.situation.uphill in ("", uphill)]
+            x = [factor * row.situation.value for row in line]
+            found = [
+                row.evaluation.survival_rate if metric == "survival" else row.evaluation.mean(metric) for row in line
+            ]
+            colour, dashes = UPHILL_COLOURS.get(uphill, OTHER_COLOUR), "--" if newtons else "-"
+            pushed = f", {newtons:.0f} N" if newtons else ""
+            label = f"uphill {uphill}{pushed}" if uphill else None
+            axis.plot(x, found, dashes, marker="o", markersize=2.5, linewidth=1.0, color=colour, label=label)
+            if metric == "survival":
+                low, high = zip(*(row.interval for row in line), strict=True)
+                axis.fill_between(x, low, high, color=colour, alpha=0.08, linewidth=0.0)
