@@ -28,6 +28,7 @@ from experiments.race import Race
 from experiments.rank_replay import RankReplay
 from experiments.robot_dimensions import RobotDimensions
 from experiments.robustness import Robustness
+from experiments.rough_ground import RoughGround
 from experiments.second_training import SecondTraining
 from experiments.sensor_faults import SensorFaults
 from experiments.shift_endings import ShiftEndings
@@ -96,6 +97,11 @@ TABLE: dict[str, Maker] = {
         "What do the shipped parameters do on slopes, with faulty sensors and under pushes?",
         Conditions(),
         {"episodes": 1, "reference_episodes": 0, "time_limit": 1.2, "pushed_seconds": 1.2},
+    ),
+    "rough_ground": Maker(
+        "What do the shipped parameters do on bumps and on ground that slips?",
+        RoughGround(),
+        {"episodes": 1, "reference_episodes": 0, "time_limit": 1.1},
     ),
     "transfer_stepping": Maker(
         "How much of its score does a First Training keep in the other engine?",

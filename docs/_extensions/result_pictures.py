@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -102,8 +103,12 @@ def robustness(rows: Rows) -> Figure:
     return figure
 
 
-def conditions(rows: Rows) -> Figure:
-    """Survival of pushes by each controller, a panel for each engine."""
+def pushes(rows: Rows, situation: str) -> Figure:
+    """Survival of pushes by each controller, a panel for each engine.
+
+    :param rows: rows of the result
+    :param situation: column of the situations
+    """
     engines = grouped(chosen(rows, "push_n>0 and physics=standard"), "{engine}")
     figure, axes = panels(len(engines), 0.4, sharey=True)
     for axis, (name, group) in zip(axes, engines.items(), strict=True):
@@ -113,7 +118,7 @@ def conditions(rows: Rows) -> Figure:
                 heights, numbers(judged, "survival_low"), numbers(judged, "survival_high"), color=COLOURS[index]
             )
             axis.plot(numbers(judged, "survival"), heights, "o", color=COLOURS[index], markersize=4, label=hips)
-        axis.set_yticks(range(len(judged), 0, -1), [row["situation"] for row in judged])
+        axis.set_yticks(range(len(judged), 0, -1), [row[situation] for row in judged])
         axis.set(title=name, xlabel=heading("survival"))
     legend(figure, axes[0])
     return figure
@@ -267,7 +272,8 @@ PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
     "naf_inverted_pendulum": (("naf_inverted_pendulum",), standard_task),
     "naf_preset": (("naf_preset",), naf_preset),
     "robustness": (("robustness",), robustness),
-    "conditions": (("conditions",), conditions),
+    "conditions": (("conditions",), partial(pushes, situation="situation")),
+    "rough_ground": (("rough_ground",), partial(pushes, situation="ground")),
     "lateral_limit": (("lateral_limit",), lateral_limit),
     "flexion_laws": (("flexion_laws",), flexion_laws),
     "stepping_and_hips": (("stepping_and_hips",), stepping_and_hips),

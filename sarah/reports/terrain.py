@@ -55,12 +55,12 @@ class Situation:
     def terrain(self) -> Terrain:
         """Settings of the ground; all else is as by default."""
         value = (self.value, self.value)
-        if self.kind == "slope":
-            degrees = UPHILL.get(self.uphill, 0.0)
-            return Terrain(slope_degrees=value, direction_degrees=(degrees, degrees))
         if self.kind == "roughness":
             return Terrain(roughness=value)
-        return Terrain(friction_left=value, friction_right=value)
+        if self.kind == "friction":
+            return Terrain(friction_left=value, friction_right=value)
+        degrees = UPHILL.get(self.uphill)
+        return Terrain() if degrees is None else Terrain(slope_degrees=value, direction_degrees=(degrees, degrees))
 
     def config(self, task: Task[Any], config: EpisodeConfig) -> EpisodeConfig:
         """Settings of the situation's episodes.

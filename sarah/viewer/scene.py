@@ -33,7 +33,7 @@ def channels(colour: str) -> Colour:
 
 PAD_COLOURS = (LEFT, "#7CBBE6", RIGHT, "#F5B183")
 """Colours of left fore, left hind, right fore and right hind, in the scene and in the plots."""
-BUMPS: Colour = (225, 229, 234)
+BUMPS: Colour = (140, 148, 158)
 """Colour of rough ground."""
 METRES_PER_NEWTON_OF_LOAD = 0.0008
 METRES_PER_NEWTON_OF_PUSH = 0.005

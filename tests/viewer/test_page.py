@@ -1,6 +1,7 @@
 """The page in a real browser."""
 
 import base64
+import dataclasses
 import io
 import re
 import shutil
@@ -223,6 +224,30 @@ def test_a_push_is_simulated_and_drawn_as_an_arrow(page: Any, run: RunFolder) ->
     go_to(page, 4.1)
     eventually(lambda: has_plots_of(page, 4.1, 2.0))
     eventually(lambda: share(picture(page), *channels(PUSH)) > 0.002)
+
+
+def test_bumps_and_a_slope_are_simulated_and_drawn(page: Any, run: RunFolder) -> None:
+    choose_on_page(page, "episode 1")
+    spec = episodes_of_run(run)[3].spec
+    old = f"{simulate(spec).score:.3f}"
+    eventually(lambda: scores(page)[0] == old)
+    pause(page)
+    before = floor_of(page)
+    for label, value in (("Bumps (mm)", "20"), ("Slope (°)", "8")):
+        field(page, label).fill(value)
+        field(page, label).press("Enter")
+    terrain = dataclasses.replace(Scenario.of(spec).terrain, roughness=(0.02, 0.02), slope_degrees=(8.0, 8.0))
+    new = f"{simulate(dataclasses.replace(Scenario.of(spec), terrain=terrain).spec()).score:.3f}"
+    eventually(lambda: scores(page)[0] == new)
+    eventually(lambda: np.abs(floor_of(page) - before).max() > 20.0)
+    page.get_by_role("button", name="Back to this episode").click()
+    eventually(lambda: scores(page)[0] == old)
+
+
+def floor_of(page: Any) -> np.ndarray:
+    """Mean brightness of parts of the picture's lower half."""
+    pixels = picture(page).mean(axis=2)
+    return np.array([part.mean() for part in np.array_split(pixels[len(pixels) // 2 :], 8, axis=1)])
 
 
 def test_an_exported_episode_plays_without_server_and_network(browser: Any, run: RunFolder, tmp_path: Path) -> None:

@@ -1,0 +1,89 @@
+"""The table of grounds, and its command."""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import matplotlib.image
+import pytest
+from laboratory import RESULT
+
+from sarah.episode.evaluation import Evaluation
+from sarah.episode.push import Push, PushedConfig
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.tasks import BALANCE, STEPPING
+from sarah.episode.workers import Workers
+from sarah.reports import terrain
+from sarah.reports.terrain import OnTerrain, Situation, as_markdown, situations, try_terrain
+from sarah.simulation.terrain import Terrain
+
+
+def test_situations_are_slopes_in_all_directions_bumps_and_friction_each_without_a_push_and_with_one() -> None:
+    found = list(situations())
+    assert len(found) == 2 * (1 + 4 * 4 + 4 + 5) == len(set(found))
+    without, pushed = (({one.terrain for one in found if one.newtons == newtons}) for newtons in (0.0, 75.0))
+    assert without == pushed
+    assert Terrain() in without
+    assert Terrain(slope_degrees=(8.0, 8.0), direction_degrees=(180.0, 180.0)) in without
+    assert Terrain(roughness=(0.01, 0.01)) in without
+    assert Terrain(friction_left=(0.25, 0.25), friction_right=(0.25, 0.25)) in without
+
+
+@pytest.mark.parametrize("task", [STEPPING, BALANCE])
+def test_a_situation_changes_ground_push_and_time_limit_only(task: Any) -> None:
+    own = task.config_of(task.episode, controller=task.episode.controller)
+    pushed = Situation("roughness", 0.01, "", 75.0).config(task, own)
+    assert isinstance(pushed, PushedConfig)
+    assert pushed.push == Push((75.0, 75.0), at_seconds=terrain.PUSHED_BETWEEN)
+    assert pushed.terrain == Terrain(roughness=(0.01, 0.01)) and pushed.time_limit == terrain.TIME_LIMIT
+    free = Situation("friction", 0.25, "", 0.0).config(task, own)
+    assert not isinstance(free, PushedConfig) or free.push.newtons == (0.0, 0.0)
+    assert (free.engine, free.randomisation) == (own.engine, own.randomisation)
+
+
+def test_every_situation_meets_the_same_seeds(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(terrain, "TIME_LIMIT", 1.3)
+    tried = [Situation("slope", 0.0, "", 0.0), Situation("slope", 20.0, "right", 0.0)]
+    level, steep = try_terrain(STEPPING, (1.0, 1.0, 1.0, 1.0, 1.0), EpisodeConfig(), [3, 4], Workers(), tried)
+    assert [level.situation, steep.situation] == tried
+    assert level.evaluation.episodes == steep.evaluation.episodes == 2
+    assert level.evaluation != steep.evaluation
+
+
+def test_table_has_score_steps_and_sensors_beside_survival() -> None:
+    found = Evaluation((RESULT,) * 4)
+    rows = [
+        OnTerrain(Situation(*situation), found)
+        for situation in (
+            ("slope", 0.0, "", 0.0),
+            ("slope", 4.0, "left", 75.0),
+            ("roughness", 0.015, "", 0.0),
+            ("friction", 0.25, "", 0.0),
+        )
+    ]
+    lines = as_markdown(rows).splitlines()
+    assert [line.split(" | ")[0] for line in lines[2:]] == [
+        "| level",
+        "| 4° uphill left",
+        "| bumps of 15 mm",
+        "| friction 0.25",
+    ]
+    cells = f"{RESULT.score:.3f} | {RESULT.steps_per_second:.2f} | {RESULT.shifts_by_sensors:.0%}"
+    assert all(cells in line for line in lines[2:]) and "| 75 N |" in lines[3]
+
+
+def test_command_writes_table_and_picture(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from sarah.cli.eval import main
+
+    def found(*arguments: Any) -> list[OnTerrain]:
+        return [OnTerrain(situation, Evaluation((RESULT,) * 3)) for situation in arguments[-1]]
+
+    monkeypatch.setattr(terrain, "try_terrain", found)
+    monkeypatch.setattr(sys, "argv", ["sarah-eval", "balance", "--terrain", str(tmp_path / "out"), "--episodes", "3"])
+    main()
+    printed = capsys.readouterr().out
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"terrain.md", "terrain.png", "terrain.pdf"}
+    assert (tmp_path / "out" / "terrain.md").read_text() in printed
+    assert matplotlib.image.imread(tmp_path / "out" / "terrain.png").std() > 0.05
