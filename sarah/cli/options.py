@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import io
+import itertools
 import os
 import re
 import sys
@@ -15,7 +16,7 @@ import tyro
 
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import Task, load_task
-from sarah.errors import SarahError
+from sarah.errors import ConfigurationError, SarahError, unknown_name
 from sarah.simulation.engines import default_engine
 
 OptionsType = TypeVar("OptionsType")
@@ -79,9 +80,15 @@ def _with_both_ends(arguments: Sequence[str], config: Any) -> list[str]:
         is_range = option.replace("_", "-") in ranges
         words += [option, value] if is_range and equals else [argument]
     completed: list[str] = []
-    for word, following in zip(words, [*words[1:], ""], strict=False):
-        is_first = bool(completed) and completed[-1].replace("_", "-") in ranges
-        completed += [word, word] if is_first and _is_number(word) and not _is_number(following) else [word]
+    for index, word in enumerate(words):
+        completed.append(word)
+        if word.replace("_", "-") in ranges:
+            ends = list(itertools.takewhile(_is_number, words[index + 1 :]))
+            following = words[index + 1 : index + 2]
+            if len(ends) > 2 or (not ends and following != ["None"]):
+                given = " ".join(ends or following) or "nothing"
+                raise ConfigurationError(f"{word} must be one number, or two for a range, not {given}")
+            completed += ends[:1] if len(ends) == 1 else []
     return completed
 
 
@@ -136,8 +143,12 @@ def _one_line(box: str) -> str:
     # The title is dropped. A terminal without frames gets plain rules, and one of them comes first.
     text = " ".join(line.strip("╭╮╰╯│ ") for line in box.splitlines()[1:])
     message = next(section.strip() for section in re.split("[─-]{5,}", text) if section.strip())
+    wrong = re.match(r"invalid choice '(.*)' for argument '(.*)'\. Expected one of \((.*)\)", message)
+    if wrong:
+        return unknown_name(wrong[2], wrong[1], re.findall(r"'(.*?)'", wrong[3]))
     for pattern, words in PYTHON_WORDS.items():
         message = re.sub(pattern, words, message)
+    message = re.sub(r"^(Unrecognized options: --[^,]*),.*", r"\1", message)
     meant = re.search(r"Perhaps you meant:\s+(--[\w.-]+)", text)
     return f"{message}, did you mean {meant[1]}?" if meant else message
 

@@ -30,7 +30,7 @@ MOST_WAITING = 8
 Parameters may go to another process, which then lets the episode stand anew, at a thirtieth of an episode's cost."""
 SAFE_PATH = "PYTHONSAFEPATH"
 """Environment variable that keeps Python 3.11 and later from searching the working folder for modules."""
-MOST_WORKERS = 1000
+MOST_WORKERS = 256
 """Largest number of workers on one machine."""
 
 _waiting: OrderedDict[tuple[Any, ...], Episode] = OrderedDict()

@@ -100,7 +100,7 @@ def test_the_help_shows_the_settings_of_the_algorithm(
         ("--agent.learning-rate fast", "--agent.learning-rate must be a number, not 'fast'"),
         ("--agent.learning-rat 1e-4", "did you mean --agent.learning-rate?"),
         ("--agent.v-layers 8 x", "--agent.v-layers must be whole numbers, not ['8', 'x']"),
-        ("--agent.elite-std a b", "--agent.elite-std must be numbers, not ['a', 'b']"),
+        ("--agent.elite-std a b", "--agent.elite-std must be one number, or two for a range, not a"),
         ("--agent.preset papr", "unknown agent.preset 'papr', did you mean 'paper'?"),
         ("--agent.device gpu", "agent.device must be 'cpu', 'cuda', 'cuda:' and a number, or 'auto', not 'gpu'"),
         ("--algo td3 --agent.preset paper", "Unrecognized options: --agent.preset"),
