@@ -15,6 +15,7 @@ from benchmarks.updates import Updates
 from benchmarks.viewer import Viewer
 from experiments.clock import Clock
 from experiments.conditions import Conditions
+from experiments.contexts import Contexts
 from experiments.engines import Engines
 from experiments.experiment import Experiment, OnWorkers
 from experiments.first_training import FirstTraining
@@ -102,6 +103,11 @@ TABLE: dict[str, Maker] = {
         "What do the shipped parameters do on bumps and on ground that slips?",
         RoughGround(),
         {"episodes": 1, "reference_episodes": 0, "time_limit": 1.1},
+    ),
+    "contexts": Maker(
+        "Do parameters that follow the ground do better than one set for all grounds?",
+        Contexts(),
+        {"seeds": 1, "budget": 48, "episodes": 1, "time_limit": 1.1},
     ),
     "transfer_stepping": Maker(
         "How much of its score does a First Training keep in the other engine?",

@@ -1,0 +1,287 @@
+"""Whether parameters that follow the ground do better than one set for all grounds.
+
+A controller chooses V1 to V4 once an episode, after the robot has stood for a second: the same ones whatever the ground
+is, or by what the robot felt. Two sets of grounds are asked. On the ordinary ones the shipped controller copes anyway.
+On side slopes of 10 degrees V2 wants the opposite sign on either side, which shows that the method can see a gain.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from statistics import mean, stdev
+from typing import Any
+
+import gymnasium
+import numpy as np
+
+from experiments.conditions import LEARNED
+from experiments.experiment import OnWorkers
+from experiments.record import Row
+from sarah.envs.sarah_env import SarahEnv, observation_from, parameters_from
+from sarah.episode.episode import Episode
+from sarah.episode.push import Push
+from sarah.episode.spec import FIRST_EVALUATION_SEED, FIRST_TRAINING_SEED
+from sarah.episode.tasks import BALANCE, BalanceConfig
+from sarah.episode.workers import Workers
+from sarah.simulation.terrain import Terrain
+
+
+def slope(degrees: float, uphill: float) -> Terrain:
+    """Slope in one direction.
+
+    :param degrees: slope, in degrees
+    :param uphill: direction that leads uphill, in degrees
+    """
+    return Terrain(slope_degrees=(degrees, degrees), direction_degrees=(uphill, uphill))
+
+
+GROUNDS: dict[str, dict[str, Terrain]] = {
+    "ordinary": {
+        "level": Terrain(),
+        "6° uphill right": slope(6.0, 0.0),
+        "6° uphill left": slope(6.0, 180.0),
+        "8° uphill forward": slope(8.0, 90.0),
+        "bumps of 10 mm": Terrain(roughness=(0.01, 0.01)),
+        "friction 0.15": Terrain(friction_left=(0.15, 0.15), friction_right=(0.15, 0.15)),
+    },
+    "side slopes": {"10° uphill right": slope(10.0, 0.0), "10° uphill left": slope(10.0, 180.0)},
+}
+"""Grounds by name, of each set."""
+NEWTONS = {"ordinary": 75.0, "side slopes": 0.0}
+"""Force of the push on each set of grounds, in N."""
+SHIPPED, ONE_SET, PER_GROUND = "shipped parameters", "one set (CMA-ES)", "a set for each ground (CMA-ES)"
+BLIND, SEEING = "NAF, blind", "NAF with observations"
+CONTROLLERS = (SHIPPED, ONE_SET, PER_GROUND, BLIND, SEEING)
+QUANTILE = 1.96
+"""Quantile of the normal distribution for intervals of 95 %."""
+Policy = Callable[[str, np.ndarray], tuple[float, ...]]
+"""Function that chooses V1 to V4 on a ground, by its name and by what the robot feels."""
+
+
+@dataclass(frozen=True)
+class Contexts(OnWorkers):
+    """Controllers that choose V1 to V4 for all grounds alike, for each ground, or by what the robot feels.
+
+    :param seeds: number of trainings of each controller
+    :param budget: number of episodes of a training; a set for each ground gets as many on each
+    :param episodes: number of episodes on each ground that judge a training
+    :param time_limit: time limit of an episode, in s
+    """
+
+    seeds: int = 3
+    budget: int = 400
+    episodes: int = 60
+    time_limit: float = 8.0
+
+    def rows(self) -> Iterator[Row]:
+        """A row for each set of grounds, controller and ground, and one for all grounds."""
+        with Workers(self.workers) as workers:
+            jobs = {
+                (of, controller): [
+                    workers.submit(judge, self, of, controller, seed)
+                    for seed in range(1 if controller == SHIPPED else self.seeds)
+                ]
+                for of in GROUNDS
+                for controller in CONTROLLERS
+            }
+            for (of, controller), judged in jobs.items():
+                scores = [job.result() for job in judged]
+                for ground in (*GROUNDS[of], "all"):
+                    # Trainings are independent, and the episodes of one are not: so the interval is that of trainings.
+                    means = [mean(_of_ground(found, ground)) for found in scores]
+                    spread = means if len(means) > 1 else _of_ground(scores[0], ground)
+                    half = QUANTILE * stdev(spread) / math.sqrt(len(spread)) if len(spread) > 1 else math.nan
+                    yield {
+                        "grounds": of,
+                        "controller": controller,
+                        "ground": ground,
+                        "trainings": len(means),
+                        "episodes": len(_of_ground(scores[0], ground)) * len(means),
+                        "score": mean(means),
+                        "score_low": mean(means) - half,
+                        "score_high": mean(means) + half,
+                    }
+
+    def config(self, of: str, ground: str) -> BalanceConfig:
+        """Settings of the episodes on a ground.
+
+        :param of: name of its set
+        :param ground: its name
+        """
+        push = Push((NEWTONS[of],) * 2, at_seconds=(2.0, 3.0))
+        terrain = GROUNDS[of][ground]
+        config = BALANCE.config_of(
+            LEARNED.config, engine="mujoco", time_limit=self.time_limit, push=push, terrain=terrain
+        )
+        assert isinstance(config, BalanceConfig)
+        return config
+
+
+def _of_ground(scores: dict[str, list[float]], ground: str) -> list[float]:
+    return scores[ground] if ground in scores else [score for found in scores.values() for score in found]
+
+
+def judge(options: Contexts, of: str, controller: str, seed: int) -> dict[str, list[float]]:
+    """Train a controller, and let it run on fresh seeds.
+
+    :param options: size of training and evaluation
+    :param of: name of the set of grounds
+    :param controller: one of :data:`CONTROLLERS`
+    :param seed: seed of the training
+    :return: scores by ground
+    """
+    policy = learn(options, of, controller, seed)
+    return {
+        ground: [
+            run(options.config(of, ground), FIRST_EVALUATION_SEED + index, partial(policy, ground))
+            for index in range(options.episodes)
+        ]
+        for ground in GROUNDS[of]
+    }
+
+
+def run(config: BalanceConfig, seed: int, choose: Callable[[np.ndarray], tuple[float, ...]]) -> float:
+    """Simulate an episode whose parameters depend on what the robot feels while it stands.
+
+    :param config: settings of the episode
+    :param seed: seed of the episode
+    :param choose: function that chooses V1 to V4
+    :return: the score
+    """
+    episode = Episode(config, seed, BALANCE)
+    try:
+        return episode.run(choose(observation_from(episode.stand()))).score
+    finally:
+        episode.close()
+
+
+def learn(options: Contexts, of: str, controller: str, seed: int) -> Policy:
+    """Train a controller.
+
+    :param options: size of the training
+    :param of: name of the set of grounds
+    :param controller: one of :data:`CONTROLLERS`
+    :param seed: seed of the training
+    """
+    configs = {ground: options.config(of, ground) for ground in GROUNDS[of]}
+    if controller == SHIPPED:
+        return lambda ground, felt: LEARNED.parameters
+    if controller == ONE_SET:
+        parameters = evolve(list(configs.values()), options.budget, seed)
+        return lambda ground, felt: parameters
+    if controller == PER_GROUND:
+        own = {ground: evolve([config], options.budget, seed) for ground, config in configs.items()}
+        return lambda ground, felt: own[ground]
+    return train_naf(list(configs.values()), options.budget, seed, is_blind=controller == BLIND)
+
+
+def evolve(configs: list[BalanceConfig], budget: int, seed: int) -> tuple[float, ...]:
+    """Find one set for some grounds by CMA-ES, which is told the mean score on all of them.
+
+    :param configs: settings of the episodes on each ground
+    :param budget: number of episodes
+    :param seed: seed of the draws and of the episodes
+    """
+    import cma
+
+    episodes = np.random.default_rng(seed)
+    options = {"bounds": [-1.0, 1.0], "seed": seed + 1, "verbose": -9}
+    strategy = cma.CMAEvolutionStrategy(_action_of(LEARNED.parameters), 0.3, options)
+    while budget >= strategy.popsize * len(configs):
+        asked = strategy.ask()
+        losses = []
+        for action in asked:
+            parameters = parameters_from(np.clip(action, -1.0, 1.0), BALANCE)
+            seeds = episodes.integers(FIRST_TRAINING_SEED, 2**32, len(configs)).tolist()
+            losses.append(
+                -mean(run(*episode, partial(_always, parameters)) for episode in zip(configs, seeds, strict=True))
+            )
+        strategy.tell(asked, losses)
+        budget -= strategy.popsize * len(configs)
+    return parameters_from(np.clip(strategy.mean, -1.0, 1.0), BALANCE)
+
+
+def _always(parameters: tuple[float, ...], felt: np.ndarray) -> tuple[float, ...]:
+    return parameters
+
+
+def _action_of(parameters: tuple[float, ...]) -> np.ndarray:
+    """Action that stands for parameters."""
+    return np.array(
+        [2.0 * (value - one.low) / one.width - 1.0 for value, one in zip(parameters, BALANCE.parameters, strict=True)]
+    )
+
+
+def train_naf(configs: list[BalanceConfig], budget: int, seed: int, is_blind: bool) -> Policy:
+    """Let NAF learn which parameters suit what the robot feels.
+
+    :param configs: settings of the episodes on each ground, of which each episode draws one
+    :param budget: number of episodes
+    :param seed: seed of the training
+    :param is_blind: whether all observations are zero
+    """
+    from stable_baselines3.common.utils import LinearSchedule
+
+    from sarah.agents import NAF, PRESETS
+
+    model = NAF(
+        "MlpPolicy",
+        DrawnGround(configs, is_blind),
+        seed=seed,
+        gamma=0.0,
+        learning_starts=min(60, budget // 2),
+        batch_size=64,
+        gradient_steps=10,
+        exploration_std=LinearSchedule(0.4, 0.1, end_fraction=0.8),
+        policy_kwargs=PRESETS["one-step"]["policy_kwargs"],
+    )
+    model.learn(budget)
+
+    def policy(ground: str, felt: np.ndarray) -> tuple[float, ...]:
+        action, _ = model.predict(np.zeros_like(felt) if is_blind else felt, deterministic=True)
+        return parameters_from(action, BALANCE)
+
+    return policy
+
+
+class DrawnGround(gymnasium.Wrapper[np.ndarray, np.ndarray, np.ndarray, np.ndarray]):
+    """Episodes on one of several grounds, drawn at each reset; the reward is the score.
+
+    :param configs: settings of the episodes on each ground
+    :param is_blind: whether all observations are zero
+    """
+
+    def __init__(self, configs: list[BalanceConfig], is_blind: bool) -> None:
+        self._all = [SarahEnv(BALANCE, config) for config in configs]
+        self._is_blind = is_blind
+        super().__init__(self._all[0])
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        """Draw a ground, and stand on it.
+
+        :param seed: seed of the draws
+        :param options: options of gymnasium, which are ignored
+        """
+        if seed is not None:
+            for index, env in enumerate(self._all):
+                env.reset(seed=seed + index)
+            self._draws = np.random.default_rng(seed)
+        self.env = self._all[self._draws.integers(len(self._all))]
+        observation, info = self.env.reset()
+        return self._seen(observation), info
+
+    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        """Run the episode.
+
+        :param action: V1 to V4, scaled to [-1, 1]
+        """
+        observation, _, terminated, truncated, info = self.env.step(action)
+        return self._seen(observation), info["result"].score, terminated, truncated, info
+
+    def _seen(self, observation: np.ndarray) -> np.ndarray:
+        return np.zeros_like(observation) if self._is_blind else observation
