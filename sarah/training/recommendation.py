@@ -131,11 +131,11 @@ def _squared_distances(places: np.ndarray, others: np.ndarray) -> np.ndarray:
 def best_compared(
     results: Mapping[Parameters, Sequence[EpisodeResult]], baseline: Evaluation | None, must_step: bool = True
 ) -> Parameters:
-    """Choose a candidate after the comparison: the first, unless another one is better for certain.
+    """Choose a candidate after the comparison: the first, unless another one is clearly better.
 
     The first is the best after all episodes, which are more than the comparison has: a larger mean alone would be luck
-    where episodes differ much. So another candidate must be better by two standard errors of the
-    difference on the same seeds. A valid gait that does not chatter comes before one that is not.
+    where episodes differ much. So another candidate must be better by two standard errors of the difference on the same
+    seeds. A valid gait that does not chatter comes before any other.
 
     :param results: results of each candidate's episodes, on the same seeds in turn; the first choice comes first
     :param baseline: evaluation that chatter is judged against; without one nothing chatters
