@@ -10,6 +10,7 @@ from typing import Any
 from benchmarks.decisions import Decisions
 from benchmarks.engines_speed import EnginesSpeed
 from benchmarks.physics_speed import PhysicsSpeed
+from benchmarks.terrain_speed import TerrainSpeed
 from benchmarks.throughput import Throughput
 from benchmarks.updates import Updates
 from benchmarks.viewer import Viewer
@@ -237,6 +238,12 @@ TABLE: dict[str, Maker] = {
         "How fast is each setting of the physics?",
         PhysicsSpeed(),
         {"time_limit": 1.2},
+        of_robot=False,
+    ),
+    "terrain_speed": Maker(
+        "What does rough ground cost in time?",
+        TerrainSpeed(),
+        {"episodes": 1, "time_limit": 1.2},
         of_robot=False,
     ),
     "engines_speed": Maker(
