@@ -175,6 +175,7 @@ class MujocoLaboratory:
 
         model, data = simulation.model, simulation.data
         floor, sole = model.geom("floor").id, model.geom("left_forefoot_sole_0").id
+        mujoco.mj_kinematics(model, data)
         data.geom_xpos[sole] = position
         mujoco.mj_collision(model, data)
         return any({*contact.geom} == {floor, sole} and contact.dist <= 0.0 for contact in data.contact)

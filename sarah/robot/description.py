@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib import resources
-from typing import Any
+from typing import Any, NamedTuple
 
 from sarah.errors import DescriptionError, shortened, unknown_name
 from sarah.robot.reading import ACTUATED_JOINTS, Side
@@ -47,6 +47,23 @@ _XACRO_NAMESPACE = "{http://www.ros.org/wiki/xacro}"
 _xacro_lock = threading.Lock()  # xacro keeps its state in global variables
 
 
+class Underside(NamedTuple):
+    """Horizontal rectangle under a foot plate, in the world's frame, in m.
+
+    :param left: smallest x
+    :param right: largest x
+    :param back: smallest y
+    :param front: largest y
+    :param height: height over the floor
+    """
+
+    left: float
+    right: float
+    back: float
+    front: float
+    height: float
+
+
 @dataclass(frozen=True)
 class RobotDescription:
     """A checked robot.
@@ -57,6 +74,8 @@ class RobotDescription:
     :param efforts: largest force or torque of each joint, in N or Nm
     :param soles: centres of the sole contacts of each foot plate, in the plate's frame, in m
     :param contact_radius: radius of the sole contacts, in m
+    :param standing_soles: centres of all sole contacts while the robot stands on the floor, in the world's frame, in m
+    :param undersides: undersides of the foot plates' boxes, in the same pose
     """
 
     urdf: str
@@ -65,6 +84,8 @@ class RobotDescription:
     efforts: Mapping[str, float]
     soles: Mapping[str, tuple[tuple[float, float, float], ...]]
     contact_radius: float
+    standing_soles: tuple[tuple[float, float, float], ...]
+    undersides: tuple[Underside, ...]
 
 
 def default_dimensions() -> dict[str, float]:
@@ -238,7 +259,9 @@ def _check_inertials(model: Any) -> None:
 
 def _read_off(urdf: str, model: Any) -> RobotDescription:
     soles: dict[str, tuple[tuple[float, float, float], ...]] = {}
-    lowest, lowest_box, radius = 0.0, 0.0, 0.0
+    standing_soles: list[tuple[float, float, float]] = []
+    undersides: list[Underside] = []
+    radius = 0.0
     for plate in ANKLE_JOINTS:
         spheres = [shape for shape in model.link_map[plate].collisions if shape.geometry.sphere is not None]
         if not spheres:
@@ -246,14 +269,28 @@ def _read_off(urdf: str, model: Any) -> RobotDescription:
         radius = spheres[0].geometry.sphere.radius
         soles[plate] = tuple((float(s.origin[0, 3]), float(s.origin[1, 3]), float(s.origin[2, 3])) for s in spheres)
         to_torso = model.get_transform(plate, "torso")
-        lowest = min(lowest, *((to_torso @ [*sole, 1.0])[2] - radius for sole in soles[plate]))
+        for sole in soles[plate]:
+            x, y, z = map(float, (to_torso @ [*sole, 1.0])[:3])
+            standing_soles.append((x, y, z))
         boxes = [shape for shape in model.link_map[plate].collisions if shape.geometry.box is not None]
         for box in boxes:
-            lowest_box = min(lowest_box, to_torso[2, 3] + box.origin[2, 3] - box.geometry.box.size[2] / 2)
-    if lowest_box < lowest:
+            (x, y, z), half = to_torso[:3, 3] + box.origin[:3, 3], box.geometry.box.size / 2
+            sides = (x - half[0], x + half[0], y - half[1], y + half[1], z - half[2])
+            undersides.append(Underside(*map(float, sides)))
+    height = -min(z - radius for _, _, z in standing_soles)
+    if any(underside.height < -height for underside in undersides):
         raise DescriptionError(
             "the foot plates must lie above the soles: raise hinge_height or make the plates thinner"
         )
     limits = {name: (joint.limit.lower, joint.limit.upper) for name, joint in model.joint_map.items()}
     efforts = {name: joint.limit.effort for name, joint in model.joint_map.items()}
-    return RobotDescription(urdf, float(-lowest), limits, efforts, soles, radius)
+    return RobotDescription(
+        urdf,
+        height,
+        limits,
+        efforts,
+        soles,
+        radius,
+        tuple((x, y, z + height) for x, y, z in standing_soles),
+        tuple(underside._replace(height=underside.height + height) for underside in undersides),
+    )

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from itertools import product
 
+from sarah.robot.description import RobotDescription
 from sarah.robot.reading import Side, Vector
 from sarah.simulation.simulator import LEVEL_GRAVITY
 
@@ -69,7 +70,7 @@ class Ground:
         """Height of the centre of a ball that lies on the surface and can only move up and down, in m.
 
         The surface is sampled under the ball, at the nodes and between. For soles that is exact to 0.4 mm, and on the
-        steepest bumps to 1 mm.
+        steepest bumps to 2 mm.
 
         :param x: place to the right, in m
         :param y: place forward, in m
@@ -82,6 +83,32 @@ class Ground:
             for right, forward in (*product(steps, steps), *product(columns, rows))
             if (under := radius * radius - right * right - forward * forward) >= 0.0
         )
+
+    def highest(self, left: float, right: float, back: float, front: float) -> float:
+        """Height of the highest place in a rectangle, in m, to within a quarter of a cell.
+
+        :param left: smallest x, in m
+        :param right: largest x, in m
+        :param back: smallest y, in m
+        :param front: largest y, in m
+        """
+        columns, rows = (
+            [low + (high - low) * step / count for step in range(count + 1)]
+            for low, high in ((left, right), (back, front))
+            for count in [math.ceil(4.0 * (high - low) / self.cell)]
+        )
+        return max(self.height(x, y) for x in columns for y in rows)
+
+    def lift(self, robot: RobotDescription) -> float:
+        """How much higher than on a plane a standing robot begins, so that it touches the ground and is not inside it.
+
+        :param robot: checked robot
+        :return: height, in m; 0 on a plane
+        """
+        if not self.heights:
+            return 0.0
+        soles = max(self.ball_height(x, y, robot.contact_radius) - z for x, y, z in robot.standing_soles)
+        return max(soles, *(self.highest(*rectangle) - height for *rectangle, height in robot.undersides))
 
     def _nodes_within(self, place: float, radius: float) -> list[float]:
         """Distances along an axis from a place to the nodes that are not farther away than a radius."""

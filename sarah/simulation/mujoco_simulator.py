@@ -86,9 +86,7 @@ class MujocoSimulator:
         shares = [damping / limit for damping, limit in zip(self._damping, self._limits, strict=True)]
         self._servos = list(zip(shares, self._positions, self._speeds, strict=True))
         self._before = np.empty(mujoco.mj_stateSize(self.model, STATE))
-        self.data.qpos[2] = robot.standing_height
-        if self._ground.is_rough:
-            self._stand_on_bumps()
+        self.data.qpos[2] = robot.standing_height + self._ground.lift(robot)
         # These are views of MuJoCo's memory.
         self._qpos, self._qvel, self._pads = self.data.qpos, self.data.qvel, self.data.sensordata
         self._pushed = self.data.xfrc_applied[self.model.body("torso").id, :3]
@@ -107,9 +105,11 @@ class MujocoSimulator:
         model.body_ipos[model.body("torso").id] += conditions.mass_offset
         mujoco.mj_setConst(model, self.data)  # updates what MuJoCo derives from the masses
         mujoco.mj_resetData(model, self.data)
-        for side, soles in self._feet.items():
-            of_side = np.isin(model.pair_geom1, soles) | np.isin(model.pair_geom2, soles)
+        for side in Side:
+            of_side = [model.geom(index).name.startswith(f"{side}_") for index in model.pair_geom2]
             model.pair_friction[of_side, :2] = conditions.friction_under(side)
+        if conditions.is_slippery:  # otherwise pyramids, the default, are as good
+            model.opt.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
         model.opt.gravity[:] = self._ground.gravity
         if self._ground.is_rough:
             self._shape_ground()
@@ -127,13 +127,6 @@ class MujocoSimulator:
         heights, reach = np.array(self._ground.heights), self._ground.reach
         self.model.hfield_size[0, :2] = reach
         self.model.hfield_data[:] = (0.5 + 0.5 * heights[:, ::-1].T / LARGEST_ROUGHNESS).ravel()
-
-    def _stand_on_bumps(self) -> None:
-        """Move the robot up or down until a sole touches the ground and none is inside it."""
-        mujoco.mj_kinematics(self.model, self.data)
-        centres, radius = self.data.geom_xpos.tolist(), self.robot.contact_radius
-        soles = [centres[sole] for side in Side for sole in self._feet[side]]
-        self.data.qpos[2] += max(self._ground.ball_height(x, y, radius) - z for x, y, z in soles)
 
     def _let_follow(self, actuator: int) -> None:
         """Let a servo follow its target."""
@@ -307,6 +300,8 @@ def _compiled(urdf: str, rate: int, solver_iterations: int, nodes: int) -> mujoc
                     geom.name = f"{side}_{plate}"
                     # This contact needs no friction: the hinge leaves nothing to slide.
                     spec.add_pair(geomname1=pad.name, geomname2=geom.name, condim=1, **hardness)
+                    if nodes:  # plates are too high over a plane to touch it
+                        spec.add_pair(geomname1="floor", geomname2=geom.name, condim=3, **hardness)
                     spec.add_sensor(
                         name=pad.name,
                         type=mujoco.mjtSensor.mjSENS_CONTACT,

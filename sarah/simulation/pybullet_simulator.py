@@ -69,7 +69,7 @@ class PyBulletSimulator:
             contactERP=corrected,
             contactBreakingThreshold=CONTACT_MARGIN,
             numNonContactInnerIterations=2,  # motors settle before contacts do; otherwise standing soles creep
-            enableConeFriction=0,  # as good as friction cones here, and cheaper
+            enableConeFriction=conditions.is_slippery,  # otherwise pyramids are as good, and cheaper
             enableFileCaching=0,
             physicsClientId=self.client,
         )
@@ -78,7 +78,7 @@ class PyBulletSimulator:
         self.body, self.links = load_robot(
             self.client,
             self._urdf(conditions),
-            self.robot.standing_height,
+            self.robot.standing_height + self._ground.lift(self.robot),
             flags=pybullet.URDF_USE_INERTIA_FROM_FILE
             | pybullet.URDF_IGNORE_VISUAL_SHAPES
             # PyBullet reports contact between parent and child (pad and plate) only with both of these flags.
@@ -108,8 +108,6 @@ class PyBulletSimulator:
         self._carries = [False] * len(self._plate_inertias)
         # PyBullet takes efforts as impulses over the whole tick, and lets every substep spend all of it.
         self._efforts = [self.robot.efforts[name] / self._substeps for name in ACTUATED_JOINTS]
-        if self._ground.is_rough:
-            self._stand_on_bumps()
         self.look()
         self._velocity_before = self._torso.velocity
         self._targets: tuple[float, ...] = ()
@@ -143,17 +141,6 @@ class PyBulletSimulator:
             shape, middle = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self.client), 0.0
         floor = pybullet.createMultiBody(0.0, shape, basePosition=(0.0, 0.0, middle), physicsClientId=self.client)
         pybullet.changeDynamics(floor, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=self.client)
-
-    def _stand_on_bumps(self) -> None:
-        """Move the robot up or down until a sole touches the ground and none is inside it."""
-        radius = self.robot.contact_radius
-        lift = max(
-            self._ground.ball_height(sole_x, sole_y, radius) - sole_z
-            for side in Side
-            for sole_x, sole_y, sole_z in self._sole_centres(side)
-        )
-        (x, y, z), orientation = pybullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client)
-        pybullet.resetBasePositionAndOrientation(self.body, (x, y, z + lift), orientation, physicsClientId=self.client)
 
     def _keep_only_pad_contacts(self) -> None:
         links = sorted(set(self.links.values()))

@@ -30,6 +30,10 @@ PLAUSIBLE = {
 }
 """Lowest value, highest value and unit of each setting. Beyond them, somebody has mistaken the unit."""
 
+SLIPPERY = 0.5
+"""Friction coefficient below which simulators take friction cones. Pyramids make it differ by direction, by up to 41 %,
+but a sole that does not slide does not feel that."""
+
 
 @dataclass(frozen=True)
 class Randomisation:
@@ -130,6 +134,11 @@ class Conditions:
         """Refuse factors that omit a link."""
         if set(self.mass_factors) != set(LINKS):
             raise ConfigurationError(f"mass_factors must name every link: {', '.join(LINKS)}")
+
+    @property
+    def is_slippery(self) -> bool:
+        """Whether a sole slides so easily that its friction has to be the same in all directions."""
+        return min(self.friction_under(side) for side in Side) < SLIPPERY
 
     def friction_under(self, side: Side) -> float:
         """Coulomb friction coefficient between a foot's soles and the ground.

@@ -27,6 +27,8 @@ NOISE = 1.0
 """Variance of an episode's merit by chance, as a share of the variance between parameters."""
 MOST_EPISODES = 1000
 """Number of episodes that are judged by: the last ones. The time that a choice takes grows with its third power."""
+LARGEST_MERIT = 1e100
+"""Largest merit by amount: larger ones, of a reward of your own, would overflow."""
 CLEARLY = 2.0
 """Number of standard errors by which a candidate must be better than the first to take its place."""
 DISTINCT = 0.1
@@ -76,11 +78,11 @@ class Tried:
     def append(self, episode: tuple[Parameters, float]) -> None:
         """Add an episode.
 
-        :param episode: its parameters and its merit
+        :param episode: its parameters and its merit; one that is no number is as bad as can be
         """
         parameters, merit = episode
         self.parameters.append(parameters)
-        self._merits.append(merit)
+        self._merits.append(min(LARGEST_MERIT, max(-LARGEST_MERIT, merit)))
 
     def best(self, choice: Parameters, count: int) -> list[Parameters]:
         """Choose the parameters of which the highest merit is expected, not too close together.
@@ -103,7 +105,8 @@ class Tried:
 def expected_merits(tried: np.ndarray, merits: np.ndarray, places: np.ndarray) -> np.ndarray:
     """Mean of a Gaussian process (Rasmussen and Williams 2006, equation 2.25).
 
-    Its prior mean is doubt: 0, or the worst of merits that can be negative. So what nobody has tried is worth nothing.
+    Its prior mean is doubt: 0, or the lower quartile of merits that can be negative. So what nobody has tried is worth
+    little.
 
     :param tried: parameters of the episodes as shares of their ranges, of shape (n, dimensions)
     :param merits: merits of the episodes, of shape (n,)
@@ -112,7 +115,7 @@ def expected_merits(tried: np.ndarray, merits: np.ndarray, places: np.ndarray) -
     """
     if not len(merits):
         return np.zeros(len(places))
-    doubt = min(0.0, float(merits.min()))
+    doubt = min(0.0, float(np.quantile(merits, 0.25)))
     covariances = _covariances(tried, tried) + NOISE * np.eye(len(tried))
     expected: np.ndarray = doubt + _covariances(places, tried) @ np.linalg.solve(covariances, merits - doubt)
     return expected

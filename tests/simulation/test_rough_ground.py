@@ -146,16 +146,49 @@ def test_each_foot_has_the_friction_of_its_ground(lab: Laboratory, build: BuildS
     assert lab.friction_under(simulation, slippery.other) == {0.9}
 
 
-def test_a_robot_with_both_feet_on_ice_slides(lab: Laboratory, build: BuildSimulation) -> None:
-    """On 8 degrees, with a coefficient of 0.05, by half of g (sin - 0.05 cos) t^2."""
-    terrain = Terrain(
-        slope_degrees=(8.0, 8.0), direction_degrees=(0.0, 0.0), friction_left=(0.05, 0.05), friction_right=(0.05, 0.05)
-    )
+@pytest.mark.parametrize("uphill", [0.0, 22.5, 45.0, 90.0])
+@pytest.mark.parametrize("friction", [0.0, 0.05, 0.15])
+def test_a_robot_on_ice_slides_alike_in_all_directions(build: BuildSimulation, uphill: float, friction: float) -> None:
+    """On 12 degrees, by half of g (sin - friction cos) t^2."""
+    ice = (friction, friction)
+    terrain = Terrain((12.0, 12.0), (uphill, uphill), friction_left=ice, friction_right=ice)
     simulation = build(Conditions(ground=draw_ground(terrain, 0)))
     advance(simulation, 0.8)
-    angle = math.radians(8.0)
-    expected = -0.5 * 9.81 * (math.sin(angle) - 0.05 * math.cos(angle)) * 0.8**2
-    assert simulation.torso_state().position[0] == pytest.approx(expected, rel=0.1)
+    angle = math.radians(12.0)
+    expected = 0.5 * 9.81 * (math.sin(angle) - friction * math.cos(angle)) * 0.8**2
+    x, y, _ = simulation.torso_state().position
+    assert math.hypot(x, y) == pytest.approx(expected, rel=0.08)
+    assert math.cos(math.atan2(y, x) - math.radians(uphill)) < -0.99  # downhill
+
+
+def test_a_foot_on_ice_slides_ahead_and_turns_the_robot_alike_in_both_engines() -> None:
+    """Uphill in front, 0.05 under the left foot and 0.15 under the right one: the robot turns to the left."""
+    turns = {}
+    for engine in ("pybullet", "mujoco"):
+        need(engine)
+        terrain = Terrain((10.0, 10.0), (90.0, 90.0), friction_left=(0.05, 0.05), friction_right=(0.15, 0.15))
+        conditions = Conditions(ground=draw_ground(terrain, 0))
+        simulation = simulator_of(engine)(describe_robot(), PHYSICS["standard"], conditions)
+        advance(simulation, 0.8)
+        x, y, z, w = simulation.torso_state().orientation
+        turns[engine] = math.degrees(math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)))
+        simulation.close()
+    assert turns["pybullet"] == pytest.approx(turns["mujoco"], abs=6.0)
+    assert 5.0 < turns["mujoco"] < 60.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_plates_rest_on_high_bumps_in_both_engines(seed: int) -> None:
+    """Where soles fall between bumps of 30 mm; a robot that stood on soles alone would stand lower."""
+    heights = {}
+    for engine in ("pybullet", "mujoco"):
+        need(engine)
+        conditions = Conditions(ground=draw_ground(Terrain(roughness=(0.03, 0.03), cell=(0.04, 0.04)), seed))
+        simulation = simulator_of(engine)(describe_robot(), PHYSICS["standard"], conditions)
+        advance(simulation, 0.6)
+        heights[engine] = simulation.torso_state().position[2]
+        simulation.close()
+    assert heights["pybullet"] == pytest.approx(heights["mujoco"], abs=0.006)
 
 
 def advance(simulation: Simulator, seconds: float) -> None:

@@ -1,6 +1,7 @@
 """Candidates for the comparison that ends a training."""
 
 import dataclasses
+import math
 
 import numpy as np
 import pytest
@@ -98,6 +99,21 @@ def test_a_crest_is_found_though_single_episodes_say_little() -> None:
         found.append([np.linalg.norm(np.array(place[:3]) - crest) for place in (best, luckiest)])
     of_best, of_luckiest = np.mean(found, axis=0)
     assert of_best < 0.9 * of_luckiest
+
+
+def test_untried_parameters_are_worth_no_more_than_the_lower_quartile() -> None:
+    places, merits = np.zeros((4, 5)), np.array([-9.0, -2.0, -1.0, -1.0])
+    (far,) = expected_merits(places, merits, np.full((1, 5), 9.0))
+    assert far == pytest.approx(-3.75)
+    (far,) = expected_merits(places, -merits, np.full((1, 5), 9.0))
+    assert far == pytest.approx(0.0)
+
+
+@pytest.mark.parametrize("merit", [math.nan, math.inf, -math.inf, 1e308, -1e308])
+def test_merits_that_are_no_number_or_overflow_leave_a_choice(merit: float) -> None:
+    tried = [(parameters, merit if index % 2 else 0.5) for index, (parameters, _) in enumerate(random_episodes(20))]
+    (best,) = Tried(STEPPING, tried).best(CHOICE, 1)
+    assert all(map(math.isfinite, best))
 
 
 def test_a_long_training_is_judged_by_its_last_thousand_episodes() -> None:
