@@ -64,9 +64,10 @@ def check_range(key: str, value: float | tuple[float, float], low: float, high: 
     ends = value if isinstance(value, tuple) and len(value) == 2 else (value, value)
     are_numbers = all(isinstance(end, Real) and not isinstance(end, bool) for end in ends)
     if not are_numbers or not low <= ends[0] <= ends[1] <= high:
-        order = " and in rising order" if isinstance(value, tuple) else ""
+        is_range = isinstance(value, tuple) and ends[0] != ends[1]
+        order, given = (" and in rising order", value) if is_range else ("", ends[0])
         raise ConfigurationError(
-            f"{key} must be between {low:g} and {high:g}{unit and f' {unit}'}{order}, not {shortened(value)}"
+            f"{key} must be between {low:g} and {high:g}{unit and f' {unit}'}{order}, not {shortened(given)}"
         )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json as json_format
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -17,6 +17,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig, Task
 from sarah.errors import ConfigurationError, check_range
+from sarah.simulation.terrain import Terrain
 
 if TYPE_CHECKING:
     from sarah.episode.evaluation import Evaluation
@@ -40,7 +41,7 @@ class EvalOptions(EpisodeOptions):
         parameters and the baseline. --episodes is the number at each force
     :param forces: forces of the pushes of --robustness, in N
     :param terrain: folder for a table and a picture of score, steps and survival on slopes, bumps and slippery ground,
-        without a push and with one of 75 N. --episodes is the number on each ground
+        for 10 s without a push, and with one of 75 N at 2 to 4 s. --episodes is the number on each ground
     :param episodes: number of episodes
     :param first_seed: seed of the first episode; the others follow. No training has seen the default: trainings draw
         seeds from 2^31 up, and their summaries begin at 0
@@ -83,6 +84,8 @@ def main() -> None:
 def _evaluate(arguments: Sequence[str]) -> None:
     options = parse_episode_options(COMMAND, arguments, EvalOptions())
     spec, algorithm = _subject(options)
+    if options.terrain is not None and spec.config.terrain != Terrain():
+        raise ConfigurationError("--terrain tries grounds of its own: leave --episode.terrain.… out")
     if options.robustness is not None and spec.task is not BALANCE:
         raise ConfigurationError(f"--robustness is for --task {BALANCE.name}")
     from sarah.episode.accuracy import physics_warning
@@ -103,13 +106,20 @@ def _evaluate(arguments: Sequence[str]) -> None:
     named = dict(zip(spec.task.parameter_names, spec.parameters, strict=True))
     if options.json:
         content: dict[str, object] = {"task": spec.task.reference, "algorithm": algorithm, "parameters": named}
-        content |= {"first_seed": options.first_seed, **evaluation.summary()}
+        content |= {"first_seed": options.first_seed, "engine": spec.config.engine}
+        content |= {"terrain": asdict(spec.config.terrain), **evaluation.summary()}
         if baseline is not None:
             content |= {"chatters": evaluation.chatters(baseline), "baseline": baseline.summary()}
         print(json_format.dumps(content))
         return
+    ground = [("ground", _described(spec.config.terrain))] if spec.config.terrain != Terrain() else []
     seeds = f"{options.seeds[0]} to {options.seeds[-1]}, which no training has seen"
-    for label, text in [*_subject_rows(options.subject, spec.config), ("seeds", seeds), *_rows(named, evaluation)]:
+    for label, text in [
+        *_subject_rows(options.subject, spec.config),
+        *ground,
+        ("seeds", seeds),
+        *_rows(named, evaluation),
+    ]:
         print(f"{label:17}{text}")
     if baseline is not None:
         for label, text in _comparison(spec.task, evaluation, baseline):
@@ -142,6 +152,13 @@ def _subject_rows(subject: str, config: EpisodeConfig) -> list[tuple[str, str]]:
     return [("subject", f"{subject}, {pushed}"), ("origin", PARAMETER_SETS[subject].origin)]
 
 
+def _described(terrain: Terrain) -> str:
+    """Settings of the ground that are not the default."""
+    given = [(item.name, getattr(terrain, item.name)) for item in fields(terrain)]
+    changed = [(name, ends) for name, ends in given if ends != getattr(Terrain(), name)]
+    return ", ".join(f"{name} {low:g}" + (f" to {high:g}" if high != low else "") for name, (low, high) in changed)
+
+
 def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[str, str]]:
     from sarah.episode.result import METRICS
 
@@ -164,15 +181,13 @@ def _comparison(task: Task[Any], evaluation: Evaluation, baseline: Evaluation) -
     """Rows about the baseline: the same episodes with the parameters that do nothing, such as V1 to V4 at zero."""
     score, steps = baseline.median("score"), baseline.mean("steps_per_second")
     chatter = "the hips chatter" if evaluation.chatters(baseline) else "no chatter"
-    vibrations = (
-        f"{evaluation.median('vibration'):.1f} m²/s⁴ median, {baseline.median('vibration'):.1f} of the baseline"
-    )
+    vibration, still = evaluation.median("vibration"), baseline.median("vibration")
     return [
         (
             "baseline (V = 0)" if task is BALANCE else "neutral",
             f"score {score:.3f} median, {baseline.survivors} of {baseline.episodes} survive, {steps:.2f} steps/s",
         ),
-        ("vibration", f"{vibrations}: {chatter}"),
+        ("chatter", f"{chatter}: a vibration of {vibration:.1f} m²/s⁴, and of {still:.1f} with the baseline"),
     ]
 
 
@@ -207,13 +222,21 @@ def _show_robustness(
 
 def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers: Workers) -> None:
     """Print the table as Markdown, and write the table and the picture."""
+    from functools import partial
+
+    from tqdm import tqdm
+
     from sarah.reports.terrain import as_markdown, situations, try_terrain
     from sarah.reports.terrain_figure import draw_terrain
 
     _make(folder)
     say_engine(spec.config, options.engine)
-    rows = try_terrain(spec.task, spec.parameters, spec.config, options.seeds, workers, list(situations()))
-    table = as_markdown(rows)
+    tried = list(situations())
+    progress = partial(tqdm, total=len(tried) * options.episodes, unit=" episodes")
+    rows = try_terrain(spec.task, spec.parameters, spec.config, options.seeds, workers, tried, progress)
+    values = ", ".join(f"{value:g}" for value in spec.parameters)
+    about = f"{spec.task.name} ({values}) in {spec.config.engine}, seeds {options.seeds[0]} to {options.seeds[-1]}"
+    table = f"{about}\n\n{as_markdown(rows)}"
     print(table)
     (folder / "terrain.md").write_text(table + "\n", encoding="utf-8")
     for file in draw_terrain(rows, folder / "terrain"):

@@ -6,13 +6,14 @@ Every row simulates the same seeds, so the same robots meet the same bumps, high
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice, product
 from typing import Any
 
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.push import Push, PushedConfig
+from sarah.episode.result import EpisodeResult
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
@@ -114,6 +115,7 @@ def try_terrain(
     seeds: Sequence[int],
     workers: Workers,
     tried: Sequence[Situation],
+    progress: Callable[[Iterable[EpisodeResult]], Iterable[EpisodeResult]] = iter,
 ) -> list[OnTerrain]:
     """Evaluate parameters in situations, on the same seeds.
 
@@ -123,10 +125,11 @@ def try_terrain(
     :param seeds: seeds of the episodes
     :param workers: workers that simulate the episodes
     :param tried: situations to try
+    :param progress: function that passes the results on, and may show how many there are so far
     """
     configs = [situation.config(task, config) for situation in tried]
     specs = [EpisodeSpec(parameters, seed, task, each) for each in configs for seed in seeds]
-    results = iter(list(workers.simulate_all(specs)))
+    results = iter(list(progress(workers.simulate_all(specs))))
     return [OnTerrain(situation, Evaluation(tuple(islice(results, len(seeds))))) for situation in tried]
 
 

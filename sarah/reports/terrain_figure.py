@@ -46,8 +46,10 @@ def draw_terrain(rows: Sequence[OnTerrain], path: Path) -> list[Path]:
                 if column == 0:
                     axis.set_ylabel(metric_label)
             axes[-1, column].set_xlabel(label)
-        handles, labels = axes[0, 0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper center", ncols=4)
+        handles, labels = (
+            [one for axis in axes[0, :2] for one in axis.get_legend_handles_labels()[part]] for part in (0, 1)
+        )
+        figure.legend(handles, labels, loc="outside upper center", ncols=3)
         return save(figure, path)
 
 
@@ -68,7 +70,7 @@ def _draw(axis: Axes, rows: Sequence[OnTerrain], metric: str, factor: float) -> 
             ]
             colour, dashes = UPHILL_COLOURS.get(uphill, OTHER_COLOUR), "--" if newtons else "-"
             pushed = f", {newtons:.0f} N" if newtons else ""
-            label = f"uphill {uphill}{pushed}" if uphill else None
+            label = f"uphill {uphill}{pushed}" if uphill else f"bumps or friction{pushed}"
             axis.plot(x, found, dashes, marker="o", markersize=2.5, linewidth=1.0, color=colour, label=label)
             if metric == "survival":
                 low, high = zip(*(row.interval for row in line), strict=True)

@@ -77,8 +77,8 @@ def test_command_writes_table_and_picture(
 ) -> None:
     from sarah.cli.eval import main
 
-    def found(*arguments: Any) -> list[OnTerrain]:
-        return [OnTerrain(situation, Evaluation((RESULT,) * 3)) for situation in arguments[-1]]
+    def found(*arguments: Any) -> list[OnTerrain]:  # its last but one argument are the situations
+        return [OnTerrain(situation, Evaluation((RESULT,) * 3)) for situation in arguments[-2]]
 
     monkeypatch.setattr(terrain, "try_terrain", found)
     monkeypatch.setattr(sys, "argv", ["sarah-eval", "balance", "--terrain", str(tmp_path / "out"), "--episodes", "3"])
