@@ -63,7 +63,7 @@ def figure(sentence: str) -> str:
     spec = spec or with_decimals(format_of(column), most_decimals(texts))
     if function == "range":
         low, high = (typeset(format(end, spec)) for end in (min(numbers), max(numbers)))
-        return f"{without_percent(low, high)} to {high}"
+        return high if low == high else f"{without_percent(low, high)} to {high}"
     if function not in SUMMARIES:
         raise ValueError(f"{sentence!r} begins with none of value, count, range, {', '.join(SUMMARIES)}")
     return typeset(format(SUMMARIES[function](numbers), spec))

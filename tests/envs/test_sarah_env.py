@@ -85,7 +85,10 @@ def test_settings_are_keywords() -> None:
         ({"time_limit": "10"}, "time_limit must be a number, not '10'"),
         ({"time_limit": 0.5}, "time_limit must be between 1 and 3600 s, not 0.5"),
         ({"push": {"newton": 1}}, "unknown key 'push.newton', did you mean 'push.newtons'?"),
-        ({"push": {"newtons": [1, 2, 3]}}, r"push.newtons must be a list of 2 values, not \[1, 2, 3\]"),
+        (
+            {"push": {"newtons": [1, 2, 3]}},
+            r"push.newtons must be one number, or a list of 2 for a range, not \[1, 2, 3\]",
+        ),
         ({"physics": {"rate": 0}}, "physics.rate must be"),
     ],
 )

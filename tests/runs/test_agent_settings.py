@@ -135,7 +135,10 @@ def test_what_a_file_does_not_name_is_the_default_of_its_algorithm(tmp_path: Pat
         ("agent: 5", "agent must hold keys and values, not 5"),
         ("agent: {v_layers: 5}", "agent.v_layers must be a list, not 5"),
         ("agent: {v_layers: [5, x]}", "agent.v_layers must be a whole number, not 'x'"),
-        ("agent: {exploration_std: [0.1]}", r"agent.exploration_std must be a list of 2 values, not [0.1]"),
+        (
+            "agent: {exploration_std: [0.1]}",
+            r"agent.exploration_std must be one number, or a list of 2 for a range, not [0.1]",
+        ),
         ("agent: {batch_size: 2.5}", "agent.batch_size must be a whole number, not 2.5"),
         ("agent: {learning_rate: fast}", "agent.learning_rate must be a number, not 'fast'"),
         ("agent: {learning_rate: 3e9}", "agent.learning_rate must be between 1e-09 and 1, not 3000000000.0"),

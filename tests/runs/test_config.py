@@ -96,7 +96,10 @@ def test_what_a_task_and_an_engine_have_of_their_own_is_read(tmp_path: Path) -> 
             "episode: {engine: pybullet, physics: {added_plate_inertia: -1}}",
             "added_plate_inertia must be between 0 and 1 kg m^2, not -1",
         ),
-        ("episode: {randomisation: {friction: [0.9]}}", "friction must be one number, or a list of 2 for a range, not [0.9]"),
+        (
+            "episode: {randomisation: {friction: [0.9]}}",
+            "friction must be one number, or a list of 2 for a range, not [0.9]",
+        ),
         ("episode: {randomisation: {friction: [1.0, 0.7]}}", "friction must be between 0 and 5 and in rising order"),
         ("episode: {randomisation: {friction: [.nan, 0.7]}}", "friction must be between 0 and 5 and in rising order"),
         ("episode: {randomisation: {mass_deviation: 1.0}}", "mass_deviation must be between 0 and 0.9, not 1.0"),

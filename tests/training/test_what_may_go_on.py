@@ -34,7 +34,9 @@ COMMAND = Path(sys.executable).with_name("sarah-train")
 
 def others(value: Any) -> Iterator[Any]:
     """Values that a setting might have instead."""
-    if isinstance(value, bool):
+    if value is None:
+        yield [0.2, 0.4]
+    elif isinstance(value, bool):
         yield not value
     elif isinstance(value, (int, float)):
         yield from (
