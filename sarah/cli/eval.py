@@ -200,7 +200,7 @@ def _show_robustness(
 
     folder, neutral = options.robustness, BALANCE.neutral
     assert folder is not None and neutral is not None and isinstance(config, BalanceConfig)
-    _make(folder)
+    _make_folder(folder)
     say_engine(config, options.engine)
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
     pushed = push_many((neutral, parameters), config, workers, options.forces, options.episodes, options.first_seed)
@@ -229,7 +229,7 @@ def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers
     from sarah.reports.terrain import as_markdown, situations, try_terrain
     from sarah.reports.terrain_figure import draw_terrain
 
-    _make(folder)
+    _make_folder(folder)
     say_engine(spec.config, options.engine)
     tried = list(situations())
     progress = partial(tqdm, total=len(tried) * options.episodes, unit=" episodes")
@@ -243,7 +243,7 @@ def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers
         print(file)
 
 
-def _make(folder: Path) -> None:
+def _make_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

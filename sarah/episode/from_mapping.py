@@ -88,6 +88,7 @@ def _converted_tuple(parts: tuple[Any, ...], value: Any, key: str) -> tuple[Any,
         parts = (parts[0],) * len(value) if is_list else ()
     if not is_list or len(value) != len(parts):
         values = f"a list of {len(parts)} values" if parts else "a list"
-        values = "one number, or a list of 2 for a range" if parts == get_args(RANGE) else values
+        if parts == get_args(RANGE):
+            values = "one number, or a list of 2 for a range"
         raise ConfigurationError(f"{key} must be {values}, not {shortened(value)}")
     return tuple(_converted(part, item, key) for part, item in zip(parts, value, strict=True))

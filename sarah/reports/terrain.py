@@ -18,7 +18,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
 from sarah.episode.workers import Workers
-from sarah.reports.robustness import wilson_interval
+from sarah.reports.robustness import PUSHED_BETWEEN, wilson_interval
 from sarah.simulation.terrain import Terrain
 
 SLOPES = (2.0, 4.0, 6.0, 8.0)
@@ -31,8 +31,6 @@ FRICTIONS = (0.15, 0.25, 0.4, 0.7, 1.2)
 """Friction coefficients under both feet: ice, wet tiles, and so on to rubber."""
 PUSH_NEWTONS = 75.0
 """Force of the push, in N."""
-PUSHED_BETWEEN = (2.0, 4.0)
-"""Range of the simulated times at which it begins, in s."""
 TIME_LIMIT = 10.0
 """Time limit of the episodes, in s."""
 
@@ -69,14 +67,13 @@ class Situation:
         :param task: task of the episodes
         :param config: settings of which time limit, ground and push are replaced
         """
-        config = dataclasses.replace(config, terrain=self.terrain, time_limit=TIME_LIMIT)
-        if not isinstance(config, PushedConfig):
-            if not self.newtons:
-                return config
-            config = PushedConfig(**vars(config))
-        push = Push((self.newtons, self.newtons), at_seconds=PUSHED_BETWEEN)
-        config = dataclasses.replace(config, push=push)
-        return config if task.has_push or self.newtons else task.config_of(config)
+        changes: dict[str, Any] = {"terrain": self.terrain, "time_limit": TIME_LIMIT}
+        if not (task.has_push or self.newtons):
+            return task.config_of(config, **changes)
+        changes["push"] = Push((self.newtons, self.newtons), at_seconds=PUSHED_BETWEEN)
+        if isinstance(config, PushedConfig):
+            return dataclasses.replace(config, **changes)
+        return PushedConfig(**(vars(config) | changes))
 
 
 @dataclass(frozen=True)
@@ -96,12 +93,9 @@ class OnTerrain:
         return wilson_interval(self.evaluation.survivors, self.evaluation.episodes)
 
 
-def situations(newtons: float = PUSH_NEWTONS) -> Iterator[Situation]:
-    """All situations of the table: each ground without a push, then with one.
-
-    :param newtons: force of the push, in N
-    """
-    for force in (0.0, newtons):
+def situations() -> Iterator[Situation]:
+    """All situations of the table: each ground without a push, then with one."""
+    for force in (0.0, PUSH_NEWTONS):
         yield Situation("slope", 0.0, "", force)
         yield from (Situation("slope", slope, uphill, force) for uphill, slope in product(UPHILL, SLOPES))
         yield from (Situation("roughness", height, "", force) for height in ROUGHNESSES)

@@ -12,8 +12,8 @@ from sarah.simulation.ground import Ground
 if TYPE_CHECKING:
     from sarah.simulation.scenery import View
 
-LIGHT = np.array((-0.4, 0.6, 0.7))
-"""Direction towards the light, in the world's frame; its length is near 1."""
+LIGHT = (-1.5, 2.5, 3.0)
+"""Direction towards the light in pictures, in the world's frame."""
 CONTRAST = 0.6
 """Change of brightness from a triangle across the light to one along it."""
 NEAREST = 0.05
@@ -51,7 +51,8 @@ def over(picture: np.ndarray, view: View, ground: Ground, colours: np.ndarray, s
     corners = nodes[triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    shaded = np.clip(colours * (1.0 + CONTRAST * (normals @ LIGHT - LIGHT[2]))[:, None], 0, 255).astype(int)
+    light = np.array(LIGHT) / np.linalg.norm(LIGHT)
+    shaded = np.clip(colours * (1.0 + CONTRAST * (normals @ light - light[2]))[:, None], 0, 255).astype(int)
     depths = (corners - view.position) @ view.axes[2]
     order = np.argsort(-depths.mean(axis=1))
     order = order[depths.min(axis=1)[order] > NEAREST]

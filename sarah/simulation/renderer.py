@@ -12,6 +12,7 @@ from PIL import Image
 from sarah.errors import ConfigurationError
 from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, Side, Vector
+from sarah.simulation.bumps import LIGHT
 from sarah.simulation.engines import INSTALLATION, is_installed
 from sarah.simulation.pybullet_client import give_back_client, load_robot, pybullet, take_client
 from sarah.simulation.scenery import STANDARD_CAMERA, Camera, View, floor, shaded, size_of
@@ -24,8 +25,6 @@ SHOE_MARGIN = 1.2
 NEAREST = 0.01
 """Smallest distance from the camera at which anything is drawn, in m."""
 CUBE = np.array(list(product((-1.0, 1.0), repeat=3)))
-LIGHT = (-1.5, 2.5, 3.0)
-"""Direction towards the light, in the world's frame."""
 
 
 def check_renderer() -> None:

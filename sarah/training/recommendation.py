@@ -25,7 +25,7 @@ LENGTH = 0.2
 """Length scale of the Gaussian process, as a share of each parameter's range."""
 NOISE = 1.0
 """Variance of an episode's merit by chance, as a share of the variance between parameters."""
-MOST_EPISODES = 1000
+MOST_EPISODES = 500
 """Number of episodes that are judged by: the last ones. The time that a choice takes grows with its third power."""
 LARGEST_MERIT = 1e100
 """Largest merit by amount: larger ones, of a reward of your own, would overflow."""
@@ -127,7 +127,9 @@ def _covariances(places: np.ndarray, others: np.ndarray) -> np.ndarray:
 
 
 def _squared_distances(places: np.ndarray, others: np.ndarray) -> np.ndarray:
-    distances: np.ndarray = ((places[:, None] - others) ** 2).sum(axis=2)
+    # By a matrix product: differences of all pairs would take several times as long.
+    lengths, other_lengths = ((rows**2).sum(axis=1) for rows in (places, others))
+    distances: np.ndarray = lengths[:, None] + other_lengths - 2.0 * places @ others.T
     return distances
 
 

@@ -121,14 +121,13 @@ def test_soles_of_a_standing_robot_rest_on_the_bumps(build: BuildSimulation, see
     assert simulation.torso_state().axis[2] > math.cos(math.radians(8.0))
 
 
-@pytest.mark.parametrize("side", list(Side))
-def test_a_lifted_foot_clears_the_ground_by_what_the_leg_retracts(build: BuildSimulation, side: Side) -> None:
-    flat, rough = (build(Conditions(ground=draw_ground(Terrain(roughness=height), 2))) for height in (1e-9, 0.01))  # type: ignore[arg-type]
-    for simulation in (flat, rough):
-        place = 2 if side is Side.LEFT else 5
-        simulation.set_targets(tuple(0.02 if index == place else 0.0 for index in range(6)))
-        advance(simulation, 0.1)
-    assert rough.sole_height(side) == pytest.approx(flat.sole_height(side), abs=0.02)
+def test_clearance_of_a_foot_is_that_over_its_own_ground(lab: Laboratory, build: BuildSimulation) -> None:
+    """A robot 5 cm up in the air; under its left foot the ground is 2 cm higher."""
+    step = tuple(0.02 if column < 35 else 0.0 for column in range(71))
+    simulation = build(Conditions(ground=Ground(heights=(step,) * 71, cell=0.02)))
+    lab.place(simulation, simulation.robot.standing_height + 0.05)
+    assert simulation.sole_height(Side.LEFT) == pytest.approx(0.03, abs=1e-6)
+    assert simulation.sole_height(Side.RIGHT) == pytest.approx(0.05, abs=1e-6)
 
 
 def test_bumps_of_no_height_are_a_plane(build: BuildSimulation) -> None:
@@ -179,7 +178,7 @@ def test_a_foot_on_ice_slides_ahead_and_turns_the_robot_alike_in_both_engines() 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_plates_rest_on_high_bumps_in_both_engines(seed: int) -> None:
-    """Where soles fall between bumps of 30 mm; a robot that stood on soles alone would stand lower."""
+    """Where soles fall between bumps of 30 mm; a robot that stood on soles alone would stand 7 mm lower or more."""
     heights = {}
     for engine in ("pybullet", "mujoco"):
         need(engine)
@@ -188,7 +187,7 @@ def test_plates_rest_on_high_bumps_in_both_engines(seed: int) -> None:
         advance(simulation, 0.6)
         heights[engine] = simulation.torso_state().position[2]
         simulation.close()
-    assert heights["pybullet"] == pytest.approx(heights["mujoco"], abs=0.006)
+    assert heights["pybullet"] == pytest.approx(heights["mujoco"], abs=0.002)
 
 
 def advance(simulation: Simulator, seconds: float) -> None:

@@ -116,8 +116,8 @@ def test_merits_that_are_no_number_or_overflow_leave_a_choice(merit: float) -> N
     assert all(map(math.isfinite, best))
 
 
-def test_a_long_training_is_judged_by_its_last_thousand_episodes() -> None:
-    old, late = random_episodes(200), [(parameters, merit) for parameters, merit in random_episodes(1200)[200:]]
+def test_a_long_training_is_judged_by_its_last_five_hundred_episodes() -> None:
+    old, late = random_episodes(200), [(parameters, merit) for parameters, merit in random_episodes(700)[200:]]
     assert Tried(STEPPING, [*old, *late]).best(CHOICE, 3) == Tried(STEPPING, late).best(CHOICE, 3)
 
 
