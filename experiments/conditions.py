@@ -10,11 +10,12 @@ from typing import NamedTuple, get_args
 from experiments.experiment import OnWorkers, survival
 from experiments.record import Row
 from sarah.episode.ending import paper_ending
-from sarah.episode.episode import Episode, conditions_of
+from sarah.episode.episode import Episode
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import Push
 from sarah.episode.result import EpisodeResult
+from sarah.episode.running_robot import conditions_of
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_EVALUATION_SEED
 from sarah.episode.tasks import BALANCE, BalanceConfig

@@ -2,32 +2,28 @@
 
 from __future__ import annotations
 
-import dataclasses
-import math
 from typing import Any
 
 from sarah.control.hip_law import LOCKED_HIPS
-from sarah.control.parameters import PAPER_STEPPING
-from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, Phase, SteppingParameters
+from sarah.control.pattern_generator import STAND_SECONDS, Phase
 from sarah.episode.gait import GaitRecord
 from sarah.episode.motion import MotionRecord
 from sarah.episode.result import EpisodeResult
 from sarah.episode.reward import highest_return
+from sarah.episode.running_robot import RunningRobot
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING, Task, controller_of, ending_of, push_of, reward_of
 from sarah.episode.tick import Tick
 from sarah.episode.trace import Trace
-from sarah.robot.description import ANKLE_JOINTS, describe_robot
-from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, SensorReading, Vector
-from sarah.simulation.build import BuildSimulator, simulator_of
-from sarah.simulation.randomisation import Conditions, draw_conditions
-from sarah.simulation.sensors import ImperfectSensors
+from sarah.robot.description import ANKLE_JOINTS
+from sarah.robot.reading import SensorReading, Vector
+from sarah.simulation.build import BuildSimulator
+from sarah.simulation.randomisation import Conditions
 from sarah.simulation.simulator import TorsoState
-from sarah.simulation.terrain import draw_ground
 
 
-class Episode:
+class Episode(RunningRobot):
     """A robot in its world: :meth:`stand`, then :meth:`run`, then :meth:`close`.
 
     To observe the robot in between, call :meth:`start` and then :meth:`tick` until :attr:`termination` says how the
@@ -39,11 +35,9 @@ class Episode:
     :param record_trace: whether to record every control tick in a trace
     :param build: function that makes the simulator from robot, physics and conditions; by default that of the
         configuration's engine
-    :param conditions: properties of robot and world; by default those that :func:`conditions_of` draws from the seed
+    :param conditions: properties of robot and world; by default those that
+        :func:`~sarah.episode.running_robot.conditions_of` draws from the seed
     """
-
-    generator: PatternGenerator
-    """Source of the joint targets; :meth:`start` gives it its parameters."""
 
     def __init__(
         self,
@@ -54,22 +48,9 @@ class Episode:
         build: BuildSimulator | None = None,
         conditions: Conditions | None = None,
     ) -> None:
-        self.config = config
         self.task = task
         self.push = push_of(task, task.checked_config(config, True), seed)
-        self.termination: str | None = None
-        self.robot = describe_robot(config.dimensions)
-        conditions = conditions or conditions_of(config, seed)
-        gravity_x, gravity_y, gravity_z = conditions.ground.gravity
-        strength = math.hypot(gravity_x, gravity_y, gravity_z) or GRAVITY
-        self._vertical = (-gravity_x / strength, -gravity_y / strength, -gravity_z / strength)
-        self.simulation = (build or simulator_of(config.engine))(self.robot, config.physics, conditions)
-        self._truth = self.last_reading = self.simulation.read()
-        self._dt = config.physics.control_dt
-        limits = [self.robot.limits[joint] for joint in ACTUATED_JOINTS]
-        stepping = SteppingParameters(*PAPER_STEPPING)  # until start() gives it others
-        self.generator = PatternGenerator(stepping, dt=self._dt, limits=limits, constants=config.controller)
-        self._sensors = ImperfectSensors(conditions.sensors, self._dt)
+        super().__init__(config, seed, build, conditions)
         self._first = self._last = self.simulation.torso_state()
         self._gait = GaitRecord(config.physics.control_rate)
         self._motion = MotionRecord(config.physics.control_rate)
@@ -82,16 +63,6 @@ class Episode:
             else task.best_reward * seconds
         )
         self._trace: list[dict[str, Any]] | None = [] if record_trace else None
-
-    def stand(self) -> SensorReading:
-        """Stand for the first second.
-
-        :return: the last reading of that second, which is the observation that the agent acts on
-        """
-        for _ in range(round(STAND_SECONDS / self._dt)):
-            self.generator.tick(self._sense())
-            self.simulation.advance()
-        return self.last_reading
 
     def run(self, parameters: tuple[float, ...]) -> EpisodeResult:
         """Let the pattern generator run until the episode ends.
@@ -115,10 +86,10 @@ class Episode:
     def tick(self) -> None:
         """Advance by one control tick: sense, decide, act, simulate and judge."""
         simulation, generator, gait = self.simulation, self.generator, self._gait
-        reading = self._sense()
+        reading = self.sense()
         if self.termination is not None:
             return
-        self._motion.tick(self._truth.acceleration, *simulation.actuator_motion())
+        self._motion.tick(self.truth.acceleration, *simulation.actuator_motion())
         if generator.phase in (Phase.LIFT, Phase.LAND):
             gait.swing(simulation.sole_height(generator.swing))
         change = generator.tick(reading)
@@ -149,18 +120,6 @@ class Episode:
             trace=None if self._trace is None else Trace.of(self._trace),
         )
 
-    def close(self) -> None:
-        """Give the physics engine's resources back."""
-        self.simulation.close()
-
-    def _sense(self) -> SensorReading:
-        truth = self.simulation.read()
-        if truth.is_finite:
-            self._truth, self.last_reading = truth, self._sensors(truth)
-        else:  # the last finite reading stays
-            self.termination = "diverged"
-        return self.last_reading
-
     def _push_now(self) -> Vector | None:
         """Force of the push in N, while it lasts."""
         if self.push is None:
@@ -184,10 +143,10 @@ class Episode:
             self._gait.steps_per_second(self._ticks),
             self.generator.phase,
             self.generator.stance,
-            self._truth,
+            self.truth,
             self.last_reading,
             self.simulation,
-            self._vertical,
+            self.vertical,
         )
         self._return += reward_of(self.task, tick, self.config) * self._dt
         self.termination = ending_of(self.task, tick, self.config)
@@ -207,7 +166,7 @@ class Episode:
                 "time": STAND_SECONDS + self._ticks * self._dt,
                 "position": torso.position,
                 "orientation": torso.orientation,
-                "joints": self._truth.joints,
+                "joints": self.truth.joints,
                 "ankles": self.simulation.joint_positions(ANKLE_JOINTS),
                 "targets": generator.targets,
                 "pressures": reading.pressures,
@@ -223,16 +182,6 @@ class Episode:
                 "score": self._return / self._highest_return,
             }
         )
-
-
-def conditions_of(config: EpisodeConfig, seed: int) -> Conditions:
-    """Draw an episode's robot and world.
-
-    :param config: settings of the episode
-    :param seed: seed of the episode
-    """
-    ground = draw_ground(config.terrain, seed)
-    return dataclasses.replace(draw_conditions(config.randomisation, seed), ground=ground)
 
 
 def simulate(spec: EpisodeSpec, record_trace: bool = False) -> EpisodeResult:

@@ -16,6 +16,8 @@ from sarah.simulation.physics import PHYSICS, Physics, physics_for
 from sarah.simulation.randomisation import Randomisation
 from sarah.simulation.terrain import Terrain
 
+LARGEST_PAYLOAD = 100.0
+"""Largest payload, in kg."""
 LONGEST_EPISODE = 3600.0
 """Longest time limit of an episode, in s."""
 
@@ -30,6 +32,7 @@ class EpisodeConfig:
     :param randomisation: ranges that each episode's seed draws from
     :param terrain: ground, drawn from each episode's seed as well
     :param controller: constants of the pattern generator and the hip law
+    :param payload: mass of what the torso carries, in kg, spread over it as its own mass is
     :param dimensions: dimensions of the robot that differ from their defaults: values by name in SI units, such as
         hinge_height 0.04
     :param time_limit: time limit of an episode, in s; the paper's first criterion
@@ -42,6 +45,7 @@ class EpisodeConfig:
     randomisation: Randomisation = Randomisation()
     terrain: Terrain = Terrain()
     controller: ControllerConstants = ControllerConstants()
+    payload: float = 0.0
     dimensions: Mapping[str, float] = field(default_factory=dict)
     time_limit: float = 30.0
     reward_form: RewardForm = "symmetric"
@@ -55,6 +59,7 @@ class EpisodeConfig:
         if self.engine not in get_args(Engine):
             raise ConfigurationError(unknown_name("engine", self.engine, get_args(Engine)))
         object.__setattr__(self, "physics", physics_for(self.engine, self.physics))
+        check_range("payload", self.payload, 0.0, LARGEST_PAYLOAD, "kg")
         check_range("time_limit", self.time_limit, STAND_SECONDS, LONGEST_EPISODE, "s")
         if self.time_limit < STAND_SECONDS + self.physics.control_dt:
             raise ConfigurationError(

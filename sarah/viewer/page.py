@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import viser
 
 from sarah.episode.ending import ending_words
-from sarah.episode.episode import conditions_of
 from sarah.episode.result import METRICS, EpisodeResult
+from sarah.episode.running_robot import conditions_of
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, Task
 from sarah.episode.trace import Trace

@@ -1,0 +1,1 @@
+"""A robot that goes on: windows in which it is measured, a reward that its own sensors give, falls and changes."""

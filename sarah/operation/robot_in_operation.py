@@ -1,0 +1,176 @@
+"""The robot that goes on: windows with changing parameters, in one world from each standing up to the next fall."""
+
+from __future__ import annotations
+
+import dataclasses
+import random
+
+from sarah.control.pattern_generator import STAND_SECONDS
+from sarah.episode.ending import LEAST_UPRIGHT
+from sarah.episode.push import PushedConfig, draw_push
+from sarah.episode.running_robot import RunningRobot, conditions_of
+from sarah.episode.settings import EpisodeConfig
+from sarah.operation.settings import OperationConfig, Parameters, checked_parameters, controller_parameters
+from sarah.operation.window import Window, WindowRecord
+from sarah.robot.reading import Vector
+from sarah.simulation.simulator import TorsoState
+
+MOST_PUSHES = 2**20
+"""Number of pushes of an operation after which those of the next seed would come."""
+
+
+class RobotInOperation:
+    """A robot whose parameters may change between windows. What it does follows from settings, seed and parameters.
+
+    It is the same robot all the time: its masses, friction and sensor errors are drawn once. Its sensor noise is new
+    each time that it is put up.
+
+    :param config: settings of the operation
+    :param seed: seed of robot, world, noise and pushes
+    """
+
+    def __init__(self, config: OperationConfig, seed: int) -> None:
+        self.config = config
+        self.seconds = 0.0
+        """Time of operation so far, in s."""
+        self.windows = 0
+        """Number of windows so far."""
+        self._seed = seed
+        self._robot: RunningRobot | None = None
+        self._changes = 0
+        self._stands = 0
+        self._since_standing: list[Window] = []
+        dt = config.robot.physics.control_dt
+        self._settle, self._measure = round(config.settle_seconds / dt), round(config.measure_seconds / dt)
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the operation's time is over."""
+        return self.seconds >= 60.0 * self.config.minutes
+
+    def run(self, parameters: Parameters) -> Window:
+        """Run one window, from where the robot is now.
+
+        :param parameters: P1 to P5 and V1 to V4
+        :raises ConfigurationError: if a parameter is not within its box
+        """
+        parameters = checked_parameters(parameters)
+        self._make_changes()
+        if self._robot is None:
+            self._robot = self._standing()
+            for before in self._since_standing:  # known windows, which led to where the robot is now
+                self._run(self._robot, before.parameters, before.begin, before is self._since_standing[0])
+        window = self._run(self._robot, parameters, self.seconds, not self._since_standing)
+        self._count(window)
+        return window
+
+    def skip(self, window: Window) -> None:
+        """Go on as after a window that is known.
+
+        :param window: result of the next window
+        """
+        self._make_changes()
+        self._count(window)
+
+    def close(self) -> None:
+        """Give the physics engine's resources back."""
+        if self._robot is not None:
+            self._robot.close()
+            self._robot = None
+
+    def _make_changes(self) -> None:
+        """Put the robot up anew if something about it is different from now on."""
+        changes = self.config.changes_by(self.seconds)
+        if changes != self._changes:
+            self._changes = changes
+            self._put_up()
+
+    def _put_up(self) -> None:
+        self.close()
+        self._stands += 1
+        self._since_standing = []
+
+    def _count(self, window: Window) -> None:
+        self.windows += 1
+        self.seconds = window.end
+        self._since_standing.append(window)
+        if window.fell:
+            self._put_up()
+
+    def _standing(self) -> RunningRobot:
+        config = self.config.robot_after(self._changes)
+        conditions = conditions_of(config, self._seed)
+        noise = random.Random(f"noise {self._seed} {self._stands}").getrandbits(64)
+        conditions = dataclasses.replace(conditions, sensors=dataclasses.replace(conditions.sensors, seed=noise))
+        robot = RunningRobot(config, self._seed, conditions=conditions)
+        robot.stand()
+        return robot
+
+    def _run(self, robot: RunningRobot, parameters: Parameters, begin: float, stands: bool) -> Window:
+        dt = robot.config.physics.control_dt
+        stood = STAND_SECONDS if stands else 0.0
+        first = round((begin + stood) / dt)
+        record = WindowRecord(
+            robot.robot.standing_height, robot.config.physics.control_rate, self._settle, self._measure
+        )
+        robot.generator.set_parameters(*controller_parameters(parameters))
+        ticks = 0
+        while ticks < self._settle + self._measure and not self._tick(robot, record, first + ticks):
+            ticks += 1
+        fell = ticks < self._settle + self._measure
+        seconds = stood + ticks * dt + (self.config.fall_seconds if fell else 0.0)
+        return Window(
+            index=self.windows,
+            begin=begin,
+            seconds=round(seconds, 9),
+            changes=self._changes,
+            parameters=parameters,
+            score=record.score,
+            observed_reward=record.observed_reward,
+            fell=fell,
+            felt=record.felt(),
+        )
+
+    def _tick(self, robot: RunningRobot, record: WindowRecord, tick: int) -> bool:
+        """Advance by one control tick, and return whether the robot has fallen.
+
+        :param robot: robot that runs
+        :param record: record of the window
+        :param tick: number of the tick since the operation began
+        """
+        simulation, generator = robot.simulation, robot.generator
+        before = generator.targets
+        reading = robot.sense()
+        if robot.termination is not None:
+            return True
+        record.sense(reading, before)
+        change = generator.tick(reading)
+        if change is not None:
+            record.phase_change(change)
+        simulation.set_targets(generator.targets)
+        if (force := self._push_at(tick, robot.config)) is not None:
+            simulation.push(force)
+        simulation.advance()
+        torso = simulation.torso_state()
+        if not torso.is_finite:
+            return True
+        record.judge(torso)
+        return generator.has_fallen or is_down(torso, robot.vertical)
+
+    def _push_at(self, tick: int, config: EpisodeConfig) -> Vector | None:
+        """Force of the push during a tick, in N, if there is one then."""
+        assert isinstance(config, PushedConfig)
+        dt = config.physics.control_dt
+        number, since = divmod(tick, round(self.config.push_seconds / dt))
+        if number == 0 or since * dt > config.push.duration - dt / 2 or config.push.newtons == (0.0, 0.0):
+            return None
+        return draw_push(config.push, self._seed * MOST_PUSHES + number).force
+
+
+def is_down(torso: TorsoState, vertical: Vector) -> bool:
+    """Whether a robot has fallen, by the angle between its axis and gravity's vertical.
+
+    :param torso: true state of the torso
+    :param vertical: unit vector against gravity, in the world's frame
+    """
+    return sum(a * b for a, b in zip(torso.axis, vertical, strict=True)) < LEAST_UPRIGHT

@@ -1,0 +1,125 @@
+"""The settings of a robot in operation, and the box of its nine parameters."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from sarah.control.hip_law import BalanceParameters
+from sarah.control.parameters import BALANCE_PARAMETERS, STEPPING_PARAMETERS
+from sarah.control.pattern_generator import SteppingParameters
+from sarah.episode.from_mapping import from_mapping
+from sarah.episode.push import Push, PushedConfig
+from sarah.errors import ConfigurationError, check_fields, check_types, shortened
+
+PARAMETERS = (*STEPPING_PARAMETERS, *BALANCE_PARAMETERS)
+"""The nine parameters that can change while the robot runs: P1 to P5 and V1 to V4."""
+Parameters = tuple[float, ...]
+PLAUSIBLE = {
+    "minutes": (0.1, 600.0, "min"),
+    "settle_seconds": (0.0, 60.0, "s"),
+    "measure_seconds": (0.5, 600.0, "s"),
+    "fall_seconds": (0.0, 3600.0, "s"),
+    "push_seconds": (0.5, 3600.0, "s"),
+}
+"""Lowest value, highest value and unit of each setting. Beyond them, somebody has mistaken the unit."""
+SOFT_PUSHES = Push(newtons=(0.0, 50.0))
+"""Pushes of an operation by default: a robot that is being tuned is nudged, and not knocked over."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """Something about the robot or its world that is different from a time on.
+
+    :param minute: time of operation from which it is so, in min; it begins with the next window, from standing
+    :param settings: settings of the episode that change, by name, as in a config.yaml
+    """
+
+    minute: float
+    settings: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class OperationConfig:
+    """Settings of a robot in operation.
+
+    It runs on in windows. Each has a time to settle after new parameters, and a time in which it is measured. After a
+    fall somebody has to put the robot up, which costs time; it then stands, and steps again.
+
+    :param robot: settings of robot, world and controller, and the pushes. Of these, force, direction and duration
+        count: a push comes every ``push_seconds``. The time limit is without effect, as is the form of the reward
+    :param minutes: duration of the operation, in min; the window that has begun by then is completed
+    :param settle_seconds: time that a window gives new parameters to settle, in s
+    :param measure_seconds: time that a window measures, in s
+    :param fall_seconds: time that a fall costs, in s
+    :param push_seconds: time from a push to the next, in s
+    :param changes: what changes in the course of the operation, in the order of time
+    """
+
+    robot: PushedConfig = field(default_factory=lambda: PushedConfig(push=SOFT_PUSHES))
+    minutes: float = 10.0
+    settle_seconds: float = 2.0
+    measure_seconds: float = 4.0
+    fall_seconds: float = 20.0
+    push_seconds: float = 4.0
+    changes: tuple[Change, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Refuse settings that cannot be simulated."""
+        check_types(self, robot=PushedConfig, changes=tuple)
+        check_fields("operation", self, PLAUSIBLE)
+        minutes = [change.minute for change in self.changes]
+        if minutes != sorted(minutes) or not all(0.0 <= minute <= self.minutes for minute in minutes):
+            raise ConfigurationError(
+                f"changes must be in the order of time, between 0 and {self.minutes:g} min, not {shortened(minutes)}"
+            )
+        for count in range(len(minutes) + 1):
+            robot = self.robot_after(count)
+            if robot.terrain.roughness != (0.0, 0.0):
+                raise ConfigurationError("terrain.roughness must be 0 in an operation: bumps end 0.7 m from the start")
+
+    def robot_after(self, changes: int) -> PushedConfig:
+        """Settings of robot and world after some of the changes.
+
+        :param changes: number of changes that have been made
+        """
+        merged: PushedConfig = functools.reduce(
+            from_mapping, [change.settings for change in self.changes[:changes]], self.robot
+        )
+        return merged
+
+    def changes_by(self, seconds: float) -> int:
+        """Number of changes that have been made by a time.
+
+        :param seconds: time of operation, in s
+        """
+        return sum(60.0 * change.minute <= seconds for change in self.changes)
+
+
+def checked_parameters(values: Sequence[float]) -> Parameters:
+    """Check the nine parameters, and convert them to floats.
+
+    :param values: P1 to P5 and V1 to V4
+    :raises ConfigurationError: naming the first that is missing, or not within its box
+    """
+    if len(values) != len(PARAMETERS):
+        raise ConfigurationError(
+            f"parameters must be {len(PARAMETERS)} numbers (P1 to P5, V1 to V4), not {len(values)}"
+        )
+    for parameter, value in zip(PARAMETERS, values, strict=True):
+        if not parameter.low <= value <= parameter.high:
+            raise ConfigurationError(
+                f"parameter {parameter.name} must be between {parameter.low:g} and {parameter.high:g}, not {value!r}"
+            )
+    return tuple(map(float, values))
+
+
+def controller_parameters(parameters: Parameters) -> tuple[SteppingParameters, BalanceParameters]:
+    """P1 to P5 and V1 to V4 of the nine parameters.
+
+    :param parameters: values of all nine
+    """
+    count = len(STEPPING_PARAMETERS)
+    return SteppingParameters(*parameters[:count]), BalanceParameters(*parameters[count:])

@@ -1,0 +1,179 @@
+"""A window of an operation: what it was worth, and what the robot felt."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from sarah.control.pattern_generator import Phase, PhaseChange
+from sarah.episode.gait import GaitRecord
+from sarah.episode.reward import highest_return, reward_rate
+from sarah.operation.odometry import LegOdometry
+from sarah.operation.settings import Parameters
+from sarah.robot.reading import GRAVITY, SensorReading
+from sarah.simulation.simulator import TorsoState
+
+FELT = (
+    *(f"{signal}_{what}" for what in ("mean", "deviation") for signal in ("a_x", "a_y", "a_z", "w_x", "w_y", "w_z")),
+    *(f"{phase}_seconds" for phase in ("shift", "lift", "land")),
+    *(f"{joint}_lag" for joint in ("abduction", "flexion", "length")),
+    "left_load",
+    "right_load",
+    "steps_per_second",
+)
+"""Names of what the robot felt in a window, in order: means and deviations of the six inertial signals, mean durations
+of the phases, mean distances of the joints from their targets, mean loads of the feet, and steps per second."""
+_INERTIAL_SCALES = (*(GRAVITY,) * 3, *(1.0,) * 3)
+FELT_SCALES = (*_INERTIAL_SCALES, *_INERTIAL_SCALES, *(0.5,) * 3, *(0.1,) * 2, 0.01, *(150.0,) * 2, 3.0)
+"""Value of each in its SI unit that makes it of order 1."""
+
+
+@dataclass(frozen=True)
+class Window:
+    """A window of an operation.
+
+    :param index: number of the window, from 0
+    :param begin: time of operation at which it began, in s
+    :param seconds: time that it took, in s, with standing before it and putting up after it
+    :param changes: number of changes that had been made to robot and world
+    :param parameters: P1 to P5 and V1 to V4
+    :param score: equation 2 over its ceiling, by the torso's true motion since the measurement began; 1 is the best
+    :param observed_reward: the same, as far as the robot's own sensors tell
+    :param fell: whether the robot fell, which ended the window
+    :param felt: what the robot felt, in the order of :data:`FELT`
+    """
+
+    index: int
+    begin: float
+    seconds: float
+    changes: int
+    parameters: Parameters
+    score: float
+    observed_reward: float
+    fell: bool
+    felt: tuple[float, ...]
+
+    @property
+    def end(self) -> float:
+        """Time of operation at which the next one begins, in s."""
+        return self.begin + self.seconds
+
+    def plain(self) -> dict[str, Any]:
+        """Values by name, for JSON."""
+        return dataclasses.asdict(self)
+
+    @classmethod
+    def of_plain(cls, plain: dict[str, Any]) -> Window:
+        """Make a window of its values.
+
+        :param plain: values by name, as JSON gives them
+        :raises TypeError: if they are not those of a window
+        """
+        window = cls(**plain)
+        return dataclasses.replace(window, parameters=tuple(window.parameters), felt=tuple(window.felt))
+
+
+class WindowRecord:
+    """Record of one window, tick by tick.
+
+    :param standing_height: height of the torso's centre while the robot stands, in m
+    :param control_rate: control ticks per second
+    :param settle: ticks that are not measured
+    :param measure: ticks that are
+    """
+
+    def __init__(self, standing_height: float, control_rate: int, settle: int, measure: int) -> None:
+        self.gait = GaitRecord(control_rate)
+        self._dt = 1.0 / control_rate
+        self._settle, self._measure = settle, measure
+        self._ceiling = highest_return(standing_height, measure * self._dt)
+        self._height = standing_height
+        self._odometry = LegOdometry(standing_height, self._dt)
+        self._ticks = 0
+        self._return = self._observed = 0.0
+        self._first: TorsoState | None = None
+        self._from = (0.0, 0.0)
+        self._readings: list[tuple[float, ...]] = []
+        self._lags: list[list[float]] = []
+        self._phases: dict[Phase, list[int]] = {Phase.SHIFT: [], Phase.LIFT: [], Phase.LAND: []}
+        self._phase_began = 0
+
+    def sense(self, reading: SensorReading, targets: Sequence[float]) -> None:
+        """Record what the robot feels at the beginning of a tick.
+
+        :param reading: sensor reading
+        :param targets: targets of the joints in the tick before
+        """
+        self._odometry.tick(reading)
+        if self._ticks >= self._settle:
+            left_fore, left_hind, right_fore, right_hind = reading.pressures
+            loads = (left_fore + left_hind, right_fore + right_hind)
+            self._readings.append((*reading.acceleration, *reading.angular_rate, *loads))
+            self._lags.append([abs(target - joint) for target, joint in zip(targets, reading.joints, strict=True)])
+
+    def phase_change(self, change: PhaseChange) -> None:
+        """Record the end of a phase.
+
+        :param change: phase change that the pattern generator reported in this tick
+        """
+        self.gait.phase_change(self._ticks, change)
+        if change.ended in self._phases and self._ticks >= self._settle:
+            self._phases[change.ended].append(self._ticks - self._phase_began)
+        self._phase_began = self._ticks
+
+    def judge(self, torso: TorsoState) -> None:
+        """Add the reward at the end of a tick: by the true state, and by what the sensors tell.
+
+        :param torso: true state of the torso
+        """
+        self._ticks += 1
+        if self._ticks <= self._settle:
+            return
+        if self._first is None:
+            self._first, self._from = torso, (self._odometry.x, self._odometry.y)
+        frequency = self.gait.steps_per_second(self._ticks)
+        (x, y, z), (first_x, first_y, _) = torso.position, self._first.position
+        self._return += reward_rate(x - first_x, y - first_y, z, frequency) * self._dt
+        odometry, (from_x, from_y) = self._odometry, self._from
+        self._observed += reward_rate(odometry.x - from_x, odometry.y - from_y, self._height, frequency) * self._dt
+
+    @property
+    def score(self) -> float:
+        """Equation 2 over its ceiling; what a fall cut off counts as nothing."""
+        return self._return / self._ceiling
+
+    @property
+    def observed_reward(self) -> float:
+        """The same with the displacement that the legs tell, and the height of standing."""
+        return self._observed / self._ceiling
+
+    def felt(self) -> tuple[float, ...]:
+        """What the robot felt, in the order of :data:`FELT`; a phase that never ended lasted as long as the window."""
+        if not self._readings:
+            return (0.0,) * len(FELT)
+        signals = np.array(self._readings)
+        lags = np.array(self._lags).mean(axis=0).reshape(3, 2).mean(axis=1)
+        seconds = [self._dt * (sum(ticks) / len(ticks) if ticks else self._measure) for ticks in self._phases.values()]
+        values = (
+            *signals[:, :6].mean(axis=0),
+            *signals[:, :6].std(axis=0),
+            *seconds,
+            *lags,
+            *signals[:, 6:].mean(axis=0),
+            self.gait.steps_per_second(self._ticks),
+        )
+        return tuple(round(float(value), 12) for value in values)
+
+
+def observation_from(felt: Sequence[float]) -> np.ndarray:
+    """Scale what a robot felt to an observation.
+
+    :param felt: values in the order of :data:`FELT`, in SI units
+    :return: float32 array of the same length, of order 1, clipped to [-5, 5]
+    """
+    scaled = np.array(felt) / FELT_SCALES
+    return np.clip(np.where(np.isfinite(scaled), scaled, 0.0), -5.0, 5.0).astype(np.float32)

@@ -1,0 +1,41 @@
+"""What every learner of a session is: something that chooses the parameters of the next window."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from sarah.operation.settings import OperationConfig, Parameters
+from sarah.operation.window import Window
+
+
+class Operation(Protocol):
+    """A robot in operation, as a learner sees it: :class:`~sarah.operation.robot_in_operation.RobotInOperation`, or one
+    whose windows are known.
+    """
+
+    config: OperationConfig
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the operation's time is over."""
+
+    @property
+    def seconds(self) -> float:
+        """Time of operation so far, in s."""
+
+    def run(self, parameters: Parameters) -> Window:
+        """Run one window.
+
+        :param parameters: P1 to P5 and V1 to V4
+        """
+
+
+class Learner(Protocol):
+    """A learner. It may use of a window what the robot itself knows: everything but its score."""
+
+    def operate(self, robot: Operation) -> Parameters:
+        """Choose the parameters of one window after the other, until the operation is over.
+
+        :param robot: robot to operate
+        :return: parameters to leave the robot with
+        """
