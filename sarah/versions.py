@@ -12,7 +12,7 @@ from pathlib import Path
 
 SIMULATING = ("pybullet", "mujoco", "numpy", "xacro")
 """Packages that an episode's bytes depend on, beside this one."""
-LEARNING = (*SIMULATING, "torch", "stable-baselines3", "gymnasium", "cma", "optuna", "scipy")
+LEARNING = (*SIMULATING, "torch", "stable-baselines3", "gymnasium", "cma", "optuna", "scipy", "scikit-learn")
 """Packages that a training's bytes depend on, beside this one."""
 LONGEST_SHOWN = 100
 """Largest number of characters of a value in a message."""

@@ -48,6 +48,12 @@ class RobotInOperation:
         """Whether the operation's time is over."""
         return self.seconds >= 60.0 * self.config.minutes
 
+    @property
+    def windows_left(self) -> float:
+        """Number of windows that the time is enough for if the robot does not fall."""
+        seconds = self.config.settle_seconds + self.config.measure_seconds
+        return max(0.0, 60.0 * self.config.minutes - self.seconds) / seconds
+
     def run(self, parameters: Parameters) -> Window:
         """Run one window, from where the robot is now.
 

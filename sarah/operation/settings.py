@@ -12,11 +12,17 @@ from sarah.control.parameters import BALANCE_PARAMETERS, STEPPING_PARAMETERS
 from sarah.control.pattern_generator import SteppingParameters
 from sarah.episode.from_mapping import from_mapping
 from sarah.episode.push import Push, PushedConfig
+from sarah.episode.shipped import shipped_parameters
 from sarah.errors import ConfigurationError, check_fields, check_types, shortened
 
 PARAMETERS = (*STEPPING_PARAMETERS, *BALANCE_PARAMETERS)
 """The nine parameters that can change while the robot runs: P1 to P5 and V1 to V4."""
 Parameters = tuple[float, ...]
+SHIPPED: Parameters = (
+    *shipped_parameters("stepping", STEPPING_PARAMETERS),
+    *shipped_parameters("balance", BALANCE_PARAMETERS),
+)
+"""P1 to P5 and V1 to V4 that the package ships."""
 PLAUSIBLE = {
     "minutes": (0.1, 600.0, "min"),
     "settle_seconds": (0.0, 60.0, "s"),

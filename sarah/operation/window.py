@@ -30,6 +30,8 @@ of the phases, mean distances of the joints from their targets, mean loads of th
 _INERTIAL_SCALES = (*(GRAVITY,) * 3, *(1.0,) * 3)
 FELT_SCALES = (*_INERTIAL_SCALES, *_INERTIAL_SCALES, *(0.5,) * 3, *(0.1,) * 2, 0.01, *(150.0,) * 2, 3.0)
 """Value of each in its SI unit that makes it of order 1."""
+LARGEST = 5.0
+"""Bound to which a scaled value is clipped."""
 
 
 @dataclass(frozen=True)
@@ -176,4 +178,4 @@ def observation_from(felt: Sequence[float]) -> np.ndarray:
     :return: float32 array of the same length, of order 1, clipped to [-5, 5]
     """
     scaled = np.array(felt) / FELT_SCALES
-    return np.clip(np.where(np.isfinite(scaled), scaled, 0.0), -5.0, 5.0).astype(np.float32)
+    return np.clip(np.where(np.isfinite(scaled), scaled, 0.0), -LARGEST, LARGEST).astype(np.float32)

@@ -14,10 +14,8 @@ episode is simulated again. Checksums begin from the hash of the first row, so r
 from __future__ import annotations
 
 import fcntl
-import json
 import logging
 import os
-import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,7 +31,8 @@ from sarah.errors import ResumeError, SarahError, TrainingInterruptedError
 from sarah.files import open_regular
 from sarah.robot.reading import SensorReading
 from sarah.runs.config import TrainingConfig
-from sarah.runs.origin import LONGEST_ROW, check_first_row, checksum_seed, compact_json, first_row
+from sarah.runs.origin import check_first_row, first_row
+from sarah.runs.rows import LONGEST_ROW, checksum_seed, checksummed, read_checksummed
 
 ROOM_PER_EPISODE = 10_000
 """Largest number of bytes for each episode in a journal that is read."""
@@ -227,8 +226,8 @@ class Journal(Executor):
         :param request: number, kind, seed and parameters of the episode
         :param value: outcome of the episode
         """
-        text = compact_json({**request, "outcome": _KINDS[request["kind"]].plain(value)})
-        self._append(b"%08x %s\n" % (zlib.crc32(text, self._seed), text))
+        outcome = _KINDS[request["kind"]].plain(value)
+        self._append(checksummed({**request, "outcome": outcome}, self._seed))
         if request["kind"] != "begin":  # standing is cheap to simulate again
             os.fsync(self._file.fileno())
 
@@ -272,11 +271,10 @@ def _request(index: int, function: Callable[..., Any], spec: EpisodeSpec) -> dic
 
 def _read_row(line: bytes, seed: int) -> _Row | None:
     """Read a row of the journal; return ``None`` if it is damaged."""
-    checksum, _, text = line.rstrip(b"\n").partition(b" ")
+    request = read_checksummed(line, seed)
+    if request is None:
+        return None
     try:
-        if int(checksum, 16) != zlib.crc32(text, seed):
-            return None
-        request = json.loads(text)
         value = _KINDS[request["kind"]].value(request.pop("outcome"))
         return _Row({"index": int(request["index"]), **request}, value)
     except (ValueError, TypeError, LookupError, ArithmeticError, SarahError, RecursionError):

@@ -5,8 +5,6 @@ All other rows depend on it, so a training in which one of these differs would n
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 import shlex
 from pathlib import Path
@@ -14,29 +12,18 @@ from typing import Any
 
 from sarah.errors import ResumeError
 from sarah.files import open_regular
+from sarah.runs import rows
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import settings_by_key
 from sarah.versions import differences, versions
 
-LONGEST_ROW = 100_000
-"""Largest number of bytes in a row of a journal; an episode's has some 1500."""
-
 
 def first_row(config: TrainingConfig) -> bytes:
-    """First row of the journal of a training that begins here and now: a hash and a JSON object.
+    """First row of the journal of a training that begins here and now.
 
     :param config: settings of the training
     """
-    text = compact_json(_origin_of(config))
-    return b"%s %s\n" % (_digest(text), text)
-
-
-def checksum_seed(first: bytes) -> int:
-    """Number that the checksums of all other rows begin from.
-
-    :param first: first row of the journal
-    """
-    return int(first[:8], 16)
+    return rows.first_row(_origin_of(config))
 
 
 def check_origin(path: Path, config: TrainingConfig) -> None:
@@ -48,7 +35,7 @@ def check_origin(path: Path, config: TrainingConfig) -> None:
     """
     try:
         with open_regular(path, os.O_RDONLY) as file:
-            first = file.readline(LONGEST_ROW)
+            first = file.readline(rows.LONGEST_ROW)
     except OSError as error:
         raise ResumeError(f"{path.parent} cannot be resumed: {error}") from error
     if not first_row(config).startswith(first):  # what was cut in its first row begins anew
@@ -63,7 +50,7 @@ def check_first_row(path: Path, first: bytes, config: TrainingConfig) -> None:
     :param config: settings of the training
     :raises ResumeError: naming what differs, here and there
     """
-    there = _read(first)
+    there = rows.read_first_row(first)
     if there is None:
         raise ResumeError(
             f"{path.parent} cannot be resumed: the first row of {path.name}, which says with what the training was "
@@ -76,30 +63,8 @@ def check_first_row(path: Path, first: bytes, config: TrainingConfig) -> None:
         )
 
 
-def compact_json(row: dict[str, Any]) -> bytes:
-    """A row as JSON without spaces.
-
-    :param row: values by name
-    """
-    return json.dumps(row, allow_nan=False, separators=(",", ":")).encode()
-
-
 def _origin_of(config: TrainingConfig) -> dict[str, Any]:
     settings = settings_by_key(config.by_stage()[0])  # the journal has a row for each extension
     for name in ("pictures", "extended_from"):  # pictures change no result
         del settings[name]
     return {**settings, **versions()}
-
-
-def _read(first: bytes) -> dict[str, Any] | None:
-    """What a first row says; ``None`` if it is damaged."""
-    digest, _, text = first.rstrip(b"\n").partition(b" ")
-    try:
-        origin = json.loads(text) if digest == _digest(text) else None
-    except (ValueError, RecursionError):
-        return None
-    return origin if isinstance(origin, dict) else None
-
-
-def _digest(text: bytes) -> bytes:
-    return hashlib.sha256(text).hexdigest()[:16].encode()

@@ -20,14 +20,17 @@ class Operation(Protocol):
         """Whether the operation's time is over."""
 
     @property
-    def seconds(self) -> float:
-        """Time of operation so far, in s."""
+    def windows_left(self) -> float:
+        """Number of windows that the time is enough for if the robot does not fall."""
 
     def run(self, parameters: Parameters) -> Window:
         """Run one window.
 
         :param parameters: P1 to P5 and V1 to V4
         """
+
+    def close(self) -> None:
+        """Give the physics engine's resources back."""
 
 
 class Learner(Protocol):

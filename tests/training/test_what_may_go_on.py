@@ -23,7 +23,7 @@ from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.config_files import read_config, settings_by_key
 from sarah.runs.journal import Journal
-from sarah.runs.origin import compact_json
+from sarah.runs.rows import compact_json
 from sarah.runs.run_folder import RunFolder
 from sarah.training import train as training
 from sarah.training.train import train

@@ -1,0 +1,126 @@
+"""The gymnasium environment of a robot in operation: a window is one step of the agent."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+import gymnasium
+import numpy as np
+
+from sarah.envs.sarah_env import draw_seed
+from sarah.episode.from_mapping import from_mapping
+from sarah.errors import ConfigurationError, check_range
+from sarah.operation.robot_in_operation import RobotInOperation
+from sarah.operation.settings import PARAMETERS, SHIPPED, OperationConfig, Parameters, checked_parameters
+from sarah.operation.shares import from_shares, to_shares
+from sarah.operation.window import FELT, LARGEST, Window, observation_from
+
+
+class Operated(Protocol):
+    """What the environment needs of a robot in operation."""
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the operation's time is over."""
+
+    def run(self, parameters: Parameters) -> Window:
+        """Run one window.
+
+        :param parameters: P1 to P5 and V1 to V4
+        """
+
+    def close(self) -> None:
+        """Give the physics engine's resources back."""
+
+
+class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
+    """An environment in which a robot runs on, and an agent chooses the parameters of one window after the other.
+
+    The observation is what the robot felt in the last window, :data:`~sarah.operation.window.FELT`, each scaled to
+    order 1 and clipped to [-5, 5], and its present parameters, scaled to [-1, 1]. The action is the next parameters:
+    P1 to P5 and V1 to V4, with ``reach`` of each range on either side of ``first`` scaled to [-1, 1]. The reward is
+    what the robot's own sensors say, :attr:`~sarah.operation.window.Window.observed_reward`. A fall terminates; the end
+    of the operation's time truncates. ``info`` contains the ``window``.
+
+    :param config: settings of the operation
+    :param first: parameters to begin with; by default those that the package ships
+    :param reach: half-width of the action's box, as a share of each range; what lies outside the range comes to its end
+    :param operated: robot to operate, instead of one that the settings describe
+    :param settings: settings to change, by name: ``minutes=5``, ``robot={"engine": "mujoco"}``
+    :raises ConfigurationError: naming the setting and its nearest valid name, if one is not allowed
+    """
+
+    metadata = {"render_modes": []}
+
+    def __init__(
+        self,
+        config: OperationConfig | None = None,
+        first: Sequence[float] = SHIPPED,
+        reach: float = 0.25,
+        operated: Operated | None = None,
+        **settings: Any,
+    ) -> None:
+        check_range("reach", reach, 0.0, 1.0)
+        self.config = from_mapping(config or OperationConfig(), settings)
+        self.first = checked_parameters(first)
+        self._reach = reach
+        size = len(FELT) + len(PARAMETERS)
+        self.observation_space = gymnasium.spaces.Box(-LARGEST, LARGEST, (size,), np.float32)
+        self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(PARAMETERS),), np.float32)
+        self._given = operated
+        self._robot: Operated | None = None
+        self._fell = False
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        """Put the robot up, and run a window with the parameters :attr:`first`.
+
+        Without a seed, a robot that has fallen goes on with its operation; otherwise another operation begins.
+
+        :param seed: seed of the generator that draws the seeds of operations
+        :param options: options of gymnasium, which are ignored
+        """
+        super().reset(seed=seed)
+        if self._robot is None or self._robot.is_over or seed is not None or not self._fell:
+            self.close()
+            drawn = draw_seed(self.np_random)
+            self._robot = self._given or RobotInOperation(self.config, drawn)
+        window = self._robot.run(self.first)
+        self._fell = False
+        return self._observe(window), {"window": window}
+
+    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        """Run a window.
+
+        :param action: next parameters, scaled to [-1, 1]
+        :raises ConfigurationError: if the action is not finite or out of its box, or if the episode is over
+        """
+        if self._robot is None or self._fell or self._robot.is_over:
+            raise ConfigurationError("the episode is over: call reset before step")
+        window = self._robot.run(self.parameters_from(action))
+        self._fell = window.fell
+        is_over = self._robot.is_over and not window.fell
+        return self._observe(window), window.observed_reward, window.fell, is_over, {"window": window}
+
+    def parameters_from(self, action: np.ndarray) -> Parameters:
+        """Parameters that an action stands for.
+
+        :param action: one number in [-1, 1] for each parameter
+        :raises ConfigurationError: if the action is not finite or out of its box
+        """
+        values = np.asarray(action, dtype=float)
+        if values.shape != (len(PARAMETERS),) or not (np.abs(values) <= 1.0).all():
+            raise ConfigurationError(f"an action must be {len(PARAMETERS)} numbers within -1 and 1, not {action!r}")
+        return from_shares(to_shares(self.first) + self._reach * values)
+
+    def close(self) -> None:
+        """Give the physics engine's resources back."""
+        if self._robot is not None and self._given is None:
+            self._robot.close()
+        self._robot = None
+
+    def _observe(self, window: Window) -> np.ndarray:
+        shares = to_shares(window.parameters).astype(np.float32)
+        return np.concatenate([observation_from(window.felt), 2.0 * shares - 1.0])
