@@ -10,7 +10,7 @@ import argparse
 import contextlib
 import dataclasses
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args
@@ -90,7 +90,11 @@ def with_engine(episode: EpisodeConfig, engine: str | None) -> EpisodeConfig:
 
 
 def parse_episode_options(
-    command: str, arguments: Sequence[str], default: OptionsType, subject: str | None = None
+    command: str,
+    arguments: Sequence[str],
+    default: OptionsType,
+    subject: str | None = None,
+    adapted: Callable[[EpisodeConfig], EpisodeConfig] = lambda config: config,
 ) -> OptionsType:
     """Make a command's options, whose settings of episodes are those of its subject unless an option changes them.
 
@@ -98,11 +102,12 @@ def parse_episode_options(
     :param arguments: arguments after the command's name
     :param default: options with their default values
     :param subject: what to look at, if the arguments name several
+    :param adapted: function that makes the command's settings of those
     """
     given = given_options(arguments, "task", "which", "engine", "episode.engine")
     task = named_task(given.get("task"))
     subject = subject or _subject_among(arguments, default, given)
-    own = _settings_of(subject, given.get("which"), task) if subject else (task or STEPPING).episode
+    own = adapted(_settings_of(subject, given.get("which"), task) if subject else (task or STEPPING).episode)
     if type(own) is EpisodeConfig:  # any robot can be pushed, whether its task has a push or not
         own = PushedConfig(**vars(own), push=NOBODY)
     episode = with_given_engine(own, given)

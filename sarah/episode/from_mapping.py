@@ -49,6 +49,10 @@ def _converted(expected: Any, value: Any, key: str) -> Any:
     if type(None) in get_args(expected):
         (expected,) = (one for one in get_args(expected) if one is not type(None))
         return None if value is None else _converted(expected, value, key)
+    if expected is Any:
+        return value
+    if dataclasses.is_dataclass(expected):
+        return _made(expected, value, key)
     if get_origin(expected) is Task:
         return value if isinstance(value, Task) else task_named(_converted(str, value, key))
     if get_origin(expected) is tuple:
@@ -72,6 +76,14 @@ def _converted(expected: Any, value: Any, key: str) -> Any:
         return float(value) if expected is float else value
     except OverflowError:
         raise ConfigurationError(f"{key} must be a number that a float can hold, not {shortened(value)}") from None
+
+
+def _made(expected: Any, content: Any, key: str) -> Any:
+    """A dataclass without defaults, of a mapping that names all its fields."""
+    types = get_type_hints(expected)
+    if not isinstance(content, Mapping) or content.keys() != types.keys():
+        raise ConfigurationError(f"{key} must hold {' and '.join(types)}, not {shortened(content)}")
+    return expected(**{name: _converted(types[name], value, f"{key}.{name}") for name, value in content.items()})
 
 
 def _short(name: Any) -> str:

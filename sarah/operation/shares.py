@@ -20,8 +20,8 @@ def to_shares(parameters: Parameters) -> np.ndarray:
 
 
 def from_shares(shares: np.ndarray) -> Parameters:
-    """Parameters of shares of their ranges; what lies outside comes to the nearer end.
+    """Parameters of shares of their ranges, to six decimals; what lies outside comes to the nearer end.
 
     :param shares: one number for each parameter
     """
-    return tuple(float(value) for value in LOWS + WIDTHS * np.clip(shares, 0.0, 1.0))
+    return tuple(round(float(value), 6) for value in LOWS + WIDTHS * np.clip(shares, 0.0, 1.0))

@@ -43,9 +43,9 @@ EVENTS = "events.out.tfevents."
 def new_run_path(task: str, algo: str, seed: int) -> Path:
     """Default path of a run folder, ``runs/<task>/<algo>-s<seed>``, with a number behind it if that one exists.
 
-    :param task: name of the task
+    :param task: name of the task, or of another kind of run
     :param algo: name of the algorithm
-    :param seed: seed of the training
+    :param seed: seed of the run
     """
     base = Path("runs") / task / f"{algo}-s{seed}"
     path, number = base, 2

@@ -6,9 +6,6 @@ process, and TensorBoard's own writer notices a full disk only in a thread.
 
 from __future__ import annotations
 
-import os
-import socket
-import time
 from typing import TYPE_CHECKING, Any
 
 from google.protobuf.message import DecodeError
@@ -17,12 +14,12 @@ from tensorboard.backend.event_processing.event_file_loader import LegacyEventFi
 from tensorboard.compat.proto.event_pb2 import Event
 from tensorboard.compat.proto.summary_pb2 import Summary
 from tensorboard.plugins.hparams import summary_v2 as hparams
-from tensorboard.summary.writer.record_writer import RecordWriter
 
 from sarah.episode.tasks import BalanceConfig
 from sarah.files import LARGEST
 from sarah.runs.config import TrainingConfig
-from sarah.runs.run_folder import EVENTS, RunFolder
+from sarah.runs.event_file import EventFile
+from sarah.runs.run_folder import RunFolder
 
 if TYPE_CHECKING:
     from sarah.pictures.gait_snapshot import Picture
@@ -42,15 +39,11 @@ class CurveWriter:
     def __init__(self, run: RunFolder) -> None:
         self._run = run
         self._columns: list[str] = []
-        # TensorBoard takes the last file in the alphabet for the newest.
-        name = f"{EVENTS}{time.time():.0f}.{socket.gethostname()}.{os.getpid()}"
-        self._file = (run.path / name).open("wb")
-        self._events = RecordWriter(self._file)
-        self._add(Event(file_version="brain.Event:2"))
+        self._events = EventFile(run.path)
         config = hyper_parameters(run.config())
         metrics = [hparams.Metric(name) for name in LEARNED]
-        self._add(Event(summary=hparams.hparams_config_pb([hparams.HParam(name) for name in config], metrics)))
-        self._add(Event(summary=hparams.hparams_pb(config, trial_id=str(run.path))))
+        self._events.add(Event(summary=hparams.hparams_config_pb([hparams.HParam(name) for name in config], metrics)))
+        self._events.add(Event(summary=hparams.hparams_pb(config, trial_id=str(run.path))))
 
     def write(self, values: dict[str, Any], excluded: dict[str, tuple[str, ...]], step: int) -> None:
         """Add a point to each curve.
@@ -68,8 +61,7 @@ class CurveWriter:
         if row:
             self._run.append_progress(self._columns, row)
         shown = filter_excluded_keys(values, excluded, "tensorboard")
-        points = [Summary.Value(tag=name, simple_value=float(value)) for name, value in sorted(shown.items())]
-        self._add(Event(step=step, summary=Summary(value=points)))
+        self._events.add_points(shown, step)
 
     def show(self, pictures: Summary, step: int) -> None:
         """Add pictures, which only TensorBoard shows.
@@ -77,16 +69,11 @@ class CurveWriter:
         :param pictures: pictures to add
         :param step: number of episodes so far
         """
-        self._add(Event(step=step, summary=pictures))
-
-    def _add(self, event: Event) -> None:
-        event.wall_time = time.time()
-        self._events.write(event.SerializeToString())
-        self._file.flush()
+        self._events.add(Event(step=step, summary=pictures))
 
     def close(self) -> None:
         """Close the event file."""
-        self._file.close()
+        self._events.close()
 
 
 def summary_of(pictures: list[Picture]) -> Summary:

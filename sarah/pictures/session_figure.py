@@ -1,0 +1,67 @@
+"""The figure of a session: score over the time of operation, with falls and changes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+
+from sarah.operation.settings import Change
+from sarah.operation.window import Window
+from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
+
+SCORE, OBSERVED, FALL = "#0072B2", "#E69F00", "#D55E00"
+"""Colours (Okabe and Ito)."""
+SMOOTHED = 5
+"""Number of windows whose mean the line shows."""
+
+
+def draw_session(windows: Sequence[Window], changes: Sequence[Change], path: Path) -> list[Path]:
+    """Draw every window as a point, their running mean as a line, falls as crosses and changes as vertical lines.
+
+    :param windows: windows of the session, at least one
+    :param changes: what changed in its course
+    :param path: path of the picture, without suffix
+    :return: the files, PNG and PDF
+    """
+    minutes = [window.end / 60.0 for window in windows]
+    scores = [window.score for window in windows]
+    falls = [index for index, window in enumerate(windows) if window.fell]
+    with plt.rc_context(STYLE):
+        figure, axis = plt.subplots(figsize=(2 * COLUMN_WIDTH, COLUMN_WIDTH), layout="constrained")
+        axis.plot(minutes, scores, ".", color=SCORE, markersize=3, alpha=0.5, label="window")
+        observed = [window.observed_reward for window in windows]
+        axis.plot(
+            minutes, _running_mean(observed), color=OBSERVED, linewidth=0.8, label="what the robot itself observes"
+        )
+        axis.plot(minutes, _running_mean(scores), color=SCORE, linewidth=1.5, label=f"mean of {SMOOTHED} windows")
+        axis.plot([minutes[i] for i in falls], [scores[i] for i in falls], "x", color=FALL, label="fall")
+        for change in changes:
+            axis.axvline(change.minute, color="black", linestyle="--", linewidth=0.8)
+            axis.text(change.minute, 0.02, f" {words_of(change)}", fontsize=6, va="bottom")
+        axis.set(xlabel="time of operation (min)", ylabel="score", ylim=(0.0, 1.02))
+        axis.legend(loc="lower right", ncols=2)
+        return save(figure, path)
+
+
+def words_of(change: Change) -> str:
+    """A change in words, such as ``randomisation.actuator_bandwidth = 12``.
+
+    :param change: change of robot or world
+    """
+    return ", ".join(_words(change.settings))
+
+
+def _words(settings: object, key: str = "") -> list[str]:
+    if not isinstance(settings, dict):
+        return [f"{key} = {settings}"]
+    return [word for name, value in settings.items() for word in _words(value, f"{key}.{name}" if key else name)]
+
+
+def _running_mean(values: Sequence[float]) -> list[float]:
+    means = []
+    for index in range(len(values)):
+        recent = values[max(0, index + 1 - SMOOTHED) : index + 1]
+        means.append(sum(recent) / len(recent))
+    return means

@@ -1,0 +1,159 @@
+"""The folder of a session: only this module knows its layout.
+
+session.yaml  command.txt  versions.txt    the specification, the command and the versions of the session
+journal.jsonl                              every window in full, from which a session is resumed
+windows.csv                                one row per window
+events.out.tfevents.*                      curves for TensorBoard
+parameters.json                            the parameters that the robot is left with
+session.png  session.pdf                   score over time, with falls and changes
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import shlex
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+
+from sarah.errors import RunFolderError
+from sarah.files import read_text, replace_text
+from sarah.operation.settings import PARAMETERS, Parameters, checked_parameters
+from sarah.operation.window import FELT, Window
+from sarah.runs.config_files import read_config, write_config
+from sarah.runs.run_folder import EVENTS
+from sarah.sessions.session import SessionSpec
+from sarah.versions import versions
+
+NAMES = tuple(parameter.name for parameter in PARAMETERS)
+COLUMNS = ("index", "begin", "seconds", "changes", *NAMES, "score", "observed_reward", "fell", *FELT)
+"""Columns of ``windows.csv``."""
+
+
+class SessionFolder:
+    """The files of a session.
+
+    :param path: path of the folder; :meth:`create` makes a new one, :meth:`open` checks an existing one
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.journal_path = path / "journal.jsonl"
+        self.picture_path = path / "session"
+        self._spec_path = path / "session.yaml"
+        self._windows_path = path / "windows.csv"
+        self._parameters_path = path / "parameters.json"
+
+    @classmethod
+    def create(cls, path: Path, spec: SessionSpec) -> SessionFolder:
+        """Make a new folder, and write the specification.
+
+        :param path: path of the folder, which must be new or empty
+        :param spec: specification of the session
+        :raises RunFolderError: if the folder is not empty or cannot be written
+        """
+        folder = cls(path)
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+            if any(path.iterdir()):
+                can_go_on = folder._spec_path.is_file() and not folder.is_finished
+                go_on = f", or go on with sarah-operate --resume {shlex.quote(str(path))}" if can_go_on else ""
+                raise RunFolderError(f"folder {path} is not empty: name another with --run-dir{go_on}")
+            folder.journal_path.touch(exist_ok=False)
+            replace_text(path / "command.txt", shlex.join(sys.argv) + "\n")
+            replace_text(path / "versions.txt", "".join(f"{name} {version}\n" for name, version in versions().items()))
+            write_config(spec, folder._spec_path)  # last, because a folder that has it can be resumed
+        except RunFolderError:
+            raise
+        except OSError as error:
+            raise RunFolderError(f"cannot write folder {path}: {error.strerror or error}") from error
+        return folder
+
+    @classmethod
+    def open(cls, path: Path) -> SessionFolder:
+        """Open the folder of a session.
+
+        :param path: path of the folder
+        :raises RunFolderError: if it is not one
+        """
+        folder = cls(path)
+        if not is_session(path):
+            raise RunFolderError(f"{path} is not the folder of a session: it has no {folder._spec_path.name}")
+        return folder
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether the session has finished."""
+        return self._parameters_path.is_file()
+
+    def spec(self) -> SessionSpec:
+        """Read the specification.
+
+        :raises ConfigurationError: naming file, key and value, if a value is not allowed
+        """
+        return read_config(SessionSpec, self._spec_path)
+
+    def write_windows(self, windows: Iterable[Window]) -> None:
+        """Write the table anew.
+
+        :param windows: windows of the session so far
+        """
+        text = io.StringIO()
+        writer = csv.writer(text)
+        writer.writerow(COLUMNS)
+        writer.writerows(map(_row, windows))
+        replace_text(self._windows_path, text.getvalue())
+
+    def append_window(self, window: Window) -> None:
+        """Add a window to the table.
+
+        :param window: window that follows those of the table
+        """
+        with self._windows_path.open("a", newline="", encoding="utf-8") as file:
+            csv.writer(file).writerow(_row(window))
+
+    def remove_events(self) -> None:
+        """Remove TensorBoard's files, before they are written anew."""
+        for path in self.path.glob(f"{EVENTS}*"):
+            path.unlink()
+
+    def write_parameters(self, parameters: Parameters) -> None:
+        """Write the parameters that the robot is left with, which ends the session.
+
+        :param parameters: P1 to P5 and V1 to V4
+        """
+        content = {"parameters": dict(zip(NAMES, parameters, strict=True))}
+        replace_text(self._parameters_path, json.dumps(content, indent=2) + "\n")
+
+    def parameters(self) -> Parameters:
+        """Read the parameters that the robot was left with.
+
+        :raises RunFolderError: if the session is not finished, or the file cannot be read
+        """
+        if not self.is_finished:
+            go_on = f"go on with sarah-operate --resume {shlex.quote(str(self.path))}"
+            raise RunFolderError(f"{self.path} is not the folder of a finished session: {go_on}")
+        try:
+            values = json.loads(read_text(self._parameters_path))["parameters"]
+            return checked_parameters([values[name] for name in NAMES])
+        except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+            raise RunFolderError(f"{self._parameters_path} does not hold nine parameters: {error!r}") from error
+
+
+def is_session(path: Path) -> bool:
+    """Whether a folder is that of a session.
+
+    :param path: path of the folder
+    """
+    return SessionFolder(path)._spec_path.is_file()
+
+
+def _row(window: Window) -> tuple[object, ...]:
+    return (
+        *(window.index, window.begin, window.seconds, window.changes),
+        *window.parameters,
+        *(window.score, window.observed_reward, int(window.fell)),
+        *window.felt,
+    )
