@@ -25,6 +25,8 @@ from experiments.landscape import Landscape
 from experiments.lateral_limit import LateralLimit
 from experiments.naf_preset import NafPreset
 from experiments.noise_limit import NoiseLimit
+from experiments.observed_reward import ObservedReward
+from experiments.operation import Operation
 from experiments.physics import FinenessAnywhere, FinenessInConditions
 from experiments.race import Race
 from experiments.rank_replay import RankReplay
@@ -119,6 +121,17 @@ TABLE: dict[str, Maker] = {
         "How much of its score does a Second Training keep in the other engine?",
         TransferBetweenEngines("balance", episodes=20, budget=300),
         {**TRAINED, "seeds": 1, "episodes": 2},
+    ),
+    # A robot that goes on.
+    "operation": Maker(
+        "What is it worth to renew parameters while the robot runs?",
+        Operation(),
+        {"seeds": 1, "other_seeds": 1, "minutes": 0.2, "best_seeds": 1, "best_minutes": 0.2},
+    ),
+    "observed_reward": Maker(
+        "Does the reward that the robot observes rank parameters as equation 2 does?",
+        ObservedReward(),
+        {"sets": 4, "minutes": 0.1},
     ),
     # Algorithms.
     "race_stepping": Maker(
