@@ -15,7 +15,8 @@ from experiments.experiment import OnWorkers
 from experiments.record import Row
 from sarah.episode.from_mapping import from_mapping
 from sarah.episode.workers import Workers
-from sarah.operation.settings import PARAMETERS, SHIPPED, OperationConfig, Parameters
+from sarah.operation.settings import SHIPPED, OperationConfig, Parameters
+from sarah.operation.shares import from_shares, to_shares
 from sarah.sessions.session import SessionResult, SessionSpec, run_session
 from sarah.simulation.engines import Engine, is_installed
 
@@ -62,11 +63,7 @@ def drawn(seed: int) -> Parameters:
     """
     generator = random.Random(f"observed {seed}")
     deviation = DEVIATIONS[seed % len(DEVIATIONS)]
-    values = zip(SHIPPED, PARAMETERS, strict=True)
-    return tuple(
-        min(max(value + deviation * item.width * generator.gauss(0.0, 1.0), item.low), item.high)
-        for value, item in values
-    )
+    return from_shares(to_shares(SHIPPED) + [deviation * generator.gauss(0.0, 1.0) for _ in SHIPPED])
 
 
 def _compared(sessions: list[SessionResult]) -> Row:

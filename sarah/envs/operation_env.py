@@ -70,6 +70,7 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(PARAMETERS),), np.float32)
         self._given = operated
         self._robot: Operated | None = None
+        self._last: Window | None = None
         self._fell = False
 
     def reset(
@@ -87,9 +88,10 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
             self.close()
             drawn = draw_seed(self.np_random)
             self._robot = self._given or RobotInOperation(self.config, drawn)
-        window = self._robot.run(self.first)
+        if self._last is None or not self._robot.is_over:  # a given robot's time may be over for good
+            self._last = self._robot.run(self.first)
         self._fell = False
-        return self._observe(window), {"window": window}
+        return self._observe(self._last), {"window": self._last}
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """Run a window.
@@ -99,7 +101,7 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         """
         if self._robot is None or self._fell or self._robot.is_over:
             raise ConfigurationError("the episode is over: call reset before step")
-        window = self._robot.run(self.parameters_from(action))
+        window = self._last = self._robot.run(self.parameters_from(action))
         self._fell = window.fell
         is_over = self._robot.is_over and not window.fell
         return self._observe(window), window.observed_reward, window.fell, is_over, {"window": window}

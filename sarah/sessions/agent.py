@@ -35,6 +35,8 @@ class AgentLearner:
         model = LocalNAF("MlpPolicy", env, seed=self._seed, first_action_centre=True, **settings)
         model.learn(LONGEST, callback=_UntilOver(robot), log_interval=None)  # type: ignore[arg-type]
         assert isinstance(model.replay_buffer, RankReplayBuffer)
+        if model.replay_buffer.size() == 0:  # the time was over before it could learn
+            return self._first
         return env.parameters_from(model.replay_buffer.best_action())
 
 
