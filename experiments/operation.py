@@ -51,7 +51,7 @@ class Operation(OnWorkers):
 
     engine: Engine = "mujoco"
     seeds: int = 20
-    other_seeds: int = 20
+    other_seeds: int = 10
     minutes: float = 10.0
     best_seeds: int = 4
     best_minutes: float = 30.0

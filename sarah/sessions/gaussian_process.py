@@ -26,8 +26,8 @@ class GaussianProcessSettings:
     :param candidates: number of candidates for each trial
     :param largest_loss: loss against the parameters of the beginning that a trial may risk, in reward
     :param caution: number of standard deviations by which it must be believed to lose less
-    :param surprise: sum of standard deviations, beyond half a one for each window, by which rewards must fall short
-        of what was expected before the robot counts as changed
+    :param surprise: sum of standard deviations, beyond half a one for each window, by which the best parameters must
+        fall short of what was expected before the robot counts as changed
     """
 
     length: float = 0.3
@@ -38,7 +38,11 @@ class GaussianProcessSettings:
     candidates: int = 200
     largest_loss: float = 0.15
     caution: float = 2.0
-    surprise: float = 5.0
+    surprise: float = 6.0
+
+
+DISAPPOINTING = 2.0
+"""Number of standard deviations below what was expected at which a reward disappoints."""
 
 
 class LocalGaussianProcess:
@@ -46,8 +50,9 @@ class LocalGaussianProcess:
 
     A trial must be safe: its reward's lower bound is not far below the reward of the parameters it began with. And it
     must be worth its price: what it may bring in all windows that are left (expected improvement, Jones et al. 1998)
-    is more than what it costs in its own. Otherwise the best parameters run on. When rewards fall short of what was
-    expected (a cumulative sum, Page 1954), the robot has changed: what was learned before is forgotten.
+    is more than what it costs in its own. Otherwise the best parameters run on. They also follow a trial that
+    disappoints: only if they, too, fall short of what was expected, the robot has changed (a cumulative sum, Page
+    1954). What was learned before is then forgotten.
 
     :param first: parameters to begin with
     :param seed: seed of the draws
@@ -66,39 +71,57 @@ class LocalGaussianProcess:
         self._tried: list[np.ndarray] = []
         self._rewards: list[float] = []
         self._shortfall = 0.0
-        self._windows_of_shortfall = 0
+        self._doubted = 0
 
     def operate(self, robot: Operation) -> Parameters:
         """Try, and run on with the best."""
-        shares = self._start
+        shares, is_trial = self._start, False
         while not robot.is_over:
             window = robot.run(from_shares(shares))
-            self._add(shares, window.observed_reward)
-            shares = self._next(robot.windows_left)
+            disappoints = self._add(shares, window.observed_reward, is_trial)
+            trial = None if disappoints else self._trial(robot.windows_left)
+            is_trial = trial is not None
+            shares = self._best()[0] if trial is None else trial
         return from_shares(self._best()[0])
 
-    def _add(self, shares: np.ndarray, reward: float) -> None:
-        """Learn from a window, and forget the windows before a change."""
-        if self._tried:
-            mean, deviation = self._expected(shares[None])
-            surprise = (mean[0] - reward) / np.hypot(deviation[0], self._settings.noise)
+    def _add(self, shares: np.ndarray, reward: float, is_trial: bool) -> bool:
+        """Learn from a window, and forget what was before a change.
+
+        :param shares: parameters of the window
+        :param reward: reward that the robot observed
+        :param is_trial: whether nobody knew what they are worth
+        :return: whether the reward was so low that the best parameters have to show that the robot is as before
+        """
+        surprise = self._surprise(shares, reward)
+        disappoints = surprise > DISAPPOINTING
+        if not is_trial:
             self._shortfall = max(0.0, self._shortfall + surprise - 0.5)
-            self._windows_of_shortfall = self._windows_of_shortfall + 1 if self._shortfall else 0
+        self._doubted = self._doubted + 1 if disappoints or self._shortfall > 0.0 else 0
         self._tried.append(shares)
         self._rewards.append(reward)
         if self._shortfall > self._settings.surprise:
-            self._forget(self._windows_of_shortfall)
-        self._mean = float(np.mean(self._rewards[:3]))
-        self._model.fit(np.array(self._tried), np.array(self._rewards) - self._mean)
+            self._forget()
+        self._fit()
+        return disappoints
 
-    def _forget(self, kept: int) -> None:
-        """Begin again where the robot is now.
+    def _surprise(self, shares: np.ndarray, reward: float) -> float:
+        """Number of standard deviations by which a reward falls short of what was expected."""
+        if not self._tried:
+            return 0.0
+        mean, deviation = self._expected(shares[None])
+        return float((mean[0] - reward) / np.hypot(deviation[0], self._settings.noise))
 
-        :param kept: number of the last windows that are of the changed robot
-        """
+    def _forget(self) -> None:
+        """Begin again where the robot is now, with the windows since the first doubt."""
         self._start = self._best()[0]
-        self._tried, self._rewards = self._tried[-kept:], self._rewards[-kept:]
-        self._shortfall, self._windows_of_shortfall = 0.0, 0
+        self._tried, self._rewards = self._tried[-self._doubted :], self._rewards[-self._doubted :]
+        self._shortfall, self._doubted = 0.0, 0
+
+    def _fit(self) -> None:
+        self._mean = float(np.mean(self._rewards[:3]))
+        # How deep a robot fell says nothing of the slope where it walks; a cliff would make the process ring.
+        rewards = np.maximum(self._rewards, self._mean - 2.0 * self._settings.largest_loss)
+        self._model.fit(np.array(self._tried), rewards - self._mean)
 
     def _expected(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Mean and standard deviation of the reward that the process expects, without the noise of a window."""
@@ -111,8 +134,8 @@ class LocalGaussianProcess:
         index = int(np.argmax(mean))
         return self._tried[index], float(mean[index])
 
-    def _next(self, windows_left: float) -> np.ndarray:
-        """Parameters of the next window: the trial that is worth most, or the best so far.
+    def _trial(self, windows_left: float) -> np.ndarray | None:
+        """Parameters to try that are worth it and safe, if there are any.
 
         :param windows_left: number of windows in which an improvement would pay
         """
@@ -128,4 +151,4 @@ class LocalGaussianProcess:
         improvement = (mean - reward) * norm.cdf(better) + deviation * norm.pdf(better)
         worth = np.where(is_safe, improvement * windows_left - (reward - mean), -np.inf)
         index = int(np.argmax(worth))
-        return places[index] if worth[index] > 0.0 else best
+        return places[index] if worth[index] > 0.0 else None
