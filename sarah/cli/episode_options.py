@@ -1,4 +1,4 @@
-"""What a command looks at: a run folder, numbers, or the name of shipped parameters; and the settings of its episodes.
+"""What a command looks at: a folder, numbers, or the name of shipped parameters; and the settings of its episodes.
 
 ``--episode.…`` options begin from the settings of the subject. Which options there are depends on its task and engine,
 so the subject is looked up before the options are parsed.
@@ -23,6 +23,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
 from sarah.errors import ConfigurationError, shortened, unknown_name
+from sarah.sessions import is_session
 from sarah.simulation.engines import Engine
 from sarah.simulation.physics import PHYSICS
 
@@ -157,7 +158,7 @@ def _is_there(subject: str) -> bool:
     """Whether there are settings to begin from; what there is not is reported later."""
     from sarah.episode.parameter_sets import PARAMETER_SETS
 
-    is_run = Path(subject).joinpath("config.yaml").is_file()
+    is_run = Path(subject).joinpath("config.yaml").is_file() or is_session(Path(subject))
     return subject in PARAMETER_SETS or is_run or ("," in subject and subject.strip(" +-.")[:1].isdigit())
 
 
@@ -173,6 +174,11 @@ def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tupl
     from sarah.episode.parameter_sets import PARAMETER_SETS
     from sarah.runs.run_episodes import RunEpisode, choose_episode, episode_of_parameters, episodes_of_run
 
+    if is_session(Path(subject)):
+        from sarah.sessions.session_episodes import episodes_of_session
+
+        episodes = episodes_of_session(Path(subject))
+        return episodes, choose_episode(episodes, which)
     if Path(subject).is_dir():
         from sarah.runs.run_folder import RunFolder
 
@@ -207,11 +213,33 @@ def episode_of(subject: str, which: str | None, task: Task[Any] | None) -> RunEp
     from sarah.runs.run_episodes import learned_episode
     from sarah.runs.run_folder import RunFolder
 
-    if Path(subject).is_dir() and which in (None, "learned"):
+    if Path(subject).is_dir() and not is_session(Path(subject)) and which in (None, "learned"):
         run = RunFolder.open(Path(subject), unfinished=True, task=task)
         if run.is_finished:
             return learned_episode(run)
     return episodes_of(subject, which, task)[1]
+
+
+def learner_of(subject: str, task: Task[Any] | None) -> str | None:
+    """Name of what learned the parameters of a folder; ``None`` for numbers and shipped parameters.
+
+    :param subject: path of a run folder or a session's, or something else
+    :param task: task of a run folder whose task is that of a file
+    :raises RunFolderError: if the folder has no learned parameters
+    """
+    if is_session(Path(subject)):
+        from sarah.sessions.session_folder import SessionFolder
+
+        session = SessionFolder.open(Path(subject))
+        session.parameters()
+        return session.spec().learner
+    if Path(subject).is_dir():
+        from sarah.runs.run_folder import RunFolder
+
+        run = RunFolder.open(Path(subject), task=task)
+        run.parameters()
+        return run.config().algo
+    return None
 
 
 def numbers(name: str, text: str) -> tuple[float, ...]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
-from sarah.cli.episode_options import EpisodeOptions, episode_of, is_shipped, parse_episode_options
+from sarah.cli.episode_options import EpisodeOptions, episode_of, is_shipped, learner_of, parse_episode_options
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.episode.push import PushedConfig
 from sarah.episode.settings import EpisodeConfig
@@ -131,11 +131,8 @@ def _evaluate(arguments: Sequence[str]) -> None:
 
 def _subject(options: EvalOptions) -> tuple[EpisodeSpec, str | None]:
     """Episode to evaluate, on any seed, and the algorithm that learned its parameters."""
-    task, algorithm = named_task(options.task), None
-    if Path(options.subject).is_dir():
-        from sarah.runs.run_folder import RunFolder
-
-        algorithm = RunFolder.open(Path(options.subject), task=task).config().algo  # not of an unfinished training
+    task = named_task(options.task)
+    algorithm = learner_of(options.subject, task)
     spec = episode_of(options.subject, None, task).spec
     return options.applied_to(spec), algorithm
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.episode_options import EpisodeOptions, episode_of, parse_episode_options
+from sarah.cli.episode_options import EpisodeOptions, episode_of, learner_of, parse_episode_options
 from sarah.cli.options import named_task, run_command
 from sarah.episode.spec import FIRST_EVALUATION_SEED
 from sarah.errors import ConfigurationError
@@ -91,11 +91,9 @@ def _transfer(arguments: Sequence[str]) -> None:
 def _learned(subject: str, arguments: Sequence[str]) -> LearnedParameters:
     """Parameters of one subject; the options change its own settings."""
     from sarah.reports.transfer import LearnedParameters
-    from sarah.runs.run_folder import RunFolder
 
     options = parse_episode_options(COMMAND, arguments, TransferOptions(), subject)
     task = named_task(options.task)
-    if Path(subject).is_dir():
-        RunFolder.open(Path(subject), task=task).parameters()  # not of an unfinished training
+    learner_of(subject, task)  # refuses an unfinished training
     spec = episode_of(subject, None, task).spec
     return LearnedParameters(Path(subject).name, spec.task, spec.parameters, options.applied_to(spec).config)

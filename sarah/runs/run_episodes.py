@@ -9,7 +9,7 @@ from typing import Any
 
 from sarah.episode.ending import ending_words
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import TASKS, Task
+from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
 from sarah.errors import ConfigurationError, RunFolderError
 from sarah.runs.run_folder import RunFolder
 
@@ -82,10 +82,16 @@ def episodes_of_run(run: RunFolder) -> list[RunEpisode]:
 def episode_of_parameters(parameters: Sequence[float], task: Task[Any] | None = None) -> RunEpisode:
     """Episode of given parameters, with seed 0.
 
-    :param parameters: values of a task's parameters
+    :param parameters: values of a task's parameters; or P1 to P5 and V1 to V4 together, for the task balance
     :param task: task of the parameters; by default that of this package which has so many
     :raises ConfigurationError: if the number of parameters is that of no task, or if one is not allowed
     """
+    if task in (None, BALANCE) and len(parameters) == len(STEPPING.parameters) + len(BALANCE.parameters):
+        stepping = STEPPING.checked(parameters[: len(STEPPING.parameters)])
+        label = f"P and V = {', '.join(f'{value:g}' for value in parameters)} · seed 0"
+        config = BALANCE.config_of(BALANCE.episode, stepping=stepping)
+        spec = EpisodeSpec(tuple(parameters[len(stepping) :]), 0, BALANCE, config)
+        return RunEpisode("given", label, spec)
     tasks = TASKS.values() if task is None else (task,)
     for task in tasks:
         if len(parameters) == len(task.parameter_names):

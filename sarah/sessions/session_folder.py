@@ -15,21 +15,24 @@ import io
 import json
 import shlex
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from sarah.errors import RunFolderError
-from sarah.files import read_text, replace_text
+from sarah.files import read_lines, read_text, replace_text
 from sarah.operation.settings import PARAMETERS, Parameters, checked_parameters
 from sarah.operation.window import FELT, Window
 from sarah.runs.config_files import read_config, write_config
 from sarah.runs.run_folder import EVENTS
+from sarah.sessions import SPECIFICATION, is_session
 from sarah.sessions.session import SessionSpec
 from sarah.versions import versions
 
 NAMES = tuple(parameter.name for parameter in PARAMETERS)
 COLUMNS = ("index", "begin", "seconds", "changes", *NAMES, "score", "observed_reward", "fell", *FELT)
 """Columns of ``windows.csv``."""
+MOST_WINDOWS = 100_000
+"""Largest number of windows that are read."""
 
 
 class SessionFolder:
@@ -42,7 +45,7 @@ class SessionFolder:
         self.path = path
         self.journal_path = path / "journal.jsonl"
         self.picture_path = path / "session"
-        self._spec_path = path / "session.yaml"
+        self._spec_path = path / SPECIFICATION
         self._windows_path = path / "windows.csv"
         self._parameters_path = path / "parameters.json"
 
@@ -114,6 +117,13 @@ class SessionFolder:
         with self._windows_path.open("a", newline="", encoding="utf-8") as file:
             csv.writer(file).writerow(_row(window))
 
+    def window_lines(self) -> Iterator[str]:
+        """Read the lines of the table.
+
+        :raises OSError: if it cannot be read
+        """
+        return read_lines(self._windows_path, MOST_WINDOWS)
+
     def remove_events(self) -> None:
         """Remove TensorBoard's files, before they are written anew."""
         for path in self.path.glob(f"{EVENTS}*"):
@@ -140,14 +150,6 @@ class SessionFolder:
             return checked_parameters([values[name] for name in NAMES])
         except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
             raise RunFolderError(f"{self._parameters_path} does not hold nine parameters: {error!r}") from error
-
-
-def is_session(path: Path) -> bool:
-    """Whether a folder is that of a session.
-
-    :param path: path of the folder
-    """
-    return SessionFolder(path)._spec_path.is_file()
 
 
 def _row(window: Window) -> tuple[object, ...]:
