@@ -62,7 +62,7 @@ class Window:
     @property
     def end(self) -> float:
         """Time of operation at which the next one begins, in s."""
-        return self.begin + self.seconds
+        return round(self.begin + self.seconds, 9)
 
     def plain(self) -> dict[str, Any]:
         """Values by name, for JSON."""

@@ -52,7 +52,7 @@ class LocalGaussianProcess:
     must be worth its price: what it may bring in all windows that are left (expected improvement, Jones et al. 1998)
     is more than what it costs in its own. Otherwise the best parameters run on. They also follow a trial that
     disappoints: only if they, too, fall short of what was expected, the robot has changed (a cumulative sum, Page
-    1954). What was learned before is then forgotten.
+    1954). What was learned before is then forgotten. A robot that falls with the best parameters gets the first ones.
 
     :param first: parameters to begin with
     :param seed: seed of the draws
@@ -67,7 +67,7 @@ class LocalGaussianProcess:
         kernel = ConstantKernel(settings.deviation**2) * Matern(settings.length, nu=2.5)
         self._model = GaussianProcessRegressor(kernel + WhiteKernel(settings.noise**2), optimizer=None)
         self._mean = 0.0
-        self._start = to_shares(first)
+        self._first = self._start = to_shares(first)
         self._tried: list[np.ndarray] = []
         self._rewards: list[float] = []
         self._shortfall = 0.0
@@ -75,10 +75,13 @@ class LocalGaussianProcess:
 
     def operate(self, robot: Operation) -> Parameters:
         """Try, and run on with the best."""
-        shares, is_trial = self._start, False
+        shares, is_trial = self._first, False
         while not robot.is_over:
             window = robot.run(from_shares(shares))
             disappoints = self._add(shares, window.observed_reward, is_trial)
+            if window.fell and not is_trial and shares is not self._first:  # nothing that is known carries it
+                shares = self._first
+                continue
             trial = None if disappoints else self._trial(robot.windows_left)
             is_trial = trial is not None
             shares = self._best()[0] if trial is None else trial

@@ -1,0 +1,144 @@
+"""The robot that goes on: windows, falls, changes and pushes."""
+
+import dataclasses
+import math
+from typing import Any
+
+import pytest
+from operated import quick
+
+from sarah.episode.push import Push
+from sarah.errors import ConfigurationError
+from sarah.operation.robot_in_operation import RobotInOperation
+from sarah.operation.settings import SHIPPED, Change, OperationConfig
+from sarah.operation.window import FELT, Window
+
+STANDS = (0.0, 2.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0)
+"""Parameters with which the robot hardly steps: it waits for a tilt that does not come."""
+KICKED = {"push": {"newtons": 400.0, "duration": 0.3}}
+SLOPE = {"terrain": {"slope_degrees": 5.0}}
+
+
+def run_all(config: OperationConfig, seed: int = 0, parameters: tuple[float, ...] = SHIPPED) -> list[Window]:
+    robot = RobotInOperation(config, seed)
+    windows = []
+    while not robot.is_over:
+        windows.append(robot.run(parameters))
+    robot.close()
+    return windows
+
+
+def test_the_same_windows_again() -> None:
+    assert run_all(quick()) == run_all(quick())
+    assert run_all(quick()) != run_all(quick(), seed=1)
+
+
+def test_time_goes_on_without_gaps_until_the_operation_is_over() -> None:
+    windows = run_all(quick(minutes=0.15))
+    assert [window.index for window in windows] == list(range(len(windows)))
+    assert windows[0].begin == 0.0 and windows[0].seconds == 2.0  # of which it stands for one
+    assert all(after.begin == before.end for before, after in zip(windows, windows[1:], strict=False))
+    assert windows[-2].end < 9.0 <= windows[-1].end
+
+
+def test_a_window_that_steps_well_is_worth_more_than_one_that_stands() -> None:
+    """By equation 2 and by what the robot itself feels."""
+    stepping = run_all(OperationConfig(minutes=0.4))[-1]
+    standing = run_all(OperationConfig(minutes=0.4), parameters=STANDS)[-1]
+    for reward in ("score", "observed_reward"):
+        assert getattr(stepping, reward) > 0.85 and getattr(standing, reward) < 0.1
+    assert dict(zip(FELT, stepping.felt, strict=True))["steps_per_second"] == pytest.approx(3.0, abs=0.6)
+
+
+def test_what_the_robot_felt_has_plausible_units() -> None:
+    felt = dict(zip(FELT, run_all(OperationConfig(minutes=0.2))[-1].felt, strict=True))
+    assert felt["a_z_mean"] == pytest.approx(9.81, abs=0.4)
+    assert felt["left_load"] + felt["right_load"] == pytest.approx(30.0 * 9.81, rel=0.25)
+    assert 0.0 < felt["length_lag"] < 0.02 and 0.0 < felt["abduction_lag"] < 0.1
+    steps = felt["shift_seconds"] + felt["lift_seconds"] + felt["land_seconds"]
+    assert steps == pytest.approx(1.0 / 3.0, abs=0.1)
+
+
+def test_a_fall_ends_the_window_costs_time_and_the_next_begins_from_standing() -> None:
+    windows = run_all(quick(minutes=0.5, robot=KICKED, push_seconds=6.0))
+    fallen = next(index for index, window in enumerate(windows) if window.fell)
+    window, after, next_but_one = windows[fallen : fallen + 3]
+    assert 2.0 < window.seconds < 2.0 + 1.0  # the fall's two, and what it ran before
+    assert after.begin == window.end
+    assert after.seconds == 2.0  # it stands for one, and runs for one
+    assert next_but_one.seconds == 1.0
+
+
+def test_the_robot_stays_the_same_after_a_fall_but_its_noise_does_not_repeat() -> None:
+    robot = RobotInOperation(quick(minutes=1.0, robot={**KICKED, "payload": 3.0}), 0)
+    first = robot.run(SHIPPED)
+    while not robot.run(SHIPPED).fell:
+        pass
+    again = robot.run(SHIPPED)
+    robot.close()
+    assert again.felt != first.felt
+    loads = [dict(zip(FELT, window.felt, strict=True)) for window in (first, again)]
+    weights = [felt["left_load"] + felt["right_load"] for felt in loads]
+    assert weights[0] == pytest.approx(weights[1], rel=0.15)
+
+
+def test_a_change_holds_from_the_next_window_on_and_from_standing() -> None:
+    config = quick(minutes=0.2, changes=(Change(0.1, {"payload": 20.0}),))
+    changed, unchanged = run_all(config), run_all(dataclasses.replace(config, changes=()))
+    at = next(index for index, window in enumerate(changed) if window.changes)
+    assert changed[:at] == unchanged[:at]
+    assert changed[at].begin >= 6.0 and changed[at].seconds == pytest.approx(2.0, abs=0.5)
+
+    def load(window: Window) -> float:
+        felt = dict(zip(FELT, window.felt, strict=True))
+        return felt["left_load"] + felt["right_load"]
+
+    assert load(changed[-1]) > 1.3 * load(unchanged[-1])
+
+
+def test_pushes_come_at_their_interval() -> None:
+    config = quick(minutes=0.2, robot={"push": {"newtons": 60.0}})
+    calm = quick(minutes=0.2, robot={"push": {"newtons": 0.0}})
+    pushed, unpushed = run_all(config), run_all(calm)
+    first = next(index for index, (one, other) in enumerate(zip(pushed, unpushed, strict=False)) if one != other)
+    assert pushed[first].begin <= 4.0 < pushed[first].end
+
+
+def test_windows_that_are_known_are_not_simulated_again_and_change_nothing() -> None:
+    config = quick(minutes=0.6, robot=KICKED, changes=(Change(0.3, SLOPE),))
+    whole = run_all(config)
+    assert any(window.fell for window in whole) and whole[-1].changes == 1
+    for known in range(len(whole)):
+        robot = RobotInOperation(config, 0)
+        for window in whole[:known]:
+            robot.skip(window)
+        assert robot.run(SHIPPED) == whole[known]
+        robot.close()
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        (dict(minutes=0.0), "operation.minutes must be between 0.1 and 600 min, not 0.0"),
+        (dict(fall_seconds=-1.0), "operation.fall_seconds must be between 0 and 3600 s, not -1.0"),
+        (dict(changes=(Change(3.0, {}), Change(1.0, {}))), "changes must be in the order of time"),
+        (dict(changes=(Change(30.0, {}),)), "changes must be in the order of time, between 0 and 10 min"),
+        (dict(changes=(Change(3.0, {"pay_load": 2.0}),)), "unknown key 'pay_load', did you mean 'payload'?"),
+        (dict(changes=(Change(3.0, {"payload": -2.0}),)), "payload must be between 0 and 100 kg, not -2.0"),
+        (dict(changes=(Change(3.0, {"terrain": {"roughness": 0.01}}),)), "terrain.roughness must be 0"),
+    ],
+)
+def test_impossible_operations_are_refused(settings: dict[str, Any], words: str) -> None:
+    with pytest.raises(ConfigurationError, match=words.split("(")[0].replace("?", r"\?")):
+        OperationConfig(**settings)
+
+
+@pytest.mark.parametrize("parameters", [(), SHIPPED[:5], (*SHIPPED[:8], 2.5), (math.nan, *SHIPPED[1:])])
+def test_parameters_out_of_their_box_are_refused(parameters: tuple[float, ...]) -> None:
+    robot = RobotInOperation(quick(), 0)
+    with pytest.raises(ConfigurationError, match=r"parameter"):
+        robot.run(parameters)
+
+
+def test_soft_pushes_are_the_default() -> None:
+    assert OperationConfig().robot.push == Push(newtons=(0.0, 50.0))

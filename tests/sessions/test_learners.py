@@ -1,0 +1,96 @@
+"""The learners of a session, on robots that are formulas."""
+
+import numpy as np
+import pytest
+from operated import START, FormulaRobot
+
+from sarah.operation.settings import PARAMETERS, SHIPPED
+from sarah.operation.shares import from_shares, to_shares
+from sarah.sessions.learners import LEARNERS
+
+TOP = START + 0.15 * np.array([1, -1, 1, 1, -1, 1, -1, 1, -1])
+
+
+def hill(shares: np.ndarray, minute: float = 0.0) -> float:
+    """A hill whose top is a third away, where the robot begins at 0.66."""
+    return float(0.9 - 1.2 * np.square(shares - TOP).sum())
+
+
+def cliff(shares: np.ndarray, minute: float = 0.0) -> float:
+    """The robot begins at the top, and falls where the first parameter is a tenth higher."""
+    return 0.0 if shares[0] > START[0] + 0.1 else float(0.9 - np.square(shares - START).sum())
+
+
+def operated(learner: str, reward: object, seed: int = 0, minutes: float = 10.0) -> FormulaRobot:
+    robot = FormulaRobot(reward, minutes)  # type: ignore[arg-type]
+    left = LEARNERS[learner](SHIPPED, seed).operate(robot)
+    assert all(item.low <= value <= item.high for item, value in zip(PARAMETERS, left, strict=True))
+    assert robot.is_over
+    return robot
+
+
+@pytest.mark.parametrize("learner", LEARNERS)
+def test_every_learner_begins_with_the_parameters_that_it_is_given(learner: str) -> None:
+    robot = operated(learner, hill, minutes=1.0)
+    first = robot.windows[0].parameters
+    distance = np.abs(to_shares(first) - START).max()
+    assert distance < (0.3 if learner == "cma-es" else 1e-6)
+
+
+def test_without_a_learner_nothing_changes() -> None:
+    assert {window.parameters for window in operated("none", hill).windows} == {SHIPPED}
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_careful_learner_climbs_and_does_not_fall(seed: int) -> None:
+    robot = operated("gp", hill, seed)
+    assert robot.falls == 0
+    assert robot.mean_reward(8.0) > hill(START) + 0.6 * (0.9 - hill(START))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_it_loses_little_where_nothing_is_to_be_gained(seed: int) -> None:
+    robot = operated("gp", cliff, seed)
+    assert robot.falls <= 1 and robot.mean_reward() > 0.9 - 0.05
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_it_begins_again_when_the_robot_has_changed(seed: int) -> None:
+    def changing(shares: np.ndarray, minute: float) -> float:
+        return hill(shares) if minute < 5.0 else float(0.9 - 1.2 * np.square(shares - 2.0 * START + TOP).sum())
+
+    robot = operated("gp", changing, seed)
+    lost = robot.mean_reward(4.0, 5.0) - robot.mean_reward(5.0, 5.5)
+    assert lost > 0.2
+    assert robot.mean_reward(8.0, 10.0) > robot.mean_reward(5.0, 5.5) + 0.5 * lost
+
+
+def test_random_search_is_the_floor() -> None:
+    random, careful = operated("random", cliff), operated("gp", cliff)
+    assert random.falls > 5 * max(1, careful.falls) and random.mean_reward() < careful.mean_reward()
+
+
+@pytest.mark.parametrize("learner", ["cma-es", "naf"])
+def test_the_others_climb_too(learner: str) -> None:
+    found = [operated(learner, hill, seed) for seed in range(3)]
+    assert np.median([robot.mean_reward(8.0) for robot in found]) > hill(START) + 0.03
+
+
+def test_learners_do_not_see_the_score() -> None:
+    """Only the robot's own reward: a score from another world changes nothing."""
+
+    class Blind(FormulaRobot):
+        def run(self, parameters: tuple[float, ...]):  # type: ignore[no-untyped-def]
+            import dataclasses
+
+            return dataclasses.replace(super().run(parameters), score=-1.0)
+
+    for learner in LEARNERS:
+        seen, blind = FormulaRobot(hill, 2.0), Blind(hill, 2.0)
+        assert LEARNERS[learner](SHIPPED, 0).operate(seen) == LEARNERS[learner](SHIPPED, 0).operate(blind)
+
+
+def test_shares_and_back() -> None:
+    assert from_shares(to_shares(SHIPPED)) == SHIPPED
+    assert from_shares(np.full(9, -1.0)) == tuple(item.low for item in PARAMETERS)
+    assert from_shares(np.full(9, 2.0)) == tuple(item.high for item in PARAMETERS)
