@@ -3,9 +3,9 @@
     >>> import sarah
     >>> result = sarah.simulate(sarah.EpisodeSpec(parameters=(0.4, 1.3, 0.1, 1.0, 1.0), seed=0))
 
-Importing it registers ``SarahStepping-v0``, ``SarahBalance-v0`` and ``SarahEpisode-v0`` with gymnasium. On a robot's
-computer without gymnasium and numpy it registers nothing, and ``sarah.control`` can be used. The names below are loaded
-when they are first used, so that importing the package is fast.
+Importing it registers ``SarahStepping-v0``, ``SarahBalance-v0``, ``SarahEpisode-v0`` and ``SarahOperation-v0`` with
+gymnasium. On a robot's computer without gymnasium and numpy it registers nothing, and ``sarah.control`` can be used.
+The names below are loaded when they are first used, so that importing the package is fast.
 """
 
 from __future__ import annotations
@@ -30,7 +30,10 @@ if TYPE_CHECKING:
     from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, Task, load_task
     from sarah.episode.tick import Tick
     from sarah.errors import SarahError
+    from sarah.operation.settings import Change, OperationConfig
+    from sarah.operation.window import Window
     from sarah.robot.reading import SensorReading
+    from sarah.sessions.session import SessionResult, SessionSpec, run_session
     from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
     from sarah.simulation.randomisation import Randomisation
     from sarah.simulation.terrain import Terrain
@@ -43,12 +46,14 @@ _HOMES = {
     "STEPPING_PARAMETERS": "control.parameters",
     "BalanceConfig": "episode.tasks",
     "BalanceParameters": "control.hip_law",
+    "Change": "operation.settings",
     "ControllerConstants": "control.constants",
     "DrawnPush": "episode.push",
     "EpisodeConfig": "episode.settings",
     "EpisodeResult": "episode.result",
     "EpisodeSpec": "episode.spec",
     "Evaluation": "episode.evaluation",
+    "OperationConfig": "operation.settings",
     "Parameter": "control.parameters",
     "PatternGenerator": "control.pattern_generator",
     "Physics": "simulation.physics",
@@ -58,14 +63,18 @@ _HOMES = {
     "Randomisation": "simulation.randomisation",
     "SarahError": "errors",
     "SensorReading": "robot.reading",
+    "SessionResult": "sessions.session",
+    "SessionSpec": "sessions.session",
     "SteppingParameters": "control.pattern_generator",
     "Task": "episode.tasks",
     "Terrain": "simulation.terrain",
     "Tick": "episode.tick",
+    "Window": "operation.window",
     "equation_2": "episode.reward",
     "evaluate": "episode.evaluation",
     "load_task": "episode.tasks",
     "paper_ending": "episode.ending",
+    "run_session": "sessions.session",
     "simulate": "episode.episode",
 }
 
@@ -77,12 +86,14 @@ __all__ = [
     "STEPPING_PARAMETERS",
     "BalanceConfig",
     "BalanceParameters",
+    "Change",
     "ControllerConstants",
     "DrawnPush",
     "EpisodeConfig",
     "EpisodeResult",
     "EpisodeSpec",
     "Evaluation",
+    "OperationConfig",
     "Parameter",
     "PatternGenerator",
     "Physics",
@@ -92,14 +103,18 @@ __all__ = [
     "Randomisation",
     "SarahError",
     "SensorReading",
+    "SessionResult",
+    "SessionSpec",
     "SteppingParameters",
     "Task",
     "Terrain",
     "Tick",
+    "Window",
     "equation_2",
     "evaluate",
     "load_task",
     "paper_ending",
+    "run_session",
     "simulate",
 ]
 

@@ -23,7 +23,9 @@ def quick(minutes: float = 0.1, robot: dict[str, Any] | None = None, **settings:
 class FormulaRobot:
     """A robot whose reward is a function of its parameters and of the time; below 0.2 it falls."""
 
-    def __init__(self, reward: Callable[[np.ndarray, float], float], minutes: float = 10.0, noise: float = 0.02) -> None:
+    def __init__(
+        self, reward: Callable[[np.ndarray, float], float], minutes: float = 10.0, noise: float = 0.02
+    ) -> None:
         self.config = OperationConfig(minutes=minutes)
         self.windows: list[Window] = []
         self._reward = reward

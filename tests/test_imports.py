@@ -21,7 +21,7 @@ def test_importing_sarah_registers_the_environments_and_patches_nothing() -> Non
         "print(*sorted({'mujoco', 'pybullet', 'torch', 'stable_baselines3', 'matplotlib'} & set(sys.modules)))\n"
     )
     process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert process.stdout.splitlines() == ["SarahBalance-v0 SarahEpisode-v0 SarahStepping-v0", ""]
+    assert process.stdout.splitlines() == ["SarahBalance-v0 SarahEpisode-v0 SarahOperation-v0 SarahStepping-v0", ""]
 
 
 def test_a_robots_computer_needs_the_standard_library_alone() -> None:

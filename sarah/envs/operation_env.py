@@ -71,7 +71,7 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         self._given = operated
         self._robot: Operated | None = None
         self._last: Window | None = None
-        self._fell = False
+        self._is_done = False
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -84,13 +84,14 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         :param options: options of gymnasium, which are ignored
         """
         super().reset(seed=seed)
-        if self._robot is None or self._robot.is_over or seed is not None or not self._fell:
+        goes_on = seed is None and self._last is not None and self._last.fell and self._is_done
+        if self._robot is None or self._robot.is_over or not goes_on:
             self.close()
             drawn = draw_seed(self.np_random)
             self._robot = self._given or RobotInOperation(self.config, drawn)
         if self._last is None or not self._robot.is_over:  # a given robot's time may be over for good
             self._last = self._robot.run(self.first)
-        self._fell = False
+        self._is_done = False
         return self._observe(self._last), {"window": self._last}
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
@@ -99,11 +100,15 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         :param action: next parameters, scaled to [-1, 1]
         :raises ConfigurationError: if the action is not finite or out of its box, or if the episode is over
         """
-        if self._robot is None or self._fell or self._robot.is_over:
+        if self._robot is None or self._last is None or self._is_done:
             raise ConfigurationError("the episode is over: call reset before step")
-        window = self._last = self._robot.run(self.parameters_from(action))
-        self._fell = window.fell
+        parameters = self.parameters_from(action)
+        if self._robot.is_over:  # the window of reset took the rest of the time: there is nothing left to do
+            self._is_done = True
+            return self._observe(self._last), 0.0, False, True, {"window": self._last}
+        window = self._last = self._robot.run(parameters)
         is_over = self._robot.is_over and not window.fell
+        self._is_done = window.fell or is_over
         return self._observe(window), window.observed_reward, window.fell, is_over, {"window": window}
 
     def parameters_from(self, action: np.ndarray) -> Parameters:

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -37,7 +38,7 @@ def test_time_goes_on_without_gaps_until_the_operation_is_over() -> None:
     windows = run_all(quick(minutes=0.15))
     assert [window.index for window in windows] == list(range(len(windows)))
     assert windows[0].begin == 0.0 and windows[0].seconds == 2.0  # of which it stands for one
-    assert all(after.begin == before.end for before, after in zip(windows, windows[1:], strict=False))
+    assert all(after.begin == before.end for before, after in pairwise(windows))
     assert windows[-2].end < 9.0 <= windows[-1].end
 
 

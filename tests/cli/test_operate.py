@@ -1,0 +1,96 @@
+"""``sarah-operate``, as a user types it."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from terminal import run
+
+QUICK = ("--settle-seconds", "0.5", "--measure-seconds", "0.5", "--fall-seconds", "1")
+BYTES = ("windows.csv", "parameters.json", "journal.jsonl")
+
+
+@pytest.fixture(scope="module")
+def operated(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a short session with weak servos, and a payload from its middle on."""
+    folder = tmp_path_factory.mktemp("work")
+    arguments = ("--minutes", "0.2", "--seed", "2", "--episode.randomisation.actuator-bandwidth", "12", *QUICK)
+    process = run("sarah-operate", "--change", "0.1: payload=5", *arguments, "--run-dir", "mine", cwd=folder)
+    assert process.returncode == 0, process.stderr
+    assert "P1 = " in process.stdout and "V4 = " in process.stdout and "falls       0 in" in process.stdout
+    return folder / "mine"
+
+
+def test_it_writes_a_folder(operated: Path) -> None:
+    names = {path.name.split(".tfevents")[0] for path in operated.iterdir()}
+    assert names == {
+        *("command.txt", "events.out", "journal.jsonl", "parameters.json", "session.pdf", "session.png"),
+        *("session.yaml", "versions.txt", "windows.csv"),
+    }
+    assert set(json.loads((operated / "parameters.json").read_text())["parameters"]) == {
+        *(f"P{index}" for index in range(1, 6)),
+        *(f"V{index}" for index in range(1, 5)),
+    }
+
+
+def test_other_commands_take_its_folder(operated: Path) -> None:
+    process = run("sarah-eval", "mine", "--episodes", "1", "--episode.time-limit", "2", "--json", cwd=operated.parent)
+    assert process.returncode == 0, process.stderr
+    found = json.loads(process.stdout)
+    left = json.loads((operated / "parameters.json").read_text())["parameters"]
+    assert found["algorithm"] == "gp" and found["parameters"] == {name: left[name] for name in ("V1", "V2", "V3", "V4")}
+    again = run("sarah-operate", "mine", "--minutes", "0.1", *QUICK, "--learner", "none", cwd=operated.parent)
+    assert again.returncode == 0, again.stderr
+    first = (operated.parent / "runs/operation/none-s0/windows.csv").read_text().splitlines()[1].split(",")
+    assert [float(value) for value in first[4:13]] == list(left.values())
+
+
+def test_killed_at_any_moment_it_ends_in_the_same_bytes(operated: Path, tmp_path: Path) -> None:
+    """A session goes on after kill -9 as if nothing had been."""
+    line = ["--change", "0.1: payload=5", "--minutes", "0.2", "--seed", "2", *QUICK, "--run-dir", "mine"]
+    line += ["--episode.randomisation.actuator-bandwidth", "12"]
+    program = "from sarah.cli.operate import main; main()"
+    for seconds in (1.5, 2.0, 2.5, 3.0, 3.5):
+        resumed = ["--resume", "mine"] if (tmp_path / "mine/session.yaml").is_file() else line
+        if (tmp_path / "mine").is_dir() and resumed is line:
+            (tmp_path / "mine").rename(tmp_path / f"before-{seconds}")
+        process = subprocess.Popen([sys.executable, "-c", program, *resumed], cwd=tmp_path, stderr=subprocess.DEVNULL)
+        time.sleep(seconds)
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+    finished = run("sarah-operate", "--resume", "mine", cwd=tmp_path)
+    assert finished.returncode == 0, finished.stderr
+    for name in BYTES:
+        assert (tmp_path / "mine" / name).read_bytes() == (operated / name).read_bytes(), name
+
+
+def test_a_finished_session_says_so(operated: Path) -> None:
+    process = run("sarah-operate", "--resume", "mine", cwd=operated.parent)
+    assert process.returncode == 0 and "is finished" in process.stdout
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("sarah-operate --learner gpp", "unknown learner 'gpp', did you mean 'gp'?"),
+        ("sarah-operate --minutes 0", "minutes must be between 0.1 and 600 min, not 0.0"),
+        ("sarah-operate --change 5", 'change must be a minute and a setting, such as "5: '),
+        ("sarah-operate --change '5: pay_load=3'", "unknown key 'pay_load', did you mean 'payload'?"),
+        ("sarah-operate --change '50: payload=3'", "changes must be in the order of time, between 0 and 10 min"),
+        ("sarah-operate --episode.payload 500", "payload must be between 0 and 100 kg, not 500.0"),
+        ("sarah-operate --episode.terrain.roughness 0.01", "terrain.roughness must be 0 in an operation"),
+        ("sarah-operate --resume nowhere", "nowhere is not the folder of a session"),
+        ("sarah-operate --resume nowhere --minutes 3", "leave '--minutes' out"),
+        ("sarah-operate nowhere", "is neither a run folder, nor numbers"),
+        ("sarah-operate 1,2,3", "parameters must be 5 numbers (P1 to P5)"),
+        ("sarah-operate --seed -1", "seed must be between 0 and"),
+    ],
+)
+def test_mistakes_get_one_line(answer: Callable[[str], str], line: str, words: str) -> None:
+    assert words in answer(line)

@@ -1,0 +1,154 @@
+"""A session as a whole: its specification determines it, and its folder goes on after any interruption."""
+
+import dataclasses
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from operated import quick
+
+from sarah.errors import ConfigurationError, ResumeError, RunFolderError, TrainingInterruptedError
+from sarah.operation.settings import SHIPPED, Change
+from sarah.operation.window import Window
+from sarah.runs.config_files import read_config
+from sarah.sessions.journal import SessionJournal
+from sarah.sessions.learners import LEARNERS
+from sarah.sessions.operate import operate
+from sarah.sessions.session import SessionResult, SessionSpec, run_session
+from sarah.sessions.session_episodes import episodes_of_session, learned_of_session
+from sarah.sessions.session_folder import SessionFolder
+
+CONFIG = quick(
+    minutes=0.3, robot={"push": {"newtons": 400.0, "duration": 0.3}}, changes=(Change(0.15, {"payload": 2.0}),)
+)
+SPEC = SessionSpec(SHIPPED, "gp", 3, CONFIG)
+KEPT = ("windows.csv", "parameters.json", "session.yaml", "journal.jsonl")
+"""Files that are the same to the byte, however often the session was interrupted."""
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, SessionResult]:
+    """The folder of a session with falls and a change, and its result."""
+    path = tmp_path_factory.mktemp("sessions") / "whole"
+    result = operate(SessionFolder.create(path, SPEC), SPEC)
+    assert result.falls > 0 and result.windows[-1].changes == 1
+    return path, result
+
+
+def interrupted_after(windows: int) -> Callable[[], bool]:
+    countdown = iter(range(windows - 1))
+    return lambda: next(countdown, None) is None
+
+
+@pytest.mark.parametrize("learner", LEARNERS)
+def test_the_same_session_again(learner: str) -> None:
+    spec = dataclasses.replace(SPEC, learner=learner)
+    first = run_session(spec)
+    assert run_session(spec) == first
+    half = first.windows[: len(first.windows) // 2]
+    told: list[Window] = []
+    assert run_session(spec, half, told.append) == first
+    assert half + tuple(told) == first.windows
+
+
+def test_a_session_that_was_interrupted_after_every_window_ends_in_the_same_bytes(
+    whole: tuple[Path, SessionResult], tmp_path: Path
+) -> None:
+    path, result = whole
+    folder = SessionFolder.create(tmp_path / "cut", SPEC)
+    for _ in result.windows:
+        with pytest.raises(TrainingInterruptedError):
+            operate(folder, SPEC, interrupted=interrupted_after(1))
+    assert operate(folder, SPEC) == result
+    for name in KEPT:
+        assert (folder.path / name).read_bytes() == (path / name).read_bytes(), name
+
+
+@pytest.mark.parametrize("cut", [1, 30, 200, 1500])
+def test_a_journal_that_was_cut_anywhere_ends_in_the_same_bytes(
+    whole: tuple[Path, SessionResult], tmp_path: Path, cut: int
+) -> None:
+    path, result = whole
+    shutil.copytree(path, tmp_path / "cut")
+    folder = SessionFolder(tmp_path / "cut")
+    (folder.path / "parameters.json").unlink()
+    content = folder.journal_path.read_bytes()
+    folder.journal_path.write_bytes(content[:-cut])
+    assert operate(folder, SPEC) == result
+    assert folder.journal_path.read_bytes() == content
+
+
+def test_what_follows_a_damaged_row_is_simulated_again(whole: tuple[Path, SessionResult], tmp_path: Path) -> None:
+    path, result = whole
+    shutil.copytree(path, tmp_path / "damaged")
+    folder = SessionFolder(tmp_path / "damaged")
+    rows = folder.journal_path.read_bytes().splitlines(keepends=True)
+    rows[4] = rows[4].replace(b"0", b"1", 1)
+    folder.journal_path.write_bytes(b"".join(rows))
+    with SessionJournal(folder.journal_path, SPEC) as journal:
+        assert journal.known == result.windows[:3]
+    assert operate(folder, SPEC) == result
+
+
+def test_another_specification_is_refused(whole: tuple[Path, SessionResult], tmp_path: Path) -> None:
+    shutil.copytree(whole[0], tmp_path / "other")
+    folder = SessionFolder(tmp_path / "other")
+    with pytest.raises(ResumeError, match="seed is 4 here, and 3 in this session"):
+        operate(folder, dataclasses.replace(SPEC, seed=4))
+
+
+def test_a_session_in_use_is_refused(whole: tuple[Path, SessionResult]) -> None:
+    folder = SessionFolder(whole[0])
+    with SessionJournal(folder.journal_path, SPEC), pytest.raises(ResumeError, match="in use by another session"):
+        operate(folder, SPEC)
+
+
+def test_its_specification_can_be_read_back(whole: tuple[Path, SessionResult]) -> None:
+    assert SessionFolder.open(whole[0]).spec() == SPEC
+
+
+def test_the_folder_has_a_table_a_picture_and_parameters(whole: tuple[Path, SessionResult]) -> None:
+    path, result = whole
+    lines = (path / "windows.csv").read_text().splitlines()
+    assert len(lines) == 1 + len(result.windows)
+    assert (path / "session.png").stat().st_size > 10_000
+    left = json.loads((path / "parameters.json").read_text())["parameters"]
+    assert tuple(left.values()) == result.parameters == SessionFolder(path).parameters()
+
+
+def test_every_window_is_an_episode_to_look_at(whole: tuple[Path, SessionResult]) -> None:
+    path, result = whole
+    episodes = episodes_of_session(path)
+    assert [episode.name for episode in episodes[:3]] == ["learned", "best", "0"]
+    last = episodes[-1].spec
+    assert (*last.config.stepping, *last.parameters) == result.windows[-1].parameters  # type: ignore[attr-defined]
+    assert last.config.payload == 2.0
+    learned = learned_of_session(path).spec
+    assert (*learned.config.stepping, *learned.parameters) == result.parameters  # type: ignore[attr-defined]
+
+
+def test_a_folder_that_is_not_empty_is_refused(whole: tuple[Path, SessionResult], tmp_path: Path) -> None:
+    with pytest.raises(RunFolderError, match="is not empty: name another with --run-dir"):
+        SessionFolder.create(whole[0], SPEC)
+    with pytest.raises(RunFolderError, match=r"is not the folder of a session: it has no session\.yaml"):
+        SessionFolder.open(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("learner: gpp", "unknown learner 'gpp', did you mean 'gp'?"),
+        ("config: {minutes: -1}", "operation.minutes must be between"),
+        ("config: {changes: [{minute: 1}]}", "config.changes must hold minute and settings"),
+        ("config: {changes: [{minute: x, settings: {}}]}", "config.changes.minute must be a number"),
+        ("parameters: [1, 2]", "parameters must be 9 numbers"),
+    ],
+)
+def test_mistakes_in_its_file_are_named(tmp_path: Path, content: str, words: str) -> None:
+    path = tmp_path / "session.yaml"
+    path.write_text(content)
+    with pytest.raises(ConfigurationError) as found:
+        read_config(SessionSpec, path)
+    assert words in str(found.value) and str(path) in str(found.value)
