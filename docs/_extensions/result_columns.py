@@ -36,6 +36,11 @@ HEADINGS = {
     "naf_over_td3": "NAF over TD3",
     "mujoco_over_pybullet": "MuJoCo over PyBullet",
     "longer": "longer by",
+    "below_0_1": "below 0.1",
+    "score_0_to_3_min": "minutes 0 to 3",
+    "score_3_to_5_min": "minutes 3 to 5",
+    "score_5_to_8_min": "minutes 5 to 8",
+    "score_from_8_min": "from minute 8",
 }
 """Headings that do not follow from the column's name."""
 WORDS = {"pybullet": "PyBullet:", "mujoco": "MuJoCo:", "naf": "NAF", "td3": "TD3", "mu": "mu,"}
@@ -44,6 +49,14 @@ FORMATS = {
     "score": ".3f",
     "distance": ".3f",
     "survival": ".2f",
+    "score_0_to_3_min": ".3f",
+    "score_3_to_5_min": ".3f",
+    "score_5_to_8_min": ".3f",
+    "score_from_8_min": ".3f",
+    "gain": "+.3f",
+    "rank_correlation": ".3f",
+    "mean_difference": "+.3f",
+    "falls": ".2f",
     "share": ".2f",
     "sensors": ".2f",
     "per_second": ".2f",
