@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -11,27 +11,11 @@ import numpy as np
 from sarah.envs.sarah_env import draw_seed
 from sarah.episode.from_mapping import from_mapping
 from sarah.errors import ConfigurationError, check_range
+from sarah.operation.operation import Operation
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import PARAMETERS, SHIPPED, OperationConfig, Parameters, checked_parameters
 from sarah.operation.shares import from_shares, to_shares
 from sarah.operation.window import FELT, LARGEST, Window, observation_from
-
-
-class Operated(Protocol):
-    """What the environment needs of a robot in operation."""
-
-    @property
-    def is_over(self) -> bool:
-        """Whether the operation's time is over."""
-
-    def run(self, parameters: Parameters) -> Window:
-        """Run one window.
-
-        :param parameters: P1 to P5 and V1 to V4
-        """
-
-    def close(self) -> None:
-        """Give the physics engine's resources back."""
 
 
 class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
@@ -58,7 +42,7 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         config: OperationConfig | None = None,
         first: Sequence[float] = SHIPPED,
         reach: float = 0.25,
-        operated: Operated | None = None,
+        operated: Operation | None = None,
         **settings: Any,
     ) -> None:
         check_range("reach", reach, 0.0, 1.0)
@@ -69,7 +53,7 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         self.observation_space = gymnasium.spaces.Box(-LARGEST, LARGEST, (size,), np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(PARAMETERS),), np.float32)
         self._given = operated
-        self._robot: Operated | None = None
+        self._robot: Operation | None = None
         self._last: Window | None = None
         self._is_done = False
 

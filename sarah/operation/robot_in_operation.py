@@ -7,9 +7,8 @@ import random
 
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.ending import LEAST_UPRIGHT
-from sarah.episode.push import PushedConfig, draw_push
+from sarah.episode.push import Push, draw_push
 from sarah.episode.running_robot import RunningRobot, conditions_of
-from sarah.episode.settings import EpisodeConfig
 from sarah.operation.settings import OperationConfig, Parameters, checked_parameters, controller_parameters
 from sarah.operation.window import Window, WindowRecord
 from sarah.robot.reading import Vector
@@ -40,8 +39,6 @@ class RobotInOperation:
         self._changes = 0
         self._stands = 0
         self._since_standing: list[Window] = []
-        dt = config.robot.physics.control_dt
-        self._settle, self._measure = round(config.settle_seconds / dt), round(config.measure_seconds / dt)
 
     @property
     def is_over(self) -> bool:
@@ -113,17 +110,17 @@ class RobotInOperation:
         return robot
 
     def _run(self, robot: RunningRobot, parameters: Parameters, begin: float, stands: bool) -> Window:
-        dt = robot.config.physics.control_dt
+        physics, dt = robot.config.physics, robot.config.physics.control_dt
+        settle, measure = round(self.config.settle_seconds / dt), round(self.config.measure_seconds / dt)
+        push = self.config.robot_after(self._changes).push
         stood = STAND_SECONDS if stands else 0.0
         first = round((begin + stood) / dt)
-        record = WindowRecord(
-            robot.robot.standing_height, robot.config.physics.control_rate, self._settle, self._measure
-        )
+        record = WindowRecord(robot.robot.standing_height, physics.control_rate, settle, measure)
         robot.generator.set_parameters(*controller_parameters(parameters))
-        ticks = 0
-        while ticks < self._settle + self._measure and not self._tick(robot, record, first + ticks):
+        ticks, fell = 0, False
+        while ticks < settle + measure and not fell:
+            fell = self._tick(robot, record, self._force(push, first + ticks, dt))
             ticks += 1
-        fell = ticks < self._settle + self._measure
         seconds = stood + ticks * dt + (self.config.fall_seconds if fell else 0.0)
         return Window(
             index=self.windows,
@@ -137,12 +134,12 @@ class RobotInOperation:
             felt=record.felt(),
         )
 
-    def _tick(self, robot: RunningRobot, record: WindowRecord, tick: int) -> bool:
+    def _tick(self, robot: RunningRobot, record: WindowRecord, force: Vector | None) -> bool:
         """Advance by one control tick, and return whether the robot has fallen.
 
         :param robot: robot that runs
         :param record: record of the window
-        :param tick: number of the tick since the operation began
+        :param force: force of a push in this tick, in N
         """
         simulation, generator = robot.simulation, robot.generator
         before = generator.targets
@@ -154,7 +151,7 @@ class RobotInOperation:
         if change is not None:
             record.phase_change(change)
         simulation.set_targets(generator.targets)
-        if (force := self._push_at(tick, robot.config)) is not None:
+        if force is not None:
             simulation.push(force)
         simulation.advance()
         torso = simulation.torso_state()
@@ -163,14 +160,17 @@ class RobotInOperation:
         record.judge(torso)
         return generator.has_fallen or is_down(torso, robot.vertical)
 
-    def _push_at(self, tick: int, config: EpisodeConfig) -> Vector | None:
-        """Force of the push during a tick, in N, if there is one then."""
-        assert isinstance(config, PushedConfig)
-        dt = config.physics.control_dt
+    def _force(self, push: Push, tick: int, dt: float) -> Vector | None:
+        """Force of the push during a tick, in N, if there is one then.
+
+        :param push: ranges of the pushes
+        :param tick: number of the tick since the operation began
+        :param dt: control period, in s
+        """
         number, since = divmod(tick, round(self.config.push_seconds / dt))
-        if number == 0 or since * dt > config.push.duration - dt / 2 or config.push.newtons == (0.0, 0.0):
+        if number == 0 or since * dt > push.duration - dt / 2 or push.newtons == (0.0, 0.0):
             return None
-        return draw_push(config.push, self._seed * MOST_PUSHES + number).force
+        return draw_push(push, self._seed * MOST_PUSHES + number).force
 
 
 def is_down(torso: TorsoState, vertical: Vector) -> bool:

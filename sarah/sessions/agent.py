@@ -9,8 +9,8 @@ from stable_baselines3.common.callbacks import BaseCallback
 
 from sarah.agents import PRESETS, LocalNAF, RankReplayBuffer
 from sarah.envs.operation_env import SarahOperationEnv
+from sarah.operation.operation import Operation
 from sarah.operation.settings import Parameters
-from sarah.sessions.learner import Operation
 
 LONGEST = 1_000_000
 """Number of windows that no operation has."""

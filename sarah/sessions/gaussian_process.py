@@ -9,9 +9,9 @@ from scipy.stats import norm
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
 
+from sarah.operation.operation import Operation
 from sarah.operation.settings import Parameters
 from sarah.operation.shares import from_shares, to_shares
-from sarah.sessions.learner import Operation
 
 
 @dataclass(frozen=True)

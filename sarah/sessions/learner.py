@@ -4,33 +4,8 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from sarah.operation.settings import OperationConfig, Parameters
-from sarah.operation.window import Window
-
-
-class Operation(Protocol):
-    """A robot in operation, as a learner sees it: :class:`~sarah.operation.robot_in_operation.RobotInOperation`, or one
-    whose windows are known.
-    """
-
-    config: OperationConfig
-
-    @property
-    def is_over(self) -> bool:
-        """Whether the operation's time is over."""
-
-    @property
-    def windows_left(self) -> float:
-        """Number of windows that the time is enough for if the robot does not fall."""
-
-    def run(self, parameters: Parameters) -> Window:
-        """Run one window.
-
-        :param parameters: P1 to P5 and V1 to V4
-        """
-
-    def close(self) -> None:
-        """Give the physics engine's resources back."""
+from sarah.operation.operation import Operation
+from sarah.operation.settings import Parameters
 
 
 class Learner(Protocol):

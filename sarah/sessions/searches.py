@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import random
 
+from sarah.operation.operation import Operation
 from sarah.operation.settings import PARAMETERS, Parameters
 from sarah.operation.shares import from_shares, to_shares
-from sarah.sessions.learner import Operation
 
 
 class Frozen:
