@@ -39,22 +39,22 @@ def episodes_of_session(path: Path) -> list[RunEpisode]:
     folder = SessionFolder.open(path)
     config = folder.spec().config
     shown = [learned_of_session(path)] if folder.is_finished else []
-    windows = []
+    windows: list[tuple[float, RunEpisode]] = []
     try:
         for row in csv.DictReader(folder.window_lines()):
             parameters = tuple(float(row[name]) for name in NAMES)
             score, minute = float(row["score"]), float(row["begin"]) / 60.0
             fell = ", fell" if row["fell"] == "1" else ""
             label = f"window {row['index']} · {minute:.1f} min · score {score:.2f}{fell}"
-            windows.append(
-                RunEpisode(row["index"], label, episode_spec(parameters, config, int(row["changes"])), score)
-            )
+            spec = episode_spec(parameters, config, int(row["changes"]))
+            windows.append((score, RunEpisode(row["index"], label, spec)))
     except (OSError, csv.Error, KeyError, TypeError, ValueError, SarahError) as error:
         raise RunFolderError(f"the windows of {path} cannot be read: {repr(error)[:LONGEST_REASON]}") from error
     if not windows:
         raise RunFolderError(f"{path} has no windows to show yet")
-    best = max(windows, key=lambda window: window.score or 0.0)
-    return [*shown, RunEpisode("best", f"best: {best.label}", best.spec, best.score), *windows]
+    _, best = max(windows, key=lambda window: window[0])
+    shown.append(RunEpisode("best", f"best: {best.label}", best.spec))
+    return shown + [episode for _, episode in windows]
 
 
 def episode_spec(parameters: Parameters, config: OperationConfig, changes: int) -> EpisodeSpec:
