@@ -65,8 +65,9 @@ def _view(arguments: Sequence[str]) -> None:
         raise ConfigurationError("this needs the extra view: pip install 'sarah[view]'")
     task = named_task(options.task)
     choices, chosen = episodes_of(options.subject, options.which, task)
-    choices = [choice.of(options.applied_to(choice.spec)) for choice in choices]
-    chosen = chosen.of(options.applied_to(chosen.spec))
+    if options.applied_to(chosen.spec) != chosen.spec:  # otherwise each window of a session keeps its own settings
+        choices = [choice.of(options.applied_to(choice.spec)) for choice in choices]
+        chosen = chosen.of(options.applied_to(chosen.spec))
     from sarah.simulation.engines import check_engine
 
     check_engine(chosen.spec.config.engine)
@@ -91,7 +92,7 @@ def _export(path: Path, chosen: RunEpisode) -> None:
         raise ConfigurationError(f"cannot write {path}: {reason}")
     bar = tqdm(total=1.0, desc=chosen.label, bar_format="{desc}: {percentage:3.0f}% {bar}", disable=None)
     with bar, serving("127.0.0.1", DEFAULT_PORT) as server:
-        record(server, chosen.spec, path, lambda share: bar.update(share - bar.n))
+        record(server, chosen.spec, path, lambda share: bar.update(share - bar.n), chosen.recorded)
     print(path)
 
 

@@ -16,8 +16,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING, Task, controller_of, ending_of, push_of, reward_of
 from sarah.episode.tick import Tick
 from sarah.episode.trace import Trace
-from sarah.robot.description import ANKLE_JOINTS
-from sarah.robot.reading import SensorReading, Vector
+from sarah.robot.reading import Vector
 from sarah.simulation.build import BuildSimulator
 from sarah.simulation.randomisation import Conditions
 from sarah.simulation.simulator import TorsoState
@@ -100,7 +99,9 @@ class Episode(RunningRobot):
         if force is not None:
             simulation.push(force)
         if self._trace is not None:
-            self._record(reading, force or (0.0, 0.0, 0.0))
+            frequency = gait.steps_per_second(self._ticks + 1)  # as its reward has it
+            score = self._return / self._highest_return
+            self._trace.append(self.trace_row(STAND_SECONDS + self._ticks * self._dt, force, frequency, score))
         simulation.advance()
         self._ticks += 1
         self._judge()
@@ -157,31 +158,6 @@ class Episode(RunningRobot):
         """Torso position as in equation 2: x and y from the start, z over the floor, in m."""
         x, y, z = torso.position
         return (x - self._first.position[0], y - self._first.position[1], z)
-
-    def _record(self, reading: SensorReading, push: Vector) -> None:
-        assert self._trace is not None
-        generator, torso = self.generator, self.simulation.torso_state()
-        self._trace.append(
-            {
-                "time": STAND_SECONDS + self._ticks * self._dt,
-                "position": torso.position,
-                "orientation": torso.orientation,
-                "joints": self.truth.joints,
-                "ankles": self.simulation.joint_positions(ANKLE_JOINTS),
-                "targets": generator.targets,
-                "pressures": reading.pressures,
-                "acceleration": reading.acceleration,
-                "angular_rate": reading.angular_rate,
-                "phase": generator.phase.value,
-                "stance": generator.stance.value,
-                "stable_x": generator.stable_x,
-                "tilt": generator.tilt,
-                "rate": generator.rate,
-                "steps_per_second": self._gait.steps_per_second(self._ticks + 1),  # as its reward has it
-                "push": push,
-                "score": self._return / self._highest_return,
-            }
-        )
 
 
 def simulate(spec: EpisodeSpec, record_trace: bool = False) -> EpisodeResult:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from typing import Any
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, SteppingParameters
 from sarah.episode.settings import EpisodeConfig
-from sarah.robot.description import default_dimensions, describe_robot
-from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, SensorReading
+from sarah.robot.description import ANKLE_JOINTS, default_dimensions, describe_robot
+from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, SensorReading, Vector
 from sarah.simulation.build import BuildSimulator, simulator_of
 from sarah.simulation.randomisation import Conditions, draw_conditions
 from sarah.simulation.sensors import ImperfectSensors
@@ -72,6 +73,35 @@ class RunningRobot:
         else:
             self.termination = "diverged"
         return self.last_reading
+
+    def trace_row(self, time: float, push: Vector | None, steps_per_second: float, score: float) -> dict[str, Any]:
+        """Row of a :class:`~sarah.episode.trace.Trace`, of a tick in which the targets are set.
+
+        :param time: simulated time, in s
+        :param push: force of a push in this tick, in N
+        :param steps_per_second: steps per second in the last 2 s, at the end of the tick
+        :param score: score so far
+        """
+        generator, reading, torso = self.generator, self.last_reading, self.simulation.torso_state()
+        return {
+            "time": time,
+            "position": torso.position,
+            "orientation": torso.orientation,
+            "joints": self.truth.joints,
+            "ankles": self.simulation.joint_positions(ANKLE_JOINTS),
+            "targets": generator.targets,
+            "pressures": reading.pressures,
+            "acceleration": reading.acceleration,
+            "angular_rate": reading.angular_rate,
+            "phase": generator.phase.value,
+            "stance": generator.stance.value,
+            "stable_x": generator.stable_x,
+            "tilt": generator.tilt,
+            "rate": generator.rate,
+            "steps_per_second": steps_per_second,
+            "push": push or (0.0, 0.0, 0.0),
+            "score": score,
+        }
 
     def close(self) -> None:
         """Give the physics engine's resources back."""

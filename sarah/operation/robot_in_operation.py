@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import random
+from collections.abc import Callable
+from functools import partial
 
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.ending import LEAST_UPRIGHT
 from sarah.episode.push import Push, draw_push
+from sarah.episode.result import EpisodeResult
 from sarah.episode.running_robot import RunningRobot, conditions_of
+from sarah.operation.recording import Recording
 from sarah.operation.settings import OperationConfig, Parameters, checked_parameters, controller_parameters
 from sarah.operation.window import Window, WindowRecord
 from sarah.robot.reading import Vector
@@ -51,10 +55,11 @@ class RobotInOperation:
         seconds = self.config.settle_seconds + self.config.measure_seconds
         return max(0.0, 60.0 * self.config.minutes - self.seconds) / seconds
 
-    def run(self, parameters: Parameters) -> Window:
+    def run(self, parameters: Parameters, recording: Recording | None = None) -> Window:
         """Run one window, from where the robot is now.
 
         :param parameters: P1 to P5 and V1 to V4
+        :param recording: recording of every tick, if it is wanted
         :raises ConfigurationError: if a parameter is not within its box
         """
         parameters = checked_parameters(parameters)
@@ -63,9 +68,19 @@ class RobotInOperation:
             self._robot = self._standing()
             for before in self._since_standing:  # known windows, which led to where the robot is now
                 self._run(self._robot, before.parameters, before.begin, before is self._since_standing[0])
-        window = self._run(self._robot, parameters, self.seconds, not self._since_standing)
+        window = self._run(self._robot, parameters, self.seconds, not self._since_standing, recording)
         self._count(window)
         return window
+
+    def replay(self, window: Window) -> EpisodeResult:
+        """Run one window again that is known, and record it.
+
+        :param window: next window
+        :return: it as the result of an episode, with a trace
+        """
+        changes = self.config.changes_by(self.seconds)
+        recording = Recording(self.config.robot_after(changes).physics.control_rate)
+        return recording.result(self.run(window.parameters, recording))
 
     def skip(self, window: Window) -> None:
         """Go on as after a window that is known.
@@ -109,7 +124,14 @@ class RobotInOperation:
         robot.stand()
         return robot
 
-    def _run(self, robot: RunningRobot, parameters: Parameters, begin: float, stands: bool) -> Window:
+    def _run(
+        self,
+        robot: RunningRobot,
+        parameters: Parameters,
+        begin: float,
+        stands: bool,
+        recording: Recording | None = None,
+    ) -> Window:
         physics, dt = robot.config.physics, robot.config.physics.control_dt
         settle, measure = round(self.config.settle_seconds / dt), round(self.config.measure_seconds / dt)
         push = self.config.robot_after(self._changes).push
@@ -119,7 +141,9 @@ class RobotInOperation:
         robot.generator.set_parameters(*controller_parameters(parameters))
         ticks, fell = 0, False
         while ticks < settle + measure and not fell:
-            fell = self._tick(robot, record, self._force(push, first + ticks, dt))
+            force = self._force(push, first + ticks, dt)
+            tell = None if recording is None else partial(recording.tick, robot, record, (first + ticks) * dt, force)
+            fell = self._tick(robot, record, force, tell)
             ticks += 1
         seconds = stood + ticks * dt + (self.config.fall_seconds if fell else 0.0)
         return Window(
@@ -134,12 +158,15 @@ class RobotInOperation:
             felt=record.felt(),
         )
 
-    def _tick(self, robot: RunningRobot, record: WindowRecord, force: Vector | None) -> bool:
+    def _tick(
+        self, robot: RunningRobot, record: WindowRecord, force: Vector | None, tell: Callable[[], None] | None
+    ) -> bool:
         """Advance by one control tick, and return whether the robot has fallen.
 
         :param robot: robot that runs
         :param record: record of the window
         :param force: force of a push in this tick, in N
+        :param tell: function that is called once the targets are set
         """
         simulation, generator = robot.simulation, robot.generator
         before = generator.targets
@@ -153,6 +180,8 @@ class RobotInOperation:
         simulation.set_targets(generator.targets)
         if force is not None:
             simulation.push(force)
+        if tell is not None:
+            tell()
         simulation.advance()
         torso = simulation.torso_state()
         if not torso.is_finite:

@@ -144,6 +144,16 @@ class WindowRecord:
         self._observed += reward_rate(odometry.x - from_x, odometry.y - from_y, self._height, frequency) * self._dt
 
     @property
+    def steps_per_second(self) -> float:
+        """Steps per second in the last 2 s."""
+        return self.gait.steps_per_second(self._ticks)
+
+    @property
+    def window_return(self) -> float:
+        """Equation 2 integrated over the time that was measured, in m^3 s."""
+        return self._return
+
+    @property
     def score(self) -> float:
         """Equation 2 over its ceiling; what a fall cut off counts as nothing."""
         return self._return / self._ceiling
@@ -166,7 +176,7 @@ class WindowRecord:
             *seconds,
             *lags,
             *signals[:, 6:].mean(axis=0),
-            self.gait.steps_per_second(self._ticks),
+            self.steps_per_second,
         )
         return tuple(round(float(value), 12) for value in values)
 

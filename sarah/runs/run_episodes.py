@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 from sarah.episode.ending import ending_words
+from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
 from sarah.errors import ConfigurationError, RunFolderError
@@ -25,19 +26,22 @@ class RunEpisode:
     :param label: name in the page's list
     :param spec: specification of the episode
     :param score: score that the run folder has for it; ``None`` if it was not simulated there
+    :param recorded: function that simulates it with a trace, if it is more than its specification says: a window of a
+        robot that goes on
     """
 
     name: str
     label: str
     spec: EpisodeSpec
     score: float | None = None
+    recorded: Callable[[], EpisodeResult] | None = None
 
     def of(self, spec: EpisodeSpec) -> RunEpisode:
-        """Make the same choice of another specification; it has no score if that is not the run folder's.
+        """Make the same choice of another specification; what the run folder knows is of its own one only.
 
         :param spec: specification of the episode
         """
-        return replace(self, spec=spec, score=self.score if spec == self.spec else None)
+        return self if spec == self.spec else replace(self, spec=spec, score=None, recorded=None)
 
 
 def learned_episode(run: RunFolder) -> RunEpisode:

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-import csv
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
+from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE
-from sarah.errors import RunFolderError, SarahError
-from sarah.operation.settings import OperationConfig, Parameters
-from sarah.runs.run_episodes import LONGEST_REASON, RunEpisode
-from sarah.sessions.session_folder import NAMES, SessionFolder
+from sarah.errors import RunFolderError
+from sarah.operation.robot_in_operation import RobotInOperation
+from sarah.operation.settings import PARAMETERS, Parameters
+from sarah.operation.window import Window
+from sarah.runs.run_episodes import RunEpisode
+from sarah.sessions.session import SessionSpec
+from sarah.sessions.session_folder import SessionFolder
 
-STEPPING_COUNT = len(NAMES) - len(BALANCE.parameters)
+STEPPING_COUNT = len(PARAMETERS) - len(BALANCE.parameters)
 """Number of the parameters that the task balance has among its settings: P1 to P5."""
 
 
@@ -24,46 +30,59 @@ def learned_of_session(path: Path) -> RunEpisode:
     """
     folder = SessionFolder.open(path)
     spec = folder.spec()
-    left = episode_spec(folder.parameters(), spec.config, len(spec.config.changes))
-    return RunEpisode("learned", "parameters that the session ended with · seed 0", left)
+    left = episode_spec(folder.parameters(), spec, len(spec.config.changes))
+    return RunEpisode("learned", "parameters that the session ended with", left)
 
 
 def episodes_of_session(path: Path) -> list[RunEpisode]:
     """Episodes of a session: the parameters that it ended with, those of the best window, and those of every window.
 
-    Each is an episode of its own, from standing, on the robot as it was in the window.
+    The viewer plays each window as it was. For other commands it is an episode of its own, from standing, on the robot
+    as it was in the window.
 
     :param path: path of the session's folder, which need not be finished
     :raises RunFolderError: if a file of it cannot be read, or if it has no window
     """
     folder = SessionFolder.open(path)
-    config = folder.spec().config
+    spec, windows = folder.spec(), folder.windows()
     shown = [learned_of_session(path)] if folder.is_finished else []
-    windows: list[tuple[float, RunEpisode]] = []
-    try:
-        for row in csv.DictReader(folder.window_lines()):
-            parameters = tuple(float(row[name]) for name in NAMES)
-            score, minute = float(row["score"]), float(row["begin"]) / 60.0
-            fell = ", fell" if row["fell"] == "1" else ""
-            label = f"window {row['index']} · {minute:.1f} min · score {score:.2f}{fell}"
-            spec = episode_spec(parameters, config, int(row["changes"]))
-            windows.append((score, RunEpisode(row["index"], label, spec)))
-    except (OSError, csv.Error, KeyError, TypeError, ValueError, SarahError) as error:
-        raise RunFolderError(f"the windows of {path} cannot be read: {repr(error)[:LONGEST_REASON]}") from error
     if not windows:
         raise RunFolderError(f"{path} has no windows to show yet")
-    _, best = max(windows, key=lambda window: window[0])
-    shown.append(RunEpisode("best", f"best: {best.label}", best.spec))
-    return shown + [episode for _, episode in windows]
+    episodes = [_episode(spec, windows, window) for window in windows]
+    best = episodes[max(range(len(windows)), key=lambda index: windows[index].score)]
+    return [*shown, replace(best, name="best", label=f"best: {best.label}"), *episodes]
 
 
-def episode_spec(parameters: Parameters, config: OperationConfig, changes: int) -> EpisodeSpec:
-    """Episode of a robot in operation, with seed 0.
+def _episode(spec: SessionSpec, windows: Sequence[Window], window: Window) -> RunEpisode:
+    fell = ", fell" if window.fell else ""
+    label = f"window {window.index} · {window.begin / 60.0:.1f} min · score {window.score:.2f}{fell}"
+    episode = episode_spec(window.parameters, spec, window.changes)
+    return RunEpisode(str(window.index), label, episode, recorded=partial(replayed, spec, windows, window))
+
+
+def replayed(spec: SessionSpec, windows: Sequence[Window], window: Window) -> EpisodeResult:
+    """Simulate one window of a session again, from where the robot stood up last.
+
+    :param spec: specification of the session
+    :param windows: all windows before it, and perhaps others
+    :param window: window to simulate
+    :return: it as the result of an episode, with a trace
+    """
+    robot = RobotInOperation(spec.config, spec.seed)
+    try:
+        for before in windows[: window.index]:
+            robot.skip(before)
+        return robot.replay(window)
+    finally:
+        robot.close()
+
+
+def episode_spec(parameters: Parameters, spec: SessionSpec, changes: int) -> EpisodeSpec:
+    """Episode of a session's robot.
 
     :param parameters: P1 to P5 and V1 to V4
-    :param config: settings of the operation
+    :param spec: specification of the session
     :param changes: number of changes that had been made
     """
-    stepping = parameters[:STEPPING_COUNT]
-    episode = BALANCE.config_of(config.robot_after(changes), stepping=stepping)
-    return EpisodeSpec(parameters[STEPPING_COUNT:], 0, BALANCE, episode)
+    episode = BALANCE.config_of(spec.config.robot_after(changes), stepping=parameters[:STEPPING_COUNT])
+    return EpisodeSpec(parameters[STEPPING_COUNT:], spec.seed, BALANCE, episode)

@@ -15,7 +15,7 @@ import io
 import json
 import shlex
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from sarah.errors import RunFolderError
@@ -23,6 +23,7 @@ from sarah.files import read_lines, read_text, replace_text
 from sarah.operation.settings import PARAMETERS, Parameters, checked_parameters
 from sarah.operation.window import FELT, Window
 from sarah.runs.config_files import read_config, write_config
+from sarah.runs.run_episodes import LONGEST_REASON
 from sarah.runs.run_folder import EVENTS
 from sarah.sessions import SPECIFICATION, is_session
 from sarah.sessions.session import SessionSpec
@@ -117,12 +118,16 @@ class SessionFolder:
         with self._windows_path.open("a", newline="", encoding="utf-8") as file:
             csv.writer(file).writerow(_row(window))
 
-    def window_lines(self) -> Iterator[str]:
-        """Read the lines of the table.
+    def windows(self) -> list[Window]:
+        """Read the windows of the table.
 
-        :raises OSError: if it cannot be read
+        :raises RunFolderError: if it cannot be read
         """
-        return read_lines(self._windows_path, MOST_WINDOWS)
+        try:
+            return [_window(row) for row in csv.DictReader(read_lines(self._windows_path, MOST_WINDOWS))]
+        except (OSError, csv.Error, KeyError, TypeError, ValueError) as error:
+            reason = repr(error)[:LONGEST_REASON]
+            raise RunFolderError(f"the windows of {self.path} cannot be read: {reason}") from error
 
     def remove_events(self) -> None:
         """Remove TensorBoard's files, before they are written anew."""
@@ -158,4 +163,18 @@ def _row(window: Window) -> tuple[object, ...]:
         *window.parameters,
         *(window.score, window.observed_reward, int(window.fell)),
         *window.felt,
+    )
+
+
+def _window(row: Mapping[str, str]) -> Window:
+    return Window(
+        index=int(row["index"]),
+        begin=float(row["begin"]),
+        seconds=float(row["seconds"]),
+        changes=int(row["changes"]),
+        parameters=checked_parameters([float(row[name]) for name in NAMES]),
+        score=float(row["score"]),
+        observed_reward=float(row["observed_reward"]),
+        fell=row["fell"] == "1",
+        felt=tuple(float(row[name]) for name in FELT),
     )

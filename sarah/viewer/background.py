@@ -20,10 +20,12 @@ class Wish(NamedTuple):
 
     :param spec: specification of the episode
     :param done: function that is called with the result, which has a trace
+    :param recorded: function that simulates it, if it is more than its specification says
     """
 
     spec: EpisodeSpec
     done: Callable[[EpisodeResult], None]
+    recorded: Callable[[], EpisodeResult] | None = None
 
 
 class BackgroundSimulation:
@@ -56,7 +58,7 @@ class BackgroundSimulation:
                 wish, self._wish = self._wish, None
             assert wish is not None
             try:
-                result = self._simulate(wish.spec)
+                result = self._simulate(wish.spec) if wish.recorded is None else wish.recorded()
             except SarahError as error:
                 self._failed(str(error))
                 continue

@@ -162,7 +162,7 @@ class Page:
         with self._lock:
             self._chosen, self._wanted = choice, Scenario.of(choice.spec)
             self._set_sliders(self._wanted)
-        self._simulate(choice.spec, self._wanted)
+        self._simulate(choice.spec, self._wanted, recorded=choice.recorded)
 
     def _change_parameter(self, name: str, index: int, value: float) -> None:
         with self._lock:
@@ -191,9 +191,15 @@ class Page:
             self._wanted = replace(self._wanted, **changes)
         self._simulate(self._wanted.spec(), self._wanted, play_from)
 
-    def _simulate(self, spec: EpisodeSpec, scenario: Scenario, play_from: float | None = None) -> None:
+    def _simulate(
+        self,
+        spec: EpisodeSpec,
+        scenario: Scenario,
+        play_from: float | None = None,
+        recorded: Callable[[], EpisodeResult] | None = None,
+    ) -> None:
         self._show_progress(0.0)
-        self._simulation.request(Wish(spec, lambda result: self._take(scenario, result, play_from)))
+        self._simulation.request(Wish(spec, lambda result: self._take(scenario, result, play_from), recorded))
 
     def _set_sliders(self, scenario: Scenario) -> None:
         for sliders, values in ((self._stepping, scenario.stepping), (self._balance, scenario.balance)):
@@ -217,7 +223,8 @@ class Page:
         with self._lock:
             self._before, self._shown = self._shown, Shown(scenario, result, result.trace)
             begin, end = float(result.trace.time[0]), float(result.trace.time[-1])
-            self._time.max = end
+            self._time.min, self._time.max = 0.0, end  # in between, an older minimum would lie above a new maximum
+            self._time.min = begin
             self._scene.load(result.trace, draw_ground(scenario.terrain, scenario.seed))
             self._plots.load(result.trace, scenario)
             self._news.content = _paragraph("")

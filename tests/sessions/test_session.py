@@ -129,6 +129,23 @@ def test_every_window_is_an_episode_to_look_at(whole: tuple[Path, SessionResult]
     assert (*learned.config.stepping, *learned.parameters) == result.parameters  # type: ignore[attr-defined]
 
 
+def test_every_window_can_be_played_as_it_was(whole: tuple[Path, SessionResult]) -> None:
+    """Also after a fall, and after the change: the recording disturbs nothing."""
+    path, result = whole
+    episodes = {episode.name: episode for episode in episodes_of_session(path)}
+    assert SessionFolder(path).windows() == list(result.windows)
+    for window in result.windows:
+        recorded = episodes[str(window.index)].recorded
+        assert recorded is not None
+        played = recorded()
+        assert played.score == window.score and (played.termination == "fell") == window.fell
+        assert played.trace is not None
+        stood = 1.0 if window.index == 0 or result.windows[window.index - 1].fell else None
+        begin = played.trace.time[0] - window.begin
+        assert begin == pytest.approx(stood) if stood else begin in (pytest.approx(0.0), pytest.approx(1.0))
+        assert played.trace.time[-1] < window.end
+
+
 def test_a_folder_that_is_not_empty_is_refused(whole: tuple[Path, SessionResult], tmp_path: Path) -> None:
     with pytest.raises(RunFolderError, match="is not empty: name another with --run-dir"):
         SessionFolder.create(whole[0], SPEC)

@@ -1,0 +1,60 @@
+"""The recording of a window, tick by tick, as an episode has it: for the viewer."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sarah.control.pattern_generator import Phase
+from sarah.episode.motion import MotionRecord
+from sarah.episode.result import EpisodeResult
+from sarah.episode.running_robot import RunningRobot
+from sarah.episode.trace import Trace
+from sarah.operation.window import Window, WindowRecord
+from sarah.robot.reading import Vector
+
+
+class Recording:
+    """Everything that an episode records and a window does not: trace, clearance, vibration and effort.
+
+    :param control_rate: control ticks per second
+    """
+
+    def __init__(self, control_rate: int) -> None:
+        self._motion = MotionRecord(control_rate)
+        self._rows: list[dict[str, Any]] = []
+        self._metrics: dict[str, Any] = {}
+
+    def tick(self, robot: RunningRobot, record: WindowRecord, time: float, force: Vector | None) -> None:
+        """Record a tick, in which the targets are set.
+
+        :param robot: robot that runs
+        :param record: record of the window
+        :param time: time of operation, in s
+        :param force: force of a push, in N
+        """
+        simulation, generator = robot.simulation, robot.generator
+        self._motion.tick(robot.truth.acceleration, *simulation.actuator_motion())
+        if generator.phase in (Phase.LIFT, Phase.LAND):
+            record.gait.swing(simulation.sole_height(generator.swing))
+        self._rows.append(robot.trace_row(time, force, record.steps_per_second, record.score))
+        self._metrics = {**record.gait.metrics(), "episode_return": record.window_return}
+
+    def result(self, window: Window) -> EpisodeResult:
+        """The window as the result of an episode.
+
+        :param window: window that was recorded
+        :raises SimulationError: if it had no tick
+        """
+        trace = Trace.of(self._rows)
+        x, y, z = (trace.position[-1] - (*trace.position[0][:2], 0.0)).tolist()
+        seconds = float(trace.time[-1] - trace.time[0])
+        return EpisodeResult(
+            termination="fell" if window.fell else "time_limit",
+            final_position=(x, y, z),
+            score=window.score,
+            steps_per_second=self._metrics["steps"] / seconds if seconds else 0.0,
+            duration=seconds,
+            trace=trace,
+            **self._metrics,
+            **self._motion.metrics(),
+        )
