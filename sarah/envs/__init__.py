@@ -1,4 +1,4 @@
-"""Episodes as environments: one of gymnasium, and one of stable-baselines3 with many episodes in flight.
+"""Episodes and operations as environments of gymnasium, and one of stable-baselines3 with many episodes in flight.
 
-It may import episode and what that may import.
+It may import operation, episode and what these may import.
 """

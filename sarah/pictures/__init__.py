@@ -1,4 +1,4 @@
 """Plots, drawings and videos of the robot and of its episodes.
 
-It may import episode and what that may import.
+It may import operation, episode and what these may import.
 """
