@@ -16,6 +16,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import STEPPING, Task, load_task
 from sarah.errors import ConfigurationError, check_range
 from sarah.runs.config import ALGORITHMS, TrainingConfig
+from sarah.sessions import is_session
 
 COMMAND = "sarah-compare"
 MOST_SEEDS = 1000
@@ -86,6 +87,8 @@ def _compare(arguments: Sequence[str]) -> None:
     options = parse_options(CompareOptions, COMMAND, arguments, _defaults(arguments))
     if options.out is None:
         raise ConfigurationError("give a folder for the race")
+    if is_session(options.out):
+        raise ConfigurationError(f"{options.out} is the folder of a session: name another for the race")
     check_range("seeds", options.seeds, 1, MOST_SEEDS)
     check_range("evaluations", options.evaluations, 1, MOST_EVALUATIONS)
     if options.best_known is not None:

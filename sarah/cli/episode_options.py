@@ -95,7 +95,7 @@ def parse_episode_options(
     arguments: Sequence[str],
     default: OptionsType,
     subject: str | None = None,
-    adapted: Callable[[EpisodeConfig], EpisodeConfig] = lambda config: config,
+    adapted: Callable[[EpisodeConfig, str | None], EpisodeConfig] = lambda config, _: config,
 ) -> OptionsType:
     """Make a command's options, whose settings of episodes are those of its subject unless an option changes them.
 
@@ -103,12 +103,12 @@ def parse_episode_options(
     :param arguments: arguments after the command's name
     :param default: options with their default values
     :param subject: what to look at, if the arguments name several
-    :param adapted: function that makes the command's settings of those
+    :param adapted: function that makes the command's settings of those of what it looks at, and of its name
     """
     given = given_options(arguments, "task", "which", "engine", "episode.engine")
     task = named_task(given.get("task"))
     subject = subject or _subject_among(arguments, default, given)
-    own = adapted(_settings_of(subject, given.get("which"), task) if subject else (task or STEPPING).episode)
+    own = adapted(_settings_of(subject, given.get("which"), task) if subject else (task or STEPPING).episode, subject)
     if type(own) is EpisodeConfig:  # any robot can be pushed, whether its task has a push or not
         own = PushedConfig(**vars(own), push=NOBODY)
     episode = with_given_engine(own, given)

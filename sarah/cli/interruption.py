@@ -14,14 +14,15 @@ class Interruption:
     """A context in which the first signal is only recorded, and the second has its usual effect.
 
     :param command: name of the command, for the message
+    :param unit: what is completed before it stops, for the message
     """
 
     signal: int | None
     """Number of the signal that came; ``None`` before."""
 
-    def __init__(self, command: str) -> None:
+    def __init__(self, command: str, unit: str = "episode") -> None:
         self.signal = None
-        self._message = f"\n{command}: stopping when this episode is over; a second signal stops at once\n".encode()
+        self._message = f"\n{command}: stopping when this {unit} is over; a second signal stops at once\n".encode()
         self._before: dict[int, Any] = {}
 
     def __enter__(self) -> Interruption:

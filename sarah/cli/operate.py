@@ -20,8 +20,9 @@ from sarah.episode.push import PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, controller_of
-from sarah.errors import ConfigurationError, RunFolderError, TrainingInterruptedError, shortened
+from sarah.errors import ConfigurationError, ResumeError, RunFolderError, TrainingInterruptedError, shortened
 from sarah.operation.settings import SOFT_PUSHES, Change, OperationConfig, Parameters
+from sarah.sessions import is_session
 
 if TYPE_CHECKING:
     from sarah.operation.window import Window
@@ -47,7 +48,8 @@ class OperateOptions(EpisodeOptions):
     :param measure_seconds: time that a window measures, in s
     :param fall_seconds: time that a fall costs, in s
     :param push_seconds: time from a push to the next, in s; --episode.push.newtons sets their force
-    :param change: what changes, and when, such as "5: randomisation.actuator_bandwidth=12" at minute 5
+    :param change: what changes, and when, such as "5: randomisation.actuator_bandwidth=12" at minute 5; once for each
+        change, in the order of time
     :param run_dir: folder to write, new or empty; by default a new one, runs/operation/<learner>-s<seed>
     :param resume: folder of an interrupted session to go on with, as it is
     """
@@ -60,7 +62,7 @@ class OperateOptions(EpisodeOptions):
     measure_seconds: float = 4.0
     fall_seconds: float = 20.0
     push_seconds: float = 4.0
-    change: Annotated[tuple[str, ...], tyro.conf.arg(metavar="CHANGE...")] = ()
+    change: Annotated[tuple[str, ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="CHANGE")] = ()
     run_dir: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     resume: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
 
@@ -71,7 +73,7 @@ def main() -> None:
 
 
 def _operate(arguments: Sequence[str]) -> None:
-    options = parse_episode_options(COMMAND, arguments, OperateOptions(), adapted=_softly_pushed)
+    options = parse_episode_options(COMMAND, arguments, OperateOptions(), adapted=_of_operation)
     from sarah.runs.run_folder import new_run_path
     from sarah.sessions.session_folder import SessionFolder
     from sarah.simulation.engines import check_engine
@@ -85,7 +87,8 @@ def _operate(arguments: Sequence[str]) -> None:
             return
     else:
         spec = _spec_of(options)
-        check_engine(spec.config.robot.engine)
+        for count in range(len(spec.config.changes) + 1):
+            check_engine(spec.config.robot_after(count).engine)
         path = options.run_dir or new_run_path("operation", spec.learner, spec.seed)
         folder = SessionFolder.create(path, spec)
         say_engine(spec.config.robot, options.engine)
@@ -93,10 +96,11 @@ def _operate(arguments: Sequence[str]) -> None:
     _summarise(_watched(folder, spec), spec, folder.path)
 
 
-def _softly_pushed(config: EpisodeConfig) -> PushedConfig:
-    """Settings of a robot in operation: those of what is looked at, with soft pushes."""
+def _of_operation(config: EpisodeConfig, subject: str | None) -> PushedConfig:
+    """Settings of a robot in operation: those of the subject, with soft pushes, unless they are a session's own."""
     shared = {item.name: getattr(config, item.name) for item in dataclasses.fields(EpisodeConfig)}
-    return PushedConfig(**shared, push=SOFT_PUSHES)
+    own = subject is not None and is_session(Path(subject)) and isinstance(config, PushedConfig)
+    return PushedConfig(**shared, push=config.push if own else SOFT_PUSHES)  # type: ignore[attr-defined]
 
 
 def _check_alone(arguments: Sequence[str]) -> None:
@@ -165,12 +169,14 @@ def _watched(folder: SessionFolder, spec: SessionSpec) -> SessionResult:
         bar.set_postfix(window=window.index, score=f"{window.score:.2f}", falls=falls, changes=window.changes)
         bar.update(min(window.end, seconds) - bar.n)
 
-    with bar, Interruption(COMMAND) as interruption:
+    with bar, Interruption(COMMAND, "window") as interruption:
         try:
             return operate(folder, spec, show, interruption.came)
         except (TrainingInterruptedError, KeyboardInterrupt):
             print(f"\n{COMMAND}: interrupted; {go_on}", file=sys.stderr)
             raise SystemExit(128 + (interruption.signal or signal.SIGINT)) from None
+        except ResumeError:
+            raise
         except OSError as error:
             raise RunFolderError(f"{error}; finished windows are kept, {go_on}") from error
 
@@ -178,10 +184,10 @@ def _watched(folder: SessionFolder, spec: SessionSpec) -> SessionResult:
 def _summarise(result: SessionResult, spec: SessionSpec, path: Path) -> None:
     from sarah.operation.settings import PARAMETERS
 
-    thirds = [spec.config.minutes * share for share in (0.0, 0.2, 0.8)]
     named = zip((parameter.name for parameter in PARAMETERS), result.parameters, strict=True)
     print("\nparameters  " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
-    first, last = result.mean_score(end=thirds[1]), result.mean_score(thirds[2])
-    print(f"score       {result.mean_score():.3f} mean, {first:.3f} in the first fifth, {last:.3f} in the last")
+    first, last = result.mean_score(end=0.2 * spec.config.minutes), result.mean_score(0.8 * spec.config.minutes)
+    parts = f", {first:.3f} in the first fifth, {last:.3f} in the last" if first == first and last == last else ""
+    print(f"score       {result.mean_score():.3f} mean{parts}")
     print(f"falls       {result.falls} in {len(result.windows)} windows")
     print(f"folder      {path}")

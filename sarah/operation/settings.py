@@ -57,7 +57,8 @@ class OperationConfig:
     :param robot: settings of robot, world and controller, and the pushes. Of these, force, direction and duration
         count: a push comes every ``push_seconds``. The time limit is without effect, as is the form of the reward
     :param minutes: duration of the operation, in min; the window that has begun by then is completed
-    :param settle_seconds: time that a window gives new parameters to settle, in s
+    :param settle_seconds: time that a window gives new parameters to settle, in s; steps are counted anew in each
+        window, so below 2 s the first ones count as slow
     :param measure_seconds: time that a window measures, in s
     :param fall_seconds: time that a fall costs, in s
     :param push_seconds: time from a push to the next, in s
@@ -83,6 +84,11 @@ class OperationConfig:
             )
         for count in range(len(minutes) + 1):
             robot = self.robot_after(count)
+            if robot.push.duration > self.push_seconds:
+                raise ConfigurationError(
+                    f"push.duration must be at most the {self.push_seconds:g} s to the next push, "
+                    f"not {robot.push.duration!r}"
+                )
             if robot.terrain.roughness != (0.0, 0.0):
                 raise ConfigurationError("terrain.roughness must be 0 in an operation: bumps end 0.7 m from the start")
 

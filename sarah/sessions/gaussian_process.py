@@ -43,6 +43,8 @@ class GaussianProcessSettings:
 
 DISAPPOINTING = 2.0
 """Number of standard deviations below what was expected at which a reward disappoints."""
+MOST_WINDOWS = 500
+"""Number of windows that are remembered: the last ones. The time that a choice takes grows with its third power."""
 
 
 class LocalGaussianProcess:
@@ -104,6 +106,7 @@ class LocalGaussianProcess:
         self._rewards.append(reward)
         if self._shortfall > self._settings.surprise:
             self._forget()
+        del self._tried[:-MOST_WINDOWS], self._rewards[:-MOST_WINDOWS]
         self._fit()
         return disappoints
 

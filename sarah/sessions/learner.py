@@ -9,7 +9,7 @@ from sarah.operation.settings import Parameters
 
 
 class Learner(Protocol):
-    """A learner. It may use of a window what the robot itself knows: everything but its score."""
+    """A learner. Of a window it may use what the robot itself knows: all but its score and the number of changes."""
 
     def operate(self, robot: Operation) -> Parameters:
         """Choose the parameters of one window after the other, until the operation is over.

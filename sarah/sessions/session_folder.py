@@ -89,8 +89,8 @@ class SessionFolder:
 
     @property
     def is_finished(self) -> bool:
-        """Whether the session has finished."""
-        return self._parameters_path.is_file()
+        """Whether the session has finished, with parameters that can be read."""
+        return self._left() is not None
 
     def spec(self) -> SessionSpec:
         """Read the specification.
@@ -145,16 +145,21 @@ class SessionFolder:
     def parameters(self) -> Parameters:
         """Read the parameters that the robot was left with.
 
-        :raises RunFolderError: if the session is not finished, or the file cannot be read
+        :raises RunFolderError: if the session is not finished, or the file is damaged, which going on mends
         """
-        if not self.is_finished:
+        left = self._left()
+        if left is None:
             go_on = f"go on with sarah-operate --resume {shlex.quote(str(self.path))}"
             raise RunFolderError(f"{self.path} is not the folder of a finished session: {go_on}")
+        return left
+
+    def _left(self) -> Parameters | None:
+        """Parameters that the robot was left with; ``None`` if there are none, or if the file is damaged."""
         try:
             values = json.loads(read_text(self._parameters_path))["parameters"]
             return checked_parameters([values[name] for name in NAMES])
-        except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
-            raise RunFolderError(f"{self._parameters_path} does not hold nine parameters: {error!r}") from error
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
+            return None
 
 
 def _row(window: Window) -> tuple[object, ...]:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -75,9 +76,42 @@ def test_a_finished_session_says_so(operated: Path) -> None:
     assert process.returncode == 0 and "is finished" in process.stdout
 
 
+def test_every_change_counts_and_a_session_keeps_its_pushes(tmp_path: Path) -> None:
+    line = ("--minutes", "0.2", *QUICK, "--learner", "none", "--episode.push.newtons", "10")
+    changes = ("--change", "0.03: payload=3", "--change", "0.06: physics.control_rate=50")
+    first = run("sarah-operate", *line, *changes, "--run-dir", "first", cwd=tmp_path)
+    assert first.returncode == 0, first.stderr
+    rows = [row.split(",") for row in (tmp_path / "first/windows.csv").read_text().splitlines()[1:]]
+    assert sorted({row[3] for row in rows}) == ["0", "1", "2"]
+    assert {row[2] for row in rows} == {"1.0", "2.0"}  # at any control rate
+    again = run("sarah-operate", "first", "--minutes", "0.1", *QUICK, "--run-dir", "again", cwd=tmp_path)
+    assert again.returncode == 0, again.stderr
+    assert "- 10.0" in (tmp_path / "again/session.yaml").read_text().split("newtons")[1][:20]
+
+
+@pytest.mark.parametrize("damaged", ["", "{}", "[1", '{"parameters": {"P1": 1}}'])
+def test_damaged_parameters_are_written_again(operated: Path, tmp_path: Path, damaged: str) -> None:
+    shutil.copytree(operated, tmp_path / "mine")
+    (tmp_path / "mine/parameters.json").write_text(damaged)
+    process = run("sarah-operate", "--resume", "mine", cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    assert (tmp_path / "mine/parameters.json").read_bytes() == (operated / "parameters.json").read_bytes()
+
+
+def test_a_session_that_cannot_go_on_does_not_recommend_to_go_on(operated: Path, tmp_path: Path) -> None:
+    shutil.copytree(operated, tmp_path / "mine")
+    (tmp_path / "mine/parameters.json").unlink()
+    spec = tmp_path / "mine/session.yaml"
+    spec.write_text(spec.read_text().replace("seed: 2", "seed: 3"))
+    process = run("sarah-operate", "--resume", "mine", cwd=tmp_path)
+    assert process.returncode == 2 and "seed is 3 here, and 2 in this session" in process.stderr
+    assert "go on with" not in process.stderr
+
+
 @pytest.mark.parametrize(
     ("line", "words"),
     [
+        ("sarah-operate --push-seconds 0.5 --episode.push.duration 5", "push.duration must be at most the 0.5 s"),
         ("sarah-operate --learner gpp", "unknown learner 'gpp', did you mean 'gp'?"),
         ("sarah-operate --minutes 0", "minutes must be between 0.1 and 600 min, not 0.0"),
         ("sarah-operate --change 5", 'change must be a minute and a setting, such as "5: '),
