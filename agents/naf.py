@@ -1,6 +1,7 @@
 """Normalized advantage functions (NAF): Q-learning for continuous actions, for stable-baselines3."""
 
 import math
+import warnings
 from typing import Any, ClassVar, TypeVar
 
 import numpy as np
@@ -22,6 +23,11 @@ from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy, NAFPol
 
 SelfNAF = TypeVar("SelfNAF", bound="NAF")
 
+RUNAWAY_RATIO = 1.5
+"""V over its bound from which on a warning says that it runs away."""
+FRESH_UPDATES = 1000
+"""Number of updates in which V may still be that of fresh networks, whatever rewards are."""
+
 
 class NAF(OffPolicyAlgorithm):
     """
@@ -30,7 +36,9 @@ class NAF(OffPolicyAlgorithm):
     Paper: https://arxiv.org/abs/1603.00748
     (Gu et al. 2016, Continuous Deep Q-Learning with Model-based Acceleration)
     Q is quadratic in the action, so its maximum and the action that reaches it are outputs of networks:
-    there is no actor to train, and the target network is asked for V only.
+    there is no actor to train. Targets take W of the next state, the value of what is done there. The publication's take
+    V, the value of the best action, which runs away where several actions decide little of what follows, see
+    :class:`~sarah.agents.critic.QuadraticCritic`.
 
     :param policy: The policy model to use (MlpPolicy, CnnPolicy, ...)
     :param env: The environment to learn from (if registered in Gym, can be str)
@@ -104,7 +112,7 @@ class NAF(OffPolicyAlgorithm):
         optimize_memory_usage: bool = False,
         n_steps: int = 1,
         max_grad_norm: float = 1.0,
-        exploration_std: float | Schedule = 0.1,
+        exploration_std: float | Schedule = 0.3,
         stats_window_size: int = 100,
         tensorboard_log: str | None = None,
         policy_kwargs: dict[str, Any] | None = None,
@@ -142,6 +150,8 @@ class NAF(OffPolicyAlgorithm):
 
         self.max_grad_norm = max_grad_norm
         self.exploration_std = exploration_std
+        self.value_bound = 0.0
+        self.warned_of_values = False
 
         if _init_setup_model:
             self._setup_model()
@@ -197,7 +207,7 @@ class NAF(OffPolicyAlgorithm):
         parameters, target_parameters = list(self.q_net.parameters()), list(self.q_net_target.parameters())
         average_parameters = get_ema_multi_avg_fn(1 - self.tau)
 
-        losses, mean_q_values = [], []
+        losses, mean_q_values, largest_values, bounds = [], [], [], []
         for _ in range(gradient_steps):
             # Sample replay buffer
             replay_data = self.replay_buffer.sample(batch_size, env=self._vec_normalize_env)  # type: ignore[union-attr]
@@ -207,17 +217,25 @@ class NAF(OffPolicyAlgorithm):
             target_q_values = replay_data.rewards
             if self.gamma > 0:  # Otherwise what comes next does not count
                 with th.no_grad():
-                    # The maximum of Q over the actions is V: no action is needed for the target
-                    next_values = self.q_net_target.value(replay_data.next_observations)
+                    # Neither W nor V, the maximum of Q over the actions, needs an action
+                    next_values = self.q_net_target.target_value(replay_data.next_observations)
                     # 1-step TD target
                     target_q_values = replay_data.rewards + (1 - replay_data.dones) * discounts * next_values
 
             # Get current Q-values estimates
-            current_q_values = self.q_net(replay_data.observations, replay_data.actions)
+            current_q_values, values, expected_values = self.q_net.all_values(
+                replay_data.observations, replay_data.actions
+            )
             mean_q_values.append(current_q_values.detach().mean())
 
             loss = nn.functional.mse_loss(current_q_values, target_q_values)
             losses.append(loss.detach())
+            if self.q_net.gain_net is not None:
+                # W is the mean of the targets, whatever the action was
+                loss = loss + nn.functional.mse_loss(expected_values, target_q_values)
+            if 0 < self.gamma < 1:
+                largest_values.append(values.detach().max())
+                bounds.append((replay_data.rewards.abs() / (1 - discounts)).max())
 
             # Optimize the policy
             self.policy.optimizer.zero_grad()
@@ -236,6 +254,33 @@ class NAF(OffPolicyAlgorithm):
         self.logger.record("train/n_updates", self._n_updates, exclude="tensorboard")
         self.logger.record("train/loss", th.stack(losses).mean().item())
         self.logger.record("train/q", th.stack(mean_q_values).mean().item())
+        if 0 < self.gamma < 1:
+            self._check_values(th.stack(largest_values).max().item(), th.stack(bounds).max().item())
+
+    def _check_values(self, largest: float, bound: float) -> None:
+        """
+        Log how near ``V`` comes to the largest value that rewards allow, and warn once if it is far beyond.
+
+        :param largest: Largest ``V`` of some batches
+        :param bound: Value of the largest reward of these batches if it came at every step
+        """
+        self.value_bound = max(self.value_bound, bound)
+        if self.value_bound == 0:
+            return
+        ratio = largest / self.value_bound
+        self.logger.record("train/value_over_bound", ratio)
+        if ratio > RUNAWAY_RATIO and self._n_updates > FRESH_UPDATES and not self.warned_of_values:
+            self.warned_of_values = True
+            remedy = (
+                "give net_arch as a list, or with layers for W in place of V"
+                if self.q_net.gain_net is None
+                else "take a wider exploration_std or a lower learning_rate"
+            )
+            warnings.warn(
+                f"V of {largest:.3g} is {ratio:.2g} times the largest value that the rewards so far allow, "
+                f"|reward| / (1 - gamma) = {self.value_bound:.3g}: it runs away. Remedy: {remedy}",
+                stacklevel=2,
+            )
 
     def learn(
         self: SelfNAF,

@@ -23,6 +23,7 @@ from experiments.first_training import FirstTraining
 from experiments.flexion_laws import FlexionLaws
 from experiments.landscape import Landscape
 from experiments.lateral_limit import LateralLimit
+from experiments.linear_quadratic import LinearQuadraticTasks
 from experiments.naf_preset import NafPreset
 from experiments.noise_limit import NoiseLimit
 from experiments.physics import FinenessAnywhere, FinenessInConditions
@@ -146,6 +147,12 @@ TABLE: dict[str, Maker] = {
         "What does ranked replay make of a noisy reward?",
         RankReplay(),
         {"seeds": 1, "episodes": 8},
+        of_robot=False,
+    ),
+    "linear_quadratic": Maker(
+        "What does NAF make of tasks whose truth is known?",
+        LinearQuadraticTasks(),
+        {"steps": 1010, "seeds": 1},
         of_robot=False,
     ),
     "naf_pendulum": Maker(
