@@ -277,8 +277,8 @@ class LinearQuadraticTasks(OnWorkers):
     :param seeds: number of trainings of each variant
     """
 
-    steps: int = 8000
-    seeds: int = 3
+    steps: int = 5000
+    seeds: int = 2
 
     def rows(self) -> Iterator[Row]:
         """A row for each task, variant and width of the noise."""

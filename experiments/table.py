@@ -34,6 +34,7 @@ from experiments.robustness import Robustness
 from experiments.rough_ground import RoughGround
 from experiments.second_training import SecondTraining
 from experiments.sensor_faults import SensorFaults
+from experiments.several_actions import SeveralActions
 from experiments.shift_endings import ShiftEndings
 from experiments.shipped_parameters import ShippedParameters
 from experiments.slots import SlotsSchedule
@@ -153,6 +154,12 @@ TABLE: dict[str, Maker] = {
         "What does NAF make of tasks whose truth is known?",
         LinearQuadraticTasks(),
         {"steps": 1010, "seeds": 1},
+        of_robot=False,
+    ),
+    "several_actions": Maker(
+        "How does NAF do on tasks with several actions, next to DDPG?",
+        SeveralActions(),
+        {"tasks": ("Swimmer-v5",), "steps": 120, "seeds": 1, "evaluations": 1, "episodes": 1},
         of_robot=False,
     ),
     "naf_pendulum": Maker(
