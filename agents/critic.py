@@ -1,5 +1,7 @@
 """Values of NAF: the networks V or W, mu and L."""
 
+from typing import NamedTuple
+
 import torch as th
 from gymnasium import spaces
 from stable_baselines3.common.policies import BaseModel
@@ -10,6 +12,22 @@ from torch import nn
 
 LOG_DIAGONAL_MIN = -5.0
 LOG_DIAGONAL_MAX = 5.0
+
+
+class Values(NamedTuple):
+    """
+    Values of some states and actions, each of shape (batch, 1).
+
+    :param q: ``Q``, of the actions
+    :param best: ``V``, of the best actions
+    :param target: what targets take of such a state: ``W``, or ``V`` where there is no ``W``
+    :param distance: Squared distance of the actions from ``mu``
+    """
+
+    q: th.Tensor
+    best: th.Tensor
+    target: th.Tensor
+    distance: th.Tensor
 
 
 class QuadraticCritic(BaseModel):
@@ -24,11 +42,11 @@ class QuadraticCritic(BaseModel):
     of 64 units that all three shared, seeds of Pendulum failed. Actions are scaled to [-1, 1]. The output layer of
     ``mu`` starts at zero: an untrained critic proposes the centre of the action space whatever it observes.
 
-    With layers for ``W`` in place of ``V``, ``W`` is a network that knows no actions: the value of what is done. The
-    layers that ``mu`` and ``L`` share have one output more, by which the best action is better: ``V = W + gain``, and no
-    gradient of ``Q`` reaches ``W``. Targets take ``W`` of the next state. ``V`` lies above what is done by what the
-    parabola promises, and noise in the targets makes it promise too much: targets with ``V`` add up such promises over
-    the horizon.
+    With layers for ``W`` in place of ``V``, ``W`` is a network that knows no actions: the mean of what actions near
+    ``mu`` led to. The layers that ``mu`` and ``L`` share have one output more, by which the best action is better:
+    ``V = W + gain``, and no gradient of ``Q`` reaches ``W``. Targets take ``W`` of the next state. ``V`` lies above what
+    was done by what the parabola promises, and noise in the targets makes it promise too much: targets with ``V`` add up
+    such promises over the horizon.
 
     :param observation_space: Observation space
     :param action_space: Action space
@@ -96,15 +114,15 @@ class QuadraticCritic(BaseModel):
         :param actions: Actions, scaled to [-1, 1], of shape (batch, action dim)
         :return: ``Q`` of shape (batch, 1)
         """
-        return self.all_values(obs, actions)[0]
+        return self.all_values(obs, actions).q
 
-    def all_values(self, obs: PyTorchObs, actions: th.Tensor) -> tuple[th.Tensor, th.Tensor, th.Tensor]:
+    def all_values(self, obs: PyTorchObs, actions: th.Tensor) -> Values:
         """
         Values of actions, of the best ones, and those that targets take, in one pass.
 
         :param obs: Observations
         :param actions: Actions, scaled to [-1, 1], of shape (batch, action dim)
-        :return: ``Q``, ``V``, and ``W`` or else ``V`` again, of shape (batch, 1)
+        :return: The values
         """
         features = self.extract_features(obs, self.features_extractor)
         shared = self.shared_net(features)
@@ -112,11 +130,12 @@ class QuadraticCritic(BaseModel):
         # (u - mu)^T L L^T (u - mu) is the squared length of the row (u - mu)^T L
         projected = (from_mu.unsqueeze(2) * self._lower(shared)).sum(dim=1)
         squared_length = projected.square().sum(dim=1, keepdim=True)
+        distance = from_mu.square().sum(dim=1, keepdim=True)
         if self.min_curvature > 0:
-            squared_length = squared_length + self.min_curvature * from_mu.square().sum(dim=1, keepdim=True)
+            squared_length = squared_length + self.min_curvature * distance
         target_values = self.value_net(features)
-        values = self._best_values(target_values, shared)
-        return values - 0.5 * squared_length, values, target_values
+        best_values = self._best_values(target_values, shared)
+        return Values(best_values - 0.5 * squared_length, best_values, target_values, distance)
 
     def value(self, obs: PyTorchObs) -> th.Tensor:
         """

@@ -18,15 +18,32 @@ from torch.optim.swa_utils import get_ema_multi_avg_fn
 
 from sarah.agents.arguments import check_number, checked_schedule
 from sarah.agents.buffers import RankReplayBuffer
-from sarah.agents.critic import QuadraticCritic
+from sarah.agents.critic import QuadraticCritic, Values
 from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy, NAFPolicy
 
 SelfNAF = TypeVar("SelfNAF", bound="NAF")
 
+NEARNESS = 1.0
+"""Logarithm of how much less an action counts for W that is as far from mu as the mean of the batch."""
 RUNAWAY_RATIO = 1.5
 """V over its bound from which on a warning says that it runs away."""
 FRESH_UPDATES = 1000
 """Number of updates in which V may still be that of fresh networks, whatever rewards are."""
+
+
+def nearby_loss(values: Values, targets: th.Tensor) -> th.Tensor:
+    """
+    Loss of ``W``, by which it becomes the mean of the targets of actions near ``mu``.
+
+    Whatever the weights, a mean is never above the largest target, so ``W`` stays within what rewards allow.
+
+    :param values: Values of replayed actions
+    :param targets: What these actions led to
+    :return: Mean squared error of ``W``, weighted by the nearness of the actions
+    """
+    distances = values.distance.detach()
+    weights = (-NEARNESS * distances / (distances.mean() + 1e-8)).exp()
+    return (weights * (values.target - targets).square()).sum() / weights.sum()
 
 
 class NAF(OffPolicyAlgorithm):
@@ -36,17 +53,16 @@ class NAF(OffPolicyAlgorithm):
     Paper: https://arxiv.org/abs/1603.00748
     (Gu et al. 2016, Continuous Deep Q-Learning with Model-based Acceleration)
     Q is quadratic in the action, so its maximum and the action that reaches it are outputs of networks:
-    there is no actor to train. Targets take W of the next state, the value of what is done there. The publication's take
-    V, the value of the best action, which runs away where several actions decide little of what follows, see
-    :class:`~sarah.agents.critic.QuadraticCritic`.
+    there is no actor to train. Targets take W of the next state, the mean of what actions near the best one led to. The
+    publication's take V, the value of the best action, which runs away where several actions decide little of what
+    follows, see :class:`~sarah.agents.critic.QuadraticCritic`.
 
     :param policy: The policy model to use (MlpPolicy, CnnPolicy, ...)
     :param env: The environment to learn from (if registered in Gym, can be str)
     :param learning_rate: The learning rate, it can be a function
         of the current progress remaining (from 1 to 0)
     :param buffer_size: size of the replay buffer
-    :param learning_starts: number of steps to collect transitions for before learning starts.
-        More than TD3's 100: NAF has one critic, and what it believes of few transitions its policy follows at once
+    :param learning_starts: number of steps to collect transitions for before learning starts
     :param batch_size: Minibatch size for each gradient update
     :param tau: the soft update coefficient ("Polyak update", between 0 and 1). TD3's 0.005 is
         slower to learn with
@@ -100,7 +116,7 @@ class NAF(OffPolicyAlgorithm):
         env: GymEnv | str,
         learning_rate: float | Schedule = 1e-3,
         buffer_size: int = 1_000_000,  # 1e6
-        learning_starts: int = 1000,
+        learning_starts: int = 100,
         batch_size: int = 256,
         tau: float = 0.02,
         gamma: float = 0.99,
@@ -223,18 +239,15 @@ class NAF(OffPolicyAlgorithm):
                     target_q_values = replay_data.rewards + (1 - replay_data.dones) * discounts * next_values
 
             # Get current Q-values estimates
-            current_q_values, values, expected_values = self.q_net.all_values(
-                replay_data.observations, replay_data.actions
-            )
-            mean_q_values.append(current_q_values.detach().mean())
+            current_values = self.q_net.all_values(replay_data.observations, replay_data.actions)
+            mean_q_values.append(current_values.q.detach().mean())
 
-            loss = nn.functional.mse_loss(current_q_values, target_q_values)
+            loss = nn.functional.mse_loss(current_values.q, target_q_values)
             losses.append(loss.detach())
             if self.q_net.gain_net is not None:
-                # W is the mean of the targets, whatever the action was
-                loss = loss + nn.functional.mse_loss(expected_values, target_q_values)
+                loss = loss + nearby_loss(current_values, target_q_values)
             if 0 < self.gamma < 1:
-                largest_values.append(values.detach().max())
+                largest_values.append(current_values.best.detach().max())
                 bounds.append((replay_data.rewards.abs() / (1 - discounts)).max())
 
             # Optimize the policy

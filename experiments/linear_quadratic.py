@@ -21,7 +21,7 @@ from torch import nn
 from experiments.experiment import OnWorkers
 from experiments.record import Row
 from sarah.agents import NAF, MlpPolicy
-from sarah.agents.critic import QuadraticCritic
+from sarah.agents.critic import QuadraticCritic, Values
 from sarah.episode.workers import Workers
 
 GAMMA = 0.99
@@ -139,6 +139,14 @@ def rotation(size: int, generator: np.random.Generator) -> np.ndarray:
     return q * np.sign(np.diag(r))
 
 
+class OfAllActions(QuadraticCritic):
+    """W counts all replayed actions alike, however far they are from mu."""
+
+    def all_values(self, obs: th.Tensor, actions: th.Tensor) -> Values:  # noqa: D102
+        values = super().all_values(obs, actions)
+        return values._replace(distance=th.zeros_like(values.distance))
+
+
 class ExpectedUnderNoise(QuadraticCritic):
     """Targets take the mean of Q under noise of 0.3 around mu: V less half its variance times the trace of P."""
 
@@ -218,17 +226,15 @@ class Variant:
 
     :param net_arch: layers, with W or with V
     :param critic: class of the critic
-    :param buffer_size: number of the newest transitions that are replayed
     """
 
     net_arch: dict[str, list[int]]
     critic: type[QuadraticCritic] = QuadraticCritic
-    buffer_size: int = 1_000_000
 
 
 VARIANTS = {
-    "W": Variant(WITH_W),
-    "W, the newest 2000 replayed": Variant(WITH_W, buffer_size=2000),
+    "W of actions near mu": Variant(WITH_W),
+    "W of all actions": Variant(WITH_W, OfAllActions),
     "V, as published": Variant(WITH_V),
     "V less the cost of noise": Variant(WITH_V, ExpectedUnderNoise),
     "V, one L for all states": Variant(WITH_V, OneCurvature),
@@ -319,11 +325,7 @@ def judgement(task: str, variant: str, steps: int, seed: int) -> Judgement:
     th.set_num_threads(1)
     env = LinearQuadratic(TASKS[task], seed)
     chosen = VARIANTS[variant]
-    settings: dict[str, Any] = dict(
-        exploration_std=EXPLORATION_STD,
-        buffer_size=chosen.buffer_size,
-        policy_kwargs=dict(net_arch=chosen.net_arch),
-    )
+    settings: dict[str, Any] = dict(exploration_std=EXPLORATION_STD, policy_kwargs=dict(net_arch=chosen.net_arch))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # That V runs away is what the rows say
         model = Watched(policy_with(chosen.critic), env, seed=seed, device="cpu", **settings).learn(steps)

@@ -189,8 +189,8 @@ def test_a_critic_by_itself_is_the_publications_with_mu_in_the_action_space():
 @for_every_architecture
 def test_every_head_gets_a_gradient(net_arch):
     critic = make_critic(3, net_arch=net_arch)
-    q_values, _, target_values = critic.all_values(*draw(3))
-    (q_values + target_values).sum().backward()
+    values = critic.all_values(*draw(3))
+    (values.q + values.target).sum().backward()
     assert all(p.grad is not None and p.grad.abs().sum() > 0 for p in critic.parameters())
 
 

@@ -161,6 +161,9 @@ def test_fast_updates_are_the_plain_ones():
     model.train(10, 32)
 
     for batch in batches:
+        with th.no_grad():
+            distances = [(batch.actions[n] - q_net.mu(batch.observations[n : n + 1])[0]).norm() ** 2 for n in range(32)]
+        weights = [th.exp(-distance * 32 / sum(distances)) for distance in distances]
         loss = 0.0
         for n in range(32):
             obs, next_obs = batch.observations[n : n + 1], batch.next_observations[n : n + 1]
@@ -179,7 +182,7 @@ def test_fast_updates_are_the_plain_ones():
                 advantage -= 0.5 * sum(difference[i] * lower[i, j] for i in range(j, len(difference))) ** 2
             w = q_net.value_net(obs)[0, 0]
             loss += (w.detach() + q_net.gain_net(q_net.shared_net(obs))[0, 0] + advantage - wanted) ** 2 / 32
-            loss += (w - wanted) ** 2 / 32
+            loss += weights[n] * (w - wanted) ** 2 / sum(weights)
         optimizer.zero_grad()
         loss.backward()
         norm = sum(parameter.grad.square().sum() for parameter in q_net.parameters()).sqrt()
