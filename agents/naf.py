@@ -23,8 +23,6 @@ from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy, NAFPol
 
 SelfNAF = TypeVar("SelfNAF", bound="NAF")
 
-NEARNESS = 1.0
-"""Logarithm of how much less an action counts for W that is as far from mu as the mean of the batch."""
 RUNAWAY_RATIO = 1.5
 """V over its bound from which on a warning says that it runs away."""
 FRESH_UPDATES = 1000
@@ -35,6 +33,7 @@ def nearby_loss(values: Values, targets: th.Tensor) -> th.Tensor:
     """
     Loss of ``W``, by which it becomes the mean of the targets of actions near ``mu``.
 
+    An action whose squared distance from ``mu`` is the batch's mean counts by a factor of e less than ``mu`` itself.
     Whatever the weights, a mean is never above the largest target, so ``W`` stays within what rewards allow.
 
     :param values: Values of replayed actions
@@ -42,8 +41,8 @@ def nearby_loss(values: Values, targets: th.Tensor) -> th.Tensor:
     :return: Mean squared error of ``W``, weighted by the nearness of the actions
     """
     distances = values.distance.detach()
-    weights = (-NEARNESS * distances / (distances.mean() + 1e-8)).exp()
-    return (weights * (values.target - targets).square()).sum() / weights.sum()
+    weights = th.softmax(distances / (-distances.mean() - 1e-8), dim=0)
+    return (weights * (values.target - targets).square()).sum()
 
 
 class NAF(OffPolicyAlgorithm):
@@ -253,8 +252,10 @@ class NAF(OffPolicyAlgorithm):
             # Optimize the policy
             self.policy.optimizer.zero_grad()
             loss.backward()
-            # Clip gradient norm
-            nn.utils.clip_grad_norm_(parameters, self.max_grad_norm)
+            # Clip gradient norm; nn.utils.clip_grad_norm_ does the same in a loop over the parameters
+            gradients = [parameter.grad for parameter in parameters if parameter.grad is not None]
+            norm = th.stack(th._foreach_norm(gradients)).norm()
+            th._foreach_mul_(gradients, (self.max_grad_norm / (norm + 1e-6)).clamp(max=1.0))
             self.policy.optimizer.step()
 
             average_parameters(target_parameters, parameters, 1)

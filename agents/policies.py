@@ -86,8 +86,7 @@ class NAFPolicy(BasePolicy):
             net_arch = dict(W=net_arch, shared=net_arch, mu=[], L=[])
         if set(net_arch) - {"shared"} not in ({"W", "mu", "L"}, {"V", "mu", "L"}):
             raise ValueError(
-                "net_arch must be a list or have the keys W or V, mu and L and perhaps shared, "
-                f"not {sorted(net_arch)}"
+                f"net_arch must be a list or have the keys W or V, mu and L and perhaps shared, not {sorted(net_arch)}"
             )
 
         self.net_args: dict[str, Any] = {

@@ -54,7 +54,13 @@ class Recorder(NAF):
 
 
 def trained(steps, **kwargs):
-    arguments = {"seed": 0, "learning_starts": 1000, "exploration_std": 0.3, "policy_kwargs": dict(net_arch=LAYERS), **kwargs}
+    arguments = {
+        "seed": 0,
+        "learning_starts": 1000,
+        "exploration_std": 0.3,
+        "policy_kwargs": dict(net_arch=LAYERS),
+        **kwargs,
+    }
     return Recorder("MlpPolicy", Drift(), **arguments).learn(steps)
 
 
