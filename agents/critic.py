@@ -1,4 +1,6 @@
-"""Action value of NAF: the networks V, mu and L."""
+"""Values of NAF: the networks V or W, mu and L."""
+
+from typing import NamedTuple
 
 import torch as th
 from gymnasium import spaces
@@ -10,6 +12,22 @@ from torch import nn
 
 LOG_DIAGONAL_MIN = -5.0
 LOG_DIAGONAL_MAX = 5.0
+
+
+class Values(NamedTuple):
+    """
+    Values of some states and actions, each of shape (batch, 1).
+
+    :param q: ``Q``, of the actions
+    :param best: ``V``, of the best actions
+    :param target: what targets take of such a state: ``W``, or ``V`` where there is no ``W``
+    :param distance: Squared distance of the actions from ``mu``
+    """
+
+    q: th.Tensor
+    best: th.Tensor
+    target: th.Tensor
+    distance: th.Tensor
 
 
 class QuadraticCritic(BaseModel):
@@ -24,13 +42,19 @@ class QuadraticCritic(BaseModel):
     of 64 units that all three shared, seeds of Pendulum failed. Actions are scaled to [-1, 1]. The output layer of
     ``mu`` starts at zero: an untrained critic proposes the centre of the action space whatever it observes.
 
+    With layers for ``W`` in place of ``V``, ``W`` is a network that knows no actions: the mean of what actions near
+    ``mu`` led to. The layers that ``mu`` and ``L`` share have one output more, by which the best action is better:
+    ``V = W + gain``, and no gradient of ``Q`` reaches ``W``. Targets take ``W`` of the next state. ``V`` lies above
+    what was done by what the parabola promises, and noise in the targets makes it promise too much: targets with ``V``
+    add up such promises over the horizon.
+
     :param observation_space: Observation space
     :param action_space: Action space
     :param features_extractor: Network to extract features
         (a CNN when using images, a nn.Flatten() layer otherwise)
     :param features_dim: Number of features
-    :param net_arch: Hidden layers by name: of each head, ``V``, ``mu`` and ``L``, and ``shared``, which come before
-        those of ``mu`` and ``L`` and serve both
+    :param net_arch: Hidden layers by name: of each head, ``V`` or ``W``, ``mu`` and ``L``, and ``shared``, which come
+        before those of ``mu`` and ``L`` and serve both
     :param activation_fn: Activation function
     :param normalize_images: Whether to normalize images or not,
          dividing by 255.0 (True by default)
@@ -69,7 +93,9 @@ class QuadraticCritic(BaseModel):
         self.register_buffer("rows", rows, persistent=False)
         self.register_buffer("columns", columns, persistent=False)
 
-        self.value_net = nn.Sequential(*create_mlp(features_dim, 1, net_arch["V"], activation_fn))
+        # V, or W if there is one: the value that targets take
+        value_arch = net_arch["W"] if "W" in net_arch else net_arch["V"]
+        self.value_net = nn.Sequential(*create_mlp(features_dim, 1, value_arch, activation_fn))
         self.shared_net = nn.Sequential(*create_mlp(features_dim, -1, net_arch["shared"], activation_fn))
         shared_dim = [features_dim, *net_arch["shared"]][-1]
         self.mu_net = nn.Sequential(*create_mlp(shared_dim, action_dim, net_arch["mu"], activation_fn, squash_mu))
@@ -78,6 +104,7 @@ class QuadraticCritic(BaseModel):
         mu_output = [layer for layer in self.mu_net if isinstance(layer, nn.Linear)][-1]
         nn.init.zeros_(mu_output.weight)
         nn.init.zeros_(mu_output.bias)
+        self.gain_net = nn.Linear(shared_dim, 1) if "W" in net_arch else None
 
     def forward(self, obs: PyTorchObs, actions: th.Tensor) -> th.Tensor:
         """
@@ -87,15 +114,28 @@ class QuadraticCritic(BaseModel):
         :param actions: Actions, scaled to [-1, 1], of shape (batch, action dim)
         :return: ``Q`` of shape (batch, 1)
         """
+        return self.all_values(obs, actions).q
+
+    def all_values(self, obs: PyTorchObs, actions: th.Tensor) -> Values:
+        """
+        Values of actions, of the best ones, and those that targets take, in one pass.
+
+        :param obs: Observations
+        :param actions: Actions, scaled to [-1, 1], of shape (batch, action dim)
+        :return: The values
+        """
         features = self.extract_features(obs, self.features_extractor)
         shared = self.shared_net(features)
         from_mu = actions - self.mu_net(shared)
         # (u - mu)^T L L^T (u - mu) is the squared length of the row (u - mu)^T L
         projected = (from_mu.unsqueeze(2) * self._lower(shared)).sum(dim=1)
         squared_length = projected.square().sum(dim=1, keepdim=True)
+        distance = from_mu.square().sum(dim=1, keepdim=True)
         if self.min_curvature > 0:
-            squared_length = squared_length + self.min_curvature * from_mu.square().sum(dim=1, keepdim=True)
-        return self.value_net(features) - 0.5 * squared_length
+            squared_length = squared_length + self.min_curvature * distance
+        target_values = self.value_net(features)
+        best_values = self._best_values(target_values, shared)
+        return Values(best_values - 0.5 * squared_length, best_values, target_values, distance)
 
     def value(self, obs: PyTorchObs) -> th.Tensor:
         """
@@ -103,6 +143,16 @@ class QuadraticCritic(BaseModel):
 
         :param obs: Observations
         :return: ``V`` of shape (batch, 1)
+        """
+        features = self.extract_features(obs, self.features_extractor)
+        return self._best_values(self.value_net(features), self.shared_net(features))
+
+    def target_value(self, obs: PyTorchObs) -> th.Tensor:
+        """
+        Value that targets take of the next state.
+
+        :param obs: Observations
+        :return: ``W`` of shape (batch, 1), or ``V`` where there is no ``W``
         """
         return self.value_net(self.extract_features(obs, self.features_extractor))
 
@@ -131,3 +181,6 @@ class QuadraticCritic(BaseModel):
         lower = outputs.new_zeros(len(outputs), action_dim, action_dim)
         lower[:, self.rows, self.columns] = th.where(self.rows == self.columns, diagonals, outputs)
         return lower
+
+    def _best_values(self, target_values: th.Tensor, shared: th.Tensor) -> th.Tensor:
+        return target_values if self.gain_net is None else target_values.detach() + self.gain_net(shared)

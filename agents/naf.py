@@ -1,6 +1,7 @@
 """Normalized advantage functions (NAF): Q-learning for continuous actions, for stable-baselines3."""
 
 import math
+import warnings
 from typing import Any, ClassVar, TypeVar
 
 import numpy as np
@@ -17,10 +18,31 @@ from torch.optim.swa_utils import get_ema_multi_avg_fn
 
 from sarah.agents.arguments import check_number, checked_schedule
 from sarah.agents.buffers import RankReplayBuffer
-from sarah.agents.critic import QuadraticCritic
+from sarah.agents.critic import QuadraticCritic, Values
 from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy, NAFPolicy
 
 SelfNAF = TypeVar("SelfNAF", bound="NAF")
+
+RUNAWAY_RATIO = 1.5
+"""V over its bound from which on a warning says that it runs away."""
+FRESH_UPDATES = 1000
+"""Number of updates in which V may still be that of fresh networks, whatever rewards are."""
+
+
+def nearby_loss(values: Values, targets: th.Tensor) -> th.Tensor:
+    """
+    Loss of ``W``, by which it becomes the mean of the targets of actions near ``mu``.
+
+    An action whose squared distance from ``mu`` is the batch's mean counts by a factor of e less than ``mu`` itself.
+    Whatever the weights, a mean is never above the largest target, so ``W`` stays within what rewards allow.
+
+    :param values: Values of replayed actions
+    :param targets: What these actions led to
+    :return: Mean squared error of ``W``, weighted by the nearness of the actions
+    """
+    distances = values.distance.detach()
+    weights = th.softmax(distances / (-distances.mean() - 1e-8), dim=0)
+    return (weights * (values.target - targets).square()).sum()
 
 
 class NAF(OffPolicyAlgorithm):
@@ -30,15 +52,16 @@ class NAF(OffPolicyAlgorithm):
     Paper: https://arxiv.org/abs/1603.00748
     (Gu et al. 2016, Continuous Deep Q-Learning with Model-based Acceleration)
     Q is quadratic in the action, so its maximum and the action that reaches it are outputs of networks:
-    there is no actor to train, and the target network is asked for V only.
+    there is no actor to train. Targets take W of the next state, the mean of what actions near the best one led to. The
+    publication's take V, the value of the best action, which runs away where several actions decide little of what
+    follows, see :class:`~sarah.agents.critic.QuadraticCritic`.
 
     :param policy: The policy model to use (MlpPolicy, CnnPolicy, ...)
     :param env: The environment to learn from (if registered in Gym, can be str)
     :param learning_rate: The learning rate, it can be a function
         of the current progress remaining (from 1 to 0)
     :param buffer_size: size of the replay buffer
-    :param learning_starts: number of steps to collect transitions for before learning starts.
-        More than TD3's 100: NAF has one critic, and what it believes of few transitions its policy follows at once
+    :param learning_starts: number of steps to collect transitions for before learning starts
     :param batch_size: Minibatch size for each gradient update
     :param tau: the soft update coefficient ("Polyak update", between 0 and 1). TD3's 0.005 is
         slower to learn with
@@ -92,7 +115,7 @@ class NAF(OffPolicyAlgorithm):
         env: GymEnv | str,
         learning_rate: float | Schedule = 1e-3,
         buffer_size: int = 1_000_000,  # 1e6
-        learning_starts: int = 1000,
+        learning_starts: int = 100,
         batch_size: int = 256,
         tau: float = 0.02,
         gamma: float = 0.99,
@@ -104,7 +127,7 @@ class NAF(OffPolicyAlgorithm):
         optimize_memory_usage: bool = False,
         n_steps: int = 1,
         max_grad_norm: float = 1.0,
-        exploration_std: float | Schedule = 0.1,
+        exploration_std: float | Schedule = 0.3,
         stats_window_size: int = 100,
         tensorboard_log: str | None = None,
         policy_kwargs: dict[str, Any] | None = None,
@@ -142,6 +165,8 @@ class NAF(OffPolicyAlgorithm):
 
         self.max_grad_norm = max_grad_norm
         self.exploration_std = exploration_std
+        self.value_bound = 0.0
+        self.warned_of_values = False
 
         if _init_setup_model:
             self._setup_model()
@@ -197,7 +222,7 @@ class NAF(OffPolicyAlgorithm):
         parameters, target_parameters = list(self.q_net.parameters()), list(self.q_net_target.parameters())
         average_parameters = get_ema_multi_avg_fn(1 - self.tau)
 
-        losses, mean_q_values = [], []
+        losses, mean_q_values, largest_values, bounds = [], [], [], []
         for _ in range(gradient_steps):
             # Sample replay buffer
             replay_data = self.replay_buffer.sample(batch_size, env=self._vec_normalize_env)  # type: ignore[union-attr]
@@ -207,23 +232,30 @@ class NAF(OffPolicyAlgorithm):
             target_q_values = replay_data.rewards
             if self.gamma > 0:  # Otherwise what comes next does not count
                 with th.no_grad():
-                    # The maximum of Q over the actions is V: no action is needed for the target
-                    next_values = self.q_net_target.value(replay_data.next_observations)
+                    # Neither W nor V, the maximum of Q over the actions, needs an action
+                    next_values = self.q_net_target.target_value(replay_data.next_observations)
                     # 1-step TD target
                     target_q_values = replay_data.rewards + (1 - replay_data.dones) * discounts * next_values
 
             # Get current Q-values estimates
-            current_q_values = self.q_net(replay_data.observations, replay_data.actions)
-            mean_q_values.append(current_q_values.detach().mean())
+            current_values = self.q_net.all_values(replay_data.observations, replay_data.actions)
+            mean_q_values.append(current_values.q.detach().mean())
 
-            loss = nn.functional.mse_loss(current_q_values, target_q_values)
+            loss = nn.functional.mse_loss(current_values.q, target_q_values)
             losses.append(loss.detach())
+            if self.q_net.gain_net is not None:
+                loss = loss + nearby_loss(current_values, target_q_values)
+            if 0 < self.gamma < 1:
+                largest_values.append(current_values.best.detach().max())
+                bounds.append((replay_data.rewards.abs() / (1 - discounts)).max())
 
             # Optimize the policy
             self.policy.optimizer.zero_grad()
             loss.backward()
-            # Clip gradient norm
-            nn.utils.clip_grad_norm_(parameters, self.max_grad_norm)
+            # Clip gradient norm; nn.utils.clip_grad_norm_ does the same in a loop over the parameters
+            gradients = [parameter.grad for parameter in parameters if parameter.grad is not None]
+            norm = th.stack(th._foreach_norm(gradients)).norm()
+            th._foreach_mul_(gradients, (self.max_grad_norm / (norm + 1e-6)).clamp(max=1.0))
             self.policy.optimizer.step()
 
             average_parameters(target_parameters, parameters, 1)
@@ -236,6 +268,33 @@ class NAF(OffPolicyAlgorithm):
         self.logger.record("train/n_updates", self._n_updates, exclude="tensorboard")
         self.logger.record("train/loss", th.stack(losses).mean().item())
         self.logger.record("train/q", th.stack(mean_q_values).mean().item())
+        if 0 < self.gamma < 1:
+            self._check_values(th.stack(largest_values).max().item(), th.stack(bounds).max().item())
+
+    def _check_values(self, largest: float, bound: float) -> None:
+        """
+        Log how near ``V`` comes to the largest value that rewards allow, and warn once if it is far beyond.
+
+        :param largest: Largest ``V`` of some batches
+        :param bound: Value of the largest reward of these batches if it came at every step
+        """
+        self.value_bound = max(self.value_bound, bound)
+        if self.value_bound == 0:
+            return
+        ratio = largest / self.value_bound
+        self.logger.record("train/value_over_bound", ratio)
+        if ratio > RUNAWAY_RATIO and self._n_updates > FRESH_UPDATES and not self.warned_of_values:
+            self.warned_of_values = True
+            remedy = (
+                "give net_arch as a list, or with layers for W in place of V"
+                if self.q_net.gain_net is None
+                else "take a wider exploration_std or a lower learning_rate"
+            )
+            warnings.warn(
+                f"V of {largest:.3g} is {ratio:.2g} times the largest value that the rewards so far allow, "
+                f"|reward| / (1 - gamma) = {self.value_bound:.3g}: it runs away. Remedy: {remedy}",
+                stacklevel=2,
+            )
 
     def learn(
         self: SelfNAF,

@@ -26,9 +26,10 @@ class NAFPolicy(BasePolicy):
     :param observation_space: Observation space
     :param action_space: Action space
     :param lr_schedule: Learning rate schedule (could be constant)
-    :param net_arch: Hidden layers. A list is for those of ``V``, and for those that ``mu`` and ``L`` share
-        (``[256, 256]`` by default, as SAC's). With ``dict(V=[...], mu=[...], L=[...])`` each has layers of its own;
-        with the key ``shared`` as well, those of ``mu`` and ``L`` follow layers in common
+    :param net_arch: Hidden layers. A list is for those of ``W``, and for those that ``mu`` and ``L`` share
+        (``[256, 256]`` by default, as SAC's). With ``dict(W=[...], mu=[...], L=[...])`` each has layers of its own;
+        with the key ``shared`` as well, those of ``mu`` and ``L`` follow layers in common. With ``V`` in place of ``W``
+        targets take the value of the best action, as in the publication: for tasks of one step or one action
     :param activation_fn: Activation function (ReLU by default). Tanh suits smooth tasks of one step,
         but fails where values are large; with sigmoid, deeper networks hardly learn.
     :param features_extractor_class: Features extractor to use.
@@ -82,10 +83,10 @@ class NAFPolicy(BasePolicy):
         if net_arch is None:
             net_arch = [256, 256]
         if not isinstance(net_arch, dict):
-            net_arch = dict(V=net_arch, shared=net_arch, mu=[], L=[])
-        if set(net_arch) | {"shared"} != {"V", "shared", "mu", "L"}:
+            net_arch = dict(W=net_arch, shared=net_arch, mu=[], L=[])
+        if set(net_arch) - {"shared"} not in ({"W", "mu", "L"}, {"V", "mu", "L"}):
             raise ValueError(
-                f"net_arch must be a list or have the keys V, mu and L and perhaps shared, not {sorted(net_arch)}"
+                f"net_arch must be a list or have the keys W or V, mu and L and perhaps shared, not {sorted(net_arch)}"
             )
 
         self.net_args: dict[str, Any] = {

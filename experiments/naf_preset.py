@@ -34,7 +34,9 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "the preset": {},
     "good and bad drawn alike": {"replay_buffer_kwargs": {"temperature": 0.0}},
     "Q may be flat": {"policy_kwargs": {**NETWORKS, "min_curvature": 0.0}},
-    "mu and L share their layers": {"policy_kwargs": {**NETWORKS, "net_arch": [32, 32]}},
+    "mu and L share their layers": {
+        "policy_kwargs": {**NETWORKS, "net_arch": dict(V=[32, 32], shared=[32, 32], mu=[], L=[])}
+    },
     "ReLU instead of tanh": {"policy_kwargs": {**NETWORKS, "activation_fn": torch.nn.ReLU}},
     "noise stays at 0.3": {"exploration_std": 0.3},
     "nothing explored around the best": {"elite_share": 0.0},

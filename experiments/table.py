@@ -23,6 +23,7 @@ from experiments.first_training import FirstTraining
 from experiments.flexion_laws import FlexionLaws
 from experiments.landscape import Landscape
 from experiments.lateral_limit import LateralLimit
+from experiments.linear_quadratic import LinearQuadraticTasks
 from experiments.naf_preset import NafPreset
 from experiments.noise_limit import NoiseLimit
 from experiments.observed_reward import ObservedReward
@@ -35,6 +36,7 @@ from experiments.robustness import Robustness
 from experiments.rough_ground import RoughGround
 from experiments.second_training import SecondTraining
 from experiments.sensor_faults import SensorFaults
+from experiments.several_actions import SeveralActions
 from experiments.shift_endings import ShiftEndings
 from experiments.shipped_parameters import ShippedParameters
 from experiments.slots import SlotsSchedule
@@ -159,6 +161,18 @@ TABLE: dict[str, Maker] = {
         "What does ranked replay make of a noisy reward?",
         RankReplay(),
         {"seeds": 1, "episodes": 8},
+        of_robot=False,
+    ),
+    "linear_quadratic": Maker(
+        "What does NAF make of tasks whose truth is known?",
+        LinearQuadraticTasks(),
+        {"steps": 1010, "seeds": 1},
+        of_robot=False,
+    ),
+    "several_actions": Maker(
+        "How does NAF do on tasks with several actions, next to DDPG?",
+        SeveralActions(),
+        {"tasks": ("Swimmer-v5",), "steps": 120, "seeds": 1, "evaluations": 1, "episodes": 1},
         of_robot=False,
     ),
     "naf_pendulum": Maker(

@@ -82,6 +82,32 @@ def standard_task(rows: Rows) -> Figure:
     return figure
 
 
+def several_actions(rows: Rows) -> Figure:
+    """Return along the training, median and lowest to highest seed, a panel for each task."""
+    tasks = grouped(rows, "{task}")
+    figure, axes = panels(len(tasks), 0.35)
+    for axis, (name, group) in zip(axes, tasks.items(), strict=True):
+        draw_lines(axis, group, "steps", "return", "{algorithm}")
+        axis.set_title(name, fontsize="small")
+        axis.set_ylabel("return" if axis is axes[0] else "")
+    legend(figure, axes[0])
+    return figure
+
+
+def linear_quadratic(rows: Rows) -> Figure:
+    """Largest V over its bound by variant, a panel for each task."""
+    tasks = grouped(rows, "{task}")
+    figure, axes = panels(len(tasks), 0.35, sharey=True, sharex=True)
+    for axis, (name, group) in zip(axes, tasks.items(), strict=True):
+        heights = range(len(group), 0, -1)
+        axis.plot(numbers(group, "largest_v_over_bound"), heights, "o", color=COLOURS[0], markersize=4)
+        axis.axvline(1.0, color="grey", linewidth=0.8)
+        axis.set_yticks(heights, [row["variant"] for row in group])
+        axis.set_title(name, fontsize="small")
+        axis.set(xscale="log", xlabel="largest V over its bound")
+    return figure
+
+
 def naf_preset(rows: Rows) -> Figure:
     """Score of mu: median and lowest seed."""
     figure, (axis,) = panels(1, 0.55)
@@ -270,6 +296,8 @@ PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
     "race_balance": (("race_balance",), race),
     "naf_pendulum": (("naf_pendulum",), standard_task),
     "naf_inverted_pendulum": (("naf_inverted_pendulum",), standard_task),
+    "several_actions": (("several_actions",), several_actions),
+    "linear_quadratic": (("linear_quadratic",), linear_quadratic),
     "naf_preset": (("naf_preset",), naf_preset),
     "robustness": (("robustness",), robustness),
     "conditions": (("conditions",), partial(pushes, situation="situation")),

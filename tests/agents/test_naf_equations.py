@@ -16,7 +16,8 @@ from sarah.agents.policies import MlpPolicy
 OBS_DIM = 4
 ARCHITECTURES = {
     "shared": [16],
-    "separate": dict(V=[16], mu=[16], L=[16]),
+    "separate": dict(W=[16], mu=[16], L=[16]),
+    "published": dict(V=[16], shared=[16], mu=[], L=[]),
     "both": dict(V=[16], shared=[12], mu=[8], L=[6]),
 }
 for_every_architecture = pytest.mark.parametrize("net_arch", ARCHITECTURES.values(), ids=ARCHITECTURES)
@@ -62,7 +63,7 @@ def test_q_is_equation_3(action_dim, net_arch, min_curvature):
     with th.no_grad():
         q_values, mu = critic(obs, actions), critic.mu(obs)
         outputs = critic.lower_net(critic.shared_net(obs)).double().numpy()
-        values = critic.value_net(obs).double().numpy()
+        values = critic.value(obs).double().numpy()
         lowers = critic.lower(obs).numpy()
     assert q_values.shape == (7, 1)
     for n in range(7):
@@ -188,14 +189,32 @@ def test_a_critic_by_itself_is_the_publications_with_mu_in_the_action_space():
 @for_every_architecture
 def test_every_head_gets_a_gradient(net_arch):
     critic = make_critic(3, net_arch=net_arch)
-    critic(*draw(3)).sum().backward()
+    values = critic.all_values(*draw(3))
+    (values.q + values.target).sum().backward()
     assert all(p.grad is not None and p.grad.abs().sum() > 0 for p in critic.parameters())
 
 
-def test_v_shares_no_layer():
-    critic = make_critic(3)
-    critic.value(draw(3)[0]).sum().backward()
+@pytest.mark.parametrize("net_arch", [[16], ARCHITECTURES["published"]], ids=["W", "V"])
+def test_what_targets_take_shares_no_layer(net_arch):
+    critic = make_critic(3, net_arch=net_arch)
+    critic.target_value(draw(3)[0]).sum().backward()
     assert all(p.grad is None for net in (critic.shared_net, critic.mu_net, critic.lower_net) for p in net.parameters())
+
+
+def test_w_learns_nothing_from_q():
+    """What a parabola promises cannot get into targets."""
+    critic = make_critic(3)
+    critic(*draw(3)).sum().backward()
+    assert all(p.grad is None for p in critic.value_net.parameters())
+
+
+def test_v_is_w_and_the_gain():
+    critic = make_critic(3)
+    obs = draw(3)[0]
+    with th.no_grad():
+        expected = critic.target_value(obs) + critic.gain_net(critic.shared_net(obs))
+        th.testing.assert_close(critic.value(obs), expected)
+        assert not th.allclose(critic.value(obs), critic.target_value(obs))
 
 
 def test_heads_take_their_own_sizes():
@@ -209,5 +228,7 @@ def test_heads_take_their_own_sizes():
     assert sizes(dict(V=[7, 8], mu=[], L=[5])) == [[7, 8, 1], [], [2], [5, 3]]
     assert sizes(dict(V=[7], shared=[6, 4], mu=[], L=[5])) == [[7, 1], [6, 4], [2], [5, 3]]
     assert sizes([6, 4]) == [[6, 4, 1], [6, 4], [2], [3]]
-    with pytest.raises(ValueError, match=r"V, mu and L and perhaps shared, not \['pi'\]"):
+    with pytest.raises(ValueError, match=r"W or V, mu and L and perhaps shared, not \['pi'\]"):
         sizes(dict(pi=[4]))
+    with pytest.raises(ValueError, match=r"not \['L', 'V', 'W', 'mu'\]"):
+        sizes(dict(V=[4], W=[4], mu=[4], L=[4]))

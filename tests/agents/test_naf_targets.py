@@ -35,17 +35,21 @@ class Corridor(gym.Env):
         return obs, float(self.index), end and not self.timeout, end and self.timeout, {}
 
 
-def make_model(env, **kwargs):
+WITH_W = dict(W=[8], shared=[8], mu=[], L=[])
+WITHOUT_W = dict(V=[8], shared=[8], mu=[], L=[])
+
+
+def make_model(env, net_arch=WITH_W, **kwargs):
     kwargs = {"gamma": GAMMA, "learning_starts": 1000, "buffer_size": 200, "seed": 0, **kwargs}
-    return NAF("MlpPolicy", env, policy_kwargs=dict(net_arch=[8]), **kwargs)
+    return NAF("MlpPolicy", env, policy_kwargs=dict(net_arch=net_arch), **kwargs)
 
 
 def fill_target(model) -> dict[int, float]:
-    """Random weights for the target network; returns its value of every observation."""
+    """Random weights for the target network; returns what targets take of every observation, W or V."""
     for parameter in model.q_net_target.parameters():
         nn.init.normal_(parameter)
     with th.no_grad():
-        return {i: model.q_net_target.value(th.tensor([[float(i)]])).item() for i in range(11)}
+        return {i: model.q_net_target.value_net(th.tensor([[float(i)]])).item() for i in range(11)}
 
 
 def one_update(model, batch_size=64):
@@ -67,9 +71,10 @@ def one_update(model, batch_size=64):
 
 @pytest.mark.parametrize("timeout", [False, True])
 @pytest.mark.parametrize("n_steps", [1, 2])
-def test_targets(timeout, n_steps):
+@pytest.mark.parametrize("net_arch", [WITH_W, WITHOUT_W], ids=["W", "V"])
+def test_targets(timeout, n_steps, net_arch):
     """The end of an episode is worth nothing, unless a time limit made it; n steps are discounted n times."""
-    model = make_model(Corridor(timeout=timeout), n_steps=n_steps).learn(30)
+    model = make_model(Corridor(timeout=timeout), net_arch, n_steps=n_steps).learn(30)
     values = fill_target(model)
     batch, logged = one_update(model)
 
@@ -135,7 +140,7 @@ def test_schedules_and_logs():
     assert model.policy.optimizer.param_groups[0]["lr"] == pytest.approx(0.01)
     logged = dict(model.logger.name_to_value)
     assert logged["train/learning_rate"] == pytest.approx(0.01)
-    assert logged["train/exploration_std"] == pytest.approx(0.1)
+    assert logged["train/exploration_std"] == pytest.approx(0.3)
     assert logged["train/n_updates"] == 20
     batch, _ = one_update(model)
     with th.no_grad():
@@ -156,11 +161,15 @@ def test_fast_updates_are_the_plain_ones():
     model.train(10, 32)
 
     for batch in batches:
+        with th.no_grad():
+            distances = [(batch.actions[n] - q_net.mu(batch.observations[n : n + 1])[0]).norm() ** 2 for n in range(32)]
+        weights = [th.exp(-distance * 32 / sum(distances)) for distance in distances]
         loss = 0.0
         for n in range(32):
             obs, next_obs = batch.observations[n : n + 1], batch.next_observations[n : n + 1]
             with th.no_grad():
-                wanted = batch.rewards[n, 0] + GAMMA * (1 - batch.dones[n, 0]) * target.value(next_obs)[0, 0]
+                next_value = target.value_net(next_obs)[0, 0]
+                wanted = batch.rewards[n, 0] + GAMMA * (1 - batch.dones[n, 0]) * next_value
             difference = batch.actions[n] - q_net.mu(obs)[0]
             outputs = q_net.lower_net(q_net.shared_net(obs))[0]
             advantage, k = 0.0, 0
@@ -171,7 +180,9 @@ def test_fast_updates_are_the_plain_ones():
                     k += 1
             for j in range(len(difference)):
                 advantage -= 0.5 * sum(difference[i] * lower[i, j] for i in range(j, len(difference))) ** 2
-            loss += (q_net.value_net(obs)[0, 0] + advantage - wanted) ** 2 / 32
+            w = q_net.value_net(obs)[0, 0]
+            loss += (w.detach() + q_net.gain_net(q_net.shared_net(obs))[0, 0] + advantage - wanted) ** 2 / 32
+            loss += weights[n] * (w - wanted) ** 2 / sum(weights)
         optimizer.zero_grad()
         loss.backward()
         norm = sum(parameter.grad.square().sum() for parameter in q_net.parameters()).sqrt()

@@ -37,7 +37,6 @@ class Change(NamedTuple):
 CNN, MODES = "test_cnn.py", "test_train_eval_mode.py"
 NETWORKS = "NAF's networks are q_net and its target, as DQN's"
 CHANGES = (
-    Change("test_identity.py", "TD3: 400", "TD3: 1300", "NAF learns from step 1000 on, TD3 from step 100 on"),
     Change("test_custom_policy.py", "dict(qf=[8], pi=[8, 4])", "dict(V=[8], mu=[8, 4], L=[8])", "names of networks"),
     Change("test_run.py", "dict(net_arch=[64], n_critics=1)", "dict(net_arch=[64])", "NAF has one critic"),
     Change(

@@ -1,0 +1,134 @@
+"""V stays within what rewards allow, also where they hardly depend on actions; where it does not, a warning says so.
+
+The tasks are linear-quadratic: V, mu and the curvature are known in closed form.
+"""
+
+import gymnasium as gym
+import numpy as np
+import pytest
+import torch as th
+from gymnasium import spaces
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sarah.agents import NAF
+from sarah.agents.critic import Values
+from sarah.agents.naf import nearby_loss
+
+LAYERS = [64, 64]
+PUBLISHED = dict(V=LAYERS, shared=LAYERS, mu=[], L=[])
+GAMMA = 0.99
+
+
+class Drift(gym.Env):
+    """17 states that drift by noise, and six actions that move them a little: what is done hardly counts."""
+
+    observation_space = spaces.Box(-np.inf, np.inf, (17,))
+    action_space = spaces.Box(-1, 1, (6,))
+
+    def __init__(self, gain=2.0, noise=3.0, cost=0.0002, effort=0.005, seed=0):
+        self.gain, self.noise, self.cost, self.effort = gain, noise, cost, effort
+        self.generator = np.random.default_rng(seed)
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.x, self.steps = self.generator.normal(0.0, 5 * self.noise, 17), 0
+        return self.x.astype(np.float32), {}
+
+    def step(self, action):
+        reward = 0.5 - self.cost * self.x @ self.x - self.effort * action @ action + self.generator.normal(0.0, 0.1)
+        self.x = 0.95 * np.roll(self.x, 1) + self.generator.normal(0.0, self.noise, 17)
+        self.x[:6] += self.gain * action
+        self.steps += 1
+        return self.x.astype(np.float32), reward, False, self.steps == 200, {}
+
+
+class Recorder(NAF):
+    """NAF that keeps its largest ratio of V to the bound."""
+
+    highest = 0.0
+
+    def _check_values(self, largest, bound):
+        super()._check_values(largest, bound)
+        self.highest = max(self.highest, self.logger.name_to_value["train/value_over_bound"])
+
+
+def trained(steps, **kwargs):
+    arguments = {
+        "seed": 0,
+        "learning_starts": 1000,
+        "exploration_std": 0.3,
+        "policy_kwargs": dict(net_arch=LAYERS),
+        **kwargs,
+    }
+    return Recorder("MlpPolicy", Drift(), **arguments).learn(steps)
+
+
+def test_v_stays_within_the_bound_where_the_published_targets_let_it_run_away():
+    """Measured on three seeds after 5000 steps: at most 0.3 times the bound, and at least 2."""
+    held = trained(5000)
+    with pytest.warns(UserWarning, match="it runs away"):
+        published = trained(5000, policy_kwargs=dict(net_arch=PUBLISHED))
+    assert held.highest < 1.0 and published.highest > 1.5
+    observations = th.as_tensor(held.replay_buffer.observations[3000:5000, 0])
+    with th.no_grad():
+        curvatures = [model.q_net.lower(observations).square().sum(dim=(1, 2)).mean() for model in (held, published)]
+    assert curvatures[0] < 0.2 * curvatures[1]
+
+
+def test_a_warning_names_the_remedy_once():
+    model = trained(1000, policy_kwargs=dict(net_arch=PUBLISHED))
+    bias = model.q_net.value_net[-1].bias
+    bias.data.fill_(1000.0)
+    model.train(1, 16)  # the networks may still be fresh
+    model._n_updates = 2000
+    with pytest.warns(
+        UserWarning, match=r"^V of 1e\+03 is .* times .*: it runs away\. Remedy: .* layers for W in place of V"
+    ) as seen:
+        model.train(1, 16)
+        model.train(1, 16)
+    assert len(seen) == 1
+
+
+def test_value_over_bound_is_that_of_the_largest_reward_so_far():
+    model = trained(1100)
+    largest = np.abs(model.replay_buffer.rewards[:1100]).max()
+    assert model.value_bound == pytest.approx(largest / (1 - GAMMA), rel=1e-5)
+    model.replay_buffer.rewards[:] = 0.0
+    model.train(1, 1100)
+    with th.no_grad():
+        values = model.q_net.value(th.as_tensor(model.replay_buffer.observations[:1100, 0]))
+    logged = model.logger.name_to_value["train/value_over_bound"]
+    assert logged == pytest.approx(values.max().item() / model.value_bound, rel=0.2)
+
+
+@pytest.mark.parametrize("gamma", [0.0, 1.0])
+def test_without_a_horizon_there_is_no_bound(gamma):
+    model = trained(1020, gamma=gamma)
+    assert "train/value_over_bound" not in model.logger.name_to_value
+
+
+def test_w_is_the_mean_of_what_actions_near_mu_led_to():
+    """An action as far from mu as the mean counts by a factor of e less than mu itself."""
+    targets = th.tensor([[1.0], [2.0], [6.0]])
+    distances = th.tensor([[0.0], [1.0], [2.0]])
+    weights = th.exp(-distances)
+    w = th.zeros(1, 1, requires_grad=True)
+    values = Values(targets, targets, w.expand(3, 1), distances)
+    for _ in range(200):
+        (slope,) = th.autograd.grad(nearby_loss(values._replace(target=w.expand(3, 1)), targets), w)
+        w = (w - 0.25 * slope).detach().requires_grad_()
+    assert w.item() == pytest.approx(((weights * targets).sum() / weights.sum()).item(), rel=1e-4)
+
+
+@settings(max_examples=50, deadline=None)
+@given(distance=st.floats(0, 30), seed=st.integers(0, 1000))
+def test_w_has_a_mean_whatever_the_distances(distance, seed):
+    """Also where all actions are mu itself; and W is not drawn beyond the largest target."""
+    generator = th.Generator().manual_seed(seed)
+    targets = th.randn(16, 1, generator=generator)
+    distances = distance * th.rand(16, 1, generator=generator)
+    w = targets.max().expand(16, 1).clone().requires_grad_()
+    loss = nearby_loss(Values(targets, targets, w, distances), targets)
+    (slope,) = th.autograd.grad(loss, w)
+    assert th.isfinite(loss) and slope.isfinite().all() and (slope >= 0).all()
