@@ -34,7 +34,7 @@ def nearby_loss(values: Values, targets: th.Tensor) -> th.Tensor:
     Loss of ``W``, by which it becomes the mean of the targets of actions near ``mu``.
 
     An action whose squared distance from ``mu`` is the batch's mean counts by a factor of e less than ``mu`` itself.
-    Whatever the weights, a mean is never above the largest target, so ``W`` stays within what rewards allow.
+    Whatever the weights, a mean is never above the largest target. The network may be, in states that it has not seen.
 
     :param values: Values of replayed actions
     :param targets: What these actions led to
