@@ -25,6 +25,8 @@ SelfNAF = TypeVar("SelfNAF", bound="NAF")
 
 RUNAWAY_RATIO = 1.5
 """V over its bound from which on a warning says that it runs away."""
+EVEN_SHARE = 0.2
+"""Share of the weight in the loss of W that all replayed actions have alike."""
 FRESH_UPDATES = 1000
 """Number of updates in which V may still be that of fresh networks, whatever rewards are."""
 
@@ -33,8 +35,9 @@ def nearby_loss(values: Values, targets: th.Tensor) -> th.Tensor:
     """
     Loss of ``W``, by which it becomes the mean of the targets of actions near ``mu``.
 
-    An action whose squared distance from ``mu`` is the batch's mean counts by a factor of e less than ``mu`` itself.
-    Whatever the weights, a mean is never above the largest target. The network may be, in states that it has not seen.
+    An action whose squared distance from ``mu`` is the batch's mean counts by a factor of e less than ``mu`` itself. A
+    share of the weight is spread evenly: where nobody acts near ``mu``, ``W`` would otherwise follow no target at all.
+    Whatever the weights, a mean is never above the largest target. The network may be, in states that it hardly knows.
 
     :param values: Values of replayed actions
     :param targets: What these actions led to
@@ -42,6 +45,7 @@ def nearby_loss(values: Values, targets: th.Tensor) -> th.Tensor:
     """
     distances = values.distance.detach()
     weights = th.softmax(distances / (-distances.mean() - 1e-8), dim=0)
+    weights = (1 - EVEN_SHARE) * weights + EVEN_SHARE / len(weights)
     return (weights * (values.target - targets).square()).sum()
 
 

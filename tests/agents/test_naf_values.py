@@ -109,16 +109,25 @@ def test_without_a_horizon_there_is_no_bound(gamma):
 
 
 def test_w_is_the_mean_of_what_actions_near_mu_led_to():
-    """An action as far from mu as the mean counts by a factor of e less than mu itself."""
+    """An action as far from mu as the mean counts by a factor of e less than mu itself, beside a share that all have."""
     targets = th.tensor([[1.0], [2.0], [6.0]])
     distances = th.tensor([[0.0], [1.0], [2.0]])
-    weights = th.exp(-distances)
+    weights = 0.8 * th.exp(-distances) / th.exp(-distances).sum() + 0.2 / 3
     w = th.zeros(1, 1, requires_grad=True)
     values = Values(targets, targets, w.expand(3, 1), distances)
     for _ in range(200):
         (slope,) = th.autograd.grad(nearby_loss(values._replace(target=w.expand(3, 1)), targets), w)
         w = (w - 0.25 * slope).detach().requires_grad_()
     assert w.item() == pytest.approx(((weights * targets).sum() / weights.sum()).item(), rel=1e-4)
+
+
+def test_w_follows_its_targets_also_where_nobody_acts_near_mu():
+    """Otherwise it is free there, and grows with what its own targets make of it."""
+    targets = th.zeros(10, 1)
+    distances = th.cat([th.zeros(9, 1), th.full((1, 1), 100.0)])
+    w = th.ones(10, 1, requires_grad=True)
+    (slope,) = th.autograd.grad(nearby_loss(Values(targets, targets, w, distances), targets), w)
+    assert slope[-1].item() == pytest.approx(2 * 0.2 / 10, rel=1e-3)
 
 
 @settings(max_examples=50, deadline=None)
