@@ -109,7 +109,7 @@ def test_without_a_horizon_there_is_no_bound(gamma):
 
 
 def test_w_is_the_mean_of_what_actions_near_mu_led_to():
-    """An action as far from mu as the mean counts by a factor of e less than mu itself, beside a share that all have."""
+    """An action as far from mu as the mean counts by a factor of e less than mu, beside a share that all have."""
     targets = th.tensor([[1.0], [2.0], [6.0]])
     distances = th.tensor([[0.0], [1.0], [2.0]])
     weights = 0.8 * th.exp(-distances) / th.exp(-distances).sum() + 0.2 / 3
