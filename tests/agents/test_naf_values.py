@@ -3,6 +3,8 @@
 The tasks are linear-quadratic: V, mu and the curvature are known in closed form.
 """
 
+import warnings
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -80,8 +82,12 @@ def test_a_warning_names_the_remedy_once():
     model = trained(1000, policy_kwargs=dict(net_arch=PUBLISHED))
     bias = model.q_net.value_net[-1].bias
     bias.data.fill_(1000.0)
-    model.train(1, 16)  # the networks may still be fresh
-    model._n_updates = 2000
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        model.train(1, 16)  # the networks are still fresh
+        bias.data.fill_(0.0)
+        model.train(200, 16)
+    bias.data.fill_(1000.0)
     with pytest.warns(
         UserWarning, match=r"^V of 1e\+03 is .* times .*: it runs away\. Remedy: .* layers for W in place of V"
     ) as seen:
