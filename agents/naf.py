@@ -256,10 +256,8 @@ class NAF(OffPolicyAlgorithm):
             # Optimize the policy
             self.policy.optimizer.zero_grad()
             loss.backward()
-            # Clip gradient norm; nn.utils.clip_grad_norm_ does the same in a loop over the parameters
-            gradients = [parameter.grad for parameter in parameters if parameter.grad is not None]
-            norm = th.stack(th._foreach_norm(gradients)).norm()
-            th._foreach_mul_(gradients, (self.max_grad_norm / (norm + 1e-6)).clamp(max=1.0))
+            # Clip gradient norm, of all parameters in one call
+            nn.utils.clip_grad_norm_(parameters, self.max_grad_norm, foreach=True)
             self.policy.optimizer.step()
 
             average_parameters(target_parameters, parameters, 1)

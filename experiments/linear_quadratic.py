@@ -142,7 +142,8 @@ def rotation(size: int, generator: np.random.Generator) -> np.ndarray:
 class OfAllActions(QuadraticCritic):
     """W counts all replayed actions alike, however far they are from mu."""
 
-    def all_values(self, obs: th.Tensor, actions: th.Tensor) -> Values:  # noqa: D102
+    def all_values(self, obs: th.Tensor, actions: th.Tensor) -> Values:
+        """Values of actions, all of which count as near."""
         values = super().all_values(obs, actions)
         return values._replace(distance=th.zeros_like(values.distance))
 
@@ -152,7 +153,8 @@ class ExpectedUnderNoise(QuadraticCritic):
 
     variance = EXPLORATION_STD**2
 
-    def target_value(self, obs: th.Tensor) -> th.Tensor:  # noqa: D102
+    def target_value(self, obs: th.Tensor) -> th.Tensor:
+        """Mean of Q under the noise."""
         return self.value(obs) - 0.5 * self.variance * self.lower(obs).square().sum(dim=(1, 2)).unsqueeze(1)
 
 
@@ -166,7 +168,8 @@ class SameEverywhere(nn.Module):
         super().__init__()
         self.outputs = nn.Parameter(th.zeros(size))
 
-    def forward(self, features: th.Tensor) -> th.Tensor:  # noqa: D102
+    def forward(self, features: th.Tensor) -> th.Tensor:
+        """The outputs, one row for each input."""
         return self.outputs.expand(len(features), -1)
 
 

@@ -99,8 +99,9 @@ def _operate(arguments: Sequence[str]) -> None:
 def _of_operation(config: EpisodeConfig, subject: str | None) -> PushedConfig:
     """Settings of a robot in operation: those of the subject, with soft pushes, unless they are a session's own."""
     shared = {item.name: getattr(config, item.name) for item in dataclasses.fields(EpisodeConfig)}
-    own = subject is not None and is_session(Path(subject)) and isinstance(config, PushedConfig)
-    return PushedConfig(**shared, push=config.push if own else SOFT_PUSHES)  # type: ignore[attr-defined]
+    is_own = subject is not None and is_session(Path(subject))
+    push = config.push if is_own and isinstance(config, PushedConfig) else SOFT_PUSHES
+    return PushedConfig(**shared, push=push)
 
 
 def _check_alone(arguments: Sequence[str]) -> None:

@@ -13,7 +13,6 @@ episode is simulated again. Checksums begin from the hash of the first row, so r
 
 from __future__ import annotations
 
-import fcntl
 import logging
 import os
 from collections.abc import Callable
@@ -28,11 +27,10 @@ from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Executor, Job, Outcome, begin_episode, finish_episode
 from sarah.errors import ResumeError, SarahError, TrainingInterruptedError
-from sarah.files import open_regular
 from sarah.robot.reading import SensorReading
 from sarah.runs.config import TrainingConfig
 from sarah.runs.origin import check_first_row, first_row
-from sarah.runs.rows import LONGEST_ROW, checksum_seed, checksummed, read_checksummed
+from sarah.runs.rows import LONGEST_ROW, append, checksum_seed, checksummed, open_journal, read_checksummed
 
 ROOM_PER_EPISODE = 10_000
 """Largest number of bytes for each episode in a journal that is read."""
@@ -131,19 +129,11 @@ class Journal(Executor):
 
     def __enter__(self) -> Journal:
         """Lock the file, and read it."""
+        self._file = open_journal(self._path, "training")  # closed on leaving
         try:
-            self._file = open_regular(self._path, os.O_RDWR | os.O_APPEND)  # closed on leaving
-        except OSError as error:
-            reason = f"it has no {self._path.name}" if isinstance(error, FileNotFoundError) else str(error)
-            raise ResumeError(f"{self._path.parent} cannot be resumed: {reason}") from error
-        try:
-            # The system releases the lock when the process ends, however it ends.
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             self._read()
-        except BaseException as error:
+        except BaseException:
             self._file.close()
-            if isinstance(error, BlockingIOError):
-                raise ResumeError(f"run folder {self._path.parent} is in use by another training") from None
             raise
         return self
 
@@ -168,7 +158,7 @@ class Journal(Executor):
                 return
         self.is_new = True
         self._file.truncate(0)
-        self._append(expected)
+        append(self._file, expected)
         os.fsync(self._file.fileno())
         self._seed = checksum_seed(expected)
 
@@ -227,14 +217,9 @@ class Journal(Executor):
         :param value: outcome of the episode
         """
         outcome = _KINDS[request["kind"]].plain(value)
-        self._append(checksummed({**request, "outcome": outcome}, self._seed))
+        append(self._file, checksummed({**request, "outcome": outcome}, self._seed))
         if request["kind"] != "begin":  # standing is cheap to simulate again
             os.fsync(self._file.fileno())
-
-    def _append(self, row: bytes) -> None:
-        left = memoryview(row)
-        while left:  # a disk that is nearly full takes only a part
-            left = left[self._file.write(left) :]
 
     def stop_if_interrupted(self) -> None:
         """Raise :class:`~sarah.errors.TrainingInterruptedError` if the training is to stop."""

@@ -2,14 +2,54 @@
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import json
+import os
 import zlib
 from collections.abc import Mapping
-from typing import Any
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from sarah.errors import ResumeError
+from sarah.files import open_regular
 
 LONGEST_ROW = 100_000
 """Largest number of bytes in a row of a journal; an episode's has some 1500."""
+
+
+def open_journal(path: Path, kind: str) -> BinaryIO:
+    """Open a journal, and lock it; the system releases the lock when the process ends, however it ends.
+
+    :param path: path of the file, which must exist
+    :param kind: kind of run that writes it, for messages
+    :return: the file, to append to
+    :raises ResumeError: if it cannot be opened, or another process has the lock
+    """
+    try:
+        file = open_regular(path, os.O_RDWR | os.O_APPEND)
+    except OSError as error:
+        reason = f"it has no {path.name}" if isinstance(error, FileNotFoundError) else str(error)
+        raise ResumeError(f"{path.parent} cannot be resumed: {reason}") from error
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BaseException as error:
+        file.close()
+        if isinstance(error, BlockingIOError):
+            raise ResumeError(f"run folder {path.parent} is in use by another {kind}") from None
+        raise
+    return file
+
+
+def append(file: BinaryIO, row: bytes) -> None:
+    """Append a row as a whole.
+
+    :param file: journal, unbuffered
+    :param row: row to append
+    """
+    left = memoryview(row)
+    while left:  # a disk that is nearly full takes only a part
+        left = left[file.write(left) :]
 
 
 def compact_json(row: Mapping[str, Any]) -> bytes:

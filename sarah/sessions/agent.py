@@ -29,7 +29,7 @@ class AgentLearner:
 
     def operate(self, robot: Operation) -> Parameters:
         """Learn window by window; the agent leaves the robot with the best action that it knows."""
-        torch.set_num_threads(1)
+        torch.set_num_threads(1)  # as trainings do: the bytes must not depend on the number of cores
         env = SarahOperationEnv(robot.config, self._first, operated=robot)
         settings: dict[str, Any] = {**PRESETS["one-step"], "device": "cpu"}
         model = LocalNAF("MlpPolicy", env, seed=self._seed, first_action_centre=True, **settings)

@@ -7,17 +7,24 @@ to where it is.
 
 from __future__ import annotations
 
-import fcntl
 import os
 from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO
 
 from sarah.errors import ResumeError
-from sarah.files import open_regular
 from sarah.operation.window import Window
 from sarah.runs.config_files import settings_by_key
-from sarah.runs.rows import LONGEST_ROW, checksum_seed, checksummed, first_row, read_checksummed, read_first_row
+from sarah.runs.rows import (
+    LONGEST_ROW,
+    append,
+    checksum_seed,
+    checksummed,
+    first_row,
+    open_journal,
+    read_checksummed,
+    read_first_row,
+)
 from sarah.sessions.session import SessionSpec
 from sarah.versions import differences, versions
 
@@ -43,17 +50,11 @@ class SessionJournal:
 
     def __enter__(self) -> SessionJournal:
         """Lock the file, and read it; a new one, or one that was cut in its first row, begins anew."""
+        self._file = open_journal(self._path, "session")  # closed on leaving
         try:
-            self._file = open_regular(self._path, os.O_RDWR | os.O_APPEND)
-        except OSError as error:
-            raise ResumeError(f"{self._path.parent} cannot be resumed: {error}") from error
-        try:
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             self._read()
-        except BaseException as error:
+        except BaseException:
             self._file.close()
-            if isinstance(error, BlockingIOError):
-                raise ResumeError(f"{self._path.parent} is in use by another session") from None
             raise
         return self
 
@@ -71,9 +72,7 @@ class SessionJournal:
         self._append(checksummed(window.plain(), self._seed))
 
     def _append(self, row: bytes) -> None:
-        left = memoryview(row)
-        while left:  # a disk that is nearly full takes only a part
-            left = left[self._file.write(left) :]
+        append(self._file, row)
         os.fsync(self._file.fileno())
 
     def _read(self) -> None:

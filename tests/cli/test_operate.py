@@ -52,23 +52,30 @@ def test_other_commands_take_its_folder(operated: Path) -> None:
     assert [float(value) for value in first[4:13]] == list(left.values())
 
 
-def test_killed_at_any_moment_it_ends_in_the_same_bytes(operated: Path, tmp_path: Path) -> None:
-    """A session goes on after kill -9 as if nothing had been."""
-    line = ["--change", "0.1: payload=5", "--minutes", "0.2", "--seed", "2", *QUICK, "--run-dir", "mine"]
-    line += ["--episode.randomisation.actuator-bandwidth", "12"]
+def test_killed_at_any_moment_it_ends_in_the_same_bytes(tmp_path: Path) -> None:
+    """A session goes on after kill -9 as if nothing had been: five times, each some windows further on."""
+    line = ["--change", "0.5: payload=5", "--minutes", "1", "--seed", "2", *QUICK, "--run-dir"]
+    whole = run("sarah-operate", *line, "whole", cwd=tmp_path)
+    assert whole.returncode == 0, whole.stderr
+    journal = tmp_path / "cut/journal.jsonl"
     program = "from sarah.cli.operate import main; main()"
-    for seconds in (1.5, 2.0, 2.5, 3.0, 3.5):
-        resumed = ["--resume", "mine"] if (tmp_path / "mine/session.yaml").is_file() else line
-        if (tmp_path / "mine").is_dir() and resumed is line:
-            (tmp_path / "mine").rename(tmp_path / f"before-{seconds}")
-        process = subprocess.Popen([sys.executable, "-c", program, *resumed], cwd=tmp_path, stderr=subprocess.DEVNULL)
-        time.sleep(seconds)
+    for windows in (1, 8, 19, 33, 47):
+        arguments = ["--resume", "cut"] if journal.is_file() else [*line, "cut"]
+        process = subprocess.Popen([sys.executable, "-c", program, *arguments], cwd=tmp_path, stderr=subprocess.DEVNULL)
+        while process.poll() is None and windows_of(journal) < windows:
+            time.sleep(0.002)
         os.kill(process.pid, signal.SIGKILL)
-        process.wait()
-    finished = run("sarah-operate", "--resume", "mine", cwd=tmp_path)
+        assert process.wait() == -signal.SIGKILL  # it had not finished
+        assert windows <= windows_of(journal)
+    finished = run("sarah-operate", "--resume", "cut", cwd=tmp_path)
     assert finished.returncode == 0, finished.stderr
     for name in BYTES:
-        assert (tmp_path / "mine" / name).read_bytes() == (operated / name).read_bytes(), name
+        assert (tmp_path / "cut" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes(), name
+
+
+def windows_of(journal: Path) -> int:
+    """Number of windows in a journal, whose first row is none."""
+    return max(0, journal.read_bytes().count(b"\n") - 1) if journal.is_file() else 0
 
 
 def test_a_finished_session_says_so(operated: Path) -> None:
@@ -89,10 +96,9 @@ def test_every_change_counts_and_a_session_keeps_its_pushes(tmp_path: Path) -> N
     assert "- 10.0" in (tmp_path / "again/session.yaml").read_text().split("newtons")[1][:20]
 
 
-@pytest.mark.parametrize("damaged", ["", "{}", "[1", '{"parameters": {"P1": 1}}'])
-def test_damaged_parameters_are_written_again(operated: Path, tmp_path: Path, damaged: str) -> None:
+def test_damaged_parameters_are_written_again(operated: Path, tmp_path: Path) -> None:
     shutil.copytree(operated, tmp_path / "mine")
-    (tmp_path / "mine/parameters.json").write_text(damaged)
+    (tmp_path / "mine/parameters.json").write_text("[1")
     process = run("sarah-operate", "--resume", "mine", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     assert (tmp_path / "mine/parameters.json").read_bytes() == (operated / "parameters.json").read_bytes()

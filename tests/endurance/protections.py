@@ -143,8 +143,8 @@ PROTECTIONS = (
     ),
     Protection(
         "run folders are locked",
-        "runs/journal.py",
-        "fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)",
+        "runs/rows.py",
+        "fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)",
         "pass",
         "test_two_trainings_do_not_share_a_run_folder",
     ),

@@ -118,6 +118,19 @@ def test_the_folder_has_a_table_a_picture_and_parameters(whole: tuple[Path, Sess
     assert tuple(left.values()) == result.parameters == SessionFolder(path).parameters()
 
 
+@pytest.mark.parametrize("damaged", ["", "{}", "[1", '{"parameters": {"P1": 1}}', '{"parameters": null}'])
+def test_a_session_with_damaged_parameters_is_not_finished(
+    whole: tuple[Path, SessionResult], tmp_path: Path, damaged: str
+) -> None:
+    shutil.copytree(whole[0], tmp_path / "damaged")
+    folder = SessionFolder(tmp_path / "damaged")
+    (folder.path / "parameters.json").write_text(damaged)
+    assert not folder.is_finished
+    with pytest.raises(RunFolderError, match="go on with sarah-operate --resume"):
+        folder.parameters()
+    assert [episode.name for episode in episodes_of_session(folder.path)[:2]] == ["best", "0"]
+
+
 def test_every_window_is_an_episode_to_look_at(whole: tuple[Path, SessionResult]) -> None:
     path, result = whole
     episodes = episodes_of_session(path)
@@ -140,9 +153,9 @@ def test_every_window_can_be_played_as_it_was(whole: tuple[Path, SessionResult])
         played = recorded()
         assert played.score == window.score and (played.termination == "fell") == window.fell
         assert played.trace is not None
-        stood = 1.0 if window.index == 0 or result.windows[window.index - 1].fell else None
-        begin = played.trace.time[0] - window.begin
-        assert begin == pytest.approx(stood) if stood else begin in (pytest.approx(0.0), pytest.approx(1.0))
+        before = result.windows[window.index - 1] if window.index else None
+        stands = before is None or before.fell or before.changes != window.changes
+        assert played.trace.time[0] - window.begin == pytest.approx(1.0 if stands else 0.0)
         assert played.trace.time[-1] < window.end
 
 
