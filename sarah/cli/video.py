@@ -78,10 +78,12 @@ def _film(arguments: Sequence[str]) -> None:
 
     result = simulate(spec, record_trace=True)
     assert result.trace is not None
-    begin, end = options.seconds or (result.trace.time[0], result.trace.time[-1])
-    begin, end = max(begin, result.trace.time[0]), min(end, result.trace.time[-1])
-    if begin > end:
-        raise ConfigurationError(f"nothing to film: the episode runs from {end:g} to {result.duration:g} s")
+    first, last = result.trace.time[0], result.trace.time[-1]
+    begin, end = options.seconds or (first, last)
+    begin, end = max(begin, first), min(end, last)
+    if begin >= end:
+        ending = ending_words(result.termination)
+        raise ConfigurationError(f"nothing to film: the episode ends at {result.duration:g} s: {ending}")
     if options.seconds is not None and options.seconds[1] > end:
         print(f"the episode ends at {result.duration:g} s: {ending_words(result.termination)}", file=sys.stderr)
     check_renderer()

@@ -34,7 +34,7 @@ class LegOdometry:
         self._roll = self._pitch = 0.0
         self._drift_x, self._drift_y = LowPass(DRIFT_SECONDS, dt), LowPass(DRIFT_SECONDS, dt)
         self._carrying: Side | None = None
-        self._over = (0.0, 0.0)
+        self._over: dict[Side, tuple[float, float]] = {}
 
     def tick(self, reading: SensorReading) -> None:
         """Follow one reading.
@@ -48,12 +48,15 @@ class LegOdometry:
         rate_y -= self._drift_y(rate_y)
         self._pitch += self._dt * (rate_x - self._pitch / LEAK_SECONDS)
         self._roll += self._dt * (rate_y - self._roll / LEAK_SECONDS)
-        abduction, flexion = (0, 2) if carrying is Side.LEFT else (1, 3)
-        over = (
-            self._height * math.sin(self._roll + reading.joints[abduction]),
-            -self._height * math.sin(self._pitch + reading.joints[flexion]),
-        )
-        if carrying is self._carrying:
-            self.x += over[0] - self._over[0]
-            self.y += over[1] - self._over[1]
+        over = {
+            side: (
+                self._height * math.sin(self._roll + reading.joints[abduction]),
+                -self._height * math.sin(self._pitch + reading.joints[flexion]),
+            )
+            for side, abduction, flexion in ((Side.LEFT, 0, 2), (Side.RIGHT, 1, 3))
+        }
+        if self._carrying is not None:
+            (x, y), (x_before, y_before) = over[self._carrying], self._over[self._carrying]
+            self.x += x - x_before
+            self.y += y - y_before
         self._carrying, self._over = carrying, over

@@ -21,28 +21,38 @@ class GaussianProcessSettings:
     :param length: length over which the reward changes
     :param deviation: standard deviation of the reward between far parameters
     :param noise: standard deviation of the reward of the same parameters
+    :param pessimism: reward by which parameters that nobody knows are expected to be worse than those of the beginning
     :param step: standard deviation of a trial's changes from the best parameters
     :param share: share of the parameters that a trial changes
     :param candidates: number of candidates for each trial
+    :param horizon: number of windows in which an improvement pays: after that, another one would have been found
     :param largest_loss: loss against the parameters of the beginning that a trial may risk, in reward
     :param caution: number of standard deviations by which it must be believed to lose less
     :param surprise: sum of standard deviations, beyond half a one for each window, by which the best parameters must
         fall short of what was expected before the robot counts as changed
     """
 
-    length: float = 0.3
+    length: float = 0.6
     deviation: float = 0.3
-    noise: float = 0.05
-    step: float = 0.08
+    noise: float = 0.03
+    pessimism: float = 0.1
+    step: float = 0.05
     share: float = 0.5
     candidates: int = 200
-    largest_loss: float = 0.15
+    horizon: float = 2.0
+    largest_loss: float = 0.1
     caution: float = 2.0
     surprise: float = 6.0
 
 
 DISAPPOINTING = 2.0
 """Number of standard deviations below what was expected at which a reward disappoints."""
+NOISE_WINDOWS = 20
+"""Number of the last windows that tell how far rewards differ from what was expected."""
+LEAST_NOISE_WINDOWS = 5
+"""Number of windows below which they tell nothing."""
+DEVIATIONS_OF_MEDIAN = 1.4826
+"""Standard deviations in the median of the absolute values of normal numbers."""
 MOST_WINDOWS = 500
 """Number of windows that are remembered: the last ones. The time that a choice takes grows with its third power."""
 
@@ -51,10 +61,10 @@ class LocalGaussianProcess:
     """Tries parameters near the best so far, by what a Gaussian process expects of them (Berkenkamp et al. 2016).
 
     A trial must be safe: its reward's lower bound is not far below the reward of the parameters it began with. And it
-    must be worth its price: what it may bring in all windows that are left (expected improvement, Jones et al. 1998)
-    is more than what it costs in its own. Otherwise the best parameters run on. They also follow a trial that
-    disappoints: only if they, too, fall short of what was expected, the robot has changed (a cumulative sum, Page
-    1954). What was learned before is then forgotten. A robot that falls with the best parameters gets the first ones.
+    must be worth its price: what it may bring in the next windows (expected improvement, Jones et al. 1998) is more
+    than what it costs in its own. Otherwise the best parameters run on. They also follow a trial that disappoints:
+    only if they, too, fall short of what was expected, the robot has changed (a cumulative sum, Page 1954). What was
+    learned before is then forgotten. A robot that falls with the best parameters gets the first ones.
 
     :param first: parameters to begin with
     :param seed: seed of the draws
@@ -72,6 +82,7 @@ class LocalGaussianProcess:
         self._first = self._start = to_shares(first)
         self._tried: list[np.ndarray] = []
         self._rewards: list[float] = []
+        self._errors: list[float] = []
         self._shortfall = 0.0
         self._doubted = 0
 
@@ -97,7 +108,7 @@ class LocalGaussianProcess:
         :param is_trial: whether nobody knew what they are worth
         :return: whether the reward was so low that the best parameters have to show that the robot is as before
         """
-        surprise = self._surprise(shares, reward)
+        surprise = self._surprise(shares, reward) if self._tried else 0.0
         disappoints = surprise > DISAPPOINTING
         if not is_trial:
             self._shortfall = max(0.0, self._shortfall + surprise - 0.5)
@@ -112,10 +123,16 @@ class LocalGaussianProcess:
 
     def _surprise(self, shares: np.ndarray, reward: float) -> float:
         """Number of standard deviations by which a reward falls short of what was expected."""
-        if not self._tried:
-            return 0.0
         mean, deviation = self._expected(shares[None])
-        return float((mean[0] - reward) / np.hypot(deviation[0], self._settings.noise))
+        noise = max(self._settings.noise, self._usual_error())
+        self._errors = [*self._errors[1 - NOISE_WINDOWS :], abs(mean[0] - reward)]
+        return float((mean[0] - reward) / np.hypot(deviation[0], noise))
+
+    def _usual_error(self) -> float:
+        """Standard deviation of the last rewards from what was expected, by their median, which no fall moves."""
+        if len(self._errors) < LEAST_NOISE_WINDOWS:
+            return 0.0
+        return DEVIATIONS_OF_MEDIAN * float(np.median(self._errors))
 
     def _forget(self) -> None:
         """Begin again where the robot is now, with the windows since the first doubt."""
@@ -124,9 +141,10 @@ class LocalGaussianProcess:
         self._shortfall, self._doubted = 0.0, 0
 
     def _fit(self) -> None:
-        self._mean = float(np.mean(self._rewards[:3]))
+        beginning = float(np.mean(self._rewards[:3]))
+        self._mean = beginning - self._settings.pessimism
         # How deep a robot fell says nothing of the slope where it walks; a cliff would make the process ring.
-        rewards = np.maximum(self._rewards, self._mean - 2.0 * self._settings.largest_loss)
+        rewards = np.maximum(self._rewards, beginning - 2.0 * self._settings.largest_loss)
         self._model.fit(np.array(self._tried), rewards - self._mean)
 
     def _expected(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -155,6 +173,6 @@ class LocalGaussianProcess:
         is_safe = mean - settings.caution * deviation >= lowest
         better = (mean - reward) / deviation
         improvement = (mean - reward) * norm.cdf(better) + deviation * norm.pdf(better)
-        worth = np.where(is_safe, improvement * windows_left - (reward - mean), -np.inf)
+        worth = np.where(is_safe, improvement * min(windows_left, settings.horizon) - (reward - mean), -np.inf)
         index = int(np.argmax(worth))
         return places[index] if worth[index] > 0.0 else None

@@ -47,10 +47,19 @@ def test_steps_add_up() -> None:
     odometry = LegOdometry(HEIGHT, DT)
     steps = 6
     for step in range(steps):
-        pads = LEFT if step % 2 else RIGHT
-        for angle in (0.1, 0.05, 0.0, -0.05, -0.1):
-            odometry.tick(reading(pads, (0.0, 0.0, angle, angle, 0.0, 0.0)))
+        pads, is_left = (LEFT, True) if step % 2 else (RIGHT, False)
+        for carrying in (0.1, 0.05, 0.0, -0.05, -0.1):
+            left, right = (carrying, -carrying) if is_left else (-carrying, carrying)
+            odometry.tick(reading(pads, (0.0, 0.0, left, right, 0.0, 0.0)))
     assert odometry.y == pytest.approx(steps * 2.0 * HEIGHT * math.sin(0.1))
+
+
+def test_what_the_torso_moves_while_the_feet_change_counts() -> None:
+    odometry = LegOdometry(HEIGHT, DT)
+    odometry.tick(reading(LEFT, (0.0, 0.0, 0.1, 0.3, 0.0, 0.0)))
+    odometry.tick(reading(RIGHT, (0.0, 0.0, 0.0, 0.2, 0.0, 0.0)))
+    odometry.tick(reading(RIGHT, (0.0, 0.0, -0.1, 0.1, 0.0, 0.0)))
+    assert odometry.y == pytest.approx(HEIGHT * (math.sin(0.1) + math.sin(0.2) - math.sin(0.1)))
 
 
 def test_a_constant_error_of_the_gyroscope_is_forgotten() -> None:

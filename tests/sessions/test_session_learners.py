@@ -65,6 +65,14 @@ def test_it_begins_again_when_the_robot_has_changed(seed: int) -> None:
     assert robot.mean_reward(8.0, 10.0) > robot.mean_reward(5.0, 5.5) + 0.5 * lost
 
 
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_it_does_not_take_chance_for_a_change(seed: int) -> None:
+    """Windows of weak servos differ by more than the process knows: it must not begin again, and drift downhill."""
+    robot = FormulaRobot(hill, minutes=30.0, noise=0.15)
+    left = LEARNERS["gp"](SHIPPED, seed).operate(robot)
+    assert hill(to_shares(left)) > hill(START)
+
+
 def test_random_search_is_the_floor() -> None:
     random, careful = operated("random", cliff), operated("gp", cliff)
     assert random.falls > 5 * max(1, careful.falls) and random.mean_reward() < careful.mean_reward()
