@@ -1,14 +1,17 @@
 """NAF and DDPG on tasks of MuJoCo with two to six actions, as in Gu et al. (2016), along the training.
 
+All trainings together take most of a day. So the course of each is kept, and not run again.
 NAF and DDPG run with the defaults of their classes, DDPG with the noise that its documentation adds. NAF as published
 has targets with V, and the exploration noise of DDPG.
 """
 
 from __future__ import annotations
 
+import json
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from statistics import median
 from typing import Any
 
@@ -25,7 +28,9 @@ from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from experiments.experiment import OnWorkers
 from experiments.linear_quadratic import Watched
 from experiments.record import Row
+from experiments.trainings import identity
 from sarah.episode.workers import Workers
+from sarah.files import replace_text
 
 TASKS = ("HalfCheetah-v5", "Hopper-v5", "Walker2d-v5", "Reacher-v5", "Swimmer-v5")
 ALGORITHMS = ("naf", "naf with V, as published", "ddpg")
@@ -45,6 +50,7 @@ class SeveralActions(OnWorkers):
     :param seeds: number of trainings of each algorithm
     :param evaluations: number of evaluations along a training, the last at its end
     :param episodes: number of episodes of an evaluation
+    :param runs: folder that keeps the courses of the trainings; one that is there is not run again
     """
 
     tasks: tuple[str, ...] = TASKS
@@ -53,19 +59,23 @@ class SeveralActions(OnWorkers):
     seeds: int = 5
     evaluations: int = 10
     episodes: int = 5
+    runs: Path = Path("runs/experiments")
 
     def rows(self) -> Iterator[Row]:
         """A row for each task, algorithm and evaluation."""
         every = self.steps // self.evaluations
+        folder = self.runs / f"several-actions-{identity((self.steps, every, self.episodes))}"
+        folder.mkdir(parents=True, exist_ok=True)
         with Workers(self.workers) as workers:
-            jobs = {
-                (task, algorithm): [
-                    workers.submit(course, task, algorithm, seed, self.steps, every, self.episodes)
-                    for seed in range(self.seeds)
-                ]
-                for task in self.tasks
-                for algorithm in self.algorithms
+            jobs: dict[tuple[str, str], list[Any]] = {
+                (task, algorithm): [] for task in self.tasks for algorithm in self.algorithms
             }
+            for seed in range(self.seeds):  # the first seed of all tasks comes first
+                for (task, algorithm), running in jobs.items():
+                    file = folder / f"{task}-{algorithm}-s{seed}.json"
+                    running.append(
+                        workers.submit(kept_course, file, task, algorithm, seed, self.steps, every, self.episodes)
+                    )
             for (task, algorithm), running in jobs.items():
                 courses = [job.result() for job in running]
                 for index in range(self.evaluations):
@@ -101,6 +111,17 @@ class Evaluations(BaseCallback):
             mean_return = float(evaluate_policy(self.model, self._env, self._episodes)[0])
             self.course.append((mean_return, getattr(self.model, "highest_ratio", 0.0)))
         return True
+
+
+def kept_course(file: Path, *training: Any) -> list[tuple[float, float]]:
+    """What :func:`course` says of a training, from a file if it is there.
+
+    :param file: file that keeps it
+    :param training: arguments of :func:`course`
+    """
+    if not file.exists():
+        replace_text(file, json.dumps(course(*training)))
+    return [(mean_return, ratio) for mean_return, ratio in json.loads(file.read_text(encoding="utf-8"))]
 
 
 def course(task: str, algorithm: str, seed: int, steps: int, every: int, episodes: int) -> list[tuple[float, float]]:
