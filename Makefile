@@ -43,8 +43,9 @@ train: install  ## both trainings with NAF, figures, reports and robustness tabl
 	$(BIN)/sarah-eval $(RUN)/balance --robustness $(RUN)/figures --episodes $(PUSHES) --workers $(WORKERS)
 	@echo "all of it is in $(RUN): open $(RUN)/balance/report.html"
 
+# One thread for each process: two of them share the machine, and threads that wait for each other cost more than they do.
 test: install  ## the tests
-	$(BIN)/python -m pytest -n 2 --dist worksteal -m 'not slow'
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m 'not slow'
 
 test-slow: install  ## the slow tests: minutes of simulation
 	$(BIN)/python -m pytest -m slow

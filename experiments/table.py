@@ -166,7 +166,7 @@ TABLE: dict[str, Maker] = {
     "linear_quadratic": Maker(
         "What does NAF make of tasks whose truth is known?",
         LinearQuadraticTasks(),
-        {"steps": 1010, "seeds": 1},
+        {"steps": 110, "seeds": 1},
         of_robot=False,
     ),
     "several_actions": Maker(

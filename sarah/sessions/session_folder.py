@@ -125,7 +125,9 @@ class SessionFolder:
         """
         try:
             return [_window(row) for row in csv.DictReader(read_lines(self._windows_path, MOST_WINDOWS))]
-        except (OSError, csv.Error, KeyError, TypeError, ValueError) as error:
+        except OSError as error:
+            raise RunFolderError(f"cannot read {self._windows_path}: {error.strerror}") from error
+        except (csv.Error, KeyError, TypeError, ValueError) as error:
             reason = repr(error)[:LONGEST_REASON]
             raise RunFolderError(f"the windows of {self.path} cannot be read: {reason}") from error
 
