@@ -11,6 +11,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter
 from result_columns import heading
 from result_rows import chosen
 from result_shapes import (
@@ -90,6 +91,7 @@ def several_actions(rows: Rows) -> Figure:
         draw_lines(axis, group, "steps", "return", "{algorithm}")
         axis.set_title(name, fontsize="small")
         axis.set_ylabel("return" if axis is axes[0] else "")
+        axis.xaxis.set_major_formatter(EngFormatter(sep=""))
     legend(figure, axes[0])
     return figure
 
