@@ -191,4 +191,6 @@ def _summarise(result: SessionResult, spec: SessionSpec, path: Path) -> None:
     parts = f", {first:.3f} in the first fifth, {last:.3f} in the last" if first == first and last == last else ""
     print(f"score       {result.mean_score():.3f} mean{parts}")
     print(f"falls       {result.falls} in {len(result.windows)} windows")
+    for change in spec.config.changes[result.windows[-1].changes :]:
+        print(f"no change   at minute {change.minute:g}: no window began after it")
     print(f"folder      {path}")

@@ -83,7 +83,9 @@ def _film(arguments: Sequence[str]) -> None:
     begin, end = max(begin, first), min(end, last)
     if begin >= end:
         ending = ending_words(result.termination)
-        raise ConfigurationError(f"nothing to film: the episode ends at {result.duration:g} s: {ending}")
+        raise ConfigurationError(
+            f"nothing to film: the episode runs from {first:g} s, when it has stood, to {result.duration:g} s: {ending}"
+        )
     if options.seconds is not None and options.seconds[1] > end:
         print(f"the episode ends at {result.duration:g} s: {ending_words(result.termination)}", file=sys.stderr)
     check_renderer()

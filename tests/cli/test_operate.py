@@ -52,6 +52,14 @@ def test_other_commands_take_its_folder(operated: Path) -> None:
     assert [float(value) for value in first[4:13]] == list(left.values())
 
 
+def test_a_change_that_came_too_late_is_named(tmp_path: Path) -> None:
+    arguments = ("--minutes", "0.2", "--learner", "none", *QUICK)
+    process = run("sarah-operate", "--change", "0.1: payload=5", "--change", "0.2: payload=6", *arguments, cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    assert "no change   at minute 0.2: no window began after it" in process.stdout
+    assert "at minute 0.1" not in process.stdout
+
+
 def test_killed_at_any_moment_it_ends_in_the_same_bytes(tmp_path: Path) -> None:
     """A session goes on after kill -9 as if nothing had been: five times, each some windows further on."""
     line = ["--change", "0.5: payload=5", "--minutes", "1", "--seed", "2", *QUICK, "--run-dir"]
