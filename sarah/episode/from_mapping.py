@@ -51,8 +51,8 @@ def _converted(expected: Any, value: Any, key: str) -> Any:
         return None if value is None else _converted(expected, value, key)
     if expected is Any:
         return value
-    if dataclasses.is_dataclass(expected):
-        return _made(expected, value, key)
+    if isinstance(expected, type) and dataclasses.is_dataclass(expected):
+        return value if isinstance(value, expected) else _made(expected, value, key)
     if get_origin(expected) is Task:
         return value if isinstance(value, Task) else task_named(_converted(str, value, key))
     if get_origin(expected) is tuple:

@@ -14,7 +14,7 @@ from stable_baselines3.common.env_checker import check_env as sb3_check_env
 from sarah.agents import NAF
 from sarah.envs.operation_env import SarahOperationEnv
 from sarah.errors import ConfigurationError
-from sarah.operation.settings import PARAMETERS, SHIPPED
+from sarah.operation.settings import PARAMETERS, SHIPPED, Change
 from sarah.operation.shares import to_shares
 from sarah.operation.window import FELT
 
@@ -28,6 +28,13 @@ def test_gymnasium_knows_it_by_name() -> None:
     assert env.unwrapped.config.minutes == 3.0 and env.unwrapped.config.robot.payload == 2.0
     assert env.action_space.shape == (9,) and env.observation_space.shape == (len(FELT) + 9,)
     env.close()
+
+
+def test_changes_are_objects_or_mappings() -> None:
+    named = SarahOperationEnv(changes=[{"minute": 1.0, "settings": {"payload": 3.0}}])
+    assert SarahOperationEnv(changes=[Change(1.0, {"payload": 3.0})]).config == named.config
+    with pytest.raises(ConfigurationError, match="changes must hold minute and settings, not '1: payload=3'"):
+        SarahOperationEnv(changes=["1: payload=3"])
 
 
 def test_the_checkers_of_gymnasium_and_stable_baselines3_find_nothing() -> None:
