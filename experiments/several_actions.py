@@ -1,6 +1,7 @@
 """NAF and DDPG on tasks of MuJoCo with two to six actions, as in Gu et al. (2016), along the training.
 
-All trainings together take most of a day. So the course of each is kept, and not run again.
+All trainings together take most of a day. So the course of each is kept, and not run again while the
+sources of the agents stay as they are.
 NAF and DDPG run with the defaults of their classes, DDPG with the noise that its documentation adds. NAF as published
 has targets with V, and the exploration noise of DDPG.
 """
@@ -28,7 +29,7 @@ from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from experiments.experiment import OnWorkers
 from experiments.linear_quadratic import Watched
 from experiments.record import Row
-from experiments.trainings import identity
+from experiments.trainings import SARAH, identity
 from sarah.episode.workers import Workers
 from sarah.files import replace_text
 
@@ -64,7 +65,8 @@ class SeveralActions(OnWorkers):
     def rows(self) -> Iterator[Row]:
         """A row for each task, algorithm and evaluation."""
         every = self.steps // self.evaluations
-        folder = self.runs / f"several-actions-{identity((self.steps, every, self.episodes))}"
+        size = identity((self.steps, every, self.episodes), SARAH / "agents")
+        folder = self.runs / f"several-actions-{size}"
         folder.mkdir(parents=True, exist_ok=True)
         with Workers(self.workers) as workers:
             jobs: dict[tuple[str, str], list[Any]] = {

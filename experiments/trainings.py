@@ -6,6 +6,7 @@ import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
 
+import sarah
 from experiments.experiment import OnWorkers
 from experiments.made_with import short_hash
 from sarah.episode.push import Push
@@ -16,8 +17,9 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import Engine
 from sarah.training.train import train
-from sarah.versions import versions
+from sarah.versions import source_hash, versions
 
+SARAH = Path(sarah.__file__).parent
 EPISODES: dict[str, EpisodeConfig] = {
     "stepping": EpisodeConfig(),
     # Softer pushes hardly tell controllers apart, V3 answers those from front and back, and who falls does so soon.
@@ -59,9 +61,10 @@ class OfTrainings(OnWorkers):
         return run
 
 
-def identity(settings: object) -> str:
+def identity(settings: object, package: Path = SARAH) -> str:
     """Name for a folder of trainings with these settings, made with today's code and versions.
 
     :param settings: settings of the trainings
+    :param package: folder of the sources that the trainings depend on
     """
-    return short_hash([repr(settings), versions()])
+    return short_hash([repr(settings), versions() | {"sarah-sources": source_hash(package)}])

@@ -90,8 +90,9 @@ def episode_of_parameters(parameters: Sequence[float], task: Task[Any] | None = 
     :param task: task of the parameters; by default that of this package which has so many
     :raises ConfigurationError: if the number of parameters is that of no task, or if one is not allowed
     """
+    all_of_both = len(STEPPING.parameters) + len(BALANCE.parameters)
     takes_both = task in (None, BALANCE)
-    if takes_both and len(parameters) == len(STEPPING.parameters) + len(BALANCE.parameters):
+    if takes_both and len(parameters) == all_of_both:
         stepping = STEPPING.checked(parameters[: len(STEPPING.parameters)])
         label = f"P and V = {', '.join(f'{value:g}' for value in parameters)} · seed 0"
         config = BALANCE.config_of(BALANCE.episode, stepping=stepping)
@@ -106,7 +107,7 @@ def episode_of_parameters(parameters: Sequence[float], task: Task[Any] | None = 
         f"{len(task.parameter_names)} numbers ({task.parameter_names[0]} to {task.parameter_names[-1]})"
         for task in tasks
     )
-    both = " or all of both" if takes_both else ""
+    both = f" or all {all_of_both}" if takes_both else ""
     raise ConfigurationError(f"parameters must be {counts}{both}, not {len(parameters)}")
 
 

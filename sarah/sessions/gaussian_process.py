@@ -122,7 +122,7 @@ class LocalGaussianProcess:
         return disappoints
 
     def _surprise(self, shares: np.ndarray, reward: float) -> float:
-        """Number of standard deviations by which a reward falls short of what was expected."""
+        """Number of standard deviations by which a reward falls short of what was expected; the error is remembered."""
         mean, deviation = self._expected(shares[None])
         noise = max(self._settings.noise, self._usual_error())
         self._errors = [*self._errors[1 - NOISE_WINDOWS :], abs(mean[0] - reward)]
