@@ -21,7 +21,7 @@ def draw_session(windows: Sequence[Window], changes: Sequence[Change], path: Pat
     """Draw every window as a point, their running mean as a line, falls as crosses and changes as vertical lines.
 
     :param windows: windows of the session, at least one
-    :param changes: what changed in its course
+    :param changes: what was to change in its course; what no window began after is not drawn
     :param path: path of the picture, without suffix
     :return: the files, PNG and PDF
     """
@@ -37,7 +37,7 @@ def draw_session(windows: Sequence[Window], changes: Sequence[Change], path: Pat
         )
         axis.plot(minutes, _running_mean(scores), color=SCORE, linewidth=1.5, label=f"mean of {SMOOTHED} windows")
         axis.plot([minutes[i] for i in falls], [scores[i] for i in falls], "x", color=FALL, label="fall")
-        for change in changes:
+        for change in changes[: windows[-1].changes]:
             axis.axvline(change.minute, color="black", linestyle="--", linewidth=0.8)
             axis.text(change.minute, 0.02, f" {words_of(change)}", fontsize=6, va="bottom")
         axis.set(xlabel="time of operation (min)", ylabel="score", ylim=(0.0, 1.02))
