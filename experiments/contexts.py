@@ -2,7 +2,8 @@
 
 A controller chooses V1 to V4 once an episode, after the robot has stood for a second: the same ones whatever the ground
 is, or by what the robot felt. Two sets of grounds are asked. On the ordinary ones the shipped controller copes anyway.
-On side slopes of 10 degrees V2 wants the opposite sign on either side, which shows that the method can see a gain.
+On 14 degrees the robot is about to tip over the end of its feet, and V4 wants the opposite sign uphill and downhill:
+there the method has to see a gain.
 """
 
 from __future__ import annotations
@@ -11,11 +12,13 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 from statistics import mean, stdev
 from typing import Any
 
 import gymnasium
 import numpy as np
+from scipy import stats
 
 from experiments.conditions import LEARNED
 from experiments.experiment import OnWorkers
@@ -47,16 +50,14 @@ GROUNDS: dict[str, dict[str, Terrain]] = {
         "bumps of 10 mm": Terrain(roughness=(0.01, 0.01)),
         "friction 0.15": Terrain(friction_left=(0.15, 0.15), friction_right=(0.15, 0.15)),
     },
-    "side slopes": {"10° uphill right": slope(10.0, 0.0), "10° uphill left": slope(10.0, 180.0)},
+    "steep": {"14° uphill forward": slope(14.0, 90.0), "14° uphill backward": slope(14.0, 270.0)},
 }
 """Grounds by name, of each set."""
-NEWTONS = {"ordinary": 75.0, "side slopes": 0.0}
+NEWTONS = {"ordinary": 75.0, "steep": 0.0}
 """Force of the push on each set of grounds, in N."""
 SHIPPED, ONE_SET, PER_GROUND = "shipped parameters", "one set (CMA-ES)", "a set for each ground (CMA-ES)"
 BLIND, SEEING = "NAF, blind", "NAF with observations"
 CONTROLLERS = (SHIPPED, ONE_SET, PER_GROUND, BLIND, SEEING)
-QUANTILE = 1.96
-"""Quantile of the normal distribution for intervals of 95 %."""
 Policy = Callable[[str, np.ndarray], tuple[float, ...]]
 """Function that chooses V1 to V4 on a ground, by its name and by what the robot feels."""
 
@@ -66,13 +67,13 @@ class Contexts(OnWorkers):
     """Controllers that choose V1 to V4 for all grounds alike, for each ground, or by what the robot feels.
 
     :param seeds: number of trainings of each controller
-    :param budget: number of episodes of a training; a set for each ground gets as many on each
+    :param budget: number of episodes of a training for each ground
     :param episodes: number of episodes on each ground that judge a training
     :param time_limit: time limit of an episode, in s
     """
 
-    seeds: int = 3
-    budget: int = 400
+    seeds: int = 4
+    budget: int = 240
     episodes: int = 60
     time_limit: float = 8.0
 
@@ -80,30 +81,24 @@ class Contexts(OnWorkers):
         """A row for each set of grounds, controller and ground, and one for all grounds."""
         with Workers(self.workers) as workers:
             jobs = {
-                (of, controller): [
-                    workers.submit(judge, self, of, controller, seed)
-                    for seed in range(1 if controller == SHIPPED else self.seeds)
-                ]
+                (of, controller): [workers.submit(judge, self, of, controller, seed) for seed in range(self.seeds)]
                 for of in GROUNDS
                 for controller in CONTROLLERS
             }
-            for (of, controller), judged in jobs.items():
-                scores = [job.result() for job in judged]
-                for ground in (*GROUNDS[of], "all"):
-                    # Trainings are independent, and the episodes of one are not: so the interval is that of trainings.
-                    means = [mean(_of_ground(found, ground)) for found in scores]
-                    spread = means if len(means) > 1 else _of_ground(scores[0], ground)
-                    half = QUANTILE * stdev(spread) / math.sqrt(len(spread)) if len(spread) > 1 else math.nan
-                    yield {
-                        "grounds": of,
-                        "controller": controller,
-                        "ground": ground,
-                        "trainings": len(means),
-                        "episodes": len(_of_ground(scores[0], ground)) * len(means),
-                        "score": mean(means),
-                        "score_low": mean(means) - half,
-                        "score_high": mean(means) + half,
-                    }
+            for of, grounds in GROUNDS.items():
+                judged = {controller: [job.result() for job in jobs[of, controller]] for controller in CONTROLLERS}
+                for controller in CONTROLLERS:
+                    for ground in (*grounds, "all"):
+                        scores, best = (means(judged[name], ground) for name in (controller, ONE_SET))
+                        yield {
+                            "grounds": of,
+                            "controller": controller,
+                            "ground": ground,
+                            "trainings": self.seeds,
+                            "episodes": self.episodes * (len(grounds) if ground == "all" else 1) * self.seeds,
+                            **with_interval("score", scores),
+                            **with_interval("gain", [own - one for own, one in zip(scores, best, strict=True)]),
+                        }
 
     def config(self, of: str, ground: str) -> BalanceConfig:
         """Settings of the episodes on a ground.
@@ -120,12 +115,28 @@ class Contexts(OnWorkers):
         return config
 
 
-def _of_ground(scores: dict[str, list[float]], ground: str) -> list[float]:
-    return scores[ground] if ground in scores else [score for found in scores.values() for score in found]
+def means(judged: list[dict[str, list[float]]], ground: str) -> list[float]:
+    """Mean score of each training on a ground.
+
+    :param judged: scores by ground, of each training
+    :param ground: name of the ground, or ``all``
+    """
+    return [mean(scores[ground] if ground in scores else chain(*scores.values())) for scores in judged]
+
+
+def with_interval(name: str, values: list[float]) -> Row:
+    """Columns of a mean with its 95 % interval by Student's distribution.
+
+    :param name: name of the column
+    :param values: independent values
+    """
+    count = len(values)
+    half = float(stats.t.ppf(0.975, count - 1)) * stdev(values) / math.sqrt(count) if count > 1 else math.nan
+    return {name: mean(values), f"{name}_low": mean(values) - half, f"{name}_high": mean(values) + half}
 
 
 def judge(options: Contexts, of: str, controller: str, seed: int) -> dict[str, list[float]]:
-    """Train a controller, and let it run on fresh seeds.
+    """Train a controller, and let it run on fresh seeds, which are the same for all controllers of one seed.
 
     :param options: size of training and evaluation
     :param of: name of the set of grounds
@@ -134,10 +145,10 @@ def judge(options: Contexts, of: str, controller: str, seed: int) -> dict[str, l
     :return: scores by ground
     """
     policy = learn(options, of, controller, seed)
+    first = FIRST_EVALUATION_SEED + seed * options.episodes
     return {
         ground: [
-            run(options.config(of, ground), FIRST_EVALUATION_SEED + index, partial(policy, ground))
-            for index in range(options.episodes)
+            run(options.config(of, ground), first + index, partial(policy, ground)) for index in range(options.episodes)
         ]
         for ground in GROUNDS[of]
     }
@@ -167,15 +178,16 @@ def learn(options: Contexts, of: str, controller: str, seed: int) -> Policy:
     :param seed: seed of the training
     """
     configs = {ground: options.config(of, ground) for ground in GROUNDS[of]}
+    budget = options.budget * len(configs)
     if controller == SHIPPED:
         return lambda ground, felt: LEARNED.parameters
     if controller == ONE_SET:
-        parameters = evolve(list(configs.values()), options.budget, seed)
+        parameters = evolve(list(configs.values()), budget, seed)
         return lambda ground, felt: parameters
     if controller == PER_GROUND:
         own = {ground: evolve([config], options.budget, seed) for ground, config in configs.items()}
         return lambda ground, felt: own[ground]
-    return train_naf(list(configs.values()), options.budget, seed, is_blind=controller == BLIND)
+    return train_naf(list(configs.values()), budget, seed, is_blind=controller == BLIND)
 
 
 def evolve(configs: list[BalanceConfig], budget: int, seed: int) -> tuple[float, ...]:

@@ -112,7 +112,7 @@ TABLE: dict[str, Maker] = {
     "contexts": Maker(
         "Do parameters that follow the ground do better than one set for all grounds?",
         Contexts(),
-        {"seeds": 1, "budget": 8, "episodes": 1, "time_limit": 1.1},
+        {"seeds": 1, "budget": 2, "episodes": 1, "time_limit": 1.1},
     ),
     "transfer_stepping": Maker(
         "How much of its score does a First Training keep in the other engine?",
