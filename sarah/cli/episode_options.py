@@ -32,6 +32,13 @@ if TYPE_CHECKING:
 
 NOBODY = Push(newtons=(0.0, 0.0))
 """Push of nobody, where a task has none."""
+SET_TWICE = (
+    ("--engine", "--episode.engine"),
+    ("--physics", "--episode.physics.rate"),
+    ("--physics", "--episode.physics.solver-iterations"),
+    ("--physics", "--episode.physics.added-plate-inertia"),
+)
+"""Short options, each with an option of the episode's settings that it would overrule."""
 
 
 @dataclass(frozen=True)
@@ -195,6 +202,8 @@ def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tupl
     elif subject.strip(" +-.")[:1].isdigit():
         given = episode_of_parameters(numbers("parameters", subject), task)
     else:
+        if Path(subject).is_file():
+            raise ConfigurationError(f"{shortened(subject)} is a file: name the run folder that it is in")
         names = unknown_name("name of parameters", subject, PARAMETER_SETS)
         raise ConfigurationError(
             f"{shortened(subject)} is neither a run folder, nor numbers separated by commas: {names}"
@@ -268,11 +277,15 @@ def check_has(config: EpisodeConfig, name: str, option: str) -> None:
 
 
 def check_episode_options(arguments: Sequence[str], config: EpisodeConfig) -> None:
-    """Refuse ``--episode.…`` options whose settings only another task has.
+    """Refuse ``--episode.…`` options whose settings only another task has, or that a short option sets as well.
 
     :param arguments: all arguments of a command
     :param config: settings of the task's episodes
     """
+    names = [argument.partition("=")[0] for argument in arguments]
+    for short, long in SET_TWICE:
+        if short in names and long in names:
+            raise ConfigurationError(f"{short} and {long} set the same: give one of them")
     for argument in arguments:
         name = argument.removeprefix("--episode.").split(".")[0].replace("-", "_")
         if argument.startswith("--episode.") and any(hasattr(task.episode, name) for task in TASKS.values()):

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from sarah.sessions.session_folder import SessionFolder
 
 COMMAND = "sarah-operate"
+WITHOUT_EFFECT = ("--episode.time-limit", "--episode.push.at-seconds")
+"""Options of episodes that an operation, which goes on and is pushed again and again, does not know."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +75,9 @@ def main() -> None:
 
 
 def _operate(arguments: Sequence[str]) -> None:
+    for argument in arguments:
+        if argument.partition("=")[0] in WITHOUT_EFFECT:
+            raise ConfigurationError(f"{argument} has no effect in an operation: leave it out")
     options = parse_episode_options(COMMAND, arguments, OperateOptions(), adapted=_of_operation)
     from sarah.runs.run_folder import new_run_path
     from sarah.sessions.session_folder import SessionFolder

@@ -28,6 +28,7 @@ class RunEpisode:
     :param score: score that the run folder has for it; ``None`` if it was not simulated there
     :param recorded: function that simulates it with a trace, if it is more than its specification says: a window of a
         robot that goes on
+    :param next_name: name of the episode that goes on where this one ends, if there is one
     """
 
     name: str
@@ -35,13 +36,14 @@ class RunEpisode:
     spec: EpisodeSpec
     score: float | None = None
     recorded: Callable[[], EpisodeResult] | None = None
+    next_name: str | None = None
 
     def of(self, spec: EpisodeSpec) -> RunEpisode:
         """Make the same choice of another specification; what the run folder knows is of its own one only.
 
         :param spec: specification of the episode
         """
-        return self if spec == self.spec else replace(self, spec=spec, score=None, recorded=None)
+        return self if spec == self.spec else replace(self, spec=spec, score=None, recorded=None, next_name=None)
 
 
 def learned_episode(run: RunFolder) -> RunEpisode:

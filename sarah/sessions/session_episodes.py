@@ -37,8 +37,8 @@ def learned_of_session(path: Path) -> RunEpisode:
 def episodes_of_session(path: Path) -> list[RunEpisode]:
     """Episodes of a session: the parameters that it ended with, those of the best window, and those of every window.
 
-    The viewer plays each window as it was. For other commands it is an episode of its own, from standing, on the robot
-    as it was in the window.
+    The viewer plays each window as it was, and goes on with the next one. For other commands it is an episode of its
+    own, from standing, on the robot as it was in the window.
 
     :param path: path of the session's folder, which need not be finished
     :raises RunFolderError: if a file of it cannot be read, or if it has no window
@@ -48,33 +48,52 @@ def episodes_of_session(path: Path) -> list[RunEpisode]:
     shown = [learned_of_session(path)] if folder.is_finished else []
     if not windows:
         raise RunFolderError(f"{path} has no windows to show yet")
-    episodes = [_episode(spec, windows, window) for window in windows]
+    replay = SessionReplay(spec, windows)
+    episodes = [_episode(spec, replay, window, window is windows[-1]) for window in windows]
     best = episodes[max(range(len(windows)), key=lambda index: windows[index].score)]
     return [*shown, replace(best, name="best", label=f"best: {best.label}"), *episodes]
 
 
-def _episode(spec: SessionSpec, windows: Sequence[Window], window: Window) -> RunEpisode:
+def _episode(spec: SessionSpec, replay: SessionReplay, window: Window, is_last: bool) -> RunEpisode:
     fell = ", fell" if window.fell else ""
     label = f"window {window.index} · {window.begin / 60.0:.1f} min · score {window.score:.2f}{fell}"
-    episode = episode_spec(window.parameters, spec, window.changes)
-    return RunEpisode(str(window.index), label, episode, recorded=partial(replayed, spec, windows, window))
+    return RunEpisode(
+        str(window.index),
+        label,
+        episode_spec(window.parameters, spec, window.changes),
+        recorded=partial(replay.record, window.index),
+        next_name=None if is_last else str(window.index + 1),
+    )
 
 
-def replayed(spec: SessionSpec, windows: Sequence[Window], window: Window) -> EpisodeResult:
-    """Simulate one window of a session again, from where the robot stood up last.
+class SessionReplay:
+    """A session's robot, which runs its windows again.
 
     :param spec: specification of the session
-    :param windows: all windows before it, and perhaps others
-    :param window: window to simulate
-    :return: it as the result of an episode, with a trace
+    :param windows: its windows, in order
     """
-    robot = RobotInOperation(spec.config, spec.seed)
-    try:
-        for before in windows[: window.index]:
-            robot.skip(before)
-        return robot.replay(window)
-    finally:
-        robot.close()
+
+    def __init__(self, spec: SessionSpec, windows: Sequence[Window]) -> None:
+        self._spec = spec
+        self._windows = windows
+        self._robot: RobotInOperation | None = None
+
+    def record(self, index: int) -> EpisodeResult:
+        """Run one window again: on from the one before if that was the last, or else from where the robot stood up.
+
+        :param index: number of the window
+        :return: it as the result of an episode, with a trace
+        """
+        robot, self._robot = self._robot, None
+        if robot is None or robot.windows != index:
+            if robot is not None:
+                robot.close()
+            robot = RobotInOperation(self._spec.config, self._spec.seed)
+            for before in self._windows[:index]:
+                robot.skip(before)
+        result = robot.replay(self._windows[index])
+        self._robot = robot
+        return result
 
 
 def episode_spec(parameters: Parameters, spec: SessionSpec, changes: int) -> EpisodeSpec:

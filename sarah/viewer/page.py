@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import html
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import viser
 
-from sarah.episode.ending import ending_words
-from sarah.episode.result import METRICS, EpisodeResult
+from sarah.episode.result import EpisodeResult
 from sarah.episode.running_robot import conditions_of
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, Task
-from sarah.episode.trace import Trace
 from sarah.robot.description import describe_robot
 from sarah.robot.reading import Side
 from sarah.runs.run_episodes import RunEpisode
@@ -24,6 +21,7 @@ from sarah.simulation.terrain import draw_ground
 from sarah.viewer.background import BackgroundSimulation, Wish
 from sarah.viewer.playback import Playback
 from sarah.viewer.plots import Plots
+from sarah.viewer.results import Shown, comparison, paragraph
 from sarah.viewer.scenario import NO_PUSH, KnownPush, Scenario
 from sarah.viewer.scene import RobotScene, describe_tick
 
@@ -34,19 +32,6 @@ LARGEST_SLOPE, HIGHEST_BUMPS, LARGEST_FRICTION = 15.0, 30.0, 1.5
 """Upper ends of the ground's sliders: degrees, mm, and a coefficient."""
 LARGEST_PUSH = 200.0
 """Upper end of the force's slider, in N."""
-
-
-class Shown(NamedTuple):
-    """An episode on the page.
-
-    :param scenario: parameters, push, seed and settings of the episode
-    :param result: result of the episode
-    :param trace: record of its control ticks
-    """
-
-    scenario: Scenario
-    result: EpisodeResult
-    trace: Trace
 
 
 class Page:
@@ -67,7 +52,7 @@ class Page:
         self._before: Shown | None = None
         self._lock = threading.RLock()
         self.frames = 0
-        self._playback = Playback(self._show)
+        self._playback = Playback(self._show, self._play_on)
         self._scene = RobotScene(server, describe_robot(chosen.spec.config.dimensions))
         self._plots = Plots(server.gui)
         self._gui = server.gui
@@ -86,7 +71,7 @@ class Page:
 
     def _build(self) -> None:
         gui = self._gui
-        self._status = gui.add_html(_paragraph("", ""))
+        self._status = gui.add_html(paragraph("", ""))
         with gui.add_folder("Play"):
             self._time = gui.add_slider("Time (s)", min=1.0, max=30.0, step=0.01, initial_value=1.0)
             self._play_button = gui.add_button("Play")
@@ -164,6 +149,17 @@ class Page:
             self._set_sliders(self._wanted)
         self._simulate(choice.spec, self._wanted, recorded=choice.recorded)
 
+    def _play_on(self) -> None:
+        """Go on with the next window of a session, unless the user has changed this one."""
+        with self._lock:
+            following = self._choice_named(self._chosen.next_name)
+            if following is not None and self._wanted == Scenario.of(self._chosen.spec):
+                _set(self._choice, following.label)
+                self._play_choice(following)
+
+    def _choice_named(self, name: str | None) -> RunEpisode | None:
+        return next((choice for choice in self._choices.values() if choice.name == name), None)
+
     def _change_parameter(self, name: str, index: int, value: float) -> None:
         with self._lock:
             values = list(getattr(self._wanted, name))
@@ -227,8 +223,8 @@ class Page:
             self._time.min = begin
             self._scene.load(result.trace, draw_ground(scenario.terrain, scenario.seed))
             self._plots.load(result.trace, scenario)
-            self._news.content = _paragraph("")
-            self._table.content = _comparison(self._shown, self._before, self._noted_score(scenario))
+            self._news.content = paragraph("")
+            self._table.content = comparison(self._shown, self._before, self._noted_score(scenario))
         self._playback.load(begin, end, begin if play_from is None else play_from)
         self._playback.play()
 
@@ -248,20 +244,15 @@ class Page:
             is_playing = self._playback.is_playing
             if self.frames % 3 == 0 or not is_playing:
                 _set(self._time, round(time, 2))
-                self._status.content = _paragraph(*describe_tick(self._shown.trace, tick))
+                self._status.content = paragraph(*describe_tick(self._shown.trace, tick))
             # The label comes last, so that nothing overwrites a time that is typed in when the label is "Play".
             self._play_button.label = "Pause" if is_playing else "Play"
 
     def _show_progress(self, share: float) -> None:
-        self._news.content = _paragraph(f"simulating: {share:.0%}")
+        self._news.content = paragraph(f"simulating: {share:.0%}")
 
     def _show_failure(self, message: str) -> None:
-        self._news.content = _paragraph(f"this episode cannot be simulated: {message}")
-
-
-def _paragraph(*lines: str) -> str:
-    text = "<br>".join(html.escape(line) or "&nbsp;" for line in lines)
-    return f"<div style='padding: 0.2em 0.9em; font-size: 0.85em; line-height: 1.4'>{text}</div>"
+        self._news.content = paragraph(f"this episode cannot be simulated: {message}")
 
 
 def _set(handle: Any, value: Any) -> None:
@@ -276,25 +267,3 @@ def _on_user(handle: Any, do: Callable[[Any], None]) -> None:
     def _(event: Any) -> None:
         if event.client is not None:
             do(handle.value)
-
-
-def _ending(result: EpisodeResult) -> str:
-    """Way in which an episode ended, and the time if it ended early."""
-    return ending_words(result.termination) + ("" if result.survived else f" at {result.duration:.1f} s")
-
-
-def _comparison(shown: Shown, before: Shown | None, noted_score: float | None) -> str:
-    """Table of the results, beside those of the episode that was shown before."""
-    rows = [("", "now", "before"), ("", _ending(shown.result), _ending(before.result) if before is not None else "")]
-    for name, metric in METRICS.items():
-        if metric.statistics:
-            now, then = (one and metric.text(getattr(one.result, name)) for one in (shown, before))
-            rows.append((metric.label, now or "", then or ""))
-    lines = [f"<tr><td>{name}</td><td><b>{now}</b></td><td>{old}</td></tr>" for name, now, old in rows]
-    note = ""
-    if noted_score is not None and abs(noted_score - shown.result.score) > 1e-9:
-        note = f"<p>The run folder has a score of {noted_score:.3f}: another version simulated this episode.</p>"
-    return (
-        "<div style='padding: 0 0.8em; font-size: 0.8em'><table id='results' style='width: 100%; line-height: 1.35'>"
-        f"{''.join(lines)}</table>{note}</div>"
-    )

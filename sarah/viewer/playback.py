@@ -13,13 +13,15 @@ class Playback:
     """Plays a span of simulated time, in a thread of its own.
 
     :param show: function that is called for each frame with its simulated time, in s
+    :param ended: function that is called after the last frame, if the clock ran to it
     """
 
-    def __init__(self, show: Callable[[float], None]) -> None:
+    def __init__(self, show: Callable[[float], None], ended: Callable[[], None] = lambda: None) -> None:
         self.time = 0.0
         self.speed = 1.0
         self.is_playing = False
         self._show = show
+        self._ended = ended
         self._begin = self._end = 0.0
         self._needs_frame = False
         self._lock = threading.RLock()
@@ -72,12 +74,16 @@ class Playback:
             now = clock.perf_counter()
             due = max(due + 1.0 / FRAMES_PER_SECOND, now - 1.0 / FRAMES_PER_SECOND)  # one late frame is caught up
             with self._lock:
+                was_playing = self.is_playing
                 self._advance(now - last)
+                has_ended = was_playing and not self.is_playing
                 frame = self.time if self._needs_frame else None
                 self._needs_frame = False
             last = now
             if frame is not None:
                 self._show(frame)
+            if has_ended:
+                self._ended()
 
     def _advance(self, seconds: float) -> None:
         if not self.is_playing:

@@ -32,7 +32,7 @@ MISTAKES = {
     ],
     "sarah-eval": [
         ("full", "not the folder of a finished training"),
-        ("full/precious.txt", "is neither a run folder, nor numbers separated by commas: unknown name"),
+        ("full/precious.txt", "'full/precious.txt' is a file: name the run folder that it is in"),
         ("nowhere", "'nowhere' is neither a run folder, nor numbers"),
         ("steping", "did you mean 'stepping'?"),
         ("balance --task stepping", "'balance' are parameters of task 'balance': give others, or leave --task out"),
@@ -54,6 +54,8 @@ MISTAKES = {
         (f"{GIVEN} --first-seed 5000000000", "first-seed must be between 0 and 4.29497e+09"),
         (f"{GIVEN} --physic reference", "Unrecognized options: --physic"),
         (f"{GIVEN} --physics refrence", "unknown physics 'refrence', did you mean 'reference'?"),
+        (f"{GIVEN} --engine mujoco --episode.engine=pybullet", "--engine and --episode.engine set the same"),
+        (f"{GIVEN} --physics reference --episode.physics.rate 500", "--episode.physics.rate set the same: give one"),
         (f"{GIVEN} --episode.stepping 1 1 1 1 1", "--episode.stepping is for --task balance"),
         (f"{GIVEN} --episode.terrain.slope-degrees 5 2", "terrain.slope_degrees must be between 0 and 45 degrees"),
         (f"{GIVEN} --episode.terrain.slope 5", "did you mean --episode.terrain.slope-degrees?"),

@@ -143,11 +143,11 @@ def test_every_window_is_an_episode_to_look_at(whole: tuple[Path, SessionResult]
 
 
 def test_every_window_can_be_played_as_it_was(whole: tuple[Path, SessionResult]) -> None:
-    """Also after a fall, and after the change: the recording disturbs nothing."""
+    """In order and backwards, after a fall, and after the change: the recording disturbs nothing."""
     path, result = whole
     episodes = {episode.name: episode for episode in episodes_of_session(path)}
     assert SessionFolder(path).windows() == list(result.windows)
-    for window in result.windows:
+    for window in (*result.windows, *reversed(result.windows)):
         recorded = episodes[str(window.index)].recorded
         assert recorded is not None
         played = recorded()
@@ -157,6 +157,14 @@ def test_every_window_can_be_played_as_it_was(whole: tuple[Path, SessionResult])
         stands = before is None or before.fell or before.changes != window.changes
         assert played.trace.time[0] - window.begin == pytest.approx(1.0 if stands else 0.0)
         assert played.trace.time[-1] < window.end
+
+
+def test_a_window_names_the_one_that_goes_on_where_it_ends(whole: tuple[Path, SessionResult]) -> None:
+    *learned, first, last = episodes_of_session(whole[0])
+    assert first.next_name == last.name and last.next_name is None
+    assert all(episode.next_name is None for episode in learned if episode.name == "learned")
+    other = dataclasses.replace(first.spec, seed=first.spec.seed + 1)
+    assert first.of(other).next_name is None
 
 
 def test_a_folder_that_is_not_empty_is_refused(whole: tuple[Path, SessionResult], tmp_path: Path) -> None:

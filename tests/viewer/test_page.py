@@ -1,6 +1,7 @@
 """The page in a real browser."""
 
 import base64
+import contextlib
 import dataclasses
 import io
 import re
@@ -17,9 +18,13 @@ import pytest
 from terminal import BIN
 
 from sarah.episode.episode import simulate
+from sarah.operation.settings import OperationConfig
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.runs.run_episodes import episodes_of_run
 from sarah.runs.run_folder import RunFolder
+from sarah.sessions.operate import operate
+from sarah.sessions.session import SessionSpec
+from sarah.sessions.session_folder import SessionFolder
 from sarah.viewer.scenario import Scenario
 from sarah.viewer.scene import channels, describe_tick
 
@@ -41,10 +46,10 @@ def browser() -> Iterator[Any]:
         browser.close()
 
 
-@pytest.fixture(scope="module")
-def page(browser: Any, run: RunFolder) -> Iterator[Any]:
-    """The page of the run, with its first episode."""
-    server = subprocess.Popen([BIN / "sarah-view", run.path], stdout=subprocess.PIPE, text=True)
+@contextlib.contextmanager
+def page_of(browser: Any, *arguments: str | Path) -> Iterator[Any]:
+    """The page of sarah-view, in the browser."""
+    server = subprocess.Popen([BIN / "sarah-view", *arguments], stdout=subprocess.PIPE, text=True)
     try:
         assert server.stdout is not None
         url = re.search(r"http://127\.0\.0\.1:\d+", server.stdout.readline())
@@ -53,14 +58,21 @@ def page(browser: Any, run: RunFolder) -> Iterator[Any]:
         page.set_default_timeout(PATIENCE)
         page.goto(url[0])
         page.locator("#results").get_by_text("before").wait_for(state="attached")
+        yield page
+    finally:
+        server.terminate()
+        server.wait(30)
+
+
+@pytest.fixture(scope="module")
+def page(browser: Any, run: RunFolder) -> Iterator[Any]:
+    """The page of the run, with its first episode."""
+    with page_of(browser, run.path) as page:
         field(page, "Show").click()
         page.get_by_role("option").get_by_text("2 s", exact=True).click()
         field(page, "Speed").click()  # no episode ends before a test has looked at it
         page.get_by_role("option").get_by_text("1/10").click()
         yield page
-    finally:
-        server.terminate()
-        server.wait(30)
 
 
 def picture(page: Any) -> np.ndarray:
@@ -248,6 +260,15 @@ def floor_of(page: Any) -> np.ndarray:
     """Mean brightness of parts of the picture's lower half."""
     pixels = picture(page).mean(axis=2)
     return np.array([part.mean() for part in np.array_split(pixels[len(pixels) // 2 :], 8, axis=1)])
+
+
+def test_a_session_plays_on_from_window_to_window(browser: Any, tmp_path: Path) -> None:
+    config = OperationConfig(minutes=0.1, settle_seconds=0.5, measure_seconds=1.5)
+    spec = SessionSpec(learner="none", config=config)
+    operate(SessionFolder.create(tmp_path / "session", spec), spec)
+    with page_of(browser, tmp_path / "session", "--which", "0") as page:
+        eventually(lambda: field(page, "Episode").input_value().startswith("window 2"))
+        page.get_by_text(re.compile(r"^[567]\.\d s · ")).first.wait_for()  # time of operation
 
 
 def test_an_exported_episode_plays_without_server_and_network(browser: Any, run: RunFolder, tmp_path: Path) -> None:

@@ -26,16 +26,21 @@ def test_playback_goes_on_by_the_clock_and_stops_at_the_end() -> None:
         if time == 3.0:
             ended.set()
 
-    playback = Playback(show)
+    ends: list[float] = []
+    playback = Playback(show, lambda: ends.append(shown[-1]))
     playback.load(1.0, 3.0, 2.5)
     playback.speed = 2.0
     began = time.monotonic()
     playback.start()
     playback.play()
-    assert ended.wait(10.0)
+    assert ended.wait(10.0) and not ends[1:]
     assert time.monotonic() - began >= 0.25
     assert shown[0] < 2.9 and sorted(shown) == shown and len(shown) > 2
     assert not playback.is_playing
+    playback.seek(2.0)
+    playback.seek(3.0)
+    time.sleep(0.2)
+    assert ends == [3.0]  # when the clock came there, not when a user did
     playback.play()
     assert playback.time < 3.0  # from the beginning
     playback.close()
