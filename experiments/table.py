@@ -128,7 +128,7 @@ TABLE: dict[str, Maker] = {
     "operation": Maker(
         "What is it worth to renew parameters while the robot runs?",
         Operation(),
-        {"seeds": 1, "other_seeds": 1, "minutes": 0.2, "best_seeds": 1, "best_minutes": 0.2},
+        {"seeds": 1, "other_seeds": 1, "minutes": 0.1, "best_seeds": 1, "best_minutes": 0.1},
     ),
     "observed_reward": Maker(
         "Does the reward that the robot observes rank parameters as equation 2 does?",

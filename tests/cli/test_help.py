@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from terminal import run
+from terminal import run_afresh
 
 from sarah.runs.agent_settings import AGENT_SETTINGS
 
@@ -40,7 +40,7 @@ from sarah.runs.agent_settings import AGENT_SETTINGS
     ],
 )
 def test_help_names_the_options(command: str, options: tuple[str, ...], tmp_path: Path) -> None:
-    process = run(command, "--help", cwd=tmp_path)
+    process = run_afresh(command, "--help", cwd=tmp_path)
     assert process.returncode == 0
     text = " ".join(process.stdout.replace("│", " ").split())
     assert [option for option in options if option not in text] == []

@@ -62,7 +62,7 @@ def test_pattern_generator_keeps_to_limits_and_rates_and_never_sticks(
     assert control_rate != 50 or entered == set(Phase)
 
 
-@settings(max_examples=300, deadline=None, derandomize=True)
+@settings(max_examples=100, deadline=None, derandomize=True)
 @given(
     limits=st.tuples(*[RANGE] * 6),
     ticks=st.lists(st.tuples(READING, SECONDS, CHANGE, st.integers(1, 120)), max_size=12),

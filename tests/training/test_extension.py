@@ -71,6 +71,7 @@ def test_a_cut_extension_goes_on_to_the_same_end(extended: tuple[str, Path]) -> 
             assert (copy / name).read_bytes() == (folder / "run" / name).read_bytes()
 
 
+@pytest.mark.parametrize("extended", ["naf"], indirect=True)
 def test_an_extension_without_workers_leaves_the_training_finished(extended: tuple[str, Path]) -> None:
     _, folder = extended
     before = tree(folder / "run")
