@@ -9,6 +9,7 @@ import pytest
 from imageio_ffmpeg import count_frames_and_secs
 from laboratory import need
 from PIL import Image
+from terminal import run
 
 from sarah.episode.episode import simulate
 from sarah.episode.push import Push
@@ -19,7 +20,6 @@ from sarah.errors import ConfigurationError
 from sarah.pictures.video import GIF_SIZE, HEIGHT, WIDTH, check_path, frame_times, frames
 from sarah.robot.description import describe_robot
 
-BIN = Path(sys.executable).parent
 PUSHED = BalanceConfig(time_limit=2.5, push=Push((100.0, 100.0), (180.0, 180.0), (1.5, 1.5)))
 
 
@@ -80,13 +80,13 @@ def test_mp4_without_the_extra_is_refused_by_its_name(monkeypatch: pytest.Monkey
     check_path(Path("a.gif"))
 
 
-def run(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+def filmed(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     need("pybullet")
-    return subprocess.run([BIN / "sarah-video", *arguments], capture_output=True, text=True, cwd=cwd, timeout=300)
+    return run("sarah-video", *arguments, cwd=cwd)
 
 
 def test_command_films_given_parameters(tmp_path: Path) -> None:
-    process = run("0.4,1.3,0.1,1,1", "a.mp4", "--seconds", "2", "2.4", cwd=tmp_path)
+    process = filmed("0.4,1.3,0.1,1,1", "a.mp4", "--seconds", "2", "2.4", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     assert process.stdout == "a.mp4\n" and "filming" in process.stderr
     assert count_frames_and_secs(tmp_path / "a.mp4") == (11, pytest.approx(0.44, abs=0.05))
@@ -97,14 +97,14 @@ def test_command_films_given_parameters(tmp_path: Path) -> None:
 def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("work") / "mine"
     arguments = ("--episodes", "4", "--slots", "1", "--episode.time-limit", "1.5", "--run-dir", str(folder))
-    subprocess.run([BIN / "sarah-train", "--algo", "random", *arguments], check=True, capture_output=True)
+    assert run("sarah-train", "--algo", "random", *arguments, cwd=folder.parent).returncode == 0
     return folder
 
 
 def test_command_films_any_episode_of_a_run(run_folder: Path, tmp_path: Path) -> None:
     pictures = {}
     for episode in ("learned", "2"):
-        process = run(str(run_folder), "a.gif", "--which", episode, "--seconds", "1.2", "1.3", cwd=tmp_path)
+        process = filmed(str(run_folder), "a.gif", "--which", episode, "--seconds", "1.2", "1.3", cwd=tmp_path)
         assert process.returncode == 0, process.stderr
         with Image.open(tmp_path / "a.gif") as film:
             assert film.size == GIF_SIZE and film.n_frames == 3 and film.info["loop"] == 0

@@ -4,11 +4,10 @@ import base64
 import dataclasses
 import json
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+import terminal
 from laboratory import NEEDS_PYBULLET
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 from tensorboard.plugins.hparams.plugin_data_pb2 import HParamsPluginData
@@ -21,7 +20,6 @@ from sarah.simulation.physics import Physics
 from sarah.training import train as training
 from sarah.training.train import train
 
-COMMAND = Path(sys.executable).with_name("sarah-report")
 PHYSICS = Physics(rate=100, solver_iterations=10, control_rate=100)
 
 
@@ -45,8 +43,8 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, RunFolder]:
 @pytest.mark.parametrize("task", TASKS)
 def test_report_is_a_page_that_needs_nothing_else(task: str, runs: dict[str, RunFolder], tmp_path: Path) -> None:
     run, page = runs[task], tmp_path / "page.html"
-    arguments = (run.path, "--out", page, "--episodes", "2", "--seconds", "1", "1.2")
-    process = subprocess.run([COMMAND, *arguments], capture_output=True, text=True, cwd=tmp_path, timeout=300)
+    arguments = (str(run.path), "--out", str(page), "--episodes", "2", "--seconds", "1", "1.2")
+    process = terminal.run("sarah-report", *arguments, cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     assert process.stdout == f"{page}\n" and [path.name for path in tmp_path.iterdir()] == ["page.html"]
     text = page.read_text(encoding="utf-8")
@@ -72,7 +70,7 @@ def test_report_says_what_it_cannot_do(tmp_path: Path) -> None:
         (["nowhere"], "run folder nowhere does not exist"),
         (["nowhere", "--seconds", "3", "2"], "seconds must be in rising order"),
     ):
-        process = subprocess.run([COMMAND, *arguments], capture_output=True, text=True, cwd=tmp_path, timeout=60)
+        process = terminal.run("sarah-report", *arguments, cwd=tmp_path)
         assert process.returncode == 2 and message in process.stderr and process.stderr.count("\n") == 1
 
 

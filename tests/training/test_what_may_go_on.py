@@ -4,14 +4,13 @@ import dataclasses
 import hashlib
 import re
 import shutil
-import subprocess
-import sys
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
+import terminal
 import yaml
 from interrupted import EPISODE, INTERRUPTED, begun, content, go_on, interrupted
 
@@ -28,8 +27,6 @@ from sarah.runs.run_folder import RunFolder
 from sarah.training import train as training
 from sarah.training.train import train
 from sarah.versions import LEARNING, source_hash, versions
-
-COMMAND = Path(sys.executable).with_name("sarah-train")
 
 
 def others(value: Any) -> Iterator[Any]:
@@ -142,7 +139,7 @@ def test_the_command_names_what_was_edited_and_changes_nothing(tmp_path: Path) -
     path = run.path / "config.yaml"
     path.write_text(path.read_text().replace("time_limit: 1.2", "time_limit: 2.4").replace("seed: 0", "seed: 1"))
     before = content(run)
-    resumed = subprocess.run([COMMAND, "--resume", "run"], cwd=tmp_path, capture_output=True, text=True)
+    resumed = terminal.run("sarah-train", "--resume", "run", cwd=tmp_path)
     assert resumed.returncode != 0
     assert resumed.stderr.splitlines()[-1] == (
         "sarah-train: error: run cannot be resumed: seed is 1 here, and 0 in this training; episode.time_limit is 2.4 "
