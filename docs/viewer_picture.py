@@ -13,19 +13,19 @@ from pathlib import Path
 from playwright.sync_api import Page as Tab
 from playwright.sync_api import sync_playwright
 
-from sarah.runs.run_episodes import episode_of_parameters
+from sarah.episode.parameter_sets import PARAMETER_SETS
+from sarah.runs.run_episodes import RunEpisode
 from sarah.viewer.page import Page
 from sarah.viewer.server import serving
 
 OUT = Path(__file__).parent / "viewer.png"
-PARAMETERS = (1.06, -0.24, 0.21, -0.15)
 WIDTH, HEIGHT = 1440, 900
 PATIENCE_MILLISECONDS, SETTLING_SECONDS = 300_000, 5.0
 
 
 def main() -> None:
     with serving("127.0.0.1", 8080) as server, sync_playwright() as driver:
-        episode = episode_of_parameters(PARAMETERS)
+        episode = RunEpisode("balance", "balance · seed 0", PARAMETER_SETS["balance"].spec)
         page = Page(server, [episode], episode)
         tab = driver.chromium.launch(executable_path=shutil.which("chromium")).new_page(
             viewport={"width": WIDTH, "height": HEIGHT}
