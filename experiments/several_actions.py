@@ -29,7 +29,7 @@ from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from experiments.experiment import OnWorkers
 from experiments.linear_quadratic import Watched
 from experiments.record import Row
-from experiments.trainings import SARAH, identity
+from experiments.trainings import identity
 from sarah.episode.workers import Workers
 from sarah.files import replace_text
 
@@ -65,7 +65,7 @@ class SeveralActions(OnWorkers):
     def rows(self) -> Iterator[Row]:
         """A row for each task, algorithm and evaluation."""
         every = self.steps // self.evaluations
-        size = identity((self.steps, every, self.episodes), SARAH / "agents")
+        size = identity((self.steps, every, self.episodes), ["agents"])
         folder = self.runs / f"several-actions-{size}"
         folder.mkdir(parents=True, exist_ok=True)
         with Workers(self.workers) as workers:

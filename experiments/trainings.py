@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import shutil
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,6 +15,7 @@ from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BalanceConfig
 from sarah.episode.workers import Workers
+from sarah.errors import ResumeError
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import Engine
@@ -20,6 +23,8 @@ from sarah.training.train import train
 from sarah.versions import source_hash, versions
 
 SARAH = Path(sarah.__file__).parent
+LEARNING = ("agents", "control", "envs", "episode", "robot", "runs", "simulation", "training", "urdf")
+"""Packages that the result of a training depends on."""
 EPISODES: dict[str, EpisodeConfig] = {
     "stepping": EpisodeConfig(),
     # Softer pushes hardly tell controllers apart, V3 answers those from front and back, and who falls does so soon.
@@ -54,17 +59,24 @@ class OfTrainings(OnWorkers):
         :param config: settings of the training
         :param workers: who simulates
         """
-        path = self.runs / f"{config.task}-{config.algo}-{config.episodes}-s{config.seed}-{identity(config)}"
+        path = self.runs / f"{config.task}-{config.algo}-{config.episodes}-s{config.seed}-{identity(config, LEARNING)}"
         run = RunFolder.resumable(path) if path.exists() else RunFolder.create(path, config)
-        if not run.is_finished:
+        if run.is_finished:
+            return run
+        try:
+            train(config, run, workers)
+        except ResumeError:  # begun before something else of the package changed
+            shutil.rmtree(path)
+            run = RunFolder.create(path, config)
             train(config, run, workers)
         return run
 
 
-def identity(settings: object, package: Path = SARAH) -> str:
+def identity(settings: object, packages: Sequence[str] = (".",)) -> str:
     """Name for a folder of trainings with these settings, made with today's code and versions.
 
     :param settings: settings of the trainings
-    :param package: folder of the sources that the trainings depend on
+    :param packages: names of the packages that the trainings depend on; by default all of it
     """
-    return short_hash([repr(settings), versions() | {"sarah-sources": source_hash(package)}])
+    sources = [source_hash(SARAH / name) for name in packages]
+    return short_hash([repr(settings), versions() | {"sarah-sources": sources}])
