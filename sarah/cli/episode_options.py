@@ -1,4 +1,4 @@
-"""What a command looks at: a folder, numbers, or the name of shipped parameters; and the settings of its episodes.
+"""Settings of the episodes of what a command looks at.
 
 ``--episode.…`` options begin from the settings of the subject. Which options there are depends on its task and engine,
 so the subject is looked up before the options are parsed.
@@ -12,23 +12,19 @@ import dataclasses
 import io
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args
+from typing import Annotated, Any, TypeVar, get_args
 
 import tyro
 
 from sarah.cli.options import named_task, parse_options
+from sarah.cli.subjects import episode_of, is_shipped, is_there
 from sarah.episode.push import Push, PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
-from sarah.errors import ConfigurationError, shortened, unknown_name
-from sarah.sessions import is_session
+from sarah.errors import ConfigurationError, unknown_name
 from sarah.simulation.engines import Engine
 from sarah.simulation.physics import PHYSICS
-
-if TYPE_CHECKING:
-    from sarah.runs.run_episodes import RunEpisode
 
 NOBODY = Push(newtons=(0.0, 0.0))
 """Push of nobody, where a task has none."""
@@ -130,16 +126,16 @@ def _subject_among(arguments: Sequence[str], default: EpisodeOptions, given: Map
     """
     without = None if "task" in given else getattr(default, "subject", None)
     if {"-h", "--help"} & set(arguments):
-        return next(filter(_is_there, arguments), without)
+        return next(filter(is_there, arguments), without)
     every = dataclasses.replace(default, episode=with_given_engine(BALANCE.episode, given))
     try:
         with contextlib.redirect_stderr(io.StringIO()):
             options: Any = parse_options(type(default), "", arguments, every)
     except (SystemExit, ConfigurationError):  # the real parser will say so
-        return next(filter(_is_there, arguments), without)
+        return next(filter(is_there, arguments), without)
     subjects = getattr(options, "subjects", None)
     subject: str | None = subjects[0] if subjects else getattr(options, "subject", None)
-    return subject if subject is not None and _is_there(subject) else None
+    return subject if subject is not None and is_there(subject) else None
 
 
 def _settings_of(subject: str, which: str | None, task: Task[Any] | None) -> EpisodeConfig:
@@ -149,119 +145,6 @@ def _settings_of(subject: str, which: str | None, task: Task[Any] | None) -> Epi
     if task is None and is_shipped(subject):
         return PARAMETER_SETS[subject].spec.config
     return episode_of(subject, which, task).spec.config
-
-
-def is_shipped(subject: str) -> bool:
-    """Whether a subject is the name of shipped parameters; a run folder of that name goes before.
-
-    :param subject: path of a run folder, numbers separated by commas, or the name of shipped parameters
-    """
-    from sarah.episode.parameter_sets import PARAMETER_SETS
-
-    return subject in PARAMETER_SETS and not Path(subject).is_dir()
-
-
-def _is_there(subject: str) -> bool:
-    """Whether there are settings to begin from; what there is not is reported later."""
-    from sarah.episode.parameter_sets import PARAMETER_SETS
-
-    is_run = Path(subject).joinpath("config.yaml").is_file() or is_session(Path(subject))
-    return subject in PARAMETER_SETS or is_run or ("," in subject and subject.strip(" +-.")[:1].isdigit())
-
-
-def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tuple[list[RunEpisode], RunEpisode]:
-    """Episodes of what a command looks at, and the one to show.
-
-    :param subject: path of a run folder, numbers separated by commas, or the name of shipped parameters
-    :param which: episode of the run folder: ``learned``, ``best`` or an index; ``None`` for the first of these that
-        exists
-    :param task: task of the numbers, or of a run folder whose task is that of a file
-    :raises ConfigurationError: if there is no such subject or episode
-    """
-    from sarah.episode.parameter_sets import PARAMETER_SETS
-    from sarah.runs.run_episodes import RunEpisode, choose_episode, episode_of_parameters, episodes_of_run
-
-    if is_session(Path(subject)):
-        from sarah.sessions.session_episodes import episodes_of_session
-
-        episodes = episodes_of_session(Path(subject))
-        return episodes, choose_episode(episodes, which)
-    if Path(subject).is_dir():
-        from sarah.runs.run_folder import RunFolder
-
-        episodes = episodes_of_run(RunFolder.open(Path(subject), unfinished=True, task=task))
-        return episodes, choose_episode(episodes, which)
-    if which is not None:
-        raise ConfigurationError("--which is for a run folder")
-    if subject in PARAMETER_SETS:
-        given = RunEpisode(subject, f"{subject} · seed 0", PARAMETER_SETS[subject].spec)
-        if task not in (None, given.spec.task):
-            raise ConfigurationError(
-                f"{subject!r} are parameters of task {given.spec.task.name!r}: give others, or leave --task out"
-            )
-    elif subject.strip(" +-.")[:1].isdigit():
-        given = episode_of_parameters(numbers("parameters", subject), task)
-    else:
-        if Path(subject).is_file():
-            raise ConfigurationError(f"{shortened(subject)} is a file: name the run folder that it is in")
-        names = unknown_name("name of parameters", subject, PARAMETER_SETS)
-        raise ConfigurationError(
-            f"{shortened(subject)} is neither a run folder, nor numbers separated by commas: {names}"
-        )
-    return [given], given
-
-
-def episode_of(subject: str, which: str | None, task: Task[Any] | None) -> RunEpisode:
-    """What :func:`episodes_of` would show, found without reading the other episodes of a run folder if possible.
-
-    :param subject: path of a run folder, numbers separated by commas, or the name of shipped parameters
-    :param which: episode of the run folder, as there
-    :param task: task, as there
-    :raises ConfigurationError: if there is no such subject or episode
-    """
-    from sarah.runs.run_episodes import learned_episode
-    from sarah.runs.run_folder import RunFolder
-
-    if Path(subject).is_dir() and not is_session(Path(subject)) and which in (None, "learned"):
-        run = RunFolder.open(Path(subject), unfinished=True, task=task)
-        if run.is_finished:
-            return learned_episode(run)
-    return episodes_of(subject, which, task)[1]
-
-
-def learner_of(subject: str, task: Task[Any] | None) -> str | None:
-    """Name of what learned the parameters of a folder; ``None`` for numbers and shipped parameters.
-
-    :param subject: path of a run folder or a session's, or something else
-    :param task: task of a run folder whose task is that of a file
-    :raises RunFolderError: if the folder has no learned parameters
-    """
-    if is_session(Path(subject)):
-        from sarah.sessions.session_folder import SessionFolder
-
-        session = SessionFolder.open(Path(subject))
-        session.parameters()
-        return session.spec().learner
-    if Path(subject).is_dir():
-        from sarah.runs.run_folder import RunFolder
-
-        run = RunFolder.open(Path(subject), task=task)
-        run.parameters()
-        return run.config().algo
-    return None
-
-
-def numbers(name: str, text: str) -> tuple[float, ...]:
-    """Read numbers that are separated by commas.
-
-    :param name: name of the option in messages
-    :param text: text that a user gave
-    :raises ConfigurationError: if one of them is not a number
-    """
-    try:
-        return tuple(float(value) for value in text.split(","))
-    except ValueError:
-        raise ConfigurationError(f"{name} must be numbers separated by commas, not {text!r}") from None
 
 
 def check_has(config: EpisodeConfig, name: str, option: str) -> None:

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
-from sarah.cli.episode_options import EpisodeOptions, episode_of, is_shipped, learner_of, parse_episode_options
+from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.options import named_task, run_command, say_engine
+from sarah.cli.subjects import episode_of, is_shipped, learner_of
 from sarah.episode.push import PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec

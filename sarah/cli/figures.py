@@ -10,6 +10,7 @@ from typing import Annotated
 import tyro
 
 from sarah.cli.options import named_task, parse_options, run_command
+from sarah.cli.subjects import check_of_training
 from sarah.errors import ConfigurationError
 
 COMMAND = "sarah-figures"
@@ -46,6 +47,8 @@ def _draw(arguments: Sequence[str]) -> None:
         raise ConfigurationError("give at least one run folder")
     if options.out is None and len(options.runs) > 1:
         raise ConfigurationError("several runs need a folder for their figures: --out DIR")
+    for path in options.runs:
+        check_of_training(path)
     from sarah.runs.run_folder import RunFolder
 
     task = named_task(options.task)

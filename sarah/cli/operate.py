@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
-from sarah.cli.episode_options import NOBODY, EpisodeOptions, episode_of, given_options, parse_episode_options
+from sarah.cli.episode_options import NOBODY, EpisodeOptions, given_options, parse_episode_options
 from sarah.cli.interruption import Interruption
 from sarah.cli.options import named_task, run_command, say_engine
+from sarah.cli.subjects import episode_of
 from sarah.episode.push import PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec

@@ -10,6 +10,7 @@ from typing import Annotated
 import tyro
 
 from sarah.cli.options import named_task, parse_options, run_command
+from sarah.cli.subjects import check_of_training
 from sarah.errors import ConfigurationError
 
 COMMAND = "sarah-report"
@@ -56,6 +57,7 @@ def _report(arguments: Sequence[str]) -> None:
     options = parse_options(ReportOptions, COMMAND, arguments, ReportOptions())
     if options.run is None:
         raise ConfigurationError("give a run folder")
+    check_of_training(options.run)
     from sarah.episode.workers import Workers
     from sarah.reports.report import write_report
     from sarah.runs.run_folder import RunFolder

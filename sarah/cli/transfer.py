@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.episode_options import EpisodeOptions, episode_of, learner_of, parse_episode_options
+from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.options import named_task, run_command
+from sarah.cli.subjects import episode_of, learner_of
 from sarah.episode.spec import FIRST_EVALUATION_SEED
 from sarah.errors import ConfigurationError
 

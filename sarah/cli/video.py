@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.episode_options import EpisodeOptions, episode_of, parse_episode_options
+from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.options import named_task, run_command
+from sarah.cli.subjects import episode_of
 from sarah.errors import ConfigurationError
 
 if TYPE_CHECKING:

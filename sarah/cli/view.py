@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.episode_options import EpisodeOptions, episodes_of, is_shipped, parse_episode_options
+from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.options import named_task, run_command, say_engine
+from sarah.cli.subjects import episodes_of, is_shipped
 from sarah.errors import ConfigurationError
 
 if TYPE_CHECKING:

@@ -52,6 +52,13 @@ def test_other_commands_take_its_folder(operated: Path) -> None:
     assert [float(value) for value in first[4:13]] == list(left.values())
 
 
+@pytest.mark.parametrize("command", ["sarah-report", "sarah-figures"])
+def test_what_is_for_trainings_says_so(operated: Path, command: str) -> None:
+    process = run(command, "mine", cwd=operated.parent)
+    refusal = f"{command}: error: mine is the folder of a session, not of a training: session.png in it is its figure\n"
+    assert process.returncode == 2 and process.stderr == refusal
+
+
 def test_a_change_that_came_too_late_is_named(tmp_path: Path) -> None:
     arguments = ("--minutes", "0.2", "--learner", "none", *QUICK)
     process = run("sarah-operate", "--change", "0.1: payload=5", "--change", "0.2: payload=6", *arguments, cwd=tmp_path)

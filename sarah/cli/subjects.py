@@ -1,0 +1,139 @@
+"""What a command looks at: a folder, numbers, or the name of shipped parameters."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sarah.episode.tasks import Task
+from sarah.errors import ConfigurationError, RunFolderError, shortened, unknown_name
+from sarah.sessions import is_session
+
+if TYPE_CHECKING:
+    from sarah.runs.run_episodes import RunEpisode
+
+
+def is_shipped(subject: str) -> bool:
+    """Whether a subject is the name of shipped parameters; a run folder of that name goes before.
+
+    :param subject: path of a run folder, numbers separated by commas, or the name of shipped parameters
+    """
+    from sarah.episode.parameter_sets import PARAMETER_SETS
+
+    return subject in PARAMETER_SETS and not Path(subject).is_dir()
+
+
+def is_there(subject: str) -> bool:
+    """Whether there are settings to begin from; what there is not is reported later.
+
+    :param subject: what an argument names
+    """
+    from sarah.episode.parameter_sets import PARAMETER_SETS
+
+    is_run = Path(subject).joinpath("config.yaml").is_file() or is_session(Path(subject))
+    return subject in PARAMETER_SETS or is_run or ("," in subject and subject.strip(" +-.")[:1].isdigit())
+
+
+def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tuple[list[RunEpisode], RunEpisode]:
+    """Episodes of what a command looks at, and the one to show.
+
+    :param subject: path of a run folder, numbers separated by commas, or the name of shipped parameters
+    :param which: episode of the run folder: ``learned``, ``best`` or an index; ``None`` for the first of these that
+        exists
+    :param task: task of the numbers, or of a run folder whose task is that of a file
+    :raises ConfigurationError: if there is no such subject or episode
+    """
+    from sarah.episode.parameter_sets import PARAMETER_SETS
+    from sarah.runs.run_episodes import RunEpisode, choose_episode, episode_of_parameters, episodes_of_run
+
+    if is_session(Path(subject)):
+        from sarah.sessions.session_episodes import episodes_of_session
+
+        episodes = episodes_of_session(Path(subject))
+        return episodes, choose_episode(episodes, which)
+    if Path(subject).is_dir():
+        from sarah.runs.run_folder import RunFolder
+
+        episodes = episodes_of_run(RunFolder.open(Path(subject), unfinished=True, task=task))
+        return episodes, choose_episode(episodes, which)
+    if which is not None:
+        raise ConfigurationError("--which is for a run folder")
+    if subject in PARAMETER_SETS:
+        given = RunEpisode(subject, f"{subject} · seed 0", PARAMETER_SETS[subject].spec)
+        if task not in (None, given.spec.task):
+            raise ConfigurationError(
+                f"{subject!r} are parameters of task {given.spec.task.name!r}: give others, or leave --task out"
+            )
+    elif subject.strip(" +-.")[:1].isdigit():
+        given = episode_of_parameters(numbers("parameters", subject), task)
+    else:
+        if Path(subject).is_file():
+            raise ConfigurationError(f"{shortened(subject)} is a file: name the run folder that it is in")
+        names = unknown_name("name of parameters", subject, PARAMETER_SETS)
+        raise ConfigurationError(
+            f"{shortened(subject)} is neither a run folder, nor numbers separated by commas: {names}"
+        )
+    return [given], given
+
+
+def episode_of(subject: str, which: str | None, task: Task[Any] | None) -> RunEpisode:
+    """What :func:`episodes_of` would show, found without reading the other episodes of a run folder if possible.
+
+    :param subject: path of a run folder, numbers separated by commas, or the name of shipped parameters
+    :param which: episode of the run folder, as there
+    :param task: task, as there
+    :raises ConfigurationError: if there is no such subject or episode
+    """
+    from sarah.runs.run_episodes import learned_episode
+    from sarah.runs.run_folder import RunFolder
+
+    if Path(subject).is_dir() and not is_session(Path(subject)) and which in (None, "learned"):
+        run = RunFolder.open(Path(subject), unfinished=True, task=task)
+        if run.is_finished:
+            return learned_episode(run)
+    return episodes_of(subject, which, task)[1]
+
+
+def learner_of(subject: str, task: Task[Any] | None) -> str | None:
+    """Name of what learned the parameters of a folder; ``None`` for numbers and shipped parameters.
+
+    :param subject: path of a run folder or a session's, or something else
+    :param task: task of a run folder whose task is that of a file
+    :raises RunFolderError: if the folder has no learned parameters
+    """
+    if is_session(Path(subject)):
+        from sarah.sessions.session_folder import SessionFolder
+
+        session = SessionFolder.open(Path(subject))
+        session.parameters()
+        return session.spec().learner
+    if Path(subject).is_dir():
+        from sarah.runs.run_folder import RunFolder
+
+        run = RunFolder.open(Path(subject), task=task)
+        run.parameters()
+        return run.config().algo
+    return None
+
+
+def check_of_training(path: Path) -> None:
+    """Refuse the folder of a session, for what looks at trainings only.
+
+    :param path: path of a folder
+    :raises RunFolderError: if it is a session's
+    """
+    if is_session(path):
+        raise RunFolderError(f"{path} is the folder of a session, not of a training: session.png in it is its figure")
+
+
+def numbers(name: str, text: str) -> tuple[float, ...]:
+    """Read numbers that are separated by commas.
+
+    :param name: name of the option in messages
+    :param text: text that a user gave
+    :raises ConfigurationError: if one of them is not a number
+    """
+    try:
+        return tuple(float(value) for value in text.split(","))
+    except ValueError:
+        raise ConfigurationError(f"{name} must be numbers separated by commas, not {text!r}") from None
