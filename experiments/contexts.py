@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from itertools import chain
+from pathlib import Path
 from statistics import mean, stdev
 from typing import Any
 
@@ -23,6 +24,7 @@ from scipy import stats
 from experiments.conditions import LEARNED
 from experiments.experiment import OnWorkers
 from experiments.record import Row
+from experiments.trainings import LEARNING, identity, kept
 from sarah.envs.sarah_env import SarahEnv, observation_from, parameters_from
 from sarah.episode.episode import Episode
 from sarah.episode.push import Push
@@ -70,18 +72,23 @@ class Contexts(OnWorkers):
     :param budget: number of episodes of a training for each ground
     :param episodes: number of episodes on each ground that judge a training
     :param time_limit: time limit of an episode, in s
+    :param runs: folder that keeps what trainings score; one that is there is not run again
     """
 
     seeds: int = 4
     budget: int = 240
     episodes: int = 60
     time_limit: float = 8.0
+    runs: Path = Path("runs/experiments")
 
     def rows(self) -> Iterator[Row]:
         """A row for each set of grounds, controller and ground, and one for all grounds."""
         with Workers(self.workers) as workers:
             jobs = {
-                (of, controller): [workers.submit(judge, self, of, controller, seed) for seed in range(self.seeds)]
+                (of, controller): [
+                    workers.submit(kept, self._file(of, controller, seed), judge, self, of, controller, seed)
+                    for seed in range(self.seeds)
+                ]
                 for of in GROUNDS
                 for controller in CONTROLLERS
             }
@@ -99,6 +106,11 @@ class Contexts(OnWorkers):
                             **with_interval("score", scores),
                             **with_interval("gain", [own - one for own, one in zip(scores, best, strict=True)]),
                         }
+
+    def _file(self, of: str, controller: str, seed: int) -> Path:
+        size = (self.budget, self.episodes, self.time_limit)
+        name = identity((size, GROUNDS[of], NEWTONS[of], controller, seed), LEARNING)
+        return self.runs / "contexts" / f"{name}.json"
 
     def config(self, of: str, ground: str) -> BalanceConfig:
         """Settings of the episodes on a ground.

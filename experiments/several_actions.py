@@ -8,7 +8,6 @@ has targets with V, and the exploration noise of DDPG.
 
 from __future__ import annotations
 
-import json
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -29,9 +28,8 @@ from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from experiments.experiment import OnWorkers
 from experiments.linear_quadratic import Watched
 from experiments.record import Row
-from experiments.trainings import identity
+from experiments.trainings import identity, kept
 from sarah.episode.workers import Workers
-from sarah.files import replace_text
 
 TASKS = ("HalfCheetah-v5", "Hopper-v5", "Walker2d-v5", "Reacher-v5", "Swimmer-v5")
 ALGORITHMS = ("naf", "naf with V, as published", "ddpg")
@@ -67,7 +65,6 @@ class SeveralActions(OnWorkers):
         every = self.steps // self.evaluations
         size = identity((self.steps, every, self.episodes), ["agents"])
         folder = self.runs / f"several-actions-{size}"
-        folder.mkdir(parents=True, exist_ok=True)
         with Workers(self.workers) as workers:
             jobs: dict[tuple[str, str], list[Any]] = {
                 (task, algorithm): [] for task in self.tasks for algorithm in self.algorithms
@@ -76,7 +73,7 @@ class SeveralActions(OnWorkers):
                 for (task, algorithm), running in jobs.items():
                     file = folder / f"{task}-{algorithm}-s{seed}.json"
                     running.append(
-                        workers.submit(kept_course, file, task, algorithm, seed, self.steps, every, self.episodes)
+                        workers.submit(kept, file, course, task, algorithm, seed, self.steps, every, self.episodes)
                     )
             for (task, algorithm), running in jobs.items():
                 courses = [job.result() for job in running]
@@ -113,17 +110,6 @@ class Evaluations(BaseCallback):
             mean_return = float(evaluate_policy(self.model, self._env, self._episodes)[0])
             self.course.append((mean_return, getattr(self.model, "highest_ratio", 0.0)))
         return True
-
-
-def kept_course(file: Path, *training: Any) -> list[tuple[float, float]]:
-    """What :func:`course` says of a training, from a file if it is there.
-
-    :param file: file that keeps it
-    :param training: arguments of :func:`course`
-    """
-    if not file.exists():
-        replace_text(file, json.dumps(course(*training)))
-    return [(mean_return, ratio) for mean_return, ratio in json.loads(file.read_text(encoding="utf-8"))]
 
 
 def course(task: str, algorithm: str, seed: int, steps: int, every: int, episodes: int) -> list[tuple[float, float]]:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import shutil
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import sarah
 from experiments.experiment import OnWorkers
@@ -16,6 +18,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BalanceConfig
 from sarah.episode.workers import Workers
 from sarah.errors import ResumeError
+from sarah.files import replace_text
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import Engine
@@ -70,6 +73,19 @@ class OfTrainings(OnWorkers):
             run = RunFolder.create(path, config)
             train(config, run, workers)
         return run
+
+
+def kept(file: Path, make: Callable[..., Any], *arguments: Any) -> Any:
+    """What a function returns, from a file if it is there.
+
+    :param file: file that keeps it, as JSON
+    :param make: function whose result JSON can hold
+    :param arguments: its arguments
+    """
+    if not file.exists():
+        file.parent.mkdir(parents=True, exist_ok=True)
+        replace_text(file, json.dumps(make(*arguments)))
+    return json.loads(file.read_text(encoding="utf-8"))
 
 
 def identity(settings: object, packages: Sequence[str] = (".",)) -> str:
