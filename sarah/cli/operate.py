@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from sarah.sessions.session_folder import SessionFolder
 
 COMMAND = "sarah-operate"
-WITHOUT_EFFECT = ("--episode.time-limit", "--episode.push.at-seconds")
+WITHOUT_EFFECT = ("--episode.time-limit", "--episode.reward-form", "--episode.push.at-seconds")
 """Options of episodes that an operation, which goes on and is pushed again and again, does not know."""
 
 

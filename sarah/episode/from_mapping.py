@@ -37,8 +37,10 @@ def from_mapping(default: ConfigType, content: Any, key: str = "") -> ConfigType
         inner = dependent.get(name, getattr(default, name))
         if dataclasses.is_dataclass(inner) and not isinstance(inner, Task):
             values[name] = from_mapping(inner, value, f"{key}{name}.")
-        else:
-            values[name] = _converted(types[name], value, key + name)
+            continue
+        values[name] = _converted(types[name], value, key + name)
+        if isinstance(inner, Mapping):
+            values[name] = {**inner, **values[name]}
     return dataclasses.replace(default, **values)  # type: ignore[type-var]  # a dataclass
 
 

@@ -21,8 +21,9 @@ class Recording:
 
     def __init__(self, control_rate: int) -> None:
         self._motion = MotionRecord(control_rate)
+        self._dt = 1.0 / control_rate
         self._rows: list[dict[str, Any]] = []
-        self._metrics: dict[str, Any] = {}
+        self._record: WindowRecord
 
     def tick(self, robot: RunningRobot, record: WindowRecord, time: float, force: Vector | None) -> None:
         """Record a tick, in which the targets are set.
@@ -36,8 +37,9 @@ class Recording:
         self._motion.tick(robot.truth.acceleration, *simulation.actuator_motion())
         if generator.phase in (Phase.LIFT, Phase.LAND):
             record.gait.swing(simulation.sole_height(generator.swing))
-        self._rows.append(robot.trace_row(time, force, record.steps_per_second, record.score))
-        self._metrics = {**record.gait.metrics(), "episode_return": record.window_return}
+        frequency = record.gait.steps_per_second(len(self._rows) + 1)  # as an episode's trace has it
+        self._rows.append(robot.trace_row(time, force, frequency, record.score))
+        self._record = record
 
     def result(self, window: Window) -> EpisodeResult:
         """The window as the result of an episode.
@@ -47,14 +49,15 @@ class Recording:
         """
         trace = Trace.of(self._rows)
         x, y, z = (trace.position[-1] - (*trace.position[0][:2], 0.0)).tolist()
-        seconds = float(trace.time[-1] - trace.time[0])
+        seconds, metrics = round(len(trace) * self._dt, 9), self._record.gait.metrics()
         return EpisodeResult(
             termination="fell" if window.fell else "time_limit",
             final_position=(x, y, z),
             score=window.score,
-            steps_per_second=self._metrics["steps"] / seconds if seconds else 0.0,
+            steps_per_second=metrics["steps"] / seconds,
+            episode_return=self._record.window_return,
             duration=seconds,
             trace=trace,
-            **self._metrics,
+            **metrics,
             **self._motion.metrics(),
         )

@@ -47,7 +47,7 @@ class RobotInOperation:
     @property
     def is_over(self) -> bool:
         """Whether the operation's time is over."""
-        return self.seconds >= 60.0 * self.config.minutes
+        return self.seconds >= round(60.0 * self.config.minutes, 9)
 
     @property
     def windows_left(self) -> float:

@@ -14,6 +14,7 @@ from sarah.episode.from_mapping import from_mapping
 from sarah.episode.push import Push, PushedConfig
 from sarah.episode.shipped import shipped_parameters
 from sarah.errors import ConfigurationError, check_fields, check_types, shortened
+from sarah.robot.description import describe_robot
 
 PARAMETERS = (*STEPPING_PARAMETERS, *BALANCE_PARAMETERS)
 """The nine parameters that can change while the robot runs: P1 to P5 and V1 to V4."""
@@ -31,6 +32,8 @@ PLAUSIBLE = {
     "push_seconds": (0.5, 3600.0, "s"),
 }
 """Lowest value, highest value and unit of each setting. Beyond them, somebody has mistaken the unit."""
+WITHOUT_EFFECT = {"time_limit", "reward_form"}
+"""Settings of an episode that an operation does not know."""
 SOFT_PUSHES = Push(newtons=(0.0, 50.0))
 """Pushes of an operation by default: a robot that is being tuned is nudged, and not knocked over."""
 
@@ -74,7 +77,7 @@ class OperationConfig:
     changes: tuple[Change, ...] = ()
 
     def __post_init__(self) -> None:
-        """Refuse settings that cannot be simulated."""
+        """Refuse settings that cannot be simulated, also those of robots that come later."""
         check_types(self, robot=PushedConfig, changes=tuple)
         check_fields("operation", self, PLAUSIBLE)
         minutes = [change.minute for change in self.changes]
@@ -82,8 +85,13 @@ class OperationConfig:
             raise ConfigurationError(
                 f"changes must be in the order of time, between 0 and {self.minutes:g} min, not {shortened(minutes)}"
             )
+        for change in self.changes:
+            if without_effect := sorted(WITHOUT_EFFECT & set(change.settings)):
+                raise ConfigurationError(f"{without_effect[0]} has no effect in an operation: leave its change out")
         for count in range(len(minutes) + 1):
             robot = self.robot_after(count)
+            if robot.dimensions:
+                describe_robot(robot.dimensions)
             if robot.push.duration > self.push_seconds:
                 raise ConfigurationError(
                     f"push.duration must be at most the {self.push_seconds:g} s to the next push, "
@@ -107,7 +115,7 @@ class OperationConfig:
 
         :param seconds: time of operation, in s
         """
-        return sum(60.0 * change.minute <= seconds for change in self.changes)
+        return sum(round(60.0 * change.minute, 9) <= seconds for change in self.changes)
 
 
 def checked_parameters(values: Sequence[float]) -> Parameters:

@@ -23,14 +23,14 @@ STEPPING_COUNT = len(PARAMETERS) - len(BALANCE.parameters)
 
 
 def learned_of_session(path: Path) -> RunEpisode:
-    """Episode of the parameters that a session left its robot with, on that robot after all changes.
+    """Episode of the parameters that a session left its robot with, on the robot of its last window.
 
     :param path: path of the session's folder
     :raises RunFolderError: if the session is not finished, or a file of it cannot be read
     """
     folder = SessionFolder.open(path)
-    spec = folder.spec()
-    left = episode_spec(folder.parameters(), spec, len(spec.config.changes))
+    spec, windows = folder.spec(), folder.windows()
+    left = episode_spec(folder.parameters(), spec, windows[-1].changes)
     return RunEpisode("learned", "parameters that the session ended with", left)
 
 

@@ -9,7 +9,7 @@ import pytest
 from operated import quick
 
 from sarah.episode.push import Push
-from sarah.errors import ConfigurationError
+from sarah.errors import ConfigurationError, DescriptionError
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import SHIPPED, Change, OperationConfig
 from sarah.operation.window import FELT, Window
@@ -126,12 +126,24 @@ def test_windows_that_are_known_are_not_simulated_again_and_change_nothing() -> 
         (dict(changes=(Change(30.0, {}),)), "changes must be in the order of time, between 0 and 10 min"),
         (dict(changes=(Change(3.0, {"pay_load": 2.0}),)), "unknown key 'pay_load', did you mean 'payload'?"),
         (dict(changes=(Change(3.0, {"payload": -2.0}),)), "payload must be between 0 and 100 kg, not -2.0"),
+        (dict(changes=(Change(3.0, {"time_limit": 5.0}),)), "time_limit has no effect in an operation"),
         (dict(changes=(Change(3.0, {"terrain": {"roughness": 0.01}}),)), "terrain.roughness must be 0"),
     ],
 )
 def test_impossible_operations_are_refused(settings: dict[str, Any], words: str) -> None:
     with pytest.raises(ConfigurationError, match=words.split("(")[0].replace("?", r"\?")):
         OperationConfig(**settings)
+
+
+def test_a_robot_that_cannot_be_built_is_refused_before_the_operation_begins() -> None:
+    with pytest.raises(DescriptionError, match="must weigh 10 kg"):
+        quick(changes=(Change(0.05, {"dimensions": {"torso_mass": 20.0}}),))
+
+
+def test_a_change_of_one_dimension_leaves_the_others() -> None:
+    changes = (Change(0.05, {"dimensions": {"torso_width": 0.3}}), Change(0.06, {"dimensions": {"thigh_length": 0.34}}))
+    config = quick(robot={"dimensions": {"hinge_height": 0.04}}, changes=changes)
+    assert config.robot_after(2).dimensions == {"hinge_height": 0.04, "torso_width": 0.3, "thigh_length": 0.34}
 
 
 @pytest.mark.parametrize("parameters", [(), SHIPPED[:5], (*SHIPPED[:8], 2.5), (math.nan, *SHIPPED[1:])])

@@ -9,9 +9,11 @@ from pathlib import Path
 import pytest
 from operated import quick
 
+from sarah.episode.reward import highest_return
 from sarah.errors import ConfigurationError, ResumeError, RunFolderError, TrainingInterruptedError
 from sarah.operation.settings import SHIPPED, Change
 from sarah.operation.window import Window
+from sarah.robot.description import describe_robot
 from sarah.runs.config_files import read_config
 from sarah.sessions.journal import SessionJournal
 from sarah.sessions.learners import LEARNERS
@@ -157,6 +159,18 @@ def test_every_window_can_be_played_as_it_was(whole: tuple[Path, SessionResult])
         stands = before is None or before.fell or before.changes != window.changes
         assert played.trace.time[0] - window.begin == pytest.approx(1.0 if stands else 0.0)
         assert played.trace.time[-1] < window.end
+        ceiling = highest_return(describe_robot().standing_height, CONFIG.measure_seconds)
+        assert played.episode_return / ceiling == pytest.approx(window.score)
+        assert played.duration == pytest.approx(len(played.trace) / 100)
+        assert window.fell or played.duration == CONFIG.settle_seconds + CONFIG.measure_seconds
+
+
+def test_a_change_that_never_came_is_none_of_the_robots_in_the_end(tmp_path: Path) -> None:
+    changes = (Change(0.05, {"payload": 5.0}), Change(0.1, {"payload": 60.0}))
+    spec = SessionSpec(learner="none", config=quick(changes=changes))
+    folder = SessionFolder.create(tmp_path / "late", spec)
+    assert operate(folder, spec).windows[-1].changes == 1
+    assert learned_of_session(folder.path).spec.config.payload == 5.0
 
 
 def test_a_window_names_the_one_that_goes_on_where_it_ends(whole: tuple[Path, SessionResult]) -> None:
