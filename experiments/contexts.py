@@ -2,15 +2,15 @@
 
 A controller chooses V1 to V4 once an episode, after the robot has stood for a second: the same ones whatever the ground
 is, or by what the robot felt. Two sets of grounds are asked. On the ordinary ones the shipped controller copes anyway.
-On 14 degrees the robot is about to tip over the end of its feet, and V4 wants the opposite sign uphill and downhill:
-there the method has to see a gain.
+The others are a positive control, where the method has to see a gain: on either of two slopes the legs' zero is off
+by 0.1 rad to the side of the fall, and V4 has to bring them back.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain
 from pathlib import Path
@@ -29,9 +29,47 @@ from sarah.envs.sarah_env import SarahEnv, observation_from, parameters_from
 from sarah.episode.episode import Episode
 from sarah.episode.push import Push
 from sarah.episode.spec import FIRST_EVALUATION_SEED, FIRST_TRAINING_SEED
-from sarah.episode.tasks import BALANCE, BalanceConfig
+from sarah.episode.tasks import BALANCE, BalanceConfig, Task
 from sarah.episode.workers import Workers
 from sarah.simulation.terrain import Terrain
+
+
+@dataclass(frozen=True)
+class Ground:
+    """Ground that a controller has to cope with.
+
+    :param terrain: slope, bumps and friction
+    :param push_newtons: force of the push, in N
+    :param V4_offset: error of the legs' zero, in units of V4, which is added to it
+    :param time_limit: time limit of an episode, in s
+    """
+
+    terrain: Terrain = Terrain()
+    push_newtons: float = 75.0
+    V4_offset: float = 0.0
+    time_limit: float = 8.0
+
+    @property
+    def config(self) -> BalanceConfig:
+        """Settings of the episodes."""
+        push = Push((self.push_newtons, self.push_newtons), at_seconds=(2.0, 3.0))
+        return BALANCE.config_of(
+            LEARNED.config, engine="mujoco", time_limit=self.time_limit, push=push, terrain=self.terrain
+        )
+
+    @property
+    def task(self) -> Task[BalanceConfig]:
+        """Second Training, whose range of V4 is moved by the offset."""
+        *others, last = BALANCE.parameters
+        moved = replace(last, low=last.low + self.V4_offset, high=last.high + self.V4_offset)
+        return replace(BALANCE, parameters=(*others, moved))
+
+    def with_offset(self, parameters: tuple[float, ...]) -> tuple[float, ...]:
+        """What V1 to V4 are on this robot.
+
+        :param parameters: V1 to V4 that a controller chose
+        """
+        return (*parameters[:-1], parameters[-1] + self.V4_offset)
 
 
 def slope(degrees: float, uphill: float) -> Terrain:
@@ -43,20 +81,21 @@ def slope(degrees: float, uphill: float) -> Terrain:
     return Terrain(slope_degrees=(degrees, degrees), direction_degrees=(uphill, uphill))
 
 
-GROUNDS: dict[str, dict[str, Terrain]] = {
+GROUNDS: dict[str, dict[str, Ground]] = {
     "ordinary": {
-        "level": Terrain(),
-        "6° uphill right": slope(6.0, 0.0),
-        "6° uphill left": slope(6.0, 180.0),
-        "8° uphill forward": slope(8.0, 90.0),
-        "bumps of 10 mm": Terrain(roughness=(0.01, 0.01)),
-        "friction 0.15": Terrain(friction_left=(0.15, 0.15), friction_right=(0.15, 0.15)),
+        "level": Ground(),
+        "6° uphill right": Ground(slope(6.0, 0.0)),
+        "6° uphill left": Ground(slope(6.0, 180.0)),
+        "8° uphill forward": Ground(slope(8.0, 90.0)),
+        "bumps of 10 mm": Ground(Terrain(roughness=(0.01, 0.01))),
+        "friction 0.15": Ground(Terrain(friction_left=(0.15, 0.15), friction_right=(0.15, 0.15))),
     },
-    "steep": {"14° uphill forward": slope(14.0, 90.0), "14° uphill backward": slope(14.0, 270.0)},
+    "opposed": {
+        "12° uphill forward": Ground(slope(12.0, 90.0), push_newtons=0.0, V4_offset=-5.0),
+        "12° uphill backward": Ground(slope(12.0, 270.0), push_newtons=0.0, V4_offset=5.0),
+    },
 }
 """Grounds by name, of each set."""
-NEWTONS = {"ordinary": 75.0, "steep": 0.0}
-"""Force of the push on each set of grounds, in N."""
 SHIPPED, ONE_SET, PER_GROUND = "shipped parameters", "one set (CMA-ES)", "a set for each ground (CMA-ES)"
 BLIND, SEEING = "NAF, blind", "NAF with observations"
 CONTROLLERS = (SHIPPED, ONE_SET, PER_GROUND, BLIND, SEEING)
@@ -108,23 +147,15 @@ class Contexts(OnWorkers):
                         }
 
     def _file(self, of: str, controller: str, seed: int) -> Path:
-        size = (self.budget, self.episodes, self.time_limit)
-        name = identity((size, GROUNDS[of], NEWTONS[of], controller, seed), LEARNING)
+        name = identity((self.budget, self.episodes, self.grounds(of), controller, seed), LEARNING)
         return self.runs / "contexts" / f"{name}.json"
 
-    def config(self, of: str, ground: str) -> BalanceConfig:
-        """Settings of the episodes on a ground.
+    def grounds(self, of: str) -> dict[str, Ground]:
+        """Grounds by name.
 
-        :param of: name of its set
-        :param ground: its name
+        :param of: name of their set
         """
-        push = Push((NEWTONS[of],) * 2, at_seconds=(2.0, 3.0))
-        terrain = GROUNDS[of][ground]
-        config = BALANCE.config_of(
-            LEARNED.config, engine="mujoco", time_limit=self.time_limit, push=push, terrain=terrain
-        )
-        assert isinstance(config, BalanceConfig)
-        return config
+        return {name: replace(ground, time_limit=self.time_limit) for name, ground in GROUNDS[of].items()}
 
 
 def means(judged: list[dict[str, list[float]]], ground: str) -> list[float]:
@@ -159,24 +190,22 @@ def judge(options: Contexts, of: str, controller: str, seed: int) -> dict[str, l
     policy = learn(options, of, controller, seed)
     first = FIRST_EVALUATION_SEED + seed * options.episodes
     return {
-        ground: [
-            run(options.config(of, ground), first + index, partial(policy, ground)) for index in range(options.episodes)
-        ]
-        for ground in GROUNDS[of]
+        name: [run(ground, first + index, partial(policy, name)) for index in range(options.episodes)]
+        for name, ground in options.grounds(of).items()
     }
 
 
-def run(config: BalanceConfig, seed: int, choose: Callable[[np.ndarray], tuple[float, ...]]) -> float:
+def run(ground: Ground, seed: int, choose: Callable[[np.ndarray], tuple[float, ...]]) -> float:
     """Simulate an episode whose parameters depend on what the robot feels while it stands.
 
-    :param config: settings of the episode
+    :param ground: ground of the episode
     :param seed: seed of the episode
     :param choose: function that chooses V1 to V4
     :return: the score
     """
-    episode = Episode(config, seed, BALANCE)
+    episode = Episode(ground.config, seed, ground.task)
     try:
-        return episode.run(choose(observation_from(episode.stand()))).score
+        return episode.run(ground.with_offset(choose(observation_from(episode.stand())))).score
     finally:
         episode.close()
 
@@ -189,23 +218,23 @@ def learn(options: Contexts, of: str, controller: str, seed: int) -> Policy:
     :param controller: one of :data:`CONTROLLERS`
     :param seed: seed of the training
     """
-    configs = {ground: options.config(of, ground) for ground in GROUNDS[of]}
-    budget = options.budget * len(configs)
+    grounds = options.grounds(of)
+    budget = options.budget * len(grounds)
     if controller == SHIPPED:
         return lambda ground, felt: LEARNED.parameters
     if controller == ONE_SET:
-        parameters = evolve(list(configs.values()), budget, seed)
+        parameters = evolve(list(grounds.values()), budget, seed)
         return lambda ground, felt: parameters
     if controller == PER_GROUND:
-        own = {ground: evolve([config], options.budget, seed) for ground, config in configs.items()}
+        own = {name: evolve([ground], options.budget, seed) for name, ground in grounds.items()}
         return lambda ground, felt: own[ground]
-    return train_naf(list(configs.values()), budget, seed, is_blind=controller == BLIND)
+    return train_naf(list(grounds.values()), budget, seed, is_blind=controller == BLIND)
 
 
-def evolve(configs: list[BalanceConfig], budget: int, seed: int) -> tuple[float, ...]:
+def evolve(grounds: list[Ground], budget: int, seed: int) -> tuple[float, ...]:
     """Find one set for some grounds by CMA-ES, which is told the mean score on all of them.
 
-    :param configs: settings of the episodes on each ground
+    :param grounds: grounds of the episodes
     :param budget: number of episodes
     :param seed: seed of the draws and of the episodes
     """
@@ -214,17 +243,17 @@ def evolve(configs: list[BalanceConfig], budget: int, seed: int) -> tuple[float,
     episodes = np.random.default_rng(seed)
     options = {"bounds": [-1.0, 1.0], "seed": seed + 1, "verbose": -9}
     strategy = cma.CMAEvolutionStrategy(_action_of(LEARNED.parameters), 0.3, options)
-    while budget >= strategy.popsize * len(configs):
+    while budget >= strategy.popsize * len(grounds):
         asked = strategy.ask()
         losses = []
         for action in asked:
             parameters = parameters_from(np.clip(action, -1.0, 1.0), BALANCE)
-            seeds = episodes.integers(FIRST_TRAINING_SEED, 2**32, len(configs)).tolist()
+            seeds = episodes.integers(FIRST_TRAINING_SEED, 2**32, len(grounds)).tolist()
             losses.append(
-                -mean(run(*episode, partial(_always, parameters)) for episode in zip(configs, seeds, strict=True))
+                -mean(run(*episode, partial(_always, parameters)) for episode in zip(grounds, seeds, strict=True))
             )
         strategy.tell(asked, losses)
-        budget -= strategy.popsize * len(configs)
+        budget -= strategy.popsize * len(grounds)
     return parameters_from(np.clip(strategy.mean, -1.0, 1.0), BALANCE)
 
 
@@ -239,10 +268,10 @@ def _action_of(parameters: tuple[float, ...]) -> np.ndarray:
     )
 
 
-def train_naf(configs: list[BalanceConfig], budget: int, seed: int, is_blind: bool) -> Policy:
+def train_naf(grounds: list[Ground], budget: int, seed: int, is_blind: bool) -> Policy:
     """Let NAF learn which parameters suit what the robot feels.
 
-    :param configs: settings of the episodes on each ground, of which each episode draws one
+    :param grounds: grounds, of which each episode draws one
     :param budget: number of episodes
     :param seed: seed of the training
     :param is_blind: whether all observations are zero
@@ -253,7 +282,7 @@ def train_naf(configs: list[BalanceConfig], budget: int, seed: int, is_blind: bo
 
     model = NAF(
         "MlpPolicy",
-        DrawnGround(configs, is_blind),
+        DrawnGround(grounds, is_blind),
         seed=seed,
         gamma=0.0,
         learning_starts=min(60, budget // 2),
@@ -274,12 +303,12 @@ def train_naf(configs: list[BalanceConfig], budget: int, seed: int, is_blind: bo
 class DrawnGround(gymnasium.Wrapper[np.ndarray, np.ndarray, np.ndarray, np.ndarray]):
     """Episodes on one of several grounds, drawn at each reset; the reward is the score.
 
-    :param configs: settings of the episodes on each ground
+    :param grounds: the grounds
     :param is_blind: whether all observations are zero
     """
 
-    def __init__(self, configs: list[BalanceConfig], is_blind: bool) -> None:
-        self._all = [SarahEnv(BALANCE, config) for config in configs]
+    def __init__(self, grounds: list[Ground], is_blind: bool) -> None:
+        self._all = [SarahEnv(ground.task, ground.config) for ground in grounds]
         self._is_blind = is_blind
         super().__init__(self._all[0])
 
