@@ -62,7 +62,8 @@ class Ground:
         """Second Training, whose range of V4 is moved by the offset."""
         *others, last = BALANCE.parameters
         moved = replace(last, low=last.low + self.V4_offset, high=last.high + self.V4_offset)
-        return replace(BALANCE, parameters=(*others, moved))
+        baseline, neutral = self.with_offset(BALANCE.baseline), self.with_offset(BALANCE.neutral)
+        return replace(BALANCE, parameters=(*others, moved), baseline=baseline, neutral=neutral)
 
     def with_offset(self, parameters: tuple[float, ...]) -> tuple[float, ...]:
         """What V1 to V4 are on this robot.
