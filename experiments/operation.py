@@ -6,7 +6,7 @@ What has not been seen before the judging: the seeds of the robots. The learners
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from statistics import mean, stdev
 from typing import Any
@@ -16,7 +16,7 @@ from scipy.stats import t as student
 from experiments.experiment import OnWorkers
 from experiments.record import Row
 from sarah.episode.from_mapping import from_mapping
-from sarah.episode.workers import Workers
+from sarah.episode.workers import Job, Workers
 from sarah.operation.settings import SHIPPED, Change, OperationConfig, Parameters
 from sarah.sessions.session import SessionResult, SessionSpec, run_session
 from sarah.simulation.engines import Engine
@@ -31,6 +31,7 @@ ROBOTS: dict[str, dict[str, Any]] = {
 }
 """Settings of the robots that do not change, by name."""
 CHANGING = "servos weaken at minute 5"
+LEARNERS = ("none", "gp", "naf", "cma-es", "random")
 SPANS = ((0.0, 3.0), (3.0, 5.0), (5.0, 8.0), (8.0, math.inf))
 """Spans of the time of operation whose means are shown, in min."""
 FIRST_TUNING_SEED = 1000
@@ -59,24 +60,38 @@ class Operation(OnWorkers):
     def rows(self) -> Iterator[Row]:
         """A row for each robot and learner."""
         with Workers(self.workers) as workers:
-            jobs: dict[tuple[str, str], list[Any]] = {}
-            for robot in (*ROBOTS, CHANGING):
-                config = self._config(robot, self.minutes)
-                for learner in ("none", "gp", "naf", "cma-es", "random"):
-                    count = self.seeds if learner in ("none", "gp") else self.other_seeds
-                    specs = [SessionSpec(SHIPPED, learner, seed, config) for seed in range(count)]
-                    jobs[robot, learner] = [workers.submit(run_session, spec) for spec in specs]
+            jobs = {
+                (robot, learner): self._sessions(workers, robot, learner, [SHIPPED] * self._count(learner))
+                for robot in (*ROBOTS, CHANGING)
+                for learner in LEARNERS
+            }
             for robot in (*ROBOTS, CHANGING):
                 frozen = [job.result() for job in jobs[robot, "none"]]
-                for learner in ("none", "gp", "naf", "cma-es", "random"):
-                    yield _row(robot, learner, [job.result() for job in jobs[robot, learner]], frozen)
+                for learner in LEARNERS:
+                    found = [job.result() for job in jobs[robot, learner]]
+                    yield _row(robot, learner, found, frozen) | self._left(workers, robot, found)
                 if robot in ROBOTS:
                     best = self._best_known(robot, workers)
-                    specs = [
-                        SessionSpec(best, "none", seed, self._config(robot, self.minutes)) for seed in range(self.seeds)
-                    ]
-                    found = [job.result() for job in [workers.submit(run_session, spec) for spec in specs]]
-                    yield _row(robot, "best known, frozen", found, frozen)
+                    found = [job.result() for job in self._sessions(workers, robot, "none", [best] * self.seeds)]
+                    yield _row(robot, "best known, frozen", found, frozen) | {"score_of_last_parameters": ""}
+
+    def _count(self, learner: str) -> int:
+        return self.seeds if learner in ("none", "gp") else self.other_seeds
+
+    def _sessions(
+        self, workers: Workers, robot: str, learner: str, first: Sequence[Parameters], minutes: float | None = None
+    ) -> list[Job]:
+        """Sessions on the first seeds, one for each of the parameters that they begin with."""
+        config = self._config(robot, self.minutes if minutes is None else minutes)
+        specs = [SessionSpec(parameters, learner, seed, config) for seed, parameters in enumerate(first)]
+        return [workers.submit(run_session, spec) for spec in specs]
+
+    def _left(self, workers: Workers, robot: str, found: list[SessionResult]) -> Row:
+        """Score of the parameters that sessions end with, frozen on the same robots as they are in the end."""
+        in_the_end = "weak servos" if robot == CHANGING else robot
+        last = [session.parameters for session in found]
+        jobs = self._sessions(workers, in_the_end, "none", last, self.minutes / 5.0)
+        return {"score_of_last_parameters": mean(job.result().mean_score() for job in jobs)}
 
     def _config(self, robot: str, minutes: float) -> OperationConfig:
         base = OperationConfig()

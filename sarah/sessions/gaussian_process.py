@@ -28,8 +28,8 @@ class GaussianProcessSettings:
     :param horizon: number of windows in which an improvement pays: after that, another one would have been found
     :param largest_loss: loss against the parameters of the beginning that a trial may risk, in reward
     :param caution: number of standard deviations by which it must be believed to lose less
-    :param surprise: sum of standard deviations, beyond half a one for each window, by which the best parameters must
-        fall short of what was expected before the robot counts as changed
+    :param surprise: sum of standard deviations, beyond half a one for each window, by which windows must fall short of
+        what was expected before the robot counts as changed
     """
 
     length: float = 0.6
@@ -47,6 +47,8 @@ class GaussianProcessSettings:
 
 DISAPPOINTING = 2.0
 """Number of standard deviations below what was expected at which a reward disappoints."""
+LARGEST_SURPRISE = 4.0
+"""Number of standard deviations that one window counts at most: a single fall is no change of the robot."""
 NOISE_WINDOWS = 20
 """Number of the last windows that tell how far rewards differ from what was expected."""
 LEAST_NOISE_WINDOWS = 5
@@ -62,9 +64,10 @@ class LocalGaussianProcess:
 
     A trial must be safe: its reward's lower bound is not far below the reward of the parameters it began with. And it
     must be worth its price: what it may bring in the next windows (expected improvement, Jones et al. 1998) is more
-    than what it costs in its own. Otherwise the best parameters run on. They also follow a trial that disappoints:
-    only if they, too, fall short of what was expected, the robot has changed (a cumulative sum, Page 1954). What was
-    learned before is then forgotten. A robot that falls with the best parameters gets the first ones.
+    than what it costs in its own. Otherwise the best parameters run on. They also follow a trial that disappoints: to
+    see whether the robot is as before. If window after window falls short of what was expected, it has changed (a
+    cumulative sum, Page 1954). What was learned before is then forgotten. A robot that falls with the best parameters
+    gets the first ones.
 
     :param first: parameters to begin with
     :param seed: seed of the draws
@@ -91,27 +94,25 @@ class LocalGaussianProcess:
         shares, is_trial = self._first, False
         while not robot.is_over:
             window = robot.run(from_shares(shares))
-            disappoints = self._add(shares, window.observed_reward, is_trial)
+            disappoints = self._add(shares, window.observed_reward)
             if window.fell and not is_trial and shares is not self._first:  # nothing that is known carries it
                 shares = self._first
                 continue
-            trial = None if disappoints else self._trial(robot.windows_left)
+            trial = None if disappoints else self._trial(max(0.0, robot.windows_left - 1.0))
             is_trial = trial is not None
             shares = self._best()[0] if trial is None else trial
         return from_shares(self._best()[0])
 
-    def _add(self, shares: np.ndarray, reward: float, is_trial: bool) -> bool:
+    def _add(self, shares: np.ndarray, reward: float) -> bool:
         """Learn from a window, and forget what was before a change.
 
         :param shares: parameters of the window
         :param reward: reward that the robot observed
-        :param is_trial: whether nobody knew what they are worth
         :return: whether the reward was so low that the best parameters have to show that the robot is as before
         """
         surprise = self._surprise(shares, reward) if self._tried else 0.0
         disappoints = surprise > DISAPPOINTING
-        if not is_trial:
-            self._shortfall = max(0.0, self._shortfall + surprise - 0.5)
+        self._shortfall = max(0.0, self._shortfall + min(surprise, LARGEST_SURPRISE) - 0.5)
         self._doubted = self._doubted + 1 if disappoints or self._shortfall > 0.0 else 0
         self._tried.append(shares)
         self._rewards.append(reward)
@@ -161,7 +162,7 @@ class LocalGaussianProcess:
     def _trial(self, windows_left: float) -> np.ndarray | None:
         """Parameters to try that are worth it and safe, if there are any.
 
-        :param windows_left: number of windows in which an improvement would pay
+        :param windows_left: number of windows after the trial, in which an improvement would pay
         """
         settings = self._settings
         best, reward = self._best()

@@ -1,11 +1,14 @@
 """The learners of a session, on robots that are formulas."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from operated import START, FormulaRobot
 
-from sarah.operation.settings import PARAMETERS, SHIPPED
+from sarah.operation.settings import PARAMETERS, SHIPPED, Parameters
 from sarah.operation.shares import from_shares, to_shares
+from sarah.operation.window import Window
 from sarah.sessions.learners import LEARNERS
 
 TOP = START + 0.15 * np.array([1, -1, 1, 1, -1, 1, -1, 1, -1])
@@ -73,6 +76,34 @@ def test_it_does_not_take_chance_for_a_change(seed: int) -> None:
     assert hill(to_shares(left)) > hill(START)
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_it_follows_a_robot_that_changes_slowly(seed: int) -> None:
+    """Each window falls short by little, but one after the other does."""
+
+    def drifting(shares: np.ndarray, minute: float) -> float:
+        share = min(max((minute - 5.0) / 15.0, 0.0), 1.0)
+        return float(0.9 - 1.2 * np.square(shares - START - (1.0 - 2.0 * share) * (TOP - START)).sum())
+
+    robot = operated("gp", drifting, seed, minutes=25.0)
+    kept = drifting(TOP, 25.0)
+    assert robot.mean_reward(20.0) > kept + 0.6 * (0.9 - kept)
+
+
+def test_a_single_bad_window_is_no_change() -> None:
+    """A robot that stumbles once a minute, whatever its parameters are, is still climbed with."""
+
+    class Stumbling(FormulaRobot):
+        def run(self, parameters: Parameters) -> Window:
+            window = super().run(parameters)
+            stumbles = window.index % 10 == 9 and not window.fell
+            return dataclasses.replace(window, observed_reward=0.3) if stumbles else window
+
+    robots = [Stumbling(hill) for _ in range(4)]
+    for seed, robot in enumerate(robots):
+        LEARNERS["gp"](SHIPPED, seed).operate(robot)
+    assert np.mean([robot.mean_reward(8.0) for robot in robots]) > hill(START) + 0.6 * (0.9 - hill(START))
+
+
 def test_random_search_is_the_floor() -> None:
     random, careful = operated("random", cliff), operated("gp", cliff)
     assert random.falls > 5 * max(1, careful.falls) and random.mean_reward() < careful.mean_reward()
@@ -89,8 +120,6 @@ def test_learners_do_not_see_the_score() -> None:
 
     class Blind(FormulaRobot):
         def run(self, parameters: tuple[float, ...]):  # type: ignore[no-untyped-def]
-            import dataclasses
-
             return dataclasses.replace(super().run(parameters), score=-1.0)
 
     for learner in LEARNERS:
