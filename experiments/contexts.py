@@ -2,8 +2,8 @@
 
 A controller chooses V1 to V4 once an episode, after the robot has stood for a second: the same ones whatever the ground
 is, or by what the robot felt. Two sets of grounds are asked. On the ordinary ones the shipped controller copes anyway.
-The others are a positive control, where the method has to see a gain: on either of two slopes the legs' zero is off
-by 0.1 rad to the side of the fall, and V4 has to bring them back.
+The others are a positive control, where the method has to see a gain: on either of two slopes the robot takes V1 for
+another value, lower on the one and higher on the other.
 """
 
 from __future__ import annotations
@@ -40,13 +40,13 @@ class Ground:
 
     :param terrain: slope, bumps and friction
     :param push_newtons: force of the push, in N
-    :param V4_offset: error of the legs' zero, in units of V4, which is added to it
+    :param V1_error: what the robot adds to the V1 that a controller chose
     :param time_limit: time limit of an episode, in s
     """
 
     terrain: Terrain = Terrain()
     push_newtons: float = 75.0
-    V4_offset: float = 0.0
+    V1_error: float = 0.0
     time_limit: float = 8.0
 
     @property
@@ -59,18 +59,19 @@ class Ground:
 
     @property
     def task(self) -> Task[BalanceConfig]:
-        """Second Training, whose range of V4 is moved by the offset."""
-        *others, last = BALANCE.parameters
-        moved = replace(last, low=last.low + self.V4_offset, high=last.high + self.V4_offset)
-        baseline, neutral = self.with_offset(BALANCE.baseline), self.with_offset(BALANCE.neutral)
-        return replace(BALANCE, parameters=(*others, moved), baseline=baseline, neutral=neutral)
+        """Second Training, whose range of V1 is moved by the error."""
+        first, *others = BALANCE.parameters
+        moved = replace(first, low=first.low + self.V1_error, high=first.high + self.V1_error)
+        baseline, neutral = self.with_error(BALANCE.baseline), self.with_error(BALANCE.neutral)
+        return replace(BALANCE, parameters=(moved, *others), baseline=baseline, neutral=neutral)
 
-    def with_offset(self, parameters: tuple[float, ...]) -> tuple[float, ...]:
-        """What V1 to V4 are on this robot.
+    def with_error(self, parameters: tuple[float, ...]) -> tuple[float, ...]:
+        """V1 to V4 as the robot takes them.
 
         :param parameters: V1 to V4 that a controller chose
         """
-        return (*parameters[:-1], parameters[-1] + self.V4_offset)
+        first, *others = parameters
+        return (first + self.V1_error, *others)
 
 
 def slope(degrees: float, uphill: float) -> Terrain:
@@ -92,8 +93,8 @@ GROUNDS: dict[str, dict[str, Ground]] = {
         "friction 0.15": Ground(Terrain(friction_left=(0.15, 0.15), friction_right=(0.15, 0.15))),
     },
     "opposed": {
-        "12° uphill forward": Ground(slope(12.0, 90.0), push_newtons=0.0, V4_offset=-5.0),
-        "12° uphill backward": Ground(slope(12.0, 270.0), push_newtons=0.0, V4_offset=5.0),
+        "6° uphill right": Ground(slope(6.0, 0.0), push_newtons=0.0, V1_error=-1.0),
+        "6° uphill left": Ground(slope(6.0, 180.0), push_newtons=0.0, V1_error=2.0),
     },
 }
 """Grounds by name, of each set."""
@@ -206,7 +207,7 @@ def run(ground: Ground, seed: int, choose: Callable[[np.ndarray], tuple[float, .
     """
     episode = Episode(ground.config, seed, ground.task)
     try:
-        return episode.run(ground.with_offset(choose(observation_from(episode.stand())))).score
+        return episode.run(ground.with_error(choose(observation_from(episode.stand())))).score
     finally:
         episode.close()
 
