@@ -92,6 +92,20 @@ def _with_both_ends(arguments: Sequence[str], config: Any) -> list[str]:
     return completed
 
 
+def _checked(words: Sequence[str]) -> Sequence[str]:
+    """Arguments, none of which is empty: an empty path would be the working directory.
+
+    :param words: the arguments
+    :raises ConfigurationError: if one is empty, as an unset variable of the shell is
+    """
+    for before, word in zip(("", *words), words, strict=False):
+        option, equals, value = word.partition("=")
+        if not value and (equals or not option):
+            name = option or (before if before.startswith("--") else "an argument")
+            raise ConfigurationError(f"{name} must not be empty")
+    return words
+
+
 def _ranges_of(config: Any) -> Iterator[str]:
     """Names of the options of some settings that are ranges."""
     types = get_type_hints(type(config))
@@ -127,7 +141,7 @@ def parse_options(
             return tyro.cli(
                 options_type,
                 prog=command,
-                args=_with_both_ends(arguments, default),
+                args=_checked(_with_both_ends(arguments, default)),
                 config=(tyro.conf.FlagCreatePairsOff,),
                 default=default,
                 registry=_REGISTRY,

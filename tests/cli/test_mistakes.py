@@ -62,6 +62,7 @@ MISTAKES = {
         (f"{PUSHED} --episode.push.sagittal-share 2", "push.sagittal_share must be between 0 and 1, not 2.0"),
         (f"{GIVEN} --forces 0 50", "forces must be between 1 and 10000 N, not 0.0"),
         (f"{GIVEN} --robustness x", "--robustness is for --task balance"),
+        ("--terrain=", "--terrain must not be empty"),
         (f"{GIVEN} --json --robustness x", "leave --json out"),
         (f"{GIVEN} --json --terrain x", "--terrain prints a table, not JSON: leave --json out"),
         (f"{GIVEN} --terrain x --episode.terrain.roughness 0.01", "--terrain tries grounds of its own"),
