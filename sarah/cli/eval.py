@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json as json_format
+import shlex
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
@@ -29,6 +30,8 @@ LARGEST_SEED = 2**32 - 1
 MOST_EPISODES = 1_000_000
 SMALLEST_FORCE, LARGEST_FORCE = 1.0, 10_000.0
 """Range of the forces of pushes, in N."""
+REPLACED_BY_TERRAIN = ("--episode.terrain.", "--episode.push.", "--episode.time-limit", "--forces")
+"""Beginnings of the options that ``--terrain`` replaces."""
 
 
 @dataclass(frozen=True)
@@ -85,10 +88,12 @@ def main() -> None:
 def _evaluate(arguments: Sequence[str]) -> None:
     options = parse_episode_options(COMMAND, arguments, EvalOptions())
     spec, algorithm = _subject(options)
-    if options.terrain is not None and spec.config.terrain != Terrain():
-        raise ConfigurationError("--terrain tries grounds of its own: leave --episode.terrain.… out")
+    if options.terrain is not None:
+        _check_terrain_options(arguments)
     if options.robustness is not None and spec.task is not BALANCE:
-        raise ConfigurationError(f"--robustness is for --task {BALANCE.name}")
+        raise ConfigurationError(
+            f"--robustness needs parameters of task {BALANCE.name!r}, and these are of {spec.task.name!r}"
+        )
     from sarah.episode.accuracy import physics_warning
     from sarah.episode.evaluation import evaluate
     from sarah.episode.workers import Workers
@@ -97,7 +102,8 @@ def _evaluate(arguments: Sequence[str]) -> None:
         if options.robustness is not None:
             _show_robustness(spec.parameters, spec.config, options, workers)
         if options.terrain is not None:
-            _show_terrain(spec, options.terrain, options, workers)
+            command = shlex.join([COMMAND, *arguments])
+            _show_terrain(spec, options.terrain, options, workers, command)
         if options.robustness is not None or options.terrain is not None:
             return
         say_engine(spec.config, options.engine)
@@ -116,7 +122,7 @@ def _evaluate(arguments: Sequence[str]) -> None:
     ground = [("ground", _described(spec.config.terrain))] if spec.config.terrain != Terrain() else []
     seeds = f"{options.seeds[0]} to {options.seeds[-1]}, which no training has seen"
     for label, text in [
-        *_subject_rows(options.subject, spec.config),
+        *_subject_rows(options.subject, spec),
         *ground,
         ("seeds", seeds),
         *_rows(named, evaluation),
@@ -138,16 +144,22 @@ def _subject(options: EvalOptions) -> tuple[EpisodeSpec, str | None]:
     return options.applied_to(spec), algorithm
 
 
-def _subject_rows(subject: str, config: EpisodeConfig) -> list[tuple[str, str]]:
-    """Rows about what is evaluated, if it has a name."""
+def _subject_rows(subject: str, spec: EpisodeSpec) -> list[tuple[str, str]]:
+    """Rows about what is evaluated, where it runs, and how hard it is pushed."""
     from sarah.episode.parameter_sets import PARAMETER_SETS
+    from sarah.episode.tasks import controller_of
 
-    if not is_shipped(subject):
-        return []
+    config = spec.config
     low, high = config.push.newtons if isinstance(config, PushedConfig) else (0.0, 0.0)
     newtons = f"{low:g} N" if low == high else f"{low:g} to {high:g} N"
     pushed = f"pushed by {newtons}" if high else "not pushed"
-    return [("subject", f"{subject}, {pushed}"), ("origin", PARAMETER_SETS[subject].origin)]
+    rows = [("subject", f"{subject}, task {spec.task.name}, in {config.engine}, {pushed}")]
+    if is_shipped(subject):
+        rows.append(("origin", PARAMETER_SETS[subject].origin))
+    if spec.task is BALANCE:
+        stepping, _ = controller_of(spec.task, spec.parameters, config)
+        rows.append(("steps with", ", ".join(f"{name} = {value:.3f}" for name, value in asdict(stepping).items())))
+    return rows
 
 
 def _described(terrain: Terrain) -> str:
@@ -177,13 +189,14 @@ def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[st
 
 def _comparison(task: Task[Any], evaluation: Evaluation, baseline: Evaluation) -> list[tuple[str, str]]:
     """Rows about the baseline: the same episodes with the parameters that do nothing, such as V1 to V4 at zero."""
-    score, steps = baseline.median("score"), baseline.mean("steps_per_second")
+    score = f"{baseline.median('score'):.3f} median, {baseline.mean('score'):.3f} mean"
+    survivors = f"{baseline.survivors} of {baseline.episodes} survive"
     chatter = "the hips chatter" if evaluation.chatters(baseline) else "no chatter"
     vibration, still = evaluation.median("vibration"), baseline.median("vibration")
     return [
         (
             "baseline (V = 0)" if task is BALANCE else "neutral",
-            f"score {score:.3f} median, {baseline.survivors} of {baseline.episodes} survive, {steps:.2f} steps/s",
+            f"score {score}, {survivors}, {baseline.mean('steps_per_second'):.2f} steps/s",
         ),
         ("chatter", f"{chatter}: a vibration of {vibration:.1f} m²/s⁴, and of {still:.1f} with the baseline"),
     ]
@@ -218,8 +231,16 @@ def _show_robustness(
         print(file)
 
 
-def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers: Workers) -> None:
-    """Print the table as Markdown, and write the table and the picture."""
+def _check_terrain_options(arguments: Sequence[str]) -> None:
+    """Refuse what ``--terrain`` would replace."""
+    for argument in arguments:
+        option = argument.partition("=")[0].replace("_", "-")
+        if option.startswith(REPLACED_BY_TERRAIN):
+            raise ConfigurationError(f"--terrain has grounds, pushes and a time limit of its own: leave {option} out")
+
+
+def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers: Workers, command: str) -> None:
+    """Print the table as Markdown, and write the table and the picture. The command says what was asked for."""
     from functools import partial
 
     from tqdm import tqdm
@@ -234,7 +255,7 @@ def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers
     rows = try_terrain(spec.task, spec.parameters, spec.config, options.seeds, workers, tried, progress)
     values = ", ".join(f"{value:g}" for value in spec.parameters)
     about = f"{spec.task.name} ({values}) in {spec.config.engine}, seeds {options.seeds[0]} to {options.seeds[-1]}"
-    table = f"{about}\n\n{as_markdown(rows)}"
+    table = f"{about}: {command}\n\n{as_markdown(rows)}"
     print(table)
     (folder / "terrain.md").write_text(table + "\n", encoding="utf-8")
     for file in draw_terrain(rows, folder / "terrain"):

@@ -192,10 +192,12 @@ def _summarise(result: SessionResult, spec: SessionSpec, path: Path) -> None:
     from sarah.operation.settings import PARAMETERS
 
     named = zip((parameter.name for parameter in PARAMETERS), result.parameters, strict=True)
-    print("\nparameters  " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
-    first, last = result.mean_score(end=0.2 * spec.config.minutes), result.mean_score(0.8 * spec.config.minutes)
-    parts = f", {first:.3f} in the first fifth, {last:.3f} in the last" if first == first and last == last else ""
-    print(f"score       {result.mean_score():.3f} mean{parts}")
+    print("\nleft with   " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
+    scores = [window.score for window in result.windows]
+    fifth = max(1, len(scores) // 5)
+    first, last = sum(scores[:fifth]) / fifth, sum(scores[-fifth:]) / fifth
+    windows = "window" if fifth == 1 else f"{fifth} windows"
+    print(f"score       {result.mean_score():.3f}: {first:.3f} in the first {windows}, {last:.3f} in the last")
     print(f"falls       {result.falls} in {len(result.windows)} windows")
     for change in spec.config.changes[result.windows[-1].changes :]:
         print(f"no change   at minute {change.minute:g}: no window began after it")

@@ -142,7 +142,6 @@ def parse_options(
                 options_type,
                 prog=command,
                 args=_checked(_with_both_ends(arguments, default)),
-                config=(tyro.conf.FlagCreatePairsOff,),
                 default=default,
                 registry=_REGISTRY,
             )

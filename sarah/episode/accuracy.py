@@ -10,6 +10,8 @@ from sarah.simulation.physics import PHYSICS
 
 LOW_P1 = 0.1
 """P1 below which LIFT ends at the first sign of rocking back, in rad/s."""
+LOWEST_ROUGH_RATE = PHYSICS["standard"].rate
+"""Physics steps per second below which PyBullet's feet get through bumps, in Hz."""
 LATE_SECONDS = 0.015
 """Delay of the signals from which a robot with a low P1 steps too fast, in s."""
 
@@ -26,4 +28,6 @@ def physics_warning(task: Task[Any], parameters: tuple[float, ...], config: Epis
     is_late = config.randomisation.enabled and config.randomisation.delay_seconds >= LATE_SECONDS
     if is_coarse and is_late and stepping.P1 < LOW_P1:
         return f"P1 below {LOW_P1:g} with late signals scores too high here: check it with --physics reference"
+    if config.engine == "pybullet" and config.terrain.roughness[1] > 0.0 and config.physics.rate < LOWEST_ROUGH_RATE:
+        return f"below {LOWEST_ROUGH_RATE} Hz PyBullet's feet sink into bumps: take more steps per second"
     return None

@@ -33,7 +33,7 @@ def from_mapping(default: ConfigType, content: Any, key: str = "") -> ConfigType
     values = dict(dependent)
     for name, value in content.items():
         if name not in types:
-            raise ConfigurationError(unknown_name("key", f"{key}{name}", (key + allowed for allowed in types)))
+            raise ConfigurationError(_unknown_key(default, name, key))
         inner = dependent.get(name, getattr(default, name))
         if dataclasses.is_dataclass(inner) and not isinstance(inner, Task):
             values[name] = from_mapping(inner, value, f"{key}{name}.")
@@ -42,6 +42,22 @@ def from_mapping(default: ConfigType, content: Any, key: str = "") -> ConfigType
         if isinstance(inner, Mapping):
             values[name] = {**inner, **values[name]}
     return dataclasses.replace(default, **values)  # type: ignore[type-var]  # a dataclass
+
+
+def _unknown_key(default: Any, name: Any, key: str) -> str:
+    """Message about a key that settings have not, and that settings within them may have.
+
+    :param default: the settings, a dataclass
+    :param name: the key
+    :param key: prefix of the names in messages
+    """
+    names = [item.name for item in dataclasses.fields(default)]
+    for outer in names:
+        inner = getattr(default, outer)
+        is_settings = dataclasses.is_dataclass(inner) and not isinstance(inner, Task)
+        if is_settings and name in [item.name for item in dataclasses.fields(inner)]:
+            return f"unknown key {key + name!r}, did you mean {f'{key}{outer}.{name}'!r}?"
+    return unknown_name("key", f"{key}{name}", (key + allowed for allowed in names))
 
 
 def _converted(expected: Any, value: Any, key: str) -> Any:

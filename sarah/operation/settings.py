@@ -81,10 +81,10 @@ class OperationConfig:
         check_types(self, robot=PushedConfig, changes=tuple)
         check_fields("operation", self, PLAUSIBLE)
         minutes = [change.minute for change in self.changes]
-        if minutes != sorted(minutes) or not all(0.0 <= minute <= self.minutes for minute in minutes):
-            raise ConfigurationError(
-                f"changes must be in the order of time, between 0 and {self.minutes:g} min, not {shortened(minutes)}"
-            )
+        if not all(0.0 <= minute <= self.minutes for minute in minutes):
+            raise ConfigurationError(f"changes must be between 0 and {self.minutes:g} min, not {shortened(minutes)}")
+        if minutes != sorted(minutes):
+            raise ConfigurationError(f"changes must be in the order of time, not {shortened(minutes)}")
         for change in self.changes:
             if without_effect := sorted(WITHOUT_EFFECT & set(change.settings)):
                 raise ConfigurationError(f"{without_effect[0]} has no effect in an operation: leave its change out")

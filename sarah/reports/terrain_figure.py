@@ -42,10 +42,11 @@ def draw_terrain(rows: Sequence[OnTerrain], path: Path) -> list[Path]:
         for column, (kind, (label, factor)) in enumerate(KINDS.items()):
             for axis, (metric, metric_label) in zip(axes[:, column], ROWS.items(), strict=True):
                 _draw(axis, [row for row in rows if _belongs(row.situation, kind)], metric, factor)
-                axis.set_ylim(bottom=0.0)
                 if column == 0:
                     axis.set_ylabel(metric_label)
             axes[-1, column].set_xlabel(label)
+        for axis in axes[:, 0]:  # once all columns, which share it, are drawn
+            axis.set_ylim(bottom=0.0)
         handles, labels = (
             [one for axis in axes[0, :2] for one in axis.get_legend_handles_labels()[part]] for part in (0, 1)
         )

@@ -83,6 +83,8 @@ class SessionFolder:
         :raises RunFolderError: if it is not one
         """
         folder = cls(path)
+        if not path.is_dir():
+            raise RunFolderError(f"session folder {path} does not exist")
         if not is_session(path):
             raise RunFolderError(f"{path} is not the folder of a session: it has no {folder._spec_path.name}")
         return folder

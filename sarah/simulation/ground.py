@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from itertools import product
 
+from sarah.errors import ConfigurationError
 from sarah.robot.description import RobotDescription
 from sarah.robot.reading import Side, Vector
 from sarah.simulation.simulator import LEVEL_GRAVITY
@@ -85,35 +86,50 @@ class Ground:
         )
 
     def highest(self, left: float, right: float, back: float, front: float) -> float:
-        """Height of the highest place in a rectangle, in m, to within a quarter of a cell.
+        """Height of the highest place in a rectangle, in m.
+
+        The surface is made of triangles. So the place is a node, a corner, or where the edges of the rectangle and of a
+        triangle cross.
 
         :param left: smallest x, in m
         :param right: largest x, in m
         :param back: smallest y, in m
         :param front: largest y, in m
         """
-        columns, rows = (
-            [low + (high - low) * step / count for step in range(count + 1)]
-            for low, high in ((left, right), (back, front))
-            for count in [math.ceil(4.0 * (high - low) / self.cell)]
-        )
-        return max(self.height(x, y) for x in columns for y in rows)
+        columns = [left, right, *self._multiples_within(left, right)]
+        rows = [back, front, *self._multiples_within(back, front)]
+        places = [
+            *product(columns, rows),
+            *((across - y, y) for y in (back, front) for across in self._multiples_within(left + y, right + y)),
+            *((x, across - x) for x in (left, right) for across in self._multiples_within(back + x, front + x)),
+        ]  # the diagonals of the cells are where x + y is a multiple of the cell
+        return max(self.height(x, y) for x, y in places)
 
     def lift(self, robot: RobotDescription) -> float:
         """How much higher than on a plane a standing robot begins, so that it touches the ground and is not inside it.
 
         :param robot: checked robot
         :return: height, in m; 0 on a plane
+        :raises ConfigurationError: if the robot stands beside the bumps, as wide as it is
         """
         if not self.heights:
             return 0.0
+        farthest = max(abs(end) for *rectangle, _ in robot.undersides for end in rectangle)
+        if farthest >= self.reach:
+            raise ConfigurationError(
+                f"bumps reach {self.reach:.2f} m from the start, and this robot's feet {farthest:.2f} m: "
+                "stand them nearer to each other"
+            )
         soles = max(self.ball_height(x, y, robot.contact_radius) - z for x, y, z in robot.standing_soles)
         return max(soles, *(self.highest(*rectangle) - height for *rectangle, height in robot.undersides))
 
     def _nodes_within(self, place: float, radius: float) -> list[float]:
         """Distances along an axis from a place to the nodes that are not farther away than a radius."""
-        first, last = math.ceil((place - radius) / self.cell), math.floor((place + radius) / self.cell)
-        return [index * self.cell - place for index in range(first, last + 1)]
+        return [node - place for node in self._multiples_within(place - radius, place + radius)]
+
+    def _multiples_within(self, low: float, high: float) -> list[float]:
+        """Multiples of the cell from one number to another."""
+        return [index * self.cell for index in range(math.ceil(low / self.cell), math.floor(high / self.cell) + 1)]
 
     def _triangle(self, x: float, y: float) -> tuple[float, float, float]:
         """Height at a place, and the slopes along x and y of the triangle there."""

@@ -39,6 +39,8 @@ def describe_warm_up(config: TrainingConfig) -> str:
     count = warm_up_episodes(config)
     if count == 0:
         return "none: every episode was random" if config.algo == "random" else "none"
+    if count >= config.episodes:
+        return f"all {config.episodes} episodes were random: to learn takes more than {warm_up(config)}"
     text = f"{count} of the {config.episodes} episodes were random"
     if config.task.neutral is None:
         return text

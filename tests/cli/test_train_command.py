@@ -13,7 +13,7 @@ from sarah.episode.tasks import STEPPING
 def test_train_ends_with_a_summary(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
     folder, process = trained
     assert process.returncode == 0, process.stderr
-    for text in ("learned", *STEPPING.parameter_names, "warm-up     4 of the 4 episodes", "score", "run folder  mine"):
+    for text in ("learned", *STEPPING.parameter_names, "warm-up     all 4 episodes", "score", "run folder  mine"):
         assert text in process.stdout
     assert "Traceback" not in process.stderr and "pybullet" not in process.stderr
     assert (folder / "parameters.json").is_file()

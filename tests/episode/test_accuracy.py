@@ -12,6 +12,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import Randomisation
+from sarah.simulation.terrain import Terrain
 
 LOW, PAPER = (0.02, 0.5, 0.6, 1.0, 1.0), (0.4, 1.3, 0.1, 1.0, 1.0)
 LATE = EpisodeConfig(engine="pybullet", randomisation=Randomisation(delay_seconds=0.02))
@@ -39,6 +40,14 @@ def test_a_low_p1_with_late_signals_at_coarse_physics_is_doubted(
 def test_the_legs_of_a_second_training_are_asked_too() -> None:
     config = BalanceConfig(engine="pybullet", stepping=LOW, randomisation=LATE.randomisation)
     assert physics_warning(BALANCE, (1.0, 0.0, 1.0, 0.0), config) is not None
+
+
+@NEEDS_PYBULLET
+@pytest.mark.parametrize(("rate", "roughness", "warns"), [(200, 0.01, True), (400, 0.01, False), (200, 0.0, False)])
+def test_bumps_at_a_low_physics_rate_are_doubted(rate: int, roughness: float, warns: bool) -> None:
+    physics = replace(PHYSICS["standard"], rate=rate)
+    config = EpisodeConfig(engine="pybullet", physics=physics, terrain=Terrain(roughness=(roughness, roughness)))
+    assert (physics_warning(STEPPING, PAPER, config) is not None) == warns
 
 
 @NEEDS_PYBULLET

@@ -1,5 +1,6 @@
 """The table of grounds, and its command."""
 
+import dataclasses
 import sys
 from pathlib import Path
 from typing import Any
@@ -7,13 +8,14 @@ from typing import Any
 import matplotlib.image
 import pytest
 from laboratory import RESULT
+from matplotlib.figure import Figure
 
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.push import Push, PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING
 from sarah.episode.workers import Workers
-from sarah.reports import terrain
+from sarah.reports import terrain, terrain_figure
 from sarah.reports.terrain import OnTerrain, Situation, as_markdown, situations, try_terrain
 from sarah.simulation.terrain import Terrain
 
@@ -81,9 +83,27 @@ def test_command_writes_table_and_picture(
         return [OnTerrain(situation, Evaluation((RESULT,) * 3)) for situation in arguments[-2]]
 
     monkeypatch.setattr(terrain, "try_terrain", found)
-    monkeypatch.setattr(sys, "argv", ["sarah-eval", "balance", "--terrain", str(tmp_path / "out"), "--episodes", "3"])
+    arguments = ["balance", "--terrain", str(tmp_path / "out"), "--episodes", "3", "--episode.payload", "20"]
+    monkeypatch.setattr(sys, "argv", ["sarah-eval", *arguments])
     main()
     printed = capsys.readouterr().out
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"terrain.md", "terrain.png", "terrain.pdf"}
-    assert (tmp_path / "out" / "terrain.md").read_text() in printed
+    table = (tmp_path / "out" / "terrain.md").read_text()
+    assert table in printed and "--episode.payload 20" in table
     assert matplotlib.image.imread(tmp_path / "out" / "terrain.png").std() > 0.05
+
+
+def test_the_picture_shows_every_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also a column of the picture whose values are higher than those of the first."""
+    drawn: list[Figure] = []
+    monkeypatch.setattr(terrain_figure, "save", lambda figure, path: drawn.append(figure))
+    slow, fast = (dataclasses.replace(RESULT, steps_per_second=steps) for steps in (2.0, 4.0))
+    rows = [
+        OnTerrain(situation, Evaluation((fast if situation.kind == "friction" else slow,) * 3))
+        for situation in situations()
+    ]
+    terrain_figure.draw_terrain(rows, tmp_path / "terrain")
+    for axis in drawn[0].axes:
+        low, high = axis.get_ylim()
+        values = [value for line in axis.get_lines() for value in line.get_ydata()]
+        assert low <= min(values) and max(values) < high

@@ -52,6 +52,55 @@ def test_distance_is_along_the_normal_of_the_triangle() -> None:
 
 @settings(max_examples=30)
 @given(
+    edges=st.tuples(*[st.floats(-0.6, 0.6)] * 4),
+    inside=st.lists(st.tuples(st.floats(0.0, 1.0), st.floats(0.0, 1.0)), min_size=20, max_size=20),
+    cell=st.sampled_from([0.02, 0.033, 0.05, 0.1]),
+    seed=st.integers(0, 9),
+)
+def test_nothing_in_a_rectangle_is_higher_than_its_highest_place(
+    edges: tuple[float, ...], inside: list[tuple[float, float]], cell: float, seed: int
+) -> None:
+    ground = draw_ground(Terrain(roughness=(0.05, 0.05), cell=(cell, cell)), seed)
+    (left, right), (back, front) = sorted(edges[:2]), sorted(edges[2:])
+    highest = ground.highest(left, right, back, front)
+    for share_x, share_y in inside:
+        x, y = left + share_x * (right - left), back + share_y * (front - back)
+        assert ground.height(x, y) <= highest + 1e-9
+    assert highest <= np.max(ground.heights)
+
+
+@pytest.mark.parametrize(
+    ("rectangle", "highest"),
+    [
+        ((-0.05, 0.03, -0.04, 0.06), 0.01),  # a node within
+        ((0.02, 0.05, 0.02, 0.05), 0.006),  # a corner
+        ((0.01, 0.04, -0.08, -0.05), 0.005),  # where an edge crosses a line of the grid
+        ((-0.08, -0.02, 0.05, 0.07), 0.005),  # and a diagonal
+    ],
+)
+def test_the_highest_place_of_a_rectangle_is_found(rectangle: tuple[float, ...], highest: float) -> None:
+    assert HILL.highest(*rectangle) == pytest.approx(highest)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_plates_begin_above_high_bumps(seed: int) -> None:
+    """Where bumps reach higher than the soles are thick, also between what a coarse grid would sample."""
+    robot, ground = describe_robot(), draw_ground(Terrain(roughness=(0.05, 0.05)), seed)
+    lift = ground.lift(robot)
+    for left, right, back, front, height in robot.undersides:
+        places = [(x, y) for x in np.linspace(left, right, 60) for y in np.linspace(back, front, 60)]
+        assert max(ground.height(x, y) for x, y in places) <= height + lift + 1e-9
+
+
+def test_a_robot_too_wide_for_the_bumps_is_refused() -> None:
+    wide = describe_robot({"hip_offset": 0.8})
+    assert LEVEL.lift(wide) == 0.0
+    with pytest.raises(ConfigurationError, match=r"bumps reach 0\.70 m from the start, and this robot's feet 0\.8"):
+        draw_ground(ROUGH, 0).lift(wide)
+
+
+@settings(max_examples=30)
+@given(
     roughness=st.floats(1e-4, 0.05),
     cell=st.floats(0.02, 0.1),
     seed=st.integers(0, 2**32),
