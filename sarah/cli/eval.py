@@ -94,6 +94,10 @@ def _evaluate(arguments: Sequence[str]) -> None:
         raise ConfigurationError(
             f"--robustness needs parameters of task {BALANCE.name!r}, and these are of {spec.task.name!r}"
         )
+    from functools import partial
+
+    from tqdm import tqdm
+
     from sarah.episode.accuracy import physics_warning
     from sarah.episode.evaluation import evaluate
     from sarah.episode.workers import Workers
@@ -107,9 +111,10 @@ def _evaluate(arguments: Sequence[str]) -> None:
         if options.robustness is not None or options.terrain is not None:
             return
         say_engine(spec.config, options.engine)
-        evaluation = evaluate(spec.task, spec.parameters, spec.config, options.seeds, workers)
+        shown = partial(tqdm, total=options.episodes, unit=" episodes", leave=False, disable=None)
+        evaluation = evaluate(spec.task, spec.parameters, spec.config, options.seeds, workers, shown)
         neutral = spec.task.neutral
-        baseline = None if neutral is None else evaluate(spec.task, neutral, spec.config, options.seeds, workers)
+        baseline = None if neutral is None else evaluate(spec.task, neutral, spec.config, options.seeds, workers, shown)
     named = dict(zip(spec.task.parameter_names, spec.parameters, strict=True))
     if options.json:
         content: dict[str, object] = {"task": spec.task.reference, "algorithm": algorithm, "parameters": named}

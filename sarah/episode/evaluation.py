@@ -119,6 +119,7 @@ def evaluate(
     config: EpisodeConfig,
     seeds: Iterable[int],
     workers: Executor | None = None,
+    progress: Callable[[Iterable[EpisodeResult]], Iterable[EpisodeResult]] = iter,
 ) -> Evaluation:
     """Simulate the same parameters on several seeds.
 
@@ -127,6 +128,7 @@ def evaluate(
     :param config: settings of the episodes
     :param seeds: seeds of the episodes; no training uses those below 2^31
     :param workers: executor that simulates the episodes; by default this process does
+    :param progress: function that passes the results on, and may show how many there are so far
     """
     specs = [EpisodeSpec(parameters, seed, task_named(task), config) for seed in seeds]
-    return Evaluation(tuple((workers or Workers()).simulate_all(specs)))
+    return Evaluation(tuple(progress((workers or Workers()).simulate_all(specs))))
