@@ -8,6 +8,7 @@ import pytest
 from terminal import BIN, run
 
 from sarah.episode.parameter_sets import PARAMETER_SETS
+from sarah.simulation.engines import default_engine
 
 QUICK = ("--episodes", "2", "--json", "--episode.time-limit", "3")
 
@@ -36,7 +37,7 @@ def test_shipped_parameters_come_with_their_settings(tmp_path: Path) -> None:
 def test_without_a_subject_it_is_what_comes_back_from_a_push(tmp_path: Path) -> None:
     text = run("sarah-eval", "--episodes", "2", "--episode.time-limit", "4", cwd=tmp_path).stdout
     low, high = PARAMETER_SETS["balance"].spec.config.push.newtons
-    assert f"balance, pushed by {low:g} to {high:g} N\n" in text
+    assert f"subject          balance, task balance, in {default_engine()}, pushed by {low:g} to {high:g} N\n" in text
     assert f" {PARAMETER_SETS['balance'].origin}\n" in text
     assert shown(folder=tmp_path) == shown("balance", folder=tmp_path)
     help_text = run("sarah-eval", "--help", cwd=tmp_path).stdout
