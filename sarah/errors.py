@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import reprlib
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
@@ -81,7 +82,8 @@ def to_ranges(config: object, *names: str) -> None:
         value = getattr(config, name)
         ends = tuple(value) if isinstance(value, (list, tuple)) else (value, value)
         if len(ends) == 2 and all(isinstance(end, Real) and not isinstance(end, bool) for end in ends):
-            object.__setattr__(config, name, tuple(map(float, ends)))
+            with contextlib.suppress(OverflowError):  # a whole number beyond all ranges
+                object.__setattr__(config, name, tuple(map(float, ends)))
 
 
 def check_fields(key: str, config: object, plausible: Mapping[str, tuple[float, float, str]]) -> None:

@@ -261,6 +261,7 @@ def test_frictions_are_drawn_for_each_foot() -> None:
     [
         ({"roughness": 0.06}, r"terrain\.roughness must be between 0 and 0\.05 m"),
         ({"roughness": (0.01, 0.005)}, r"terrain\.roughness .* in rising order"),
+        ({"slope_degrees": 10**400}, r"terrain\.slope_degrees must be between 0 and 45 degrees"),
         ({"cell": 0.01}, r"terrain\.cell must be between 0\.02 and 0\.1 m"),
         ({"friction_left": -0.1}, r"terrain\.friction_left must be between 0 and 5"),
         ({"friction_right": "ice"}, r"terrain\.friction_right must be between 0 and 5"),
