@@ -42,8 +42,8 @@ class OperateOptions(EpisodeOptions):
     Describe how the robot differs from the one that its parameters were learned on by --episode.…, such as
     --episode.randomisation.actuator-bandwidth 12 or --episode.payload 5, and what changes on the way by --change.
 
-    :param subject: run folder of a training or a session, numbers separated by commas (P1 to P5, or all nine), or the
-        name of shipped parameters: what the robot begins with
+    :param subject: run folder of a training or a session, numbers separated by commas (P1 to P5, V1 to V4, or all
+        nine), or the name of shipped parameters: what the robot begins with
     :param learner: ``none``, ``gp`` (careful), ``naf``, ``cma-es`` or ``random``
     :param minutes: duration of the operation, in min
     :param seed: seed of robot, world, noise, pushes and learner
