@@ -90,7 +90,7 @@ class Operation(OnWorkers):
         """Score of the parameters that sessions end with, frozen on the same robots as they are in the end."""
         in_the_end = "weak servos" if robot == CHANGING else robot
         last = [session.parameters for session in found]
-        jobs = self._sessions(workers, in_the_end, "none", last, self.minutes / 5.0)
+        jobs = self._sessions(workers, in_the_end, "none", last, max(0.1, self.minutes / 5.0))
         return {"score_of_last_parameters": mean(job.result().mean_score() for job in jobs)}
 
     def _config(self, robot: str, minutes: float) -> OperationConfig:

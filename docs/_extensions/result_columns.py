@@ -53,6 +53,7 @@ FORMATS = {
     "score_3_to_5_min": ".3f",
     "score_5_to_8_min": ".3f",
     "score_from_8_min": ".3f",
+    "score_of_last_parameters": ".3f",
     "gain": "+.3f",
     "rank_correlation": ".3f",
     "mean_difference": "+.3f",

@@ -136,7 +136,10 @@ def test_a_race_of_it_goes_on(folder: Path) -> None:
         ("sarah-train --task my_task.py", "name the task in my_task.py too, as in my_task.py:TASK"),
         ("sarah-train --task nowhere.py:JUMP", "cannot read nowhere.py: No such file or directory"),
         ("sarah-eval 1,0,1,0 --robustness out --task my_task.py:THRIFTY", "must be 5 numbers (P1 to P5), not 4"),
-        ("sarah-eval 1,1,1,1,1 --robustness out --task my_task.py:THRIFTY", "--robustness is for --task balance"),
+        (
+            "sarah-eval 1,1,1,1,1 --robustness out --task my_task.py:THRIFTY",
+            "--robustness needs parameters of task 'balance', and these are of 'thrifty'",
+        ),
     ],
 )
 def test_mistakes(folder: Path, command: str, words: str) -> None:
