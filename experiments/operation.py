@@ -87,7 +87,10 @@ class Operation(OnWorkers):
         return [workers.submit(run_session, spec) for spec in specs]
 
     def _left(self, workers: Workers, robot: str, found: list[SessionResult]) -> Row:
-        """Score of the parameters that sessions end with, frozen on the same robots as they are in the end."""
+        """Score of the parameters that sessions end with, frozen on the same robots as they are in the end.
+
+        They run for a fifth of the session's time, and for at least the shortest time of an operation.
+        """
         in_the_end = "weak servos" if robot == CHANGING else robot
         last = [session.parameters for session in found]
         jobs = self._sessions(workers, in_the_end, "none", last, max(0.1, self.minutes / 5.0))

@@ -6,6 +6,7 @@ import json as json_format
 import shlex
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -94,8 +95,6 @@ def _evaluate(arguments: Sequence[str]) -> None:
         raise ConfigurationError(
             f"--robustness needs parameters of task {BALANCE.name!r}, and these are of {spec.task.name!r}"
         )
-    from functools import partial
-
     from tqdm import tqdm
 
     from sarah.episode.accuracy import physics_warning
@@ -246,8 +245,6 @@ def _check_terrain_options(arguments: Sequence[str]) -> None:
 
 def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers: Workers, command: str) -> None:
     """Print the table as Markdown, and write the table and the picture. The command says what was asked for."""
-    from functools import partial
-
     from tqdm import tqdm
 
     from sarah.reports.terrain import as_markdown, situations, try_terrain

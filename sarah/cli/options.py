@@ -92,7 +92,7 @@ def _with_both_ends(arguments: Sequence[str], config: Any) -> list[str]:
     return completed
 
 
-def _checked(words: Sequence[str]) -> Sequence[str]:
+def _none_empty(words: Sequence[str]) -> Sequence[str]:
     """Arguments, none of which is empty: an empty path would be the working directory.
 
     :param words: the arguments
@@ -141,7 +141,7 @@ def parse_options(
             return tyro.cli(
                 options_type,
                 prog=command,
-                args=_checked(_with_both_ends(arguments, default)),
+                args=_none_empty(_with_both_ends(arguments, default)),
                 default=default,
                 registry=_REGISTRY,
             )

@@ -10,7 +10,7 @@ from sarah.simulation.physics import PHYSICS
 
 LOW_P1 = 0.1
 """P1 below which LIFT ends at the first sign of rocking back, in rad/s."""
-LOWEST_ROUGH_RATE = PHYSICS["standard"].rate
+LOWEST_ROUGH_RATE = 200
 """Physics steps per second below which PyBullet's feet get through bumps, in Hz."""
 LATE_SECONDS = 0.015
 """Delay of the signals from which a robot with a low P1 steps too fast, in s."""

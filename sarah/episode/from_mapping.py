@@ -45,7 +45,7 @@ def from_mapping(default: ConfigType, content: Any, key: str = "") -> ConfigType
 
 
 def _unknown_key(default: Any, name: Any, key: str) -> str:
-    """Message about a key that settings have not, and that settings within them may have.
+    """Message about a key that settings lack; settings within them may have it.
 
     :param default: the settings, a dataclass
     :param name: the key

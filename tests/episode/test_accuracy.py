@@ -43,7 +43,7 @@ def test_the_legs_of_a_second_training_are_asked_too() -> None:
 
 
 @NEEDS_PYBULLET
-@pytest.mark.parametrize(("rate", "roughness", "warns"), [(200, 0.01, True), (400, 0.01, False), (200, 0.0, False)])
+@pytest.mark.parametrize(("rate", "roughness", "warns"), [(100, 0.01, True), (200, 0.01, False), (100, 0.0, False)])
 def test_bumps_at_a_low_physics_rate_are_doubted(rate: int, roughness: float, warns: bool) -> None:
     physics = replace(PHYSICS["standard"], rate=rate)
     config = EpisodeConfig(engine="pybullet", physics=physics, terrain=Terrain(roughness=(roughness, roughness)))

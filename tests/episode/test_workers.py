@@ -1,5 +1,6 @@
 """Who simulates changes nothing: the same training in this process, on workers that die, and on a cluster."""
 
+import contextlib
 import json
 import os
 import shutil
@@ -141,8 +142,9 @@ class Cluster:
     def stop(self) -> None:
         """Kill all: dask takes eight seconds to leave politely."""
         for process in self._processes:
-            for child in psutil.Process(process.pid).children(recursive=True) if process.poll() is None else []:
-                child.kill()
+            with contextlib.suppress(psutil.NoSuchProcess):  # it has ended by itself
+                for child in psutil.Process(process.pid).children(recursive=True):
+                    child.kill()
             process.kill()
             process.wait(timeout=30)
 

@@ -17,6 +17,8 @@ from sarah.episode.tasks import BALANCE, STEPPING
 from sarah.episode.workers import Workers
 from sarah.reports import terrain, terrain_figure
 from sarah.reports.terrain import OnTerrain, Situation, as_markdown, situations, try_terrain
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
 from sarah.simulation.terrain import Terrain
 
 
@@ -83,7 +85,10 @@ def test_command_writes_table_and_picture(
         return [OnTerrain(situation, Evaluation((RESULT,) * 3)) for situation in arguments[-2]]
 
     monkeypatch.setattr(terrain, "try_terrain", found)
-    arguments = ["balance", "--terrain", str(tmp_path / "out"), "--episodes", "3", "--episode.payload", "20"]
+    config = TrainingConfig(episode=EpisodeConfig(terrain=Terrain(roughness=(0.0, 0.01))))
+    run = RunFolder.create(tmp_path / "run", config)  # trained on ground of its own
+    run.write_parameters({"parameters": dict(zip(STEPPING.parameter_names, STEPPING.baseline, strict=True))})
+    arguments = [str(run.path), "--terrain", str(tmp_path / "out"), "--episodes", "3", "--episode.payload", "20"]
     monkeypatch.setattr(sys, "argv", ["sarah-eval", *arguments])
     main()
     printed = capsys.readouterr().out

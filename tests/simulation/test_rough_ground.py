@@ -10,6 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from laboratory import BuildSimulation, Laboratory, laboratory, need
 
+from sarah.episode.episode import Episode
+from sarah.episode.push import Push
+from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.errors import ConfigurationError
 from sarah.robot.description import describe_robot
 from sarah.robot.reading import Side, Vector
@@ -168,6 +171,20 @@ def test_soles_of_a_standing_robot_rest_on_the_bumps(build: BuildSimulation, see
     for side in Side:
         assert -0.001 < simulation.sole_height(side) < 0.0005
     assert simulation.torso_state().axis[2] > math.cos(math.radians(8.0))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_feet_of_a_robot_that_is_pushed_stay_on_the_bumps(lab: Laboratory, seed: int) -> None:
+    """At the standard physics; what is less than a sole's thickness is the tilt of a sole between bumps."""
+    push = Push((75.0, 75.0), at_seconds=(1.5, 2.0))
+    config = BalanceConfig(engine=lab.engine, time_limit=4.0, terrain=ROUGH, push=push)
+    episode = Episode(config, seed, BALANCE)
+    episode.stand()
+    episode.start((0.7, 0.4, 0.7, -0.4))
+    while episode.termination is None:
+        episode.tick()
+        assert min(episode.simulation.sole_height(side) for side in Side) > -RADIUS
+    episode.close()
 
 
 def test_clearance_of_a_foot_is_that_over_its_own_ground(lab: Laboratory, build: BuildSimulation) -> None:
