@@ -139,14 +139,17 @@ def pushes(rows: Rows, situation: str) -> Figure:
     """
     engines = grouped(chosen(rows, "push_n>0 and physics=standard"), "{engine}")
     figure, axes = panels(len(engines), 0.4, sharey=True)
+    names = list(
+        dict.fromkeys(row[situation] for group in engines.values() for row in group)
+    )  # some have one controller
     for axis, (name, group) in zip(axes, engines.items(), strict=True):
         for index, (hips, judged) in enumerate(grouped(group, "{hips}").items()):
-            heights = [len(judged) - place - 0.2 * index for place in range(len(judged))]
+            heights = [len(names) - names.index(row[situation]) - 0.2 * index for row in judged]
             axis.hlines(
                 heights, numbers(judged, "survival_low"), numbers(judged, "survival_high"), color=COLOURS[index]
             )
             axis.plot(numbers(judged, "survival"), heights, "o", color=COLOURS[index], markersize=4, label=hips)
-        axis.set_yticks(range(len(judged), 0, -1), [row[situation] for row in judged])
+        axis.set_yticks(range(len(names), 0, -1), names)
         axis.set(title=name, xlabel=heading("survival"))
     legend(figure, axes[0])
     return figure

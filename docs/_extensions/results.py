@@ -103,7 +103,11 @@ class ResultTable(ResultDirective):
             rows = chosen(result.rows, self.options.get("where", ""))
             if not rows:
                 raise ValueError("no such rows")
-            head, body = self._turned(rows) if "across" in self.options else self._straight(rows)
+            is_turned = "across" in self.options
+            without_effect = {"columns"} if is_turned else {"rows", "cell"}
+            if unused := sorted(without_effect & set(self.options)):
+                raise ValueError(f"{unused[0]} has no effect {'with' if is_turned else 'without'} across")
+            head, body = self._turned(rows) if is_turned else self._straight(rows)
         except (KeyError, ValueError) as problem:
             raise self.error(f"result-table {result.name}: {problem}") from problem
         table = table_node(head, body)
