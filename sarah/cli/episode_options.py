@@ -45,8 +45,8 @@ class EpisodeOptions:
         default five numbers are P1 to P5, and four are V1 to V4
     :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
     :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default as in the training
-    :param randomisation: friction, masses, sensors and so on stay as designed, instead of varying by seed: short for
-        --episode.randomisation.no-enabled
+    :param randomisation: whether friction, masses, sensors and so on vary by seed, or stay as designed: short for
+        --episode.randomisation.enabled
     :param episode: settings of the episodes; by default those of the run folder, or the task's own
     """
 
