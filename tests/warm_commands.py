@@ -15,7 +15,11 @@ from pathlib import Path
 from typing import Any
 
 BIN = Path(sys.executable).parent
-IMPORTS = ("sarah.training.train", "sarah.training.learners", "cma", "yourdfpy", "xacro", "matplotlib.pyplot", "mujoco")
+IMPORTS = (
+    *("sarah.training.train", "sarah.training.learners", "cma", "distributed", "mujoco", "tyro", "xacro", "yourdfpy"),
+    *("fontTools.subset", "matplotlib.backends.backend_pdf", "matplotlib.pyplot"),
+    *("torch._dynamo", "torch.utils.tensorboard"),  # what an optimiser of torch and the curves import late
+)
 PERHAPS = ("pybullet",)
 
 

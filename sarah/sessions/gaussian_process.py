@@ -46,9 +46,10 @@ class GaussianProcessSettings:
 
 
 DISAPPOINTING = 2.0
-"""Number of standard deviations below what was expected at which a reward disappoints."""
-LARGEST_SURPRISE = 4.0
-"""Number of standard deviations that one window counts at most: a single fall is no change of the robot."""
+"""Number of standard deviations below what was expected at which a reward disappoints. A window in which the robot did
+not fall counts as no worse than that: it may be chance (bounded influence, Huber 1964)."""
+SURPRISE_OF_FALL = 4.0
+"""Largest number of standard deviations that a fall counts towards a change: a single one is none."""
 NOISE_WINDOWS = 20
 """Number of the last windows that tell how far rewards differ from what was expected."""
 LEAST_NOISE_WINDOWS = 5
@@ -85,6 +86,7 @@ class LocalGaussianProcess:
         self._first = self._start = to_shares(first)
         self._tried: list[np.ndarray] = []
         self._rewards: list[float] = []
+        self._bounded: list[float] = []
         self._errors: list[float] = []
         self._shortfall = 0.0
         self._doubted = 0
@@ -94,7 +96,7 @@ class LocalGaussianProcess:
         shares, is_trial = self._first, False
         while not robot.is_over:
             window = robot.run(from_shares(shares))
-            disappoints = self._add(shares, window.observed_reward)
+            disappoints = self._add(shares, window.observed_reward, window.fell)
             if window.fell and not is_trial and shares is not self._first:  # nothing that is known carries it
                 shares = self._first
                 continue
@@ -103,31 +105,35 @@ class LocalGaussianProcess:
             shares = self._best()[0] if trial is None else trial
         return from_shares(self._best()[0])
 
-    def _add(self, shares: np.ndarray, reward: float) -> bool:
+    def _add(self, shares: np.ndarray, reward: float, fell: bool) -> bool:
         """Learn from a window, and forget what was before a change.
 
         :param shares: parameters of the window
         :param reward: reward that the robot observed
+        :param fell: whether the robot fell in it
         :return: whether the reward was so low that the best parameters have to show that the robot is as before
         """
-        surprise = self._surprise(shares, reward) if self._tried else 0.0
+        expected, spread = self._foreseen(shares) if self._tried else (reward, self._settings.noise)
+        surprise = (expected - reward) / spread
         disappoints = surprise > DISAPPOINTING
-        self._shortfall = max(0.0, self._shortfall + min(surprise, LARGEST_SURPRISE) - 0.5)
+        counted = min(surprise, SURPRISE_OF_FALL if fell else DISAPPOINTING)
+        self._shortfall = max(0.0, self._shortfall + counted - 0.5)
         self._doubted = self._doubted + 1 if disappoints or self._shortfall > 0.0 else 0
+        if self._tried:
+            self._errors = [*self._errors[1 - NOISE_WINDOWS :], abs(expected - reward)]
         self._tried.append(shares)
         self._rewards.append(reward)
+        self._bounded.append(reward if fell else max(reward, expected - DISAPPOINTING * spread))
         if self._shortfall > self._settings.surprise:
             self._forget()
-        del self._tried[:-MOST_WINDOWS], self._rewards[:-MOST_WINDOWS]
+        del self._tried[:-MOST_WINDOWS], self._rewards[:-MOST_WINDOWS], self._bounded[:-MOST_WINDOWS]
         self._fit()
         return disappoints
 
-    def _surprise(self, shares: np.ndarray, reward: float) -> float:
-        """Number of standard deviations by which a reward falls short of what was expected; the error is remembered."""
+    def _foreseen(self, shares: np.ndarray) -> tuple[float, float]:
+        """Mean and standard deviation of a window's reward, as far as they can be known before it."""
         mean, deviation = self._expected(shares[None])
-        noise = max(self._settings.noise, self._usual_error())
-        self._errors = [*self._errors[1 - NOISE_WINDOWS :], abs(mean[0] - reward)]
-        return float((mean[0] - reward) / np.hypot(deviation[0], noise))
+        return float(mean[0]), float(np.hypot(deviation[0], max(self._settings.noise, self._usual_error())))
 
     def _usual_error(self) -> float:
         """Standard deviation of the last rewards from what was expected, by their median, which no fall moves."""
@@ -139,13 +145,14 @@ class LocalGaussianProcess:
         """Begin again where the robot is now, with the windows since the first doubt."""
         self._start = self._best()[0]
         self._tried, self._rewards = self._tried[-self._doubted :], self._rewards[-self._doubted :]
+        self._bounded = list(self._rewards)
         self._shortfall, self._doubted = 0.0, 0
 
     def _fit(self) -> None:
         beginning = float(np.mean(self._rewards[:3]))
         self._mean = beginning - self._settings.pessimism
         # How deep a robot fell says nothing of the slope where it walks; a cliff would make the process ring.
-        rewards = np.maximum(self._rewards, beginning - 2.0 * self._settings.largest_loss)
+        rewards = np.maximum(self._bounded, beginning - 2.0 * self._settings.largest_loss)
         self._model.fit(np.array(self._tried), rewards - self._mean)
 
     def _expected(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
