@@ -68,7 +68,7 @@ def check_range(key: str, value: float | tuple[float, float], low: float, high: 
         is_range = isinstance(value, tuple) and ends[0] != ends[1]
         order, given = (" and in rising order", value) if is_range else ("", ends[0])
         raise ConfigurationError(
-            f"{key} must be between {low:g} and {high:g}{unit and f' {unit}'}{order}, not {shortened(given)}"
+            f"{key} must be between {low:.10g} and {high:.10g}{unit and f' {unit}'}{order}, not {shortened(given)}"
         )
 
 

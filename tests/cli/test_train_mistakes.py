@@ -39,9 +39,9 @@ MISTAKES = {
         (f"{PUSHED}.push.newtons=20000", "push.newtons must be between 0 and 10000 N"),
     ],
     "out of any plausible range": [
-        ("--episodes -5", "episodes must be between 1 and 1e+06, not -5"),
-        ("--episodes 100000000", "episodes must be between 1 and 1e+06, not 100000000"),
-        ("--simulations 0", "episodes must be between 1 and 1e+06, not 0"),
+        ("--episodes -5", "episodes must be between 1 and 1000000, not -5"),
+        ("--episodes 100000000", "episodes must be between 1 and 1000000, not 100000000"),
+        ("--simulations 0", "episodes must be between 1 and 1000000, not 0"),
         ("--slots 0", "slots must be between 1 and 10000, not 0"),
         ("--slots 100000", "slots must be between 1 and 10000, not 100000"),
         ("--seed -1", "seed must be between 0 and 2147483647, not -1"),
