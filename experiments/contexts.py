@@ -24,7 +24,7 @@ from scipy import stats
 from experiments.conditions import LEARNED
 from experiments.experiment import OnWorkers
 from experiments.record import Row
-from experiments.trainings import LEARNING, identity, kept
+from experiments.trainings import identity, kept
 from sarah.envs.sarah_env import SarahEnv, observation_from, parameters_from
 from sarah.episode.episode import Episode
 from sarah.episode.push import Push
@@ -149,7 +149,7 @@ class Contexts(OnWorkers):
                         }
 
     def _file(self, of: str, controller: str, seed: int) -> Path:
-        name = identity((self.budget, self.episodes, self.grounds(of), controller, seed), LEARNING)
+        name = identity((self.budget, self.episodes, self.grounds(of), controller, seed))
         return self.runs / "contexts" / f"{name}.json"
 
     def grounds(self, of: str) -> dict[str, Ground]:

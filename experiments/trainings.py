@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +16,6 @@ from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BalanceConfig
 from sarah.episode.workers import Workers
-from sarah.errors import ResumeError
 from sarah.files import replace_text
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
@@ -26,8 +24,6 @@ from sarah.training.train import train
 from sarah.versions import source_hash, versions
 
 SARAH = Path(sarah.__file__).parent
-LEARNING = ("agents", "control", "envs", "episode", "robot", "runs", "simulation", "training", "urdf")
-"""Packages that the result of a training depends on."""
 EPISODES: dict[str, EpisodeConfig] = {
     "stepping": EpisodeConfig(),
     # Softer pushes hardly tell controllers apart, V3 answers those from front and back, and who falls does so soon.
@@ -62,15 +58,10 @@ class OfTrainings(OnWorkers):
         :param config: settings of the training
         :param workers: who simulates
         """
-        path = self.runs / f"{config.task}-{config.algo}-{config.episodes}-s{config.seed}-{identity(config, LEARNING)}"
+        name = f"{config.task.name}-{config.algo}-{config.episodes}-s{config.seed}-{identity(config)}"
+        path = self.runs / name
         run = RunFolder.resumable(path) if path.exists() else RunFolder.create(path, config)
-        if run.is_finished:
-            return run
-        try:
-            train(config, run, workers)
-        except ResumeError:  # begun before something else of the package changed
-            shutil.rmtree(path)
-            run = RunFolder.create(path, config)
+        if not run.is_finished:
             train(config, run, workers)
         return run
 
@@ -92,7 +83,7 @@ def identity(settings: object, packages: Sequence[str] = (".",)) -> str:
     """Name for a folder of trainings with these settings, made with today's code and versions.
 
     :param settings: settings of the trainings
-    :param packages: names of the packages that the trainings depend on; by default all of it
+    :param packages: names of the parts of sarah that the trainings depend on; by default those of any result
     """
     sources = [source_hash(SARAH / name) for name in packages]
     return short_hash([repr(settings), versions() | {"sarah-sources": sources}])

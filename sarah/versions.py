@@ -10,7 +10,7 @@ from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-SIMULATING = ("pybullet", "mujoco", "numpy", "xacro")
+SIMULATING = ("pybullet", "mujoco", "numpy", "xacro", "yourdfpy")
 """Packages that an episode's bytes depend on, beside this one."""
 LEARNING = (*SIMULATING, "torch", "stable-baselines3", "gymnasium", "cma", "optuna", "scipy", "scikit-learn")
 """Packages that a training's bytes depend on, beside this one."""
@@ -18,6 +18,8 @@ LONGEST_SHOWN = 100
 """Largest number of characters of a value in a message."""
 SOURCES = (".json", ".py", ".xacro")
 """Endings of the names of files that are hashed."""
+SHOWING = ("cli", "pictures", "reports", "viewer")
+"""Parts of this package that ask and show. No result depends on them, so they are not hashed."""
 
 
 def versions(packages: Iterable[str] = LEARNING) -> dict[str, str]:
@@ -39,11 +41,12 @@ def _version(package: str) -> str:
 
 @lru_cache
 def source_hash(package: Path = Path(__file__).parent) -> str:
-    """Hash of a package's own sources, as they were when this process first asked: twelve hexadecimal digits.
+    """Hash of a package's sources that results depend on, as they were when this process first asked.
 
     A version number stays the same over many states of the code; this does not.
 
     :param package: folder of the package, by default this one
+    :return: twelve hexadecimal digits
     """
     digest = hashlib.sha256()
     for path in sorted(_sources(package), key=lambda path: path.relative_to(package).as_posix()):
@@ -54,7 +57,9 @@ def source_hash(package: Path = Path(__file__).parent) -> str:
 
 def _sources(package: Path) -> Iterable[Path]:
     # In a checkout, agents/ and urdf/ are links.
-    for folder, _, names in os.walk(package, followlinks=True):
+    for folder, folders, names in os.walk(package, followlinks=True):
+        if Path(folder) == package:
+            folders[:] = set(folders) - set(SHOWING)
         yield from (Path(folder, name) for name in names if name.endswith(SOURCES))
 
 

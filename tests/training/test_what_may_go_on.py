@@ -254,6 +254,18 @@ def test_the_hash_of_the_sources_tells_states_of_the_code_apart(tmp_path: Path) 
     assert source_hash(described) == source_hash()
 
 
+def test_how_results_are_shown_changes_none(tmp_path: Path) -> None:
+    """A corrected label must leave trainings that go on, and workers that run, as they are."""
+    copy = shutil.copytree(PACKAGE, tmp_path / "copy", ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("viewer/page.py", "reports/report.py", "pictures/style.py", "cli/train.py"):
+        (copy / name).write_text((copy / name).read_text() + "\n")
+    assert source_hash(copy) == source_hash()
+    other = shutil.copytree(copy, tmp_path / "other")
+    (other / "training" / "reports").mkdir()
+    (other / "training" / "reports" / "more.py").write_text("")
+    assert source_hash(other) != source_hash()
+
+
 def test_who_begins_in_the_folder_of_an_interrupted_training_is_told_how_to_go_on(tmp_path: Path) -> None:
     run = begun(tmp_path / "run", TrainingConfig())
     with pytest.raises(RunFolderError, match=r"run is not empty: .*, or go on with sarah-train --resume \S+run$"):
