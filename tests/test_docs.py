@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from terminal import run
 
 from sarah.episode.episode import simulate
 from sarah.episode.push import Push
@@ -66,6 +67,19 @@ def test_tutorials_and_guides_show_every_command() -> None:
     pages = [*ROOT.glob("docs/tutorials/*.md"), *ROOT.glob("docs/how_to/*.md")]
     shown = "\n".join(page.read_text() for page in pages)
     assert commands and [command for command in commands if f"\n    {command} " not in shown] == []
+
+
+def test_commands_on_pages_have_options_that_exist() -> None:
+    pages = "\n".join(page.read_text().replace("\\\n", " ") for page in (ROOT / "docs").rglob("*.md"))
+    shown = re.findall(r"^ *(?:    |\$ )(sarah-\w+) ([^\n]*)", pages, re.MULTILINE)
+    options: dict[str, set[str]] = {}
+    for command, words in shown:
+        options.setdefault(command, set()).update(re.findall(r"(?<=\s)--([\w.-]+)", f" {words}"))
+    assert len(options) >= 9
+    for command, named in options.items():
+        tasks = [run(command, "--task", task, "--help", cwd=ROOT).stdout for task in ("stepping", "balance")]
+        known = set(re.findall(r"--([\w.-]+)", "\n".join(tasks)))
+        assert named <= known, command
 
 
 def test_contributing_answers_with_one_file_each() -> None:

@@ -165,7 +165,7 @@ def check_episode_options(arguments: Sequence[str], config: EpisodeConfig) -> No
     :param arguments: all arguments of a command
     :param config: settings of the task's episodes
     """
-    names = [argument.partition("=")[0] for argument in arguments]
+    names = [argument.partition("=")[0].replace("_", "-") for argument in arguments]
     for short, long in SET_TWICE:
         if short in names and long in names:
             raise ConfigurationError(f"{short} and {long} set the same: give one of them")

@@ -77,7 +77,7 @@ def main() -> None:
 
 def _operate(arguments: Sequence[str]) -> None:
     for argument in arguments:
-        if argument.partition("=")[0] in WITHOUT_EFFECT:
+        if argument.partition("=")[0].replace("_", "-") in WITHOUT_EFFECT:
             raise ConfigurationError(f"{argument} has no effect in an operation: leave it out")
     options = parse_episode_options(COMMAND, arguments, OperateOptions(), adapted=_of_operation)
     from sarah.runs.run_folder import new_run_path

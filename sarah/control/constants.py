@@ -24,7 +24,7 @@ PLAUSIBLE = {
     "largest_hip_angle": (0.0, 1.5, "rad"),
     "hip_speed": (0.01, 100.0, "rad/s"),
     "stable_time_constant": (1e-4, 100.0, "s"),
-    "lean_time_constant": (1e-4, 100.0, "s"),
+    "lean_time_constant": (0.02, 100.0, "s"),  # a control period at least: its leak is one step of Euler's method
     "fall_time_constant": (1e-4, 100.0, "s"),
     "fall_rate": (0.1, 100.0, "1/s"),
     "fall_dead_band": (0.0, 1.5, "rad"),

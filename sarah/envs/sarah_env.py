@@ -57,6 +57,7 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         self.config = from_mapping(config, settings)
         self.render_mode = render_mode
         self._episode: Episode | None = None
+        self._is_over = True
         self._renderer: Renderer | None = None
         self._seed = 0
 
@@ -73,6 +74,7 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         self._close_episode()
         self._seed = draw_seed(self.np_random)
         self._episode = Episode(self.config, self._seed, self.task)
+        self._is_over = False
         return observation_from(self._episode.stand()), {"seed": self._seed}
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
@@ -81,9 +83,10 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         :param action: values of the task's parameters, in order, scaled to [-1, 1]
         :raises ConfigurationError: if the action is not finite or out of its box, or if the episode is over
         """
-        if self._episode is None or self._episode.termination is not None:
+        if self._episode is None or self._is_over:
             raise ConfigurationError("the episode is over: call reset before step")
         parameters = parameters_from(action, self.task)
+        self._is_over = True
         result = self._episode.run(parameters)
         info = {"seed": self._seed, "parameters": parameters, "result": result}
         return observation_from(self._episode.last_reading), result.episode_return, True, False, info

@@ -27,7 +27,7 @@ SMALLEST_SENSOR_SHARE = 0.9
 SMALLEST_CLEARANCE = 0.010
 """Sole clearance below which a gait is a shuffle, in m."""
 LARGEST_ACCELERATION_RATIO = 1.5
-"""Ratio of the torso's acceleration from 20 to 50 Hz to the baseline's, beyond which a controller chatters."""
+"""Ratio of the torso's acceleration from 20 to 50 Hz to that with neutral parameters, beyond which the hips chatter."""
 
 
 @dataclass(frozen=True)
@@ -90,12 +90,13 @@ class Evaluation:
         shares = (self.mean("shifts_by_sensors"), self.mean("lifts_by_sensors"))
         return min(shares) >= SMALLEST_SENSOR_SHARE and self.mean("sole_clearance") >= SMALLEST_CLEARANCE
 
-    def chatters(self, baseline: Evaluation) -> bool:
+    def chatters(self, neutral: Evaluation) -> bool:
         """Whether the hips shake the torso at frequencies that no real actuator follows.
 
-        :param baseline: same episodes with V1 to V4 at zero; if they ended too early to measure, the answer is no
+        :param neutral: same episodes with the task's neutral parameters, such as V1 to V4 at zero; if they ended too
+            early to measure, the answer is no
         """
-        still = baseline.median("vibration")
+        still = neutral.median("vibration")
         return self.median("vibration") > LARGEST_ACCELERATION_RATIO**2 * still > 0.0
 
     def summary(self) -> dict[str, Any]:
@@ -129,6 +130,9 @@ def evaluate(
     :param seeds: seeds of the episodes; no training uses those below 2^31
     :param workers: executor that simulates the episodes; by default this process does
     :param progress: function that passes the results on, and may show how many there are so far
+    :raises ConfigurationError: for an unknown task, parameters out of their box, or no seeds
     """
     specs = [EpisodeSpec(parameters, seed, task_named(task), config) for seed in seeds]
+    if not specs:
+        raise ConfigurationError("seeds must not be empty: an evaluation needs an episode")
     return Evaluation(tuple(progress((workers or Workers()).simulate_all(specs))))

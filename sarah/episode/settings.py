@@ -54,6 +54,7 @@ class EpisodeConfig:
         """Refuse settings that cannot be simulated."""
         check_types(self, physics=Physics, randomisation=Randomisation, terrain=Terrain)
         check_types(self, controller=ControllerConstants, dimensions=Mapping)
+        object.__setattr__(self, "dimensions", dict(self.dimensions))  # whatever becomes of the mapping that was given
         if self.dimensions:
             check_dimensions(self.dimensions)
         if self.engine not in get_args(Engine):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from numbers import Integral
 from typing import Any
 
 from sarah.episode.settings import EpisodeConfig
@@ -40,5 +41,7 @@ class EpisodeSpec:
         object.__setattr__(
             self, "config", task.episode if self.config is None else task.checked_config(self.config, True)
         )
-        if not isinstance(self.seed, int) or isinstance(self.seed, bool) or self.seed < 0:
+        if isinstance(self.seed, Integral) and not isinstance(self.seed, bool):
+            object.__setattr__(self, "seed", int(self.seed))
+        if type(self.seed) is not int or self.seed < 0:
             raise ConfigurationError(f"seed must be a whole number from 0, not {self.seed!r}")

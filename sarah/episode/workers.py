@@ -166,7 +166,11 @@ class Workers(Executor):
             # Otherwise a worker imports modules from the working folder, such as a pickle.py in somebody's run folder.
             self._safe_path = os.environ.get(SAFE_PATH, "")
             os.environ[SAFE_PATH] = "1"
-            self._cluster, self.client = start(self._count)
+            try:
+                self._cluster, self.client = start(self._count)
+            except BaseException:
+                os.environ[SAFE_PATH] = self._safe_path
+                raise
         return self
 
     def __exit__(
@@ -176,8 +180,10 @@ class Workers(Executor):
         close_waiting_episodes()
         if self.client is not None:
             self.client.close()
+            self.client = None
         if self._cluster is not None:
             self._cluster.close()
+            self._cluster = None
             os.environ[SAFE_PATH] = self._safe_path  # Python takes an empty value as unset
 
     def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
@@ -186,8 +192,10 @@ class Workers(Executor):
         :param function: function to call: :func:`begin_episode`, :func:`finish_episode`, :func:`sarah.simulate`, or
             one of another module
         :param subjects: arguments of the function, such as specifications of episodes
-        :raises ConfigurationError: if other processes simulate, and the task is that of a script
+        :raises ConfigurationError: outside the context, or if other processes simulate and the task is that of a script
         """
+        if self.client is None and (self._count or self._scheduler is not None):
+            raise ConfigurationError("workers start in a with statement: with Workers(4) as workers")
         if self.client is None:
             return _LocalJob(function, *subjects)
         for subject in subjects:

@@ -32,7 +32,7 @@ PLAUSIBLE = {
     "push_seconds": (0.5, 3600.0, "s"),
 }
 """Lowest value, highest value and unit of each setting. Beyond them, somebody has mistaken the unit."""
-WITHOUT_EFFECT = {"time_limit", "reward_form"}
+WITHOUT_EFFECT = ("time_limit", "reward_form", "push.at_seconds")
 """Settings of an episode that an operation does not know."""
 SOFT_PUSHES = Push(newtons=(0.0, 50.0))
 """Pushes of an operation by default: a robot that is being tuned is nudged, and not knocked over."""
@@ -79,6 +79,8 @@ class OperationConfig:
     def __post_init__(self) -> None:
         """Refuse settings that cannot be simulated, also those of robots that come later."""
         check_types(self, robot=PushedConfig, changes=tuple)
+        if type(self.robot) is not PushedConfig:  # the file of a session holds no settings of a task
+            raise ConfigurationError(f"robot must be a PushedConfig, not a {type(self.robot).__name__}")
         check_fields("operation", self, PLAUSIBLE)
         minutes = [change.minute for change in self.changes]
         if not all(0.0 <= minute <= self.minutes for minute in minutes):
@@ -86,8 +88,9 @@ class OperationConfig:
         if minutes != sorted(minutes):
             raise ConfigurationError(f"changes must be in the order of time, not {shortened(minutes)}")
         for change in self.changes:
-            if without_effect := sorted(WITHOUT_EFFECT & set(change.settings)):
-                raise ConfigurationError(f"{without_effect[0]} has no effect in an operation: leave its change out")
+            for name in WITHOUT_EFFECT:
+                if _has(change.settings, name):
+                    raise ConfigurationError(f"{name} has no effect in an operation: leave its change out")
         for count in range(len(minutes) + 1):
             robot = self.robot_after(count)
             if robot.dimensions:
@@ -116,6 +119,13 @@ class OperationConfig:
         :param seconds: time of operation, in s
         """
         return sum(round(60.0 * change.minute, 9) <= seconds for change in self.changes)
+
+
+def _has(settings: Mapping[str, Any], name: str) -> bool:
+    """Whether settings by name have one whose name has dots where settings lie within others."""
+    outer, _, inner = name.partition(".")
+    value = settings.get(outer)
+    return _has(value, inner) if inner and isinstance(value, Mapping) else outer in settings and not inner
 
 
 def checked_parameters(values: Sequence[float]) -> Parameters:

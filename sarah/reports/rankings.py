@@ -85,7 +85,7 @@ def rankings(curves: Sequence[RaceCurve], best_known: float | None = None) -> li
     table = []
     for algo in dict.fromkeys(curve.algo for curve in curves):
         runs = [curve for curve in curves if curve.algo == algo]
-        until = {share: [episodes_until(curve, share * best) for curve in runs] for share in SHARES}
+        until = {share: [episodes_until(curve, best - (1.0 - share) * abs(best)) for curve in runs] for share in SHARES}
         table.append(
             Ranking(
                 algo,

@@ -71,10 +71,9 @@ def write_report(
     """
     config, learned, versions = run.config(), run.parameters(), run.versions()  # before the long simulation
     task = config.task
-    ours, theirs = (
-        evaluate(config.task, parameters, config.episode, range(episodes), executor)
-        for parameters in (learned, task.baseline)
-    )
+    compared = dict.fromkeys((learned, task.baseline, task.neutral or task.baseline))
+    of = {parameters: evaluate(task, parameters, config.episode, range(episodes), executor) for parameters in compared}
+    ours, theirs = of[learned], of[task.baseline]
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         drawn = {file.stem: file for file in draw_all_figures([run], folder) if file.suffix == ".png"}
@@ -95,7 +94,7 @@ def write_report(
         episodes=episodes,
         rows=_parameter_rows(task, learned) + _result_rows(config, ours, theirs),
         baseline=task.baseline_label,
-        warnings=_warnings(task, ours, theirs),
+        warnings=_warnings(task, ours, None if task.neutral is None else of[task.neutral]),
         figures=figures,
         film=film,
         film_caption=caption,
@@ -136,11 +135,11 @@ def _result_rows(config: TrainingConfig, learned: Evaluation, baseline: Evaluati
     return rows
 
 
-def _warnings(task: Task, learned: Evaluation, baseline: Evaluation) -> list[str]:
+def _warnings(task: Task, learned: Evaluation, neutral: Evaluation | None) -> list[str]:
     found = []
     if task.must_step and not learned.is_gait:
         found.append("This is not a valid gait: the robot steps to a clock, or does not lift its feet.")
-    if task.neutral is not None and learned.chatters(baseline):
+    if neutral is not None and learned.chatters(neutral):
         found.append("The hips chatter: no real actuator could follow that.")
     return found
 

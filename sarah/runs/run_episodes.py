@@ -22,7 +22,7 @@ LONGEST_REASON = 200
 class RunEpisode:
     """An episode to look at.
 
-    :param name: name on the command line, for ``--episode``
+    :param name: name on the command line, for ``--which``
     :param label: name in the page's list
     :param spec: specification of the episode
     :param score: score that the run folder has for it; ``None`` if it was not simulated there

@@ -29,7 +29,7 @@ def learned_of_session(path: Path) -> RunEpisode:
     :raises RunFolderError: if the session is not finished, or a file of it cannot be read
     """
     folder = SessionFolder.open(path)
-    spec, windows = folder.spec(), folder.windows()
+    spec, windows = folder.spec(), _windows(folder)
     left = episode_spec(folder.parameters(), spec, windows[-1].changes)
     return RunEpisode("learned", "parameters that the session ended with", left)
 
@@ -44,14 +44,20 @@ def episodes_of_session(path: Path) -> list[RunEpisode]:
     :raises RunFolderError: if a file of it cannot be read, or if it has no window
     """
     folder = SessionFolder.open(path)
-    spec, windows = folder.spec(), folder.windows()
+    spec, windows = folder.spec(), _windows(folder)
     shown = [learned_of_session(path)] if folder.is_finished else []
-    if not windows:
-        raise RunFolderError(f"{path} has no windows to show yet")
     replay = SessionReplay(spec, windows)
     episodes = [_episode(spec, replay, window, window is windows[-1]) for window in windows]
     best = episodes[max(range(len(windows)), key=lambda index: windows[index].score)]
     return [*shown, replace(best, name="best", label=f"best: {best.label}"), *episodes]
+
+
+def _windows(folder: SessionFolder) -> list[Window]:
+    """The windows of a session, of which there must be one."""
+    windows = folder.windows()
+    if not windows:
+        raise RunFolderError(f"{folder.path} has no windows to show yet")
+    return windows
 
 
 def _episode(spec: SessionSpec, replay: SessionReplay, window: Window, is_last: bool) -> RunEpisode:

@@ -126,7 +126,10 @@ class SessionFolder:
         :raises RunFolderError: if it cannot be read
         """
         try:
-            return [_window(row) for row in csv.DictReader(read_lines(self._windows_path, MOST_WINDOWS))]
+            windows = [_window(row) for row in csv.DictReader(read_lines(self._windows_path, MOST_WINDOWS))]
+            if any(window.index != index for index, window in enumerate(windows)):
+                raise ValueError("they are not in order")
+            return windows
         except OSError as error:
             raise RunFolderError(f"cannot read {self._windows_path}: {error.strerror}") from error
         except (csv.Error, KeyError, TypeError, ValueError) as error:

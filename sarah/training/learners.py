@@ -41,7 +41,7 @@ from sarah.training.recommendation import Parameters
 from sarah.training.recorder import EpisodeRecorder, check_weights
 from sarah.training.replay import LateRankReplayBuffer, LateReplayBuffer
 from sarah.training.seeds import seeds_of
-from sarah.training.warm_up import warm_up
+from sarah.training.warm_up import begins_at_centre, warm_up
 
 SCHEDULED_SHARE = 0.8
 """Share of a training after which what NAF's settings change in its course has its last value."""
@@ -122,14 +122,6 @@ def make_agent(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
     np.random.seed(seeds.exploration)
     env.seed(seeds.episodes)
     return model
-
-
-def begins_at_centre(task: Task) -> bool:
-    """Whether the first action of every algorithm is the centre of the box: few uniform draws come near V = 0.
-
-    :param task: task whose parameters are learned
-    """
-    return task.neutral is not None
 
 
 def check_device(settings: AgentSettings) -> None:

@@ -15,7 +15,7 @@ from tensorboard.compat.proto.event_pb2 import Event
 from tensorboard.compat.proto.summary_pb2 import Summary
 from tensorboard.plugins.hparams import summary_v2 as hparams
 
-from sarah.episode.tasks import BalanceConfig
+from sarah.episode.push import PushedConfig
 from sarah.files import LARGEST
 from sarah.runs.config import TrainingConfig
 from sarah.runs.event_file import EventFile
@@ -124,5 +124,5 @@ def hyper_parameters(config: TrainingConfig) -> dict[str, str | int | float]:
         "slots": config.slots,
         "engine": episode.engine,
         "time_limit": episode.time_limit,
-        "push_newtons": "{:g} to {:g}".format(*episode.push.newtons) if isinstance(episode, BalanceConfig) else "none",
+        "push_newtons": "{:g} to {:g}".format(*episode.push.newtons) if isinstance(episode, PushedConfig) else "none",
     }

@@ -5,11 +5,26 @@ Learners, records and figures take the number from here. The module imports noth
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
+from sarah.episode.tasks import Task
 from sarah.runs.agent_settings import WARM_UP
 from sarah.runs.config import TrainingConfig
 
 WITHOUT_WARM_UP = ("cma-es", "random")
 """Algorithms without a warm-up: CMA-ES draws from its own distribution at once, and random search never learns."""
+
+
+def begins_at_centre(task: Task[Any]) -> bool:
+    """Whether the first action of every algorithm is the centre of the box: few uniform draws come near V = 0.
+
+    :param task: task whose parameters are learned; it is so if its neutral parameters are that centre
+    """
+    return task.neutral is not None and all(
+        math.isclose(neutral, (parameter.low + parameter.high) / 2.0, abs_tol=1e-9 * (parameter.high - parameter.low))
+        for neutral, parameter in zip(task.neutral, task.parameters, strict=True)
+    )
 
 
 def warm_up(config: TrainingConfig) -> int:
@@ -42,7 +57,7 @@ def describe_warm_up(config: TrainingConfig) -> str:
     if count >= config.episodes:
         return f"all {config.episodes} episodes were random: to learn takes more than {warm_up(config)}"
     text = f"{count} of the {config.episodes} episodes were random"
-    if config.task.neutral is None:
+    if not begins_at_centre(config.task):
         return text
     near_best = ", and some drawn around the best so far" if getattr(config.agent, "elite_share", 0.0) > 0.0 else ""
     return f"{text}, the first neutral{near_best}"

@@ -24,6 +24,7 @@ from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, Task
 from sarah.errors import ConfigurationError, SimulationError
 from sarah.robot.reading import SensorReading
 from sarah.simulation.engines import is_installed
+from sarah.simulation.mujoco_simulator import MujocoSimulator
 from sarah.simulation.randomisation import Randomisation
 
 SHORT, SHORT_BALANCE = EpisodeConfig(time_limit=4.0), BalanceConfig(time_limit=4.0)
@@ -122,7 +123,7 @@ def test_reset_stands_and_step_simulates_to_the_end() -> None:
 
 
 def test_observation_is_of_order_one_and_upright() -> None:
-    env = SarahEnv(config=SHORT)
+    env = SarahEnv(config=SHORT, engine="mujoco")
     observation, _ = env.reset(seed=1)
     assert env.observation_space.contains(observation)
     acceleration, rates, pressures, joints = np.split(observation, [3, 6, 10])
@@ -184,6 +185,22 @@ def test_the_ends_of_an_action_are_the_ends_of_the_range(low: float, high: float
     assert parameters_from(np.array([-1.0]), task) == (low,)
     assert parameters_from(np.array([1.0]), task)[0] <= high
     assert task.checked(parameters_from(np.array([1.0]), task))[0] == pytest.approx(high)
+
+
+def test_a_robot_that_diverges_while_it_stands_ends_its_episode(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A learner goes on: the step is bad, and not forbidden."""
+    read = MujocoSimulator.read
+
+    def broken(simulator: MujocoSimulator) -> SensorReading:
+        reading = read(simulator)
+        return reading._replace(acceleration=(math.nan, 0.0, 0.0)) if simulator.time > 0.5 else reading
+
+    monkeypatch.setattr(MujocoSimulator, "read", broken)
+    env = SarahEnv(config=SHORT, engine="mujoco")
+    observation, _ = env.reset(seed=0)
+    _, reward, terminated, _, info = env.step(PAPER_ACTION)
+    assert np.isfinite(observation).all() and terminated and reward == 0.0 and info["result"].termination == "diverged"
+    env.close()
 
 
 def test_an_episode_has_one_step() -> None:

@@ -1,11 +1,13 @@
 """What many episodes have in common."""
 
+import pytest
 from laboratory import CONTROL_DT
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import Episode
-from sarah.episode.evaluation import Evaluation
+from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.settings import EpisodeConfig
+from sarah.errors import ConfigurationError
 
 SHORT = EpisodeConfig(time_limit=6.0)
 
@@ -33,3 +35,8 @@ def test_chattering_hips_show_as_vibration() -> None:
     assert chattering.chatters(calm) and not calm.chatters(calm)
     assert chattering.mean("actuator_power") > calm.mean("actuator_power")
     assert chattering.statistic("peak_hip_rate", "max") > 10 * calm.statistic("peak_hip_rate", "max")
+
+
+def test_an_evaluation_needs_an_episode() -> None:
+    with pytest.raises(ConfigurationError, match="seeds must not be empty"):
+        evaluate("stepping", PAPER_STEPPING, SHORT, [])

@@ -2,9 +2,11 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from sarah.control.parameters import PAPER_STEPPING
+from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING, BalanceConfig
 from sarah.errors import ConfigurationError
@@ -21,6 +23,13 @@ def test_spec_refuses_unknown_tasks_and_bad_parameters() -> None:
 def test_spec_refuses_seeds_that_would_not_repeat(seed: object) -> None:
     with pytest.raises(ConfigurationError, match="seed must be a whole number from 0"):
         EpisodeSpec(PAPER_STEPPING, seed)  # type: ignore[arg-type]
+
+
+def test_a_spec_does_not_follow_what_it_was_made_of() -> None:
+    dimensions = {"hinge_height": 0.04}
+    spec = EpisodeSpec(PAPER_STEPPING, np.int64(3), config=EpisodeConfig(dimensions=dimensions))  # type: ignore[arg-type]
+    dimensions["hinge_height"] = 0.05
+    assert spec.config.dimensions == {"hinge_height": 0.04} and type(spec.seed) is int
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 2.1, -0.1, "1", None, True, 10**400])

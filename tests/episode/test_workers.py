@@ -20,6 +20,7 @@ import psutil
 import pytest
 from laboratory import NEEDS_PYBULLET
 
+from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode import cluster as cluster_module
 from sarah.episode import workers as workers_module
 from sarah.episode.episode import Episode, simulate
@@ -296,6 +297,12 @@ def test_bad_workers_are_refused() -> None:
         Workers(-1)
     with pytest.raises(ConfigurationError, match="give one of the two"):
         Workers(2, "tcp://127.0.0.1:1")
+
+
+def test_workers_that_were_not_started_are_no_silent_single_process() -> None:
+    for workers in (Workers(2), Workers(scheduler="tcp://127.0.0.1:1")):
+        with pytest.raises(ConfigurationError, match="workers start in a with statement"):
+            workers.submit(simulate, EpisodeSpec(PAPER_STEPPING, 0))
 
 
 def test_a_scheduler_that_does_not_answer_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,6 +9,7 @@ import pytest
 from operated import quick
 
 from sarah.episode.push import Push
+from sarah.episode.tasks import BalanceConfig
 from sarah.errors import ConfigurationError, DescriptionError
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import SHIPPED, Change, OperationConfig
@@ -127,6 +128,8 @@ def test_windows_that_are_known_are_not_simulated_again_and_change_nothing() -> 
         (dict(changes=(Change(3.0, {"pay_load": 2.0}),)), "unknown key 'pay_load', did you mean 'payload'?"),
         (dict(changes=(Change(3.0, {"payload": -2.0}),)), "payload must be between 0 and 100 kg, not -2.0"),
         (dict(changes=(Change(3.0, {"time_limit": 5.0}),)), "time_limit has no effect in an operation"),
+        (dict(changes=(Change(3.0, {"push": {"at_seconds": 2.0}}),)), "push.at_seconds has no effect in an operation"),
+        (dict(robot=BalanceConfig()), "robot must be a PushedConfig, not a BalanceConfig"),
         (dict(changes=(Change(3.0, {"terrain": {"roughness": 0.01}}),)), "terrain.roughness must be 0"),
     ],
 )

@@ -88,6 +88,11 @@ def test_rankings_are_shares_of_the_best_final_score() -> None:
     assert rankings([good], best_known=2.0)[0].reached == {0.9: 0, 0.95: 0}
 
 
+def test_rewards_below_zero_have_shares_as_well() -> None:
+    (row,) = rankings([curve("naf", -9.0, -1.09, -1.0, -1.0, -1.0)])
+    assert row.episodes == {0.9: 10.0, 0.95: 15.0}
+
+
 def test_the_origin_of_every_algorithms_settings_is_said() -> None:
     table = as_markdown(rankings([curve(algo, 0.1, 0.2) for algo in ALGORITHMS]))
     assert "- td3, sac, ddpg: set once by hand" in table and "- gp, tpe: the defaults of Optuna" in table

@@ -133,6 +133,24 @@ def test_a_session_with_damaged_parameters_is_not_finished(
     assert [episode.name for episode in episodes_of_session(folder.path)[:2]] == ["best", "0"]
 
 
+@pytest.mark.parametrize(
+    ("damage", "words"),
+    [
+        (lambda rows: rows[:1], "has no windows to show yet"),
+        (lambda rows: [rows[0], *rows[2:]], "cannot be read: .*they are not in order"),
+    ],
+)
+def test_a_damaged_table_is_named(
+    whole: tuple[Path, SessionResult], tmp_path: Path, damage: Callable[[list[str]], list[str]], words: str
+) -> None:
+    copy = shutil.copytree(whole[0], tmp_path / "copy")
+    rows = (copy / "windows.csv").read_text().splitlines(keepends=True)
+    (copy / "windows.csv").write_text("".join(damage(rows)))
+    for look in (learned_of_session, episodes_of_session):
+        with pytest.raises(RunFolderError, match=words):
+            look(copy)
+
+
 def test_every_window_is_an_episode_to_look_at(whole: tuple[Path, SessionResult]) -> None:
     path, result = whole
     episodes = episodes_of_session(path)

@@ -1,12 +1,14 @@
 """The random warm-up of a training: how long it is, and where it is said."""
 
 import csv
+import dataclasses
 from pathlib import Path
 
 import pytest
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 from sarah.episode.settings import EpisodeConfig
+from sarah.episode.tasks import BALANCE
 from sarah.runs.agent_settings import NAFSettings, TD3Settings
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
@@ -40,6 +42,7 @@ def rows(run: RunFolder) -> list[dict[str, str]]:
             TrainingConfig("balance"),
             "8 of the 100 episodes were random, the first neutral, and some drawn around the best so far",
         ),
+        (TrainingConfig(dataclasses.replace(BALANCE, neutral=(1.0,) * 4)), "8 of the 100 episodes were random"),
         (TrainingConfig(algo="cma-es"), "none"),
         (TrainingConfig(algo="random"), "none: every episode was random"),
     ],
