@@ -24,6 +24,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass
 from enum import Enum
+from numbers import Real
 
 from sarah.control.baselines import Baselines
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
@@ -47,6 +48,10 @@ class Phase(Enum):
     SHIFT = "shift"
     LIFT = "lift"
     LAND = "land"
+
+
+def _is_finite(value: object) -> bool:
+    return isinstance(value, Real) and math.isfinite(value)
 
 
 @dataclass(frozen=True)
@@ -153,7 +158,7 @@ class PatternGenerator:
         for given, kind in ((parameters, SteppingParameters), (balance, BalanceParameters)):
             if given is not None and not isinstance(given, kind):
                 raise ConfigurationError(f"parameters must be {kind.__name__}, not {given!r}")
-            if given is not None and not all(map(math.isfinite, astuple(given))):
+            if given is not None and not all(map(_is_finite, astuple(given))):
                 raise ConfigurationError(f"parameters must be finite numbers, not {given!r}")
         if parameters is not None:
             self.parameters = parameters

@@ -44,6 +44,17 @@ def from_mapping(default: ConfigType, content: Any, key: str = "") -> ConfigType
     return dataclasses.replace(default, **values)  # type: ignore[type-var]  # a dataclass
 
 
+def convert_fields(config: Any, key: str = "") -> None:
+    """Convert the fields of settings to their types, while they are made; YAML and keywords come converted already.
+
+    :param config: settings, a dataclass
+    :param key: prefix of the names in messages
+    :raises ConfigurationError: naming key and value, if a value is of another type
+    """
+    for name, expected in get_type_hints(type(config)).items():
+        object.__setattr__(config, name, _converted(expected, getattr(config, name), key + name))
+
+
 def _unknown_key(default: Any, name: Any, key: str) -> str:
     """Message about a key that settings lack; settings within them may have it.
 

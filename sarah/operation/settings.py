@@ -10,7 +10,7 @@ from typing import Any
 from sarah.control.hip_law import BalanceParameters
 from sarah.control.parameters import BALANCE_PARAMETERS, STEPPING_PARAMETERS
 from sarah.control.pattern_generator import SteppingParameters
-from sarah.episode.from_mapping import from_mapping
+from sarah.episode.from_mapping import convert_fields, from_mapping
 from sarah.episode.push import Push, PushedConfig
 from sarah.episode.shipped import shipped_parameters
 from sarah.errors import ConfigurationError, check_fields, check_types, shortened
@@ -48,6 +48,10 @@ class Change:
 
     minute: float
     settings: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        """Refuse values of another type."""
+        convert_fields(self, "change.")
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, get_args
 
+from sarah.episode.from_mapping import convert_fields
 from sarah.errors import ConfigurationError, check_range, shortened, to_ranges, unknown_name
 
 Preset = Literal["one-step", "paper"]
@@ -77,7 +78,8 @@ class AgentSettings:
     """Settings of an algorithm; by itself, those of one that has none."""
 
     def __post_init__(self) -> None:
-        """Refuse values out of their range."""
+        """Refuse values of another type or out of their range."""
+        convert_fields(self, "agent.")
         for name, value in vars(self).items():
             key = f"agent.{name}"
             if name.endswith("layers") and len(value) > MOST_LAYERS:

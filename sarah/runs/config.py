@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
+from sarah.episode.from_mapping import convert_fields
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED
 from sarah.episode.tasks import STEPPING, Task, task_named
@@ -71,6 +72,7 @@ class TrainingConfig:
             raise ConfigurationError(
                 f"agent must be the {settings.__name__} of algo {self.algo!r}, not {type(self.agent).__name__}"
             )
+        convert_fields(self)
         check_range("episodes", self.episodes, 1, MOST_EPISODES)
         for earlier, later in pairwise((0, *self.stages)):
             if not earlier < later:

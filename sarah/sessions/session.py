@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from sarah.episode.from_mapping import convert_fields
 from sarah.errors import ConfigurationError, check_range, unknown_name
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import SHIPPED, OperationConfig, Parameters, checked_parameters
@@ -32,12 +33,11 @@ class SessionSpec:
     config: OperationConfig = field(default_factory=OperationConfig)
 
     def __post_init__(self) -> None:
-        """Refuse invalid specifications, and convert the parameters to floats."""
-        object.__setattr__(self, "parameters", checked_parameters(self.parameters))
+        """Convert values to their types, and refuse invalid specifications."""
+        convert_fields(self)
+        checked_parameters(self.parameters)
         if self.learner not in LEARNERS:
             raise ConfigurationError(unknown_name("learner", str(self.learner), LEARNERS))
-        if not isinstance(self.config, OperationConfig) or not isinstance(self.seed, int):
-            raise ConfigurationError("a session needs an OperationConfig and a whole number as seed")
         check_range("seed", self.seed, 0, LARGEST_SEED)
 
 

@@ -1,8 +1,10 @@
 """Settings: what a file may say, and what is answered when it says something else."""
 
 import dataclasses
+from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from sarah.control.constants import ControllerConstants
@@ -10,8 +12,11 @@ from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BalanceConfig
 from sarah.errors import ConfigurationError
+from sarah.operation.settings import Change
+from sarah.runs.agent_settings import NAFSettings
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import read_config, write_config
+from sarah.sessions.session import SessionSpec
 from sarah.simulation.engines import default_engine
 from sarah.simulation.physics import Physics, PyBulletPhysics
 from sarah.simulation.randomisation import Randomisation
@@ -143,3 +148,27 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
 def test_configurations_are_immutable() -> None:
     with pytest.raises(dataclasses.FrozenInstanceError):
         TrainingConfig().seed = 3  # type: ignore[misc]
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: TrainingConfig(episodes=10.5), "episodes must be a whole number, not 10.5"),
+        (lambda: TrainingConfig(seed=True), "seed must be a whole number, not True"),
+        (lambda: TrainingConfig(seed="1"), "seed must be a whole number, not '1'"),
+        (lambda: NAFSettings(batch_size=64.5), "agent.batch_size must be a whole number, not 64.5"),
+        (lambda: NAFSettings(mu_layers=16), "agent.mu_layers must be a list, not 16"),
+        (lambda: NAFSettings(squash_mu="no"), "agent.squash_mu must be true or false, not 'no'"),
+        (lambda: NAFSettings(device=None), "agent.device must be a text, not None"),
+        (lambda: Change("x", {}), "change.minute must be a number, not 'x'"),
+        (lambda: SessionSpec(seed=1.5), "seed must be a whole number, not 1.5"),
+    ],
+)
+def test_settings_from_python_are_checked_as_those_of_a_file(make: Callable[[], object], words: str) -> None:
+    with pytest.raises(ConfigurationError, match=words):
+        make()
+
+
+def test_settings_from_python_may_be_numbers_of_numpy() -> None:
+    config = TrainingConfig(episodes=np.int64(30), agent=NAFSettings(learning_rate=np.float32(0.5)))
+    assert type(config.episodes) is int and type(config.agent.learning_rate) is float
