@@ -125,6 +125,10 @@ def __getattr__(name: str) -> Any:
     return getattr(import_module(f"sarah.{_HOMES[name]}"), name)
 
 
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_HOMES})
+
+
 if find_spec("gymnasium") is not None:
     from sarah.envs.registration import register_environments
 

@@ -49,7 +49,7 @@ class LearningError(SarahError, RuntimeError):
 
 
 class TrainingInterruptedError(SarahError):
-    """A training was stopped before its end; it can be resumed."""
+    """A training or a session was stopped before its end; it can be resumed."""
 
 
 def check_range(key: str, value: float | tuple[float, float], low: float, high: float, unit: str = "") -> None:

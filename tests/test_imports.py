@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+import sarah
+
 ROOT = Path(__file__).parent.parent
 
 
@@ -61,3 +63,7 @@ def test_imports_keep_to_their_contracts() -> None:
     )
     assert process.returncode == 0, process.stdout + process.stderr
     assert "0 broken" in process.stdout
+
+
+def test_a_shell_completes_the_public_names() -> None:
+    assert set(sarah.__all__) <= set(dir(sarah))

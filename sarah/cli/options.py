@@ -182,6 +182,7 @@ def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
     :param command: name of the command
     :param main: function that runs it with its arguments
     """
+    os.environ["MPLBACKEND"] = "Agg"  # figures are files, also where there is a display
     try:
         main(sys.argv[1:])
         sys.stdout.flush()

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import torch
 from stable_baselines3.common.callbacks import BaseCallback
 
 from sarah.agents import PRESETS, LocalNAF, RankReplayBuffer
+from sarah.agents.threads import one_thread
 from sarah.envs.operation_env import SarahOperationEnv
 from sarah.operation.operation import Operation
 from sarah.operation.settings import Parameters
@@ -29,11 +29,11 @@ class AgentLearner:
 
     def operate(self, robot: Operation) -> Parameters:
         """Learn window by window; the agent leaves the robot with the best action that it knows."""
-        torch.set_num_threads(1)  # as trainings do: the bytes must not depend on the number of cores
         env = SarahOperationEnv(robot.config, self._first, operated=robot)
         settings: dict[str, Any] = {**PRESETS["one-step"], "device": "cpu"}
         model = LocalNAF("MlpPolicy", env, seed=self._seed, first_action_centre=True, **settings)
-        model.learn(LONGEST, callback=_UntilOver(robot), log_interval=None)  # type: ignore[arg-type]
+        with one_thread():
+            model.learn(LONGEST, callback=_UntilOver(robot), log_interval=None)  # type: ignore[arg-type]
         assert isinstance(model.replay_buffer, RankReplayBuffer)
         if model.replay_buffer.size() == 0:  # the time was over before it could learn
             return self._first

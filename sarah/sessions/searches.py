@@ -64,7 +64,7 @@ class EvolutionStrategy:
         """Run one generation after the other."""
         import cma
 
-        options = {"bounds": [0.0, 1.0], "seed": self._seed + 1, "verbose": -9, "tolfun": 0.0, "tolx": 0.0}
+        options = {"bounds": [0.0, 1.0], "seed": self._seed + 1, "verbose": -9}
         strategy = cma.CMAEvolutionStrategy(to_shares(self._first), self._deviation, options)
         while True:
             tried = []

@@ -1,4 +1,4 @@
-"""What many would take for a few numbers and costly episodes: black-box optimisers, behind the same training command.
+"""Black-box optimisers, which many would take for a few numbers and costly episodes, behind the same command.
 
 They see no observation: they are asked for an action, a task's parameters scaled to [-1, 1], and told its return.
 """
@@ -25,7 +25,7 @@ class Optimiser(Protocol):
         """The next action to try."""
 
     def tell(self, action: np.ndarray, episode_return: float) -> None:
-        """What came of the oldest action that it was asked for.
+        """Report the return of the oldest action that it was asked for.
 
         :param action: the action that was asked for
         :param episode_return: return of its episode

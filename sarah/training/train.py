@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from math import ceil
 
 import numpy as np
-import torch
 from tqdm import tqdm
 
+from sarah.agents.threads import one_thread
 from sarah.envs.sarah_env import draw_seed
 from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.result import EpisodeResult
@@ -63,15 +63,13 @@ def train(
     :raises LearningError: if the learning algorithm does not return finite numbers
     :raises TrainingInterruptedError: if ``interrupted`` asks to stop
     """
-    with Journal(run.journal_path, config, workers or Workers(), interrupted) as journal:
+    with Journal(run.journal_path, config, workers or Workers(), interrupted) as journal, one_thread():
         if journal.is_new:
             run.write_versions()  # they may not be those that the folder was made with
         return _train(config, run, journal, progress_bar)
 
 
 def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_bar: bool) -> Learned:
-    # The networks are small, so more threads would only wait for each other.
-    torch.set_num_threads(1)
     comparison = np.random.default_rng(seeds_of(config.seed).comparison)
     with tqdm(total=config.episodes, unit=" episodes", disable=not progress_bar) as progress:
         recorder = EpisodeRecorder(run, config, journal, progress)

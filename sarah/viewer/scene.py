@@ -14,6 +14,7 @@ from viser.extras import ViserUrdf
 
 from sarah.episode.trace import Trace
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
+from sarah.pictures.overlay import LONGEST_ARROW, METRES_PER_NEWTON, PUSH_SHOWN_SECONDS
 from sarah.robot.description import ANKLE_JOINTS, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS
 from sarah.simulation.bumps import mesh
@@ -36,10 +37,7 @@ PAD_COLOURS = (LEFT, "#7CBBE6", RIGHT, "#F5B183")
 BUMPS: Colour = (140, 148, 158)
 """Colour of rough ground."""
 METRES_PER_NEWTON_OF_LOAD = 0.0008
-METRES_PER_NEWTON_OF_PUSH = 0.005
-"""Length of a push's arrow per force, in m/N, beside the standard robot; in proportion for other sizes."""
-LONGEST_ARROW = 1.0
-"""Length of the longest arrow, in m, beside the standard robot."""
+"""Length of a pad's bar per load, in m/N."""
 ARROW_GAP = 0.2
 """Distance from the torso's centre at which an arrow ends, in m, beside the standard robot: not inside the torso."""
 STATUS_GAP = 0.15
@@ -50,8 +48,6 @@ WINDOW = (400, 300)
 """Shape of the narrowest window in which all that the first camera must see is seen."""
 DRIFT, PUSH_SEEN = 0.25, 150.0
 """Drift of the robot in m, and force of a push in N, that the first camera must see."""
-PUSH_SHOWN_SECONDS = 0.6
-"""Time for which a push's arrow is shown, in s: the push itself is over before a viewer has noticed it."""
 
 
 class RobotScene:
@@ -198,7 +194,7 @@ def arrow(force: np.ndarray, size: float = 1.0) -> np.ndarray:
     """
     newtons = float(np.linalg.norm(force))
     direction = force / newtons
-    length = min(METRES_PER_NEWTON_OF_PUSH * newtons, LONGEST_ARROW)
+    length = min(METRES_PER_NEWTON * newtons, LONGEST_ARROW)
     return -size * np.array(((ARROW_GAP + length) * direction, ARROW_GAP * direction))
 
 

@@ -72,7 +72,9 @@ def test_numbers_out_of_range_are_refused_by_name(algo: str, name: str) -> None:
     default = getattr(settings_of(algo)(), name)
     for bad in (low - 1, 2 * high, math.nan):
         value: Any = (*default[:1], bad) if isinstance(default, tuple) else bad
-        with pytest.raises(ConfigurationError, match=rf"^agent.{name} must be (between \S+ and \S+|a whole number), not \S+$"):
+        with pytest.raises(
+            ConfigurationError, match=rf"^agent.{name} must be (between \S+ and \S+|a whole number), not \S+$"
+        ):
             settings_of(algo)(**{name: value})
 
 
