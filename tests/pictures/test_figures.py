@@ -9,7 +9,7 @@ from matplotlib.image import imread
 
 from sarah.control.constants import STANDARD_CONSTANTS as CONSTANTS
 from sarah.control.constants import ControllerConstants
-from sarah.control.pattern_generator import Phase, SteppingParameters
+from sarah.control.pattern_generator import PatternGenerator, Phase, SteppingParameters
 from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
@@ -17,28 +17,35 @@ from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.errors import ConfigurationError
 from sarah.pictures.gait_figure import draw_gait_cycle, gait_cycle
 from sarah.pictures.robot_figure import draw_robot, labels_of
-from sarah.pictures.state_machine_figure import draw_state_machine, read_hip_law, read_state_machine
+from sarah.pictures.state_machine_figure import draw_state_machine, hip_law, phases
 from sarah.robot.description import RobotDescription, describe_robot
+from sarah.robot.reading import SensorReading, Side
 
 
-def test_state_machine_is_read_from_the_code_that_runs() -> None:
-    shift, lift, land = read_state_machine()
-    assert [facts.phase for facts in (shift, lift, land)] == [Phase.SHIFT, Phase.LIFT, Phase.LAND]
-    assert [facts.following for facts in (shift, lift, land)] == [Phase.LIFT, Phase.LAND, Phase.SHIFT]
-    assert [facts.swaps_legs for facts in (shift, lift, land)] == [False, False, True]
-    assert shift.conditions[:2] == ("tilt > P2", f"rate > {CONSTANTS.rate_scale:g} P3")
-    assert (shift.swing_length, lift.swing_length) == (-CONSTANTS.shift_extension, CONSTANTS.lift_retraction)
-    assert lift.time_out == f"{CONSTANTS.time_out_seconds:g} (1 + P4)"
-    shift, lift, _ = read_state_machine(
-        ControllerConstants(rate_scale=0.7, lift_retraction=0.011, time_out_seconds=0.2)
-    )
-    assert "rate > 0.7 P3" in shift.conditions and lift.swing_length == 0.011 and lift.time_out == "0.2 (1 + P4)"
+@pytest.mark.parametrize("constants", [CONSTANTS, ControllerConstants(lift_retraction=0.011, time_out_seconds=0.2)])
+def test_the_state_machine_is_that_of_the_generator(constants: ControllerConstants) -> None:
+    """Its order, its time-outs and its leg lengths, without a sensor that ends a phase."""
+    silence = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (0.0,) * 4, (0.0,) * 6)  # type: ignore[arg-type]
+    generator = PatternGenerator(SteppingParameters(1.0, 1.0, 1.0, P4=0.5, P5=1.0), dt=0.001, constants=constants)
+    while generator.phase is Phase.STAND:
+        generator.tick(silence)
+    for facts in (*phases(constants), *phases(constants)):
+        ticks, swing = 0, generator.swing
+        while generator.phase is facts.phase and generator.swing is swing:
+            lengths = dict(zip(Side, generator.targets[4:], strict=True))
+            generator.tick(silence)
+            ticks += 1
+        formula = facts.time_out.replace(" (", " * (").replace("P4", "0.5").replace("P5", "1.0")
+        assert 0.001 * ticks == pytest.approx(eval(formula))
+        assert lengths == {swing: facts.swing_length, swing.other: 0.0}
+    assert f"rate > {constants.rate_scale:g} P3" in phases(constants)[0].condition
 
 
-def test_hip_law_is_read_from_the_code_that_runs() -> None:
-    law = read_hip_law(ControllerConstants(capture_gain=9.5))
+def test_the_hip_law_has_the_constants_of_the_controller() -> None:
+    law = hip_law(ControllerConstants(capture_gain=9.5, spread_gain=3.0))
     assert law["flexion of an unloaded leg"] == f"\N{MINUS SIGN}9.5 V3 fall + {CONSTANTS.flexion_scale:g} V4"
     assert law["flexion of a loaded leg"] == f"{CONSTANTS.flexion_scale:g} V4"
+    assert law["and outward"].startswith("3 V1 (outward lean")
 
 
 @NEEDS_PYBULLET
