@@ -8,21 +8,20 @@ another value, lower on the one and higher on the other.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain
 from pathlib import Path
-from statistics import mean, stdev
+from statistics import mean
 from typing import Any
 
 import gymnasium
 import numpy as np
-from scipy import stats
 
 from experiments.conditions import LEARNED
 from experiments.experiment import OnWorkers
+from experiments.interval import with_interval
 from experiments.record import Row
 from experiments.trainings import identity, kept
 from sarah.envs.sarah_env import SarahEnv, observation_from, parameters_from
@@ -167,17 +166,6 @@ def means(judged: list[dict[str, list[float]]], ground: str) -> list[float]:
     :param ground: name of the ground, or ``all``
     """
     return [mean(scores[ground] if ground in scores else chain(*scores.values())) for scores in judged]
-
-
-def with_interval(name: str, values: list[float]) -> Row:
-    """Columns of a mean with its 95 % interval by Student's distribution.
-
-    :param name: name of the column
-    :param values: independent values
-    """
-    count = len(values)
-    half = float(stats.t.ppf(0.975, count - 1)) * stdev(values) / math.sqrt(count) if count > 1 else math.nan
-    return {name: mean(values), f"{name}_low": mean(values) - half, f"{name}_high": mean(values) + half}
 
 
 def judge(options: Contexts, of: str, controller: str, seed: int) -> dict[str, list[float]]:

@@ -8,12 +8,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from statistics import mean, stdev
+from statistics import mean
 from typing import Any
 
-from scipy.stats import t as student
-
 from experiments.experiment import OnWorkers
+from experiments.interval import with_interval
 from experiments.record import Row
 from sarah.episode.from_mapping import from_mapping
 from sarah.episode.workers import Job, Workers
@@ -118,25 +117,13 @@ class Operation(OnWorkers):
 
 def _row(robot: str, learner: str, found: list[SessionResult], frozen: list[SessionResult]) -> Row:
     gains = [one.mean_score() - other.mean_score() for one, other in zip(found, frozen, strict=False)]
-    low, high = interval(gains)
     row: dict[str, object] = {"robot": robot, "learner": learner, "sessions": len(found)}
     row["score"] = mean(session.mean_score() for session in found)
     for begin, end in SPANS:
         scores = [score for session in found if not math.isnan(score := session.mean_score(begin, end))]
         name = f"score_from_{begin:g}" if math.isinf(end) else f"score_{begin:g}_to_{end:g}"
         row[f"{name}_min"] = mean(scores) if scores else ""
-    row |= {"gain": mean(gains), "gain_low": low, "gain_high": high}
+    row |= with_interval("gain", gains)
     row["falls"] = mean(session.falls for session in found)
     row["most_falls"] = max(session.falls for session in found)
     return row
-
-
-def interval(values: list[float]) -> tuple[float, float]:
-    """Student's 95 % interval of a mean.
-
-    :param values: independent values; of a single one nothing is known
-    """
-    if len(values) < 2:
-        return -math.inf, math.inf
-    half = float(student.ppf(0.975, len(values) - 1)) * stdev(values) / math.sqrt(len(values))
-    return mean(values) - half, mean(values) + half
