@@ -75,7 +75,7 @@ def test_a_cut_extension_goes_on_to_the_same_end(extended: tuple[str, Path]) -> 
 def test_an_extension_without_workers_leaves_the_training_finished(extended: tuple[str, Path]) -> None:
     _, folder = extended
     before = tree(folder / "run")
-    nobody = ("--scheduler", "tcp://127.0.0.1:1")
+    nobody = ("--scheduler", "nowhere://127.0.0.1:1")  # which is refused at once
     process = run("sarah-train", "--resume", "run", "--episodes", "30", *nobody, cwd=folder)
     assert process.returncode == 2 and tree(folder / "run") == before
 
