@@ -181,6 +181,7 @@ class NAF(OffPolicyAlgorithm):
         # Running mean and running var, which the target network copies
         self.batch_norm_stats = get_parameters_by_name(self.q_net, ["running_"])
         self.batch_norm_stats_target = get_parameters_by_name(self.q_net_target, ["running_"])
+        check_number("batch_size", self.batch_size, 1, whole=True)
         check_number("gamma", self.gamma, 0.0, 1.0)
         check_number("tau", self.tau, 0.0, 1.0)
         check_number("max_grad_norm", self.max_grad_norm, 0.0, highest=math.inf, above=True)
@@ -226,7 +227,7 @@ class NAF(OffPolicyAlgorithm):
         parameters, target_parameters = list(self.q_net.parameters()), list(self.q_net_target.parameters())
         average_parameters = get_ema_multi_avg_fn(1 - self.tau)
 
-        losses, mean_q_values, largest_values, bounds = [], [], [], []
+        losses, mean_q_values = [], []
         for _ in range(gradient_steps):
             # Sample replay buffer
             replay_data = self.replay_buffer.sample(batch_size, env=self._vec_normalize_env)  # type: ignore[union-attr]
@@ -249,9 +250,6 @@ class NAF(OffPolicyAlgorithm):
             losses.append(loss.detach())
             if self.q_net.gain_net is not None:
                 loss = loss + nearby_loss(current_values, target_q_values)
-            if 0 < self.gamma < 1:
-                largest_values.append(current_values.best.detach().max())
-                bounds.append((replay_data.rewards.abs() / (1 - discounts)).max())
 
             # Optimize the policy
             self.policy.optimizer.zero_grad()
@@ -270,15 +268,16 @@ class NAF(OffPolicyAlgorithm):
         self.logger.record("train/n_updates", self._n_updates, exclude="tensorboard")
         self.logger.record("train/loss", th.stack(losses).mean().item())
         self.logger.record("train/q", th.stack(mean_q_values).mean().item())
-        if 0 < self.gamma < 1:
-            self._check_values(th.stack(largest_values).max().item(), th.stack(bounds).max().item())
+        if 0 < self.gamma < 1:  # The last batch is a sample as good as all of them
+            bounds = replay_data.rewards.abs() / (1 - discounts)
+            self._check_values(current_values.best.max().item(), bounds.max().item())
 
     def _check_values(self, largest: float, bound: float) -> None:
         """
         Log how near ``V`` comes to the largest value that rewards allow, and warn once if it is far beyond.
 
-        :param largest: Largest ``V`` of some batches
-        :param bound: Value of the largest reward of these batches if it came at every step
+        :param largest: Largest ``V`` of a batch
+        :param bound: Value of the largest reward of this batch if it came at every step
         """
         self.value_bound = max(self.value_bound, bound)
         if self.value_bound == 0:

@@ -88,6 +88,9 @@ class NAFPolicy(BasePolicy):
             raise ValueError(
                 f"net_arch must be a list or have the keys W or V, mu and L and perhaps shared, not {sorted(net_arch)}"
             )
+        for name, widths in net_arch.items():
+            for width in widths:
+                check_number(f"a width in net_arch[{name!r}]", width, 1, whole=True)
 
         self.net_args: dict[str, Any] = {
             "observation_space": self.observation_space,

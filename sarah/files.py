@@ -11,6 +11,7 @@ import fcntl
 import io
 import os
 import stat
+import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -28,12 +29,13 @@ LARGEST = 2**30
 def replacing(path: Path) -> Iterator[BinaryIO]:
     """Write a file that replaces the old one only when it is complete.
 
+    Of several writers at once, each writes a file of its own, and the last to end has the name.
+
     :param path: path of the file; if writing fails, its old content stays
     """
-    unfinished = path.with_name(f"{path.name}.new")
+    unfinished = path.with_name(f"{path.name}.{uuid.uuid4().hex}.new")
     try:
-        unfinished.unlink(missing_ok=True)  # whatever it is: a FIFO would block, and a link lead elsewhere
-        with unfinished.open("xb") as file:
+        with unfinished.open("xb") as file:  # "x" goes through no link
             yield file
             file.flush()
             os.fsync(file.fileno())

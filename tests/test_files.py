@@ -28,6 +28,17 @@ def test_a_file_keeps_its_content_until_the_new_one_is_complete(tmp_path: Path) 
     assert path.read_text() == "after" and [found.name for found in tmp_path.iterdir()] == ["file"]
 
 
+def test_two_writers_at_once_leave_one_whole_file(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    with replacing(path) as first:
+        first.write(b"fir")
+        with replacing(path) as second:
+            second.write(b"second")
+        assert path.read_text() == "second"
+        first.write(b"st")
+    assert path.read_text() == "first" and [found.name for found in tmp_path.iterdir()] == ["file"]
+
+
 def test_memory_and_open_files_stay_flat() -> None:
     """A leaked world, 200 times, would be some 100 MB; `make endurance` goes on for longer."""
     config = EpisodeConfig(time_limit=1.02, physics=Physics(rate=50, solver_iterations=5, control_rate=50))

@@ -15,6 +15,7 @@ BAD = [
     (NAF, "gamma", [math.nan, -0.1, 2.0]),
     (NAF, "tau", [math.nan, -0.1, 2.0]),
     (NAF, "max_grad_norm", [0.0, -1.0, math.nan, "1", None]),
+    (NAF, "batch_size", [0, -1, 2.5, None]),
     (NAF, "exploration_std", [-0.1, math.inf, math.nan, "0.1", None]),
     (LocalNAF, "elite_share", [-0.1, 1.5, math.nan, None]),
     (LocalNAF, "elite_std", [-0.1, math.inf, None]),
@@ -40,6 +41,14 @@ def test_bad_values_of_replay_and_policy(value):
         LocalNAF("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL, replay_buffer_kwargs={"temperature": value})
     with pytest.raises(ValueError, match=refusal("min_curvature", value)):
         NAF("MlpPolicy", "Pendulum-v1", policy_kwargs={**SMALL, "min_curvature": value})
+
+
+@pytest.mark.parametrize("width", [0, -8, 2.5, "8"])
+def test_bad_widths_of_layers(width):
+    with pytest.raises(ValueError, match=refusal("a width in net_arch['W']", width)):
+        NAF("MlpPolicy", "Pendulum-v1", policy_kwargs={"net_arch": [8, width]})
+    with pytest.raises(ValueError, match=refusal("a width in net_arch['mu']", width)):
+        NAF("MlpPolicy", "Pendulum-v1", policy_kwargs={"net_arch": {"V": [8], "mu": [width], "L": []}})
 
 
 @pytest.mark.parametrize("ends", [(-0.1, 0.5), (0.5, 2.0)])

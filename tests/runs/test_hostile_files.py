@@ -193,8 +193,10 @@ def test_a_run_has_no_more_rows_than_episodes(honest: Path, tmp_path: Path) -> N
 def test_what_is_replaced_goes_through_no_link_and_waits_for_nobody(tmp_path: Path) -> None:
     precious = tmp_path / "precious"
     precious.write_text("data")
-    (tmp_path / "file.new").symlink_to(precious)
+    (tmp_path / "file").symlink_to(precious)
     replace_text(tmp_path / "file", "one")
-    os.mkfifo(tmp_path / "file.new")
+    assert (tmp_path / "file").read_text() == "one" and precious.read_text() == "data"
+    (tmp_path / "file").unlink()
+    os.mkfifo(tmp_path / "file")
     replace_text(tmp_path / "file", "two")
-    assert (tmp_path / "file").read_text() == "two" and precious.read_text() == "data"
+    assert (tmp_path / "file").read_text() == "two"
