@@ -9,17 +9,14 @@ from typing import NamedTuple, get_args
 
 from experiments.experiment import OnWorkers, survival
 from experiments.record import Row
-from sarah.episode.ending import paper_ending
 from sarah.episode.episode import Episode
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import Push
 from sarah.episode.result import EpisodeResult
 from sarah.episode.running_robot import conditions_of
-from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_EVALUATION_SEED
-from sarah.episode.tasks import BALANCE, BalanceConfig
-from sarah.episode.tick import Tick
+from sarah.episode.tasks import BALANCE, BalanceConfig, Task
 from sarah.episode.workers import Workers
 from sarah.simulation.engines import Engine
 from sarah.simulation.physics import PHYSICS
@@ -42,7 +39,6 @@ class Situation(NamedTuple):
     :param angular_rate_bias: error of the gyroscope about x and about y, in rad/s; by default each seed's own
     :param newtons: force of the push, in N
     :param push_degrees: directions of the pushes, in turn, in degrees
-    :param has_wide_box: whether the box of an episode reaches 0.5 m from the start instead of 0.25 m
     """
 
     name: str
@@ -51,7 +47,6 @@ class Situation(NamedTuple):
     angular_rate_bias: float | None = None
     newtons: float = 0.0
     push_degrees: tuple[float, ...] = ()
-    has_wide_box: bool = False
 
 
 FLAT = Situation("flat")
@@ -66,26 +61,14 @@ PUSHED = (
     Situation("125 N", newtons=125.0),
     Situation("100 N lateral", newtons=100.0, push_degrees=LATERAL),
     Situation("125 N lateral", newtons=125.0, push_degrees=LATERAL),
-    Situation("125 N lateral, box 0.5 m", newtons=125.0, push_degrees=LATERAL, has_wide_box=True),
     Situation("115 N sagittal", newtons=115.0, push_degrees=SAGITTAL),
     Situation("100 N sagittal, slope of 4°", slope_degrees=4.0, newtons=100.0, push_degrees=SAGITTAL),
 )
 
 
-def ending_of_wide_box(tick: Tick, config: EpisodeConfig) -> str | None:
-    """End an episode as the paper does, in a box twice as wide: the box then judges half of the displacement.
-
-    :param tick: what is known at the end of a control tick
-    :param config: settings of the episode
-    """
-    (x, y, z), (start_x, start_y, start_z) = tick.torso.position, tick.start
-    return paper_ending(tick._replace(start=((x + start_x) / 2, (y + start_y) / 2, (z + start_z) / 2)), config)
-
-
-WIDE_BOX = replace(BALANCE, name="balance_in_wide_box", ending=ending_of_wide_box)
-
-
-def simulate(situation: Situation, hips: str, index: int, count: int, config: BalanceConfig) -> EpisodeResult:
+def simulate(
+    situation: Situation, hips: str, index: int, count: int, config: BalanceConfig, task: Task[BalanceConfig] = BALANCE
+) -> EpisodeResult:
     """Simulate one of the episodes of a situation.
 
     :param situation: what the robot meets
@@ -93,6 +76,7 @@ def simulate(situation: Situation, hips: str, index: int, count: int, config: Ba
     :param index: index of the episode, from 0
     :param count: number of episodes
     :param config: settings of the episodes, without push and slope
+    :param task: task, which says how an episode ends
     """
     seed, direction = FIRST_EVALUATION_SEED + index, 360.0 * index / count
     degrees = situation.push_degrees[index % len(situation.push_degrees)] if situation.push_degrees else direction
@@ -107,7 +91,6 @@ def simulate(situation: Situation, hips: str, index: int, count: int, config: Ba
     if situation.angular_rate_bias is not None:
         x, y = (sign * situation.angular_rate_bias for sign in SIGNS[index % len(SIGNS)])
         sensors = replace(sensors, angular_rate_bias=(x, y, sensors.angular_rate_bias[2]))
-    task = WIDE_BOX if situation.has_wide_box else BALANCE
     episode = Episode(config, seed, task, conditions=replace(conditions, sensors=sensors))
     try:
         episode.stand()

@@ -14,6 +14,7 @@ from benchmarks.terrain_speed import TerrainSpeed
 from benchmarks.throughput import Throughput
 from benchmarks.updates import Updates
 from benchmarks.viewer import Viewer
+from experiments.box_limit import BoxLimit
 from experiments.clock import Clock
 from experiments.conditions import Conditions
 from experiments.contexts import Contexts
@@ -233,6 +234,11 @@ TABLE: dict[str, Maker] = {
         "What decides whether the robot survives a push to the side?",
         LateralLimit(),
         {"newtons": (125.0,), "pushes": 1, "time_limit": 3.5},
+    ),
+    "box_limit": Maker(
+        "Does the box around the start end episodes that the robot would have saved?",
+        BoxLimit(),
+        {"pushes": 1, "time_limit": 3.5},
     ),
     "sensor_faults": Maker(
         "Does the robot go on stepping when its sensors or its control loop fail?",

@@ -7,7 +7,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import astuple, replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,9 @@ import numpy as np
 import pytest
 from terminal import run
 
+from sarah.control.hip_law import BalanceParameters
 from sarah.episode.episode import simulate
+from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
@@ -129,9 +131,8 @@ class AllSentError(Exception):
 
 
 @pytest.mark.parametrize("task", LEARNED)
-def test_the_loop_for_a_real_robot_drives_the_simulated_one_as_an_episode_does(task: str, tmp_path: Path) -> None:
+def test_the_loop_for_a_real_robot_drives_the_simulated_one_as_an_episode_does(task: str) -> None:
     names, learned = loop_of_the_page(), LEARNED[task]
-    (tmp_path / "parameters.json").write_text(json.dumps(learned))
     shared: dict[str, Any] = dict(randomisation=AS_DESIGNED, time_limit=4.0)
     config = EpisodeConfig(**shared)
     if task == BALANCE.name:
@@ -152,7 +153,7 @@ def test_the_loop_for_a_real_robot_drives_the_simulated_one_as_an_episode_does(t
 
     limits = [description.limits[joint] for joint in ACTUATED_JOINTS]
     with pytest.raises(AllSentError):
-        names["drive"](names["controller"](tmp_path / "parameters.json", limits), robot.read, send)
+        names["drive"](names["controller"](learned, limits), robot.read, send)
     robot.close()
     assert np.array_equal(sent[-len(trace) :], trace.targets) and not np.any(sent[: -len(trace)])
 
@@ -177,10 +178,29 @@ def test_the_loop_for_a_real_robot_says_when_a_reading_was_late_and_ends_with_a_
     assert told == pytest.approx([0.01, 0.01, 0.01, 0.034, 0.01, 0.01])
 
 
-def test_the_limits_on_the_page_are_the_robots() -> None:
-    names: dict[str, Any] = {"drive": lambda *_: None, "controller": lambda *_: None, "Path": Path}
-    exec(blocks("how_to/real_robot.md")[1], {**names, "read": None, "send": None}, names)
+def test_the_limits_on_the_page_are_the_robots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run = tmp_path / "runs" / "balance" / "naf-s0"
+    run.mkdir(parents=True)
+    (run / "parameters.json").write_text(json.dumps(LEARNED["balance"]))
+    monkeypatch.chdir(tmp_path)
+    names, driven = {**loop_of_the_page(), "read": None, "send": None}, []
+    names["drive"] = lambda generator, read, send: driven.append(generator)
+    exec(blocks("how_to/real_robot.md")[1], names)
     assert names["LIMITS"] == [describe_robot().limits[joint] for joint in ACTUATED_JOINTS]
+    assert driven[0].hips.parameters == BalanceParameters(0.8, 0.1, 0.2, 0.1)
+
+
+def test_the_page_takes_the_parameters_of_trainings_of_sessions_and_of_the_package() -> None:
+    controller = loop_of_the_page()["controller"]
+    shipped = json.loads((ROOT / "sarah/episode/parameter_sets.json").read_text())
+    limits = [(-1.0, 1.0)] * 6
+    p, v = PARAMETER_SETS["stepping"].spec.parameters, PARAMETER_SETS["balance"].spec.parameters
+    for name, hips in (("stepping", (0.0,) * 4), ("balance", v)):
+        generator = controller(shipped[name], limits)
+        assert astuple(generator.parameters) == p and astuple(generator.hips.parameters) == hips
+    names = [f"{letter}{number}" for letter, count in (("P", 5), ("V", 4)) for number in range(1, count + 1)]
+    session = controller({"parameters": dict(zip(names, range(9), strict=True))}, limits)
+    assert (*astuple(session.parameters), *astuple(session.hips.parameters)) == tuple(range(9))
 
 
 def test_what_a_robot_needs_runs_with_the_standard_library_alone(tmp_path: Path) -> None:
@@ -190,7 +210,8 @@ def test_what_a_robot_needs_runs_with_the_standard_library_alone(tmp_path: Path)
         [
             blocks("how_to/real_robot.md")[0],
             "from sarah.robot.reading import STANDING",
-            "generator, sent = controller(Path('parameters.json'), [(-1.0, 1.0)] * 6), []",
+            "import json",
+            "generator, sent = controller(json.load(open('parameters.json')), [(-1.0, 1.0)] * 6), []",
             "lying = STANDING._replace(acceleration=(9.81, 0.0, 0.0))",
             "drive(generator, lambda: lying if len(sent) > 120 else STANDING, sent.append)",
             "assert generator.has_fallen and 120 < len(sent) < 220 and any(sent[-1])",

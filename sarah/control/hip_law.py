@@ -26,6 +26,7 @@ a reason: where the torso sits, the acceleration of a falling robot and its tilt
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -53,6 +54,8 @@ class BalanceParameters:
 
 LOCKED_HIPS = BalanceParameters(0.0, 0.0, 0.0, 0.0)
 """V1 to V4 of the First Training, in which the hips stay straight."""
+PAD_SECONDS = 0.01
+"""Time over which the pads are averaged, in s: the noise of a single sample grows with the control rate."""
 NO_LIMITS = ((-math.inf, math.inf),) * 6
 """Lowest and highest position of each actuated joint, for a robot whose joints have no limits."""
 
@@ -70,7 +73,7 @@ class HipLaw:
     parameters: BalanceParameters
     """Values of V1 to V4 at present."""
     loads: dict[Side, float]
-    """Sum of the two pads of each foot in the last reading, in N."""
+    """Sum of the two pads of each foot, in N: the mean of the readings of the last 0.01 s."""
     limited: set[int]
     """Indices of the hip joints whose limits kept a target of the last tick from where the law wanted it."""
 
@@ -97,6 +100,7 @@ class HipLaw:
         self._dt = dt
         self._limits = limits
         self._stable_x = LowPass(constants.stable_time_constant, dt)
+        self._recent_loads: deque[tuple[float, float]] = deque(maxlen=max(1, round(PAD_SECONDS / dt)))
         self._pitch, self._roll = Lean(dt, constants), Lean(dt, constants)
         self._fall = LowPass(constants.fall_time_constant, dt)
         self.outward_lean = 0.0
@@ -134,8 +138,7 @@ class HipLaw:
             :class:`~sarah.control.baselines.Baselines`
         :param periods: control periods since the last reading
         """
-        left_fore, left_hind, right_fore, right_hind = reading.pressures
-        loads = self.loads = {Side.LEFT: left_fore + left_hind, Side.RIGHT: right_fore + right_hind}
+        loads = self.loads = self._mean_loads(reading.pressures, periods)
         if max(loads.values()) > self._constants.pad_threshold:
             self._carrying = Side.LEFT if loads[Side.LEFT] > loads[Side.RIGHT] else Side.RIGHT
         joints = self._plausible(reading.joints)
@@ -145,12 +148,21 @@ class HipLaw:
         abduction_speed = (joints[abduction] - before[abduction]) / seconds
         flexion_speed = (joints[flexion] - before[flexion]) / seconds
         rate_x, rate_y, _ = reading.angular_rate
+        straight = self._within_limits(self._constant_flexion, (flexion,))
         for _ in range(periods):
             self._stable_x(reading.acceleration[0])
-            lean = self._pitch(rate_x, joints[flexion] - self._constant_flexion, flexion_speed)
+            lean = self._pitch(rate_x, joints[flexion] - straight, flexion_speed)
             self._fall(lean - clipped(lean, self._constants.fall_dead_band))
             roll = self._roll(rate_y, joints[abduction] - self._constant_abduction, abduction_speed)
         self.outward_lean = self._carrying.value * roll
+
+    def _mean_loads(self, pressures: tuple[float, float, float, float], periods: int) -> dict[Side, float]:
+        """Loads of the feet, as means over the time of the pads."""
+        left_fore, left_hind, right_fore, right_hind = pressures
+        recent = self._recent_loads
+        recent.extend([(left_fore + left_hind, right_fore + right_hind)] * min(periods, recent.maxlen or 1))
+        left, right = map(sum, zip(*recent, strict=True))
+        return {Side.LEFT: left / len(recent), Side.RIGHT: right / len(recent)}
 
     def _plausible(self, joints: Sequence[float]) -> tuple[float, ...]:
         """Positions of the hip joints, as far as a servo can be from its target: a stuck sensor is not a fall."""

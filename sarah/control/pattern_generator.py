@@ -20,6 +20,7 @@ control tick, and on a robot.
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass
@@ -29,12 +30,14 @@ from numbers import Real
 from sarah.control.baselines import Baselines
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.hip_law import LOCKED_HIPS, NO_LIMITS, BalanceParameters, HipLaw
-from sarah.errors import ConfigurationError
+from sarah.errors import ConfigurationError, check_range, shortened
 from sarah.robot.filters import LowPass, clipped, low_pass_gain, ramped
 from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, SensorReading, Side
 
 STAND_SECONDS = 1.0
 """Duration of standing before the robot begins to step, in s; it is the paper's."""
+SHORTEST_PERIOD, LONGEST_PERIOD = 1e-4, 0.1
+"""Ends of the range of control periods, in s. Beyond them, somebody has mistaken the unit."""
 LONGEST_GAP = 1.0
 """Longest time between two ticks that counts, in s."""
 LONGEST_BLOW = 0.03
@@ -51,7 +54,25 @@ class Phase(Enum):
 
 
 def _is_finite(value: object) -> bool:
-    return isinstance(value, Real) and math.isfinite(value)
+    try:
+        return isinstance(value, Real) and math.isfinite(value)
+    except OverflowError:  # a whole number beyond all floats
+        return False
+
+
+def _check_parameters(given: object, kind: type[SteppingParameters] | type[BalanceParameters]) -> None:
+    if not isinstance(given, kind):
+        raise ConfigurationError(f"parameters must be {kind.__name__}, not {given!r:.100}")
+    if not all(map(_is_finite, astuple(given))):
+        raise ConfigurationError(f"parameters must be finite numbers, not {given!r:.100}")
+
+
+def _checked_limits(limits: Sequence[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
+    with contextlib.suppress(TypeError, ValueError):
+        ranges = tuple((low, high) for low, high in limits)
+        if len(ranges) == len(ACTUATED_JOINTS) and all(low <= 0.0 <= high for low, high in ranges):
+            return ranges
+    raise ConfigurationError(f"limits must be {len(ACTUATED_JOINTS)} ranges around zero, not {shortened(limits)}")
 
 
 @dataclass(frozen=True)
@@ -99,8 +120,8 @@ class PatternGenerator:
     :param limits: lowest and highest position of the joints in the order of ``ACTUATED_JOINTS``, in rad and m, which no
         target leaves
     :param constants: time-outs, lengths, speeds and time constants of the controller
-    :raises ConfigurationError: if a parameter or the period is not finite, the period is not above zero, or zero is not
-        within a joint's limits
+    :raises ConfigurationError: if a parameter is not finite or of another type, the period is not from 0.0001 to 0.1 s,
+        or zero is not within a joint's limits
     """
 
     parameters: SteppingParameters
@@ -122,8 +143,11 @@ class PatternGenerator:
         limits: Sequence[tuple[float, float]] = NO_LIMITS,
         constants: ControllerConstants = STANDARD_CONSTANTS,
     ) -> None:
-        if len(limits) != len(ACTUATED_JOINTS) or not all(low <= 0.0 <= high for low, high in limits):
-            raise ConfigurationError(f"limits must be {len(ACTUATED_JOINTS)} ranges around zero, not {limits!r}")
+        check_range("dt", dt, SHORTEST_PERIOD, LONGEST_PERIOD, "s")
+        _check_parameters(parameters, SteppingParameters)
+        _check_parameters(balance, BalanceParameters)
+        limits = _checked_limits(limits)
+        self.parameters = parameters
         self.constants = constants
         self.hips = HipLaw(balance, dt, constants, limits)
         self.phase = Phase.STAND
@@ -141,7 +165,6 @@ class PatternGenerator:
         self._upright = GRAVITY
         self._lengths = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
         self._limited_legs: set[int] = set()
-        self.set_parameters(parameters, balance)
 
     def set_parameters(
         self, parameters: SteppingParameters | None = None, balance: BalanceParameters | None = None
@@ -155,17 +178,13 @@ class PatternGenerator:
         :param balance: values of V1 to V4; without them the present ones stay
         :raises ConfigurationError: if a value is not finite or of another type; all values stay as they were
         """
-        for given, kind in ((parameters, SteppingParameters), (balance, BalanceParameters)):
-            if given is not None and not isinstance(given, kind):
-                raise ConfigurationError(f"parameters must be {kind.__name__}, not {given!r}")
-            if given is not None and not all(map(_is_finite, astuple(given))):
-                raise ConfigurationError(f"parameters must be finite numbers, not {given!r}")
-        if parameters is not None:
-            self.parameters = parameters
-        if balance is not None:
-            self._balance_goal = balance
-            if self.phase is Phase.STAND:
-                self.hips.parameters = balance
+        stepping = self.parameters if parameters is None else parameters
+        goal = self._balance_goal if balance is None else balance
+        _check_parameters(stepping, SteppingParameters)
+        _check_parameters(goal, BalanceParameters)
+        self.parameters, self._balance_goal = stepping, goal
+        if self.phase is Phase.STAND:
+            self.hips.parameters = goal
 
     @property
     def stable_x(self) -> float:
@@ -227,7 +246,7 @@ class PatternGenerator:
 
     def _periods(self, seconds: float | None) -> int:
         """Control periods that this tick makes up for."""
-        if seconds is None or math.isnan(seconds) or seconds < 0.0:
+        if seconds is None or not seconds >= 0.0:  # NaN is not either
             return 1
         self._rounded_off += min(seconds, LONGEST_GAP)
         periods = round(self._rounded_off / self._dt)

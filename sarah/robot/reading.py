@@ -55,7 +55,10 @@ class SensorReading(NamedTuple):
     def is_finite(self) -> bool:
         """Whether all signals are finite numbers that a sensor can return."""
         acceleration, angular_rate, pressures, joints = self
-        return math.hypot(*acceleration, *angular_rate, *pressures, *joints) < LARGEST_SIGNAL
+        try:
+            return math.hypot(*acceleration, *angular_rate, *pressures, *joints) < LARGEST_SIGNAL
+        except OverflowError:  # a whole number beyond all floats
+            return False
 
     def repaired(self, before: SensorReading) -> SensorReading:
         """Replace each signal that no sensor can return by that of an earlier reading.

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from numbers import Integral
 
-from sarah.errors import ConfigurationError, check_range
+from sarah.errors import ConfigurationError, check_range, shortened
 
 SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE = 50, 1000
 FASTEST_PHYSICS_RATE = 20_000
@@ -27,6 +28,9 @@ class Physics:
 
     def __post_init__(self) -> None:
         """Refuse rates that do not divide into each other."""
+        for name in ("control_rate", "rate", "solver_iterations"):
+            if not isinstance(value := getattr(self, name), Integral):
+                raise ConfigurationError(f"physics.{name} must be a whole number, not {shortened(value)}")
         check_range("physics.control_rate", self.control_rate, SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE, "Hz")
         check_range("physics.rate", self.rate, self.control_rate, FASTEST_PHYSICS_RATE, "Hz")
         if self.rate % self.control_rate:
@@ -40,6 +44,7 @@ class Physics:
 
         :param control_rate: control ticks per second
         """
+        check_range("physics.control_rate", control_rate, SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE, "Hz")
         multiple = -(-self.rate // control_rate)
         return replace(self, rate=multiple * control_rate, control_rate=control_rate)
 

@@ -7,7 +7,7 @@ import random
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from sarah.errors import ConfigurationError, check_fields, to_ranges
+from sarah.errors import ConfigurationError, check_fields, check_types, to_ranges
 from sarah.robot.description import GROUPS
 from sarah.robot.reading import Side, Vector
 from sarah.simulation.ground import LEVEL, Ground
@@ -78,6 +78,7 @@ class Randomisation:
 
     def __post_init__(self) -> None:
         """Refuse ranges that no robot has."""
+        check_types(self, enabled=bool)
         to_ranges(self, "friction", "actuator_bandwidth")
         check_fields("randomisation", self, PLAUSIBLE)
 

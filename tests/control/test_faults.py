@@ -1,6 +1,7 @@
 """What keeps a robot whole: limits of its joints, signals that are no numbers, and falls."""
 
 import math
+from typing import Any
 
 import pytest
 from hand_made import BALANCE, DT, UNLOADED, reading, rocking, started, stood
@@ -38,20 +39,50 @@ def test_without_limits_no_joint_is_limited() -> None:
 
 
 @pytest.mark.parametrize(
-    "limits", [NARROW[:5], ((0.1, 0.3), *NARROW[1:]), ((-0.1, math.nan), *NARROW[1:]), ((0.1, -0.1), *NARROW[1:])]
+    "limits",
+    [
+        NARROW[:5],
+        ((0.1, 0.3), *NARROW[1:]),
+        ((-0.1, math.nan), *NARROW[1:]),
+        ((0.1, -0.1), *NARROW[1:]),
+        (0.5,) * 6,
+        None,
+        ("ab",) * 6,
+    ],
 )
-def test_limits_that_are_not_six_ranges_around_zero_are_refused(limits: tuple[tuple[float, float], ...]) -> None:
+def test_limits_that_are_not_six_ranges_around_zero_are_refused(limits: Any) -> None:
     with pytest.raises(ConfigurationError, match="limits must be 6 ranges around zero, not"):
         PatternGenerator(SteppingParameters(*PAPER_STEPPING), limits=limits)
 
 
+def test_limits_stay_as_they_were_given() -> None:
+    limits = [(-0.01, 0.01)] * 6
+    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT, limits))
+    limits.clear()
+    for _ in range(100):
+        generator.tick(reading(lateral=3.0))
+        assert max(map(abs, generator.targets)) <= 0.01
+
+
+def test_flexion_that_a_limit_keeps_from_v4_is_no_fall() -> None:
+    """The leg is where the limit lets it be: it does not lean."""
+    limits = ((-1.0, 1.0), (-1.0, 1.0), (-0.005, 0.005), (-0.005, 0.005), (-1.0, 1.0), (-1.0, 1.0))
+    v = BalanceParameters(0.0, 0.0, 1.0, 2.0)
+    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), v, DT, limits)
+    for _ in range(400):
+        generator.tick(reading()._replace(joints=generator.targets))
+    assert generator.targets[2:4] == (0.005, 0.005) and abs(generator.hips.fall) < 1e-9
+
+
+@pytest.mark.parametrize("dt", [0.0, -0.01, math.nan, math.inf, 10, 100, True, "0.01", None])
+def test_periods_that_no_control_loop_has_are_refused(dt: Any) -> None:
+    with pytest.raises(ConfigurationError, match=f"dt must be between 0.0001 and 0.1 s, not {dt!r}"):
+        PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=dt)
+
+
 @pytest.mark.parametrize("dt", [0.0, -0.01, math.nan, math.inf])
-def test_control_periods_that_are_not_finite_and_above_zero_are_refused(dt: float) -> None:
-    for make in (
-        lambda: PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=dt),
-        lambda: HipLaw(BALANCE, dt),
-        lambda: Baselines(dt),
-    ):
+def test_filters_refuse_periods_that_are_not_finite_and_above_zero(dt: float) -> None:
+    for make in (lambda: HipLaw(BALANCE, dt), lambda: Baselines(dt)):
         with pytest.raises(ConfigurationError, match=f"dt must be finite and above zero, not {dt}"):
             make()
 

@@ -1,6 +1,7 @@
 """A pattern generator in operation: new parameters while it runs, and ticks that are late, early or missed."""
 
 import math
+from typing import Any
 
 import pytest
 from hand_made import BALANCE, DT, OVER_RIGHT, UNLOADED, reading, rocking, started, stood
@@ -47,7 +48,7 @@ def test_while_the_robot_stands_new_parameters_hold_at_once() -> None:
         assert generator.tick(rocking(tick)) == given.tick(rocking(tick)) and generator.targets == given.targets
 
 
-@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 10**400])
 def test_parameters_that_are_not_finite_are_refused_and_none_changes(bad: float) -> None:
     generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
     others = SteppingParameters(1.0, 1.0, 1.0, 1.0, 1.0), BalanceParameters(0.0, 0.0, 0.0, 0.0)
@@ -71,6 +72,14 @@ def test_values_of_the_other_task_are_refused_and_none_changes() -> None:
     with pytest.raises(ConfigurationError, match="parameters must be BalanceParameters, not"):
         generator.set_parameters(SteppingParameters(1, 1, 1, 1, 1), (0.0,) * 4)  # type: ignore[arg-type]
     assert generator.parameters == SteppingParameters(*PAPER_STEPPING)
+
+
+@pytest.mark.parametrize(
+    "missing", [(None, BALANCE), (SteppingParameters(*PAPER_STEPPING), None), (PAPER_STEPPING, BALANCE)]
+)
+def test_a_new_generator_needs_both(missing: Any) -> None:
+    with pytest.raises(ConfigurationError, match=r"parameters must be \w+, not"):
+        PatternGenerator(*missing)
 
 
 def phase_ends(dt: float, every: int, told: bool) -> list[tuple[float, PhaseChange]]:

@@ -1,6 +1,7 @@
 """The controller by itself on the simulated robot: it steps, takes new parameters, and notices when it falls."""
 
 import math
+from collections.abc import Callable
 
 import pytest
 from laboratory import need
@@ -9,10 +10,12 @@ from sarah.control.constants import ControllerConstants
 from sarah.control.hip_law import BalanceParameters
 from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
 from sarah.episode.episode import Episode, simulate
+from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import Push
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.robot.description import ACTUATED_JOINTS, describe_robot
+from sarah.robot.reading import SensorReading
 from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import NOMINAL
@@ -102,3 +105,25 @@ def test_legs_that_spread_save_robots_that_a_push_to_the_side_tips_over() -> Non
         return survived
 
     assert survivors(ControllerConstants().spread_gain) > survivors(0.0) + 3
+
+
+@pytest.mark.parametrize("offsets", [(0.0, 0.0, 0.02, 0.02), (0.0, 0.0, -0.02, 0.02), (0.05, -0.05, 0.0, 0.0)])
+def test_zeros_of_the_joints_may_be_as_far_off_as_the_page_says(offsets: tuple[float, ...]) -> None:
+    """Flexion that reads 0.05 rad too much walks the robot out of its place within 12 s."""
+    spec = PARAMETER_SETS["balance"].spec
+    config = BALANCE.config_of(spec.config, engine="mujoco", push=Push((0.0, 0.0)), time_limit=13.0)
+    terminations = {}
+    for added in (offsets, (0.0, 0.0, 0.05, 0.05)):
+        episode = Episode(config, 1000, BALANCE)
+        read = episode.simulation.read
+
+        def askew(read: Callable[[], SensorReading] = read, added: tuple[float, ...] = added) -> SensorReading:
+            seen = read()
+            shifted = [joint + offset for joint, offset in zip(seen.joints, (*added, 0.0, 0.0), strict=True)]
+            return seen._replace(joints=tuple(shifted))  # type: ignore[arg-type]  # there are six
+
+        episode.simulation.read = askew  # type: ignore[method-assign]
+        episode.stand()
+        terminations[added] = episode.run(spec.parameters).termination
+        episode.close()
+    assert list(terminations.values()) == ["time_limit", "left_box"]

@@ -14,7 +14,7 @@ from sarah.episode.result import EpisodeResult
 from sarah.episode.running_robot import conditions_of
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.simulation.physics import Physics
+from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.randomisation import Randomisation
 
 SHORT = EpisodeConfig(time_limit=6.0)
@@ -58,6 +58,17 @@ def test_episode_runs_at_another_control_rate() -> None:
     result = simulate(EpisodeSpec(PAPER_STEPPING, 0, config=config), record_trace=True)
     assert result.survived and result.steps > 5 and result.trace is not None
     assert np.allclose(np.diff(result.trace.time), 0.005)
+
+
+@pytest.mark.parametrize("control_rate", [200, 1000])
+def test_the_noise_of_the_pads_makes_no_steps_at_a_high_control_rate(control_rate: int) -> None:
+    """A single sample at 1 kHz has three times the noise of one at 100 Hz, and half a minute has 30,000 of them."""
+    steps = []
+    for rate in (100, control_rate):
+        physics = PHYSICS["standard"].at_control_rate(rate)
+        steps.append(simulate(EpisodeSpec(PAPER_STEPPING, 0, config=EpisodeConfig(physics=physics, time_limit=5.0))))
+    assert steps[1].steps_per_second == pytest.approx(steps[0].steps_per_second, rel=0.1)
+    assert steps[1].score == pytest.approx(steps[0].score, rel=0.1)
 
 
 def test_episode_runs_on_any_simulator() -> None:

@@ -51,6 +51,18 @@ def test_an_inertia_that_no_plate_has_is_refused(inertia: float) -> None:
         PyBulletPhysics(added_plate_inertia=inertia)
 
 
+@pytest.mark.parametrize("rate", [0, 49, 1001, 100.5])
+def test_control_rates_that_no_robot_has_are_refused(rate: float) -> None:
+    with pytest.raises(ConfigurationError, match=rf"physics.control_rate must be .*, not {rate}"):
+        PHYSICS["standard"].at_control_rate(rate)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["rate", "solver_iterations", "control_rate"])
+def test_rates_and_iterations_are_whole_numbers(name: str) -> None:
+    with pytest.raises(ConfigurationError, match=f"physics.{name} must be a whole number, not 100.5"):
+        Physics(**{name: 100.5})  # type: ignore[arg-type]
+
+
 @pytest.mark.parametrize("rate", [50, 150, 200, 1000])
 def test_another_control_rate_keeps_at_least_the_rate(rate: int) -> None:
     for physics in PHYSICS.values():
