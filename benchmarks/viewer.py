@@ -63,6 +63,7 @@ class Viewer:
         with serving(HOST, PORT) as server:
             episode = episode_of_parameters(PARAMETERS)
             page = Page(server, [episode], episode)
+            page.begin()
             while not page.frames:
                 time.sleep(0.01)
             figures["frames per second sent"] = frames_per_second(page, self.seconds)

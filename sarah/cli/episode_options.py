@@ -108,12 +108,17 @@ def parse_episode_options(
     :param subject: what to look at, if the arguments name several
     :param adapted: function that makes the command's settings of those of what it looks at, and of its name
     """
-    given = given_options(arguments, "task", "which", "engine", "episode.engine")
+    given = given_options(
+        arguments, "task", "which", "engine", "episode.engine", "episode.push.degrees", "episode.push.sagittal-share"
+    )
     task = named_task(given.get("task"))
     subject = subject or _subject_among(arguments, default, given)
     own = adapted(_settings_of(subject, given.get("which"), task) if subject else (task or STEPPING).episode, subject)
     if type(own) is EpisodeConfig:  # any robot can be pushed, whether its task has a push or not
         own = PushedConfig(**vars(own), push=NOBODY)
+    if "episode.push.degrees" in given and "episode.push.sagittal-share" not in given:
+        assert isinstance(own, PushedConfig)
+        own = dataclasses.replace(own, push=dataclasses.replace(own.push, sagittal_share=0.0))  # all are as asked for
     episode = with_given_engine(own, given)
     check_episode_options(arguments, episode)
     return parse_options(type(default), command, arguments, dataclasses.replace(default, episode=episode))
@@ -166,6 +171,9 @@ def check_episode_options(arguments: Sequence[str], config: EpisodeConfig) -> No
     :param config: settings of the task's episodes
     """
     names = [argument.partition("=")[0].replace("_", "-") for argument in arguments]
+    varied = [name for name in names if name.startswith("--episode.randomisation.")]
+    if "--no-randomisation" in names and varied:
+        raise ConfigurationError(f"--no-randomisation leaves {varied[0]} without effect: give one of them")
     for short, long in SET_TWICE:
         if short in names and long in names:
             raise ConfigurationError(f"{short} and {long} set the same: give one of them")
@@ -184,7 +192,8 @@ def given_options(arguments: Sequence[str], *names: str) -> dict[str, str]:
     """
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
     for name in names:
-        parser.add_argument(f"--{name}", dest=name, default=argparse.SUPPRESS)
+        spellings = dict.fromkeys((f"--{name}", f"--{name.replace('-', '_')}"))
+        parser.add_argument(*spellings, dest=name, default=argparse.SUPPRESS)
     try:
         return vars(parser.parse_known_args(arguments)[0])
     except argparse.ArgumentError:

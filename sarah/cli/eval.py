@@ -5,25 +5,22 @@ from __future__ import annotations
 import json as json_format
 import shlex
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.options import named_task, run_command, say_engine
-from sarah.cli.subjects import episode_of, is_shipped, learner_of
-from sarah.episode.push import PushedConfig
+from sarah.cli.subjects import episode_of, learner_of
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
-from sarah.episode.tasks import BALANCE, BalanceConfig, Task
+from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.errors import ConfigurationError, check_range
-from sarah.simulation.terrain import Terrain
 
 if TYPE_CHECKING:
-    from sarah.episode.evaluation import Evaluation
     from sarah.episode.workers import Workers
 
 COMMAND = "sarah-eval"
@@ -31,8 +28,14 @@ LARGEST_SEED = 2**32 - 1
 MOST_EPISODES = 1_000_000
 SMALLEST_FORCE, LARGEST_FORCE = 1.0, 10_000.0
 """Range of the forces of pushes, in N."""
-REPLACED_BY_TERRAIN = ("--episode.terrain.", "--episode.push.", "--episode.time-limit", "--forces")
-"""Beginnings of the options that ``--terrain`` replaces."""
+REPLACED = {
+    "terrain": ("--episode.terrain.", "--episode.push.", "--episode.time-limit"),
+    "robustness": (
+        *("--episode.push.newtons", "--episode.push.at-seconds", "--episode.push.sagittal-share"),
+        "--episode.time-limit",
+    ),
+}
+"""Beginnings of the options that a table replaces, by the option that asks for it."""
 
 
 @dataclass(frozen=True)
@@ -89,17 +92,17 @@ def main() -> None:
 def _evaluate(arguments: Sequence[str]) -> None:
     options = parse_episode_options(COMMAND, arguments, EvalOptions())
     spec, algorithm = _subject(options)
-    if options.terrain is not None:
-        _check_terrain_options(arguments)
+    _check_replaced_options(options, arguments)
     if options.robustness is not None and spec.task is not BALANCE:
         raise ConfigurationError(
             f"--robustness needs parameters of task {BALANCE.name!r}, and these are of {spec.task.name!r}"
         )
     from tqdm import tqdm
 
-    from sarah.episode.accuracy import physics_warning
+    from sarah.cli.eval_text import rows_of
     from sarah.episode.evaluation import evaluate
     from sarah.episode.workers import Workers
+    from sarah.runs.config_files import settings_by_key
 
     with Workers(options.workers, options.scheduler) as workers:
         if options.robustness is not None:
@@ -114,30 +117,18 @@ def _evaluate(arguments: Sequence[str]) -> None:
         evaluation = evaluate(spec.task, spec.parameters, spec.config, options.seeds, workers, shown)
         neutral = spec.task.neutral
         baseline = None if neutral is None else evaluate(spec.task, neutral, spec.config, options.seeds, workers, shown)
-    named = dict(zip(spec.task.parameter_names, spec.parameters, strict=True))
     if options.json:
+        named = dict(zip(spec.task.parameter_names, spec.parameters, strict=True))
         content: dict[str, object] = {"task": spec.task.reference, "algorithm": algorithm, "parameters": named}
         content |= {"first_seed": options.first_seed, "engine": spec.config.engine}
-        content |= {"terrain": asdict(spec.config.terrain), **evaluation.summary()}
+        content |= {"episode": settings_by_key(spec.config), **evaluation.summary()}
         if baseline is not None:
             content |= {"chatters": evaluation.chatters(baseline), "baseline": baseline.summary()}
+        content["endings"] = [result.termination for result in evaluation.results]
         print(json_format.dumps(content))
         return
-    ground = [("ground", _described(spec.config.terrain))] if spec.config.terrain != Terrain() else []
-    seeds = f"{options.seeds[0]} to {options.seeds[-1]}, which no training has seen"
-    for label, text in [
-        *_subject_rows(options.subject, spec),
-        *ground,
-        ("seeds", seeds),
-        *_rows(named, evaluation),
-    ]:
+    for label, text in rows_of(options.subject, spec, options.seeds, evaluation, baseline):
         print(f"{label:17}{text}")
-    if baseline is not None:
-        for label, text in _comparison(spec.task, evaluation, baseline):
-            print(f"{label:17}{text}")
-    warning = physics_warning(spec.task, spec.parameters, spec.config)
-    if warning is not None:
-        print(f"{'physics':17}{warning}")
 
 
 def _subject(options: EvalOptions) -> tuple[EpisodeSpec, str | None]:
@@ -146,64 +137,6 @@ def _subject(options: EvalOptions) -> tuple[EpisodeSpec, str | None]:
     algorithm = learner_of(options.subject, task)
     spec = episode_of(options.subject, None, task).spec
     return options.applied_to(spec), algorithm
-
-
-def _subject_rows(subject: str, spec: EpisodeSpec) -> list[tuple[str, str]]:
-    """Rows about what is evaluated, where it runs, and how hard it is pushed."""
-    from sarah.episode.parameter_sets import PARAMETER_SETS
-    from sarah.episode.tasks import controller_of
-
-    config = spec.config
-    low, high = config.push.newtons if isinstance(config, PushedConfig) else (0.0, 0.0)
-    newtons = f"{low:g} N" if low == high else f"{low:g} to {high:g} N"
-    pushed = f"pushed by {newtons}" if high else "not pushed"
-    rows = [("subject", f"{subject}, task {spec.task.name}, in {config.engine}, {pushed}")]
-    if is_shipped(subject):
-        rows.append(("origin", PARAMETER_SETS[subject].origin))
-    if spec.task is BALANCE:
-        stepping, _ = controller_of(spec.task, spec.parameters, config)
-        rows.append(("steps with", ", ".join(f"{name} = {value:.3f}" for name, value in asdict(stepping).items())))
-    return rows
-
-
-def _described(terrain: Terrain) -> str:
-    """Settings of the ground that are not the default."""
-    given = [(item.name, getattr(terrain, item.name)) for item in fields(terrain)]
-    changed = [(name, ends) for name, ends in given if ends != getattr(Terrain(), name)]
-    return ", ".join(f"{name} {low:g}" + (f" to {high:g}" if high != low else "") for name, (low, high) in changed)
-
-
-def _rows(parameters: dict[str, float], evaluation: Evaluation) -> list[tuple[str, str]]:
-    from sarah.episode.result import METRICS
-
-    diverged = f"; {evaluation.diverged} diverged: their simulation gave no finite state" if evaluation.diverged else ""
-    return [
-        ("parameters", ", ".join(f"{name} = {value:.3f}" for name, value in parameters.items())),
-        ("survival", f"{evaluation.survivors} of {evaluation.episodes} episodes{diverged}"),
-        *(
-            (
-                metric.label,
-                ", ".join(f"{metric.text(evaluation.statistic(name, how))} {how}" for how in metric.statistics),
-            )
-            for name, metric in METRICS.items()
-            if metric.statistics
-        ),
-    ]
-
-
-def _comparison(task: Task[Any], evaluation: Evaluation, baseline: Evaluation) -> list[tuple[str, str]]:
-    """Rows about the baseline: the same episodes with the parameters that do nothing, such as V1 to V4 at zero."""
-    score = f"{baseline.median('score'):.3f} median, {baseline.mean('score'):.3f} mean"
-    survivors = f"{baseline.survivors} of {baseline.episodes} survive"
-    chatter = "the hips chatter" if evaluation.chatters(baseline) else "no chatter"
-    vibration, still = evaluation.median("vibration"), baseline.median("vibration")
-    return [
-        (
-            "baseline (V = 0)" if task is BALANCE else "neutral",
-            f"score {score}, {survivors}, {baseline.mean('steps_per_second'):.2f} steps/s",
-        ),
-        ("chatter", f"{chatter}: a vibration of {vibration:.1f} m²/s⁴, and of {still:.1f} with the baseline"),
-    ]
 
 
 def _show_robustness(
@@ -235,12 +168,15 @@ def _show_robustness(
         print(file)
 
 
-def _check_terrain_options(arguments: Sequence[str]) -> None:
-    """Refuse what ``--terrain`` would replace."""
-    for argument in arguments:
-        option = argument.partition("=")[0].replace("_", "-")
-        if option.startswith(REPLACED_BY_TERRAIN):
-            raise ConfigurationError(f"--terrain has grounds, pushes and a time limit of its own: leave {option} out")
+def _check_replaced_options(options: EvalOptions, arguments: Sequence[str]) -> None:
+    """Refuse what the table that is asked for would replace, and forces of pushes that no table has."""
+    given = [argument.partition("=")[0].replace("_", "-") for argument in arguments]
+    if options.robustness is None and "--forces" in given:
+        raise ConfigurationError("--forces is for --robustness; one evaluation takes --episode.push.newtons")
+    for table, replaced in REPLACED.items():
+        mistaken = [option for option in given if option.startswith(replaced)]
+        if getattr(options, table) is not None and mistaken:
+            raise ConfigurationError(f"--{table} has pushes and a time limit of its own: leave {mistaken[0]} out")
 
 
 def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers: Workers, command: str) -> None:

@@ -68,7 +68,9 @@ def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tupl
         given = episode_of_parameters(numbers("parameters", subject), task)
     else:
         if Path(subject).is_file():
-            raise ConfigurationError(f"{shortened(subject)} is a file: name the run folder that it is in")
+            raise ConfigurationError(f"{subject} is a file: name the run folder that it is in")
+        if "/" in subject:
+            raise ConfigurationError(f"run folder {subject:.300} does not exist")
         names = unknown_name("name of parameters", subject, PARAMETER_SETS)
         raise ConfigurationError(
             f"{shortened(subject)} is neither a run folder, nor numbers separated by commas: {names}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -33,7 +34,7 @@ class VideoOptions(EpisodeOptions):
     :param which: episode of a run folder: ``learned`` for the learned parameters, ``best``, or an index of its
         episodes.csv; by default ``learned``, or ``best`` if the training is not finished
     :param seed: seed of the episode, by which robot, sensors and push vary; by default the episode's own, or 0
-    :param seconds: simulated times at which the video begins and ends, in s; by default those of the episode
+    :param seconds: simulated times at which the video begins and ends, in s; by default the whole episode
     :param speed: speed of the video; 0.25 shows everything four times as slow
     """
 
@@ -45,15 +46,15 @@ class VideoOptions(EpisodeOptions):
     )
     which: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
     seed: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
-    seconds: Annotated[tuple[float, float] | None, tyro.conf.arg(metavar="BEGIN END")] = None
+    seconds: Annotated[tuple[float, float], tyro.conf.arg(metavar="BEGIN END")] = (0.0, math.inf)
     speed: float = 1.0
 
     def __post_init__(self) -> None:
         """Refuse numbers outside their ranges."""
         if not 0.01 <= self.speed <= 10.0:
             raise ConfigurationError(f"speed must be between 0.01 and 10, not {self.speed!r}")
-        if self.seconds is not None and not self.seconds[0] < self.seconds[1]:
-            raise ConfigurationError(f"seconds must be in rising order, not {self.seconds!r}")
+        if not self.seconds[0] < self.seconds[1]:
+            raise ConfigurationError(f"seconds must be two times in rising order, not {self.seconds!r}")
 
 
 def main() -> None:
@@ -80,14 +81,13 @@ def _film(arguments: Sequence[str]) -> None:
     result = simulate(spec, record_trace=True)
     assert result.trace is not None
     first, last = result.trace.time[0], result.trace.time[-1]
-    begin, end = options.seconds or (first, last)
-    begin, end = max(begin, first), min(end, last)
+    begin, end = max(options.seconds[0], first), min(options.seconds[1], last)
     if begin >= end:
         ending = ending_words(result.termination)
         raise ConfigurationError(
             f"nothing to film: the episode runs from {first:g} s, when it has stood, to {result.duration:g} s: {ending}"
         )
-    if options.seconds is not None and options.seconds[1] > end:
+    if end < options.seconds[1] < math.inf:
         print(f"the episode ends at {result.duration:g} s: {ending_words(result.termination)}", file=sys.stderr)
     check_renderer()
     times = frame_times(begin, end, FRAMES_PER_SECOND[options.out.suffix], options.speed)

@@ -91,6 +91,8 @@ def _export(path: Path, chosen: RunEpisode) -> None:
     if path.is_dir() or not path.parent.is_dir():  # checked before the long simulation
         reason = "it is a folder" if path.is_dir() else f"folder {path.parent} does not exist"
         raise ConfigurationError(f"cannot write {path}: {reason}")
+    if path.suffix.lower() not in (".html", ".htm"):
+        raise ConfigurationError(f"an exported page must end in .html, not {path.name!r}; sarah-video makes videos")
     bar = tqdm(total=1.0, desc=chosen.label, bar_format="{desc}: {percentage:3.0f}% {bar}", disable=None)
     with bar, serving("127.0.0.1", DEFAULT_PORT) as server:
         record(server, chosen.spec, path, lambda share: bar.update(share - bar.n), chosen.recorded)

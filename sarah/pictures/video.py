@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -143,13 +144,17 @@ def write_video(pictures: Iterable[Image.Image], path: Path) -> None:
 
     :param pictures: frames of 1024 x 576 pixels, at the rate of :data:`FRAMES_PER_SECOND`
     :param path: path of the file
+    :raises ConfigurationError: if it cannot be written
     """
     unfinished = path.with_name(f".{path.stem}.unfinished{path.suffix}")
     try:
         (_write_mp4 if path.suffix == ".mp4" else _write_gif)(pictures, unfinished)
         os.replace(unfinished, path)
+    except OSError as error:
+        raise ConfigurationError(f"cannot write {path}: {error.strerror or error}") from error
     finally:
-        unfinished.unlink(missing_ok=True)
+        with suppress(OSError):
+            unfinished.unlink()
 
 
 def _write_mp4(pictures: Iterable[Image.Image], path: Path) -> None:

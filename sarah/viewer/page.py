@@ -51,6 +51,7 @@ class Page:
         self._shown: Shown | None = None
         self._before: Shown | None = None
         self._lock = threading.RLock()
+        self._is_seen = False
         self.frames = 0
         self._playback = Playback(self._show, self._play_on)
         self._scene = RobotScene(server, describe_robot(chosen.spec.config.dimensions))
@@ -62,6 +63,14 @@ class Page:
         self._build()
         self._playback.start()
         self._play_choice(chosen)
+        server.on_client_connect(lambda _: self.begin())
+
+    def begin(self) -> None:
+        """Begin to play, once somebody has opened the page: nobody is to miss the push."""
+        with self._lock:
+            is_waiting, self._is_seen = self._shown is not None and not self._is_seen, True
+        if is_waiting:
+            self._playback.play()
 
     def close(self) -> None:
         """Stop showing frames."""
@@ -226,7 +235,8 @@ class Page:
             self._news.content = paragraph("")
             self._table.content = comparison(self._shown, self._before, self._noted_score(scenario))
         self._playback.load(begin, end, begin if play_from is None else play_from)
-        self._playback.play()
+        if self._is_seen:
+            self._playback.play()
 
     def _noted_score(self, scenario: Scenario) -> float | None:
         """Score of the chosen episode in the run folder, if nothing has been changed."""

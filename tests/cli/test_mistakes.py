@@ -32,7 +32,8 @@ MISTAKES = {
     ],
     "sarah-eval": [
         ("full", "not the folder of a finished training"),
-        ("full/precious.txt", "'full/precious.txt' is a file: name the run folder that it is in"),
+        ("full/precious.txt", "full/precious.txt is a file: name the run folder that it is in"),
+        ("runs/nowhere", "run folder runs/nowhere does not exist"),
         ("nowhere", "'nowhere' is neither a run folder, nor numbers"),
         ("steping", "did you mean 'stepping'?"),
         ("balance --task stepping", "'balance' are parameters of task 'balance': give others, or leave --task out"),
@@ -64,6 +65,14 @@ MISTAKES = {
         (f"{GIVEN} --robustness x", "--robustness needs parameters of task 'balance', and these are of 'stepping'"),
         ("--terrain=", "--terrain must not be empty"),
         (f"{GIVEN} --json --robustness x", "leave --json out"),
+        (f"{GIVEN} --forces 100", "--forces is for --robustness"),
+        (f"{PUSHED} --robustness x --forces abc", "--forces must be numbers, not"),
+        (f"{PUSHED} --robustness x --episode.push.newtons 50", "leave --episode.push.newtons out"),
+        (f"{PUSHED} --robustness x --episode.time_limit=5", "leave --episode.time-limit out"),
+        (
+            f"{GIVEN} --no-randomisation --episode.randomisation.imu-tilt-degrees 5",
+            "--no-randomisation leaves --episode.randomisation.imu-tilt-degrees without effect",
+        ),
         (f"{GIVEN} --json --terrain x", "--terrain prints a table, not JSON: leave --json out"),
         (
             f"{GIVEN} --terrain x --episode.terrain.roughness 0.01",
@@ -109,7 +118,7 @@ MISTAKES = {
         ("1,1,1,1,1 a.gif --episode.push.newtons 50 40", "in rising order"),
         ("1,1,1,1,1 a.gif --which best", "--which is for a run folder"),
         ("1,1,1,1,1 a.gif --speed 0", "speed must be between 0.01 and 10, not 0.0"),
-        ("1,1,1,1,1 a.gif --seconds 3 2", "seconds must be in rising order"),
+        ("1,1,1,1,1 a.gif --seconds 3 2", "seconds must be two times in rising order"),
         ("1,1,1,1,1 a.gif --seconds 40 41", "nothing to film"),
         ("1,1,1,1,1 a.gif --seed -1", "seed must be a whole number from 0, not -1"),
     ],
@@ -125,6 +134,7 @@ MISTAKES = {
         ("--host nonsense.invalid", "cannot serve a page at 'nonsense.invalid'"),
         ("--host 203.0.113.1", "cannot serve a page at '203.0.113.1'"),
         ("--export full", "cannot write full: it is a folder"),
+        ("--export a.png", "an exported page must end in .html, not 'a.png'"),
         ("--export nowhere/a.html", "cannot write nowhere/a.html: folder nowhere does not exist"),
     ],
 }

@@ -8,6 +8,7 @@ import pytest
 from terminal import BIN, run
 
 from sarah.episode.parameter_sets import PARAMETER_SETS
+from sarah.episode.push import Push, draw_push
 from sarah.simulation.engines import default_engine
 
 QUICK = ("--episodes", "2", "--json", "--episode.time-limit", "3")
@@ -63,3 +64,45 @@ def test_a_push_after_the_end_is_refused(tmp_path: Path) -> None:
     late = ("--episode.push.newtons", "80", "--episode.push.at-seconds", "5", "--episode.time-limit", "3")
     process = run("sarah-eval", "stepping", *late, cwd=tmp_path)
     assert process.returncode == 2 and "must begin before the time_limit of 3 s" in process.stderr
+
+
+def test_it_says_how_its_settings_differ_from_the_tasks_and_how_episodes_ended(tmp_path: Path) -> None:
+    """Pushes of 400 N to the right at 2 to 3 s topple everyone; with an end at 2.5 s only some are pushed."""
+    settings = "--episode.push.newtons 400 --episode.push.degrees 0 --episode.push.at-seconds 2 3 --episode.time-limit"
+    ground = "--episode.terrain.slope-degrees 2 --episode.payload 1.5"
+    text = run("sarah-eval", "balance", "--episodes", "8", *f"{settings} 6 {ground}".split(), cwd=tmp_path).stdout
+    rows = {line[:17].strip(): line[17:] for line in text.splitlines()}
+    assert rows["subject"].endswith("pushed by 400 N")
+    given = {"terrain.slope_degrees 2", "payload 1.5", "time_limit 6", "push.degrees 0", "push.at_seconds 2 to 3"}
+    assert given <= set(rows["settings"].split(", "))
+    assert "sagittal_share" not in rows["settings"] and "pushes" not in rows
+    assert rows["survival"].startswith("0 of 8 episodes; seed 1000 ") and rows["survival"].endswith("; 3 more")
+    text = run("sarah-eval", "balance", "--episodes", "8", *f"{settings} 2.5".split(), cwd=tmp_path).stdout
+    begins = [draw_push(Push((400.0, 400.0), at_seconds=(2.0, 3.0)), seed).begin for seed in range(1000, 1008)]
+    pushed = sum(begin < 2.5 for begin in begins)
+    assert f"pushes           in {pushed} of 8 episodes; the others ended before theirs" in text
+
+
+def test_directions_that_are_asked_for_are_those_of_all_pushes(tmp_path: Path) -> None:
+    """The shipped robot learned with half of its pushes from front or back."""
+    share = ("episode", "push.sagittal_share")
+    asked = ("--episode.push.degrees", "180")
+    assert PARAMETER_SETS["balance"].spec.config.push.sagittal_share == 0.5
+    shares = [
+        shown("balance", *arguments, folder=tmp_path)[share[0]][share[1]]  # type: ignore[index]
+        for arguments in ((), asked, (*asked, "--episode.push.sagittal_share=0.25"))
+    ]
+    assert shares == [0.5, 0.0, 0.25]
+
+
+def test_json_has_all_settings_and_how_each_episode_ended(tmp_path: Path) -> None:
+    content = shown("balance", "--episode.terrain.slope-degrees", "3", folder=tmp_path)
+    assert content["episode"]["terrain.slope_degrees"] == [3.0, 3.0]  # type: ignore[index]
+    assert content["episode"]["stepping"] == list(PARAMETER_SETS["stepping"].spec.parameters)  # type: ignore[index]
+    assert content["endings"] == ["time_limit", "left_box"] and content["survival_rate"] == 0.5
+
+
+def test_a_folder_of_run_folders_names_one_of_them(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
+    folder, _ = trained
+    process = run("sarah-eval", str(folder.parent), cwd=folder)
+    assert process.returncode == 2 and f"it has no config.yaml, and {folder} has one" in process.stderr

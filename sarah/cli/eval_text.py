@@ -1,0 +1,128 @@
+"""What ``sarah-eval`` prints: what was evaluated, under which conditions, and how it did."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, replace
+from typing import Any
+
+from sarah.cli.episode_options import NOBODY
+from sarah.cli.subjects import is_shipped
+from sarah.episode.accuracy import physics_warning
+from sarah.episode.ending import ending_words
+from sarah.episode.evaluation import Evaluation
+from sarah.episode.parameter_sets import PARAMETER_SETS
+from sarah.episode.push import PushedConfig, draw_push
+from sarah.episode.result import METRICS
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BALANCE, Task, controller_of
+from sarah.runs.config_files import settings_by_key
+
+MOST_ENDINGS = 5
+"""Largest number of episodes of which a row says how each has ended."""
+ROWS_OF_THEIR_OWN = {"engine", "push.newtons", "stepping"}
+"""Settings that a row names in any case."""
+
+Row = tuple[str, str]
+
+
+def rows_of(
+    subject: str, spec: EpisodeSpec, seeds: range, evaluation: Evaluation, baseline: Evaluation | None
+) -> Iterator[Row]:
+    """Labels and texts of the rows.
+
+    :param subject: what was evaluated, as it was given
+    :param spec: an episode of it
+    :param seeds: seeds of the episodes
+    :param evaluation: the episodes
+    :param baseline: same episodes with the task's neutral parameters, if it has some
+    """
+    yield from _subject_rows(subject, spec)
+    settings = ", ".join(changed_settings(spec.task, spec.config))
+    if settings:
+        yield "settings", settings
+    span = f"{seeds[0]}" if len(seeds) == 1 else f"{seeds[0]} to {seeds[-1]}"
+    yield "seeds", f"{span}, which no training has seen"
+    named = zip(spec.task.parameter_names, spec.parameters, strict=True)
+    yield "parameters", ", ".join(f"{name} = {value:.3f}" for name, value in named)
+    yield "survival", f"{evaluation.survivors} of {evaluation.episodes} episodes{_how_they_ended(seeds, evaluation)}"
+    yield from _rows_about_pushes(spec.config, seeds, evaluation)
+    for name, metric in METRICS.items():
+        if metric.statistics:
+            values = ((evaluation.statistic(name, how), how) for how in metric.statistics)
+            yield metric.label, ", ".join(f"{metric.text(value)} {how}" for value, how in values)
+    if baseline is not None:
+        yield from _comparison(spec.task, evaluation, baseline)
+    warning = physics_warning(spec.task, spec.parameters, spec.config)
+    if warning is not None:
+        yield "physics", warning
+
+
+def changed_settings(task: Task[Any], config: EpisodeConfig) -> Iterator[str]:
+    """Settings that are not those of the task in the same engine, with their values.
+
+    :param task: task of the episodes
+    :param config: settings of the episodes
+    """
+    usual: EpisodeConfig = replace(task.episode, engine=config.engine)
+    if isinstance(config, PushedConfig) and not isinstance(usual, PushedConfig):
+        usual = PushedConfig(**vars(usual), push=NOBODY)
+    before = settings_by_key(usual)
+    for name, value in settings_by_key(config).items():
+        if name not in ROWS_OF_THEIR_OWN and value != before.get(name):
+            yield f"{name} {_text(value)}"
+
+
+def _text(value: Any) -> str:
+    """Text of a setting; of a range both ends, unless they are equal."""
+    if isinstance(value, list):
+        return " to ".join(f"{end:g}" for end in dict.fromkeys(value))
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _subject_rows(subject: str, spec: EpisodeSpec) -> Iterator[Row]:
+    """What is evaluated, where it runs, and how hard it is pushed."""
+    config = spec.config
+    low, high = config.push.newtons if isinstance(config, PushedConfig) else (0.0, 0.0)
+    newtons = f"{low:g} N" if low == high else f"{low:g} to {high:g} N"
+    pushed = f"pushed by {newtons}" if high else "not pushed"
+    yield "subject", f"{subject}, task {spec.task.name}, in {config.engine}, {pushed}"
+    if is_shipped(subject):
+        yield "origin", PARAMETER_SETS[subject].origin
+    if spec.task is BALANCE:
+        stepping, _ = controller_of(spec.task, spec.parameters, config)
+        yield "steps with", ", ".join(f"{name} = {value:.3f}" for name, value in asdict(stepping).items())
+
+
+def _how_they_ended(seeds: Iterable[int], evaluation: Evaluation) -> str:
+    """Which episodes ended early, and how."""
+    endings = [
+        f"seed {seed} {ending_words(result.termination)}"
+        for seed, result in zip(seeds, evaluation.results, strict=True)
+        if not result.survived
+    ]
+    more = [f"{len(endings) - MOST_ENDINGS} more"] if len(endings) > MOST_ENDINGS else []
+    return "".join(f"; {ending}" for ending in endings[:MOST_ENDINGS] + more)
+
+
+def _rows_about_pushes(config: EpisodeConfig, seeds: Iterable[int], evaluation: Evaluation) -> Iterator[Row]:
+    """How many episodes were pushed, if some ended before."""
+    if isinstance(config, PushedConfig) and config.push.newtons[1] > 0.0:
+        pushed = sum(
+            draw_push(config.push, seed).begin < result.duration
+            for seed, result in zip(seeds, evaluation.results, strict=True)
+        )
+        if pushed < evaluation.episodes:
+            yield "pushes", f"in {pushed} of {evaluation.episodes} episodes; the others ended before theirs"
+
+
+def _comparison(task: Task[Any], evaluation: Evaluation, baseline: Evaluation) -> Iterator[Row]:
+    """The baseline: the same episodes with the parameters that do nothing, such as V1 to V4 at zero."""
+    score = f"{baseline.median('score'):.3f} median, {baseline.mean('score'):.3f} mean"
+    survivors = f"{baseline.survivors} of {baseline.episodes} survive"
+    steps = f"{baseline.mean('steps_per_second'):.2f} steps/s"
+    yield "baseline (V = 0)" if task is BALANCE else "neutral", f"score {score}, {survivors}, {steps}"
+    chatter = "the hips chatter" if evaluation.chatters(baseline) else "no chatter"
+    vibration, still = evaluation.median("vibration"), baseline.median("vibration")
+    yield "chatter", f"{chatter}: a vibration of {vibration:.1f} m²/s⁴, and of {still:.1f} with the baseline"
