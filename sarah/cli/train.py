@@ -17,6 +17,7 @@ import tyro
 from sarah.cli.episode_options import check_episode_options, given_options, with_engine, with_given_engine
 from sarah.cli.interruption import Interruption
 from sarah.cli.options import named_task, parse_options, run_command, say_engine
+from sarah.cli.subjects import check_of_training
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, Task, load_task
 from sarah.errors import (
@@ -230,6 +231,7 @@ def _resumed_defaults(path: Path, given: Mapping[str, str]) -> TrainOptions:
     from sarah.runs.recorded_task import RecordedTask
     from sarah.runs.run_folder import RunFolder
 
+    check_of_training(path)
     task, training = None, RunFolder.resumable(path).config()
     if "task" in given:
         task = load_task(given["task"])
@@ -262,6 +264,7 @@ def _on_learned_stepping(path: Path, episode: EpisodeConfig) -> EpisodeConfig:
     """
     from sarah.runs.run_folder import RunFolder
 
+    check_of_training(path)
     run = RunFolder.open(path)
     learned = run.config()
     if learned.task is not STEPPING:

@@ -52,10 +52,12 @@ def test_other_commands_take_its_folder(operated: Path) -> None:
     assert [float(value) for value in first[4:13]] == list(left.values())
 
 
-@pytest.mark.parametrize("command", ["sarah-report", "sarah-figures"])
+@pytest.mark.parametrize(
+    "command", ["sarah-report", "sarah-figures", "sarah-train --resume", "sarah-train --task balance --from"]
+)
 def test_what_is_for_trainings_says_so(operated: Path, command: str) -> None:
-    process = run(command, "mine", cwd=operated.parent)
-    refusal = f"{command}: error: mine is the folder of a session, not of a training: session.png in it is its figure\n"
+    process = run(*command.split(), "mine", cwd=operated.parent)
+    refusal = f"{command.split()[0]}: error: mine is the folder of a session, not of a training: session.png in it is its figure\n"
     assert process.returncode == 2 and process.stderr == refusal
 
 

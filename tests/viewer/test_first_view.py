@@ -2,14 +2,18 @@
 
 import io
 import math
+import time
 
 import numpy as np
 import pytest
 import yourdfpy
 
 from sarah.robot.description import describe_robot
+from sarah.runs.run_episodes import episode_of_parameters
 from sarah.simulation.scenery import View, size_of
+from sarah.viewer.page import Page
 from sarah.viewer.scene import FIRST_CAMERA, WINDOW, arrow, first_camera, status_place
+from sarah.viewer.server import serving
 
 
 @pytest.mark.parametrize(
@@ -55,3 +59,18 @@ def test_a_robot_of_standard_size_is_seen_from_about_where_it_was() -> None:
 def test_an_arrow_is_as_long_as_its_force_is_strong_up_to_its_limit() -> None:
     lengths = [float(np.ptp(arrow(np.array((newtons, 0.0, 0.0)))[:, 0])) for newtons in (50.0, 100.0, 500.0, 1000.0)]
     assert lengths[1] == pytest.approx(2 * lengths[0]) and lengths[2] == lengths[3] > lengths[1]
+
+
+def test_nothing_is_played_before_somebody_looks() -> None:
+    """A browser takes some seconds to open, and a push comes after two."""
+    episode = episode_of_parameters((0.4, 1.3, 0.1, 1.0, 1.0))
+    with serving("127.0.0.1", 8080) as server:
+        page = Page(server, [episode], episode)
+        while not page.frames:
+            time.sleep(0.02)
+        time.sleep(0.5)
+        assert page.frames == 1
+        page.begin()
+        time.sleep(0.5)
+        assert page.frames > 3
+        page.close()
