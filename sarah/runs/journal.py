@@ -18,7 +18,6 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import Any, BinaryIO
 
 from sarah.episode.ending import is_ending
@@ -30,7 +29,7 @@ from sarah.errors import ResumeError, SarahError, TrainingInterruptedError
 from sarah.robot.reading import SensorReading
 from sarah.runs.config import TrainingConfig
 from sarah.runs.origin import check_first_row, first_row
-from sarah.runs.rows import LONGEST_ROW, append, checksum_seed, checksummed, open_journal, read_checksummed
+from sarah.runs.rows import LONGEST_ROW, JournalFile, checksummed, read_checksummed
 
 ROOM_PER_EPISODE = 10_000
 """Largest number of bytes for each episode in a journal that is read."""
@@ -95,72 +94,41 @@ class _Row:
     value: Any
 
 
-class Journal(Executor):
+class Journal(JournalFile, Executor):
     """An executor that takes known outcomes from the journal's file, and has all other episodes simulated.
-
-    It is a context, in which no other training can use the file.
 
     :param path: path of the file, which must exist
     :param config: settings of the training
     :param executor: executor that simulates episodes
     :param interrupted: function that says after every episode whether the training is to stop
-    :raises ResumeError: on entering, if the file is missing, if another training uses it, or if it was begun with other
-        settings, code or versions
     """
 
     def __init__(
         self, path: Path, config: TrainingConfig, executor: Executor, interrupted: Callable[[], bool] = lambda: False
     ) -> None:
-        self._path = path
+        super().__init__(path, "training")
         self._config = config
         self._executor = executor
         self._interrupted = interrupted
         self._submitted = 0
         self._known: dict[int, _Row] = {}
-        self._seed = 0
-        self._file: BinaryIO
-        self.is_new = False
-        """Whether the training begins with this journal, in its context."""
 
     @property
     def replaying(self) -> bool:
         """Whether the journal has outcomes that the training has not yet asked for."""
         return bool(self._known)
 
-    def __enter__(self) -> Journal:
-        """Lock the file, and read it."""
-        self._file = open_journal(self._path, "training")  # closed on leaving
-        try:
-            self._read()
-        except BaseException:
-            self._file.close()
-            raise
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Close the file, and release the lock."""
-        self._file.close()
-
     def _read(self) -> None:
-        """Read the file; a new one, or one that was cut in its first row, begins anew."""
         limit = ROOM_PER_EPISODE * (self._config.episodes + EPISODES_BESIDE)
         if (size := os.fstat(self._file.fileno()).st_size) > limit:
             raise ResumeError(f"{self._path} has {size} bytes, but such a training writes at most {limit}")
-        expected = first_row(self._config)
-        with open(self._path, "rb") as reader:
-            first = reader.readline(LONGEST_ROW)
-            if not expected.startswith(first) or first == expected:
-                check_first_row(self._path, first, self._config)
-                self._seed = checksum_seed(first)
-                self._read_rows(reader)
-                return
-        self.is_new = True
-        self._file.truncate(0)
-        append(self._file, expected)
-        os.fsync(self._file.fileno())
-        self._seed = checksum_seed(expected)
+        super()._read()
+
+    def _first_row(self) -> bytes:
+        return first_row(self._config)
+
+    def _check_first_row(self, first: bytes) -> None:
+        check_first_row(self._path, first, self._config)
 
     def _read_rows(self, reader: BinaryIO) -> None:
         damaged, whole = 0, reader.tell()
@@ -217,9 +185,8 @@ class Journal(Executor):
         :param value: outcome of the episode
         """
         outcome = _KINDS[request["kind"]].plain(value)
-        append(self._file, checksummed({**request, "outcome": outcome}, self._seed))
-        if request["kind"] != "begin":  # standing is cheap to simulate again
-            os.fsync(self._file.fileno())
+        row = checksummed({**request, "outcome": outcome}, self._seed)
+        self._append(row, at_once=request["kind"] != "begin")  # standing is cheap to simulate again
 
     def stop_if_interrupted(self) -> None:
         """Raise :class:`~sarah.errors.TrainingInterruptedError` if the training is to stop."""

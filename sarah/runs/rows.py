@@ -1,4 +1,4 @@
-"""Rows of a journal: a checksum and a JSON object, after a first row that says what all others depend on."""
+"""Journals' files: rows of a checksum and a JSON object, after a first row that says what all others depend on."""
 
 from __future__ import annotations
 
@@ -7,25 +7,95 @@ import hashlib
 import json
 import os
 import zlib
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, BinaryIO
+from types import TracebackType
+from typing import Any, BinaryIO, TypeVar
 
 from sarah.errors import ResumeError
 from sarah.files import open_regular
+
+SelfJournalFile = TypeVar("SelfJournalFile", bound="JournalFile")
 
 LONGEST_ROW = 100_000
 """Largest number of bytes in a row of a journal; an episode's has some 1500."""
 
 
-def open_journal(path: Path, kind: str) -> BinaryIO:
-    """Open a journal, and lock it; the system releases the lock when the process ends, however it ends.
+class JournalFile(ABC):
+    """The file of a journal, as a context in which no other process can use it.
+
+    A new one, or one that was cut in its first row, begins anew. The lock ends with its process, however that ends.
 
     :param path: path of the file, which must exist
     :param kind: kind of run that writes it, for messages
-    :return: the file, to append to
-    :raises ResumeError: if it cannot be opened, or another process has the lock
+    :raises ResumeError: on entering, if the file is missing, if another process uses it, or if it was begun with other
+        settings, code or versions
     """
+
+    is_new: bool
+    """Whether the run begins with this journal, in its context."""
+
+    def __init__(self, path: Path, kind: str) -> None:
+        self.is_new = False
+        self._path = path
+        self._run = kind
+        self._file: BinaryIO
+        self._seed = 0
+
+    def __enter__(self: SelfJournalFile) -> SelfJournalFile:
+        """Lock the file, and read it."""
+        self._file = _opened(self._path, self._run)  # closed on leaving
+        try:
+            self._read()
+        except BaseException:
+            self._file.close()
+            raise
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close the file, and release the lock."""
+        self._file.close()
+
+    def _read(self) -> None:
+        expected = self._first_row()
+        with open(self._path, "rb") as reader:
+            first = reader.readline(LONGEST_ROW)
+            if not expected.startswith(first) or first == expected:
+                self._check_first_row(first)
+                self._seed = checksum_seed(first)
+                self._read_rows(reader)
+                return
+        self.is_new = True
+        self._file.truncate(0)
+        self._append(expected)
+        self._seed = checksum_seed(expected)
+
+    def _append(self, row: bytes, at_once: bool = True) -> None:
+        """Append a row as a whole; if ``at_once``, it is on the disk when this returns."""
+        left = memoryview(row)
+        while left:  # a disk that is nearly full takes only a part
+            left = left[self._file.write(left) :]
+        if at_once:
+            os.fsync(self._file.fileno())
+
+    @abstractmethod
+    def _first_row(self) -> bytes:
+        """First row that a new file would have."""
+
+    @abstractmethod
+    def _check_first_row(self, first: bytes) -> None:
+        """Refuse a file that begins otherwise than the run would go on."""
+
+    @abstractmethod
+    def _read_rows(self, reader: BinaryIO) -> None:
+        """Read what follows the first row."""
+
+
+def _opened(path: Path, kind: str) -> BinaryIO:
+    """The file to append to, locked."""
     try:
         file = open_regular(path, os.O_RDWR | os.O_APPEND)
     except OSError as error:
@@ -39,17 +109,6 @@ def open_journal(path: Path, kind: str) -> BinaryIO:
             raise ResumeError(f"run folder {path.parent} is in use by another {kind}") from None
         raise
     return file
-
-
-def append(file: BinaryIO, row: bytes) -> None:
-    """Append a row as a whole.
-
-    :param file: journal, unbuffered
-    :param row: row to append
-    """
-    left = memoryview(row)
-    while left:  # a disk that is nearly full takes only a part
-        left = left[file.write(left) :]
 
 
 def compact_json(row: Mapping[str, Any]) -> bytes:
