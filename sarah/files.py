@@ -115,14 +115,20 @@ def read_lines(path: Path, most_lines: int, most_bytes: int = LONGEST_LINE) -> I
 
 
 @contextmanager
-def locked(path: Path) -> Iterator[None]:
-    """Hold a lock that one process at a time can have; the others wait. It ends with its process, however that ends.
+def locked(path: Path, wait: bool = True) -> Iterator[bool]:
+    """Hold a lock that one process at a time can have. It ends with its process, however that ends.
 
     :param path: path of the lock's file, which is made if it is missing
+    :param wait: whether to wait while another process has it
+    :return: context, with whether this process has the lock
     """
     with open_regular(path, os.O_RDWR | os.O_CREAT) as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        yield
+        is_ours = True
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+        except BlockingIOError:
+            is_ours = False
+        yield is_ours
 
 
 def _check_size(file: BinaryIO, path: Path, most_bytes: int) -> None:

@@ -72,8 +72,8 @@ class RaceCurve:
 def race(entries: Sequence[Entry], workers: Workers) -> list[RaceCurve]:
     """Run the trainings that are not complete, each in one process, and read the scores of all.
 
-    A race that was interrupted goes on with the trainings that it was in. Of several races in one folder, each takes
-    what the others have finished.
+    A race that was interrupted goes on with the trainings that it was in. Several races in one folder share the work:
+    each leaves out what another is at, and waits for that at its end.
 
     :param entries: trainings of the race; on a cluster, all workers must share the file system of their folders
     :param workers: workers that train
@@ -87,8 +87,11 @@ def race(entries: Sequence[Entry], workers: Workers) -> list[RaceCurve]:
         for entry in entries:
             if entry.folder.exists():
                 check_origin(RunFolder(entry.folder).journal_path, entry.config)
-    jobs = [None if is_evaluated(entry) else workers.submit(run_entry, entry) for entry in entries]
-    return [read_curve(entry) if job is None else job.result() for entry, job in zip(entries, jobs, strict=True)]
+    for wait in (False, True):
+        jobs = [workers.submit(run_entry, entry, wait) for entry in entries if not is_evaluated(entry)]
+        for job in jobs:
+            job.result()
+    return [read_curve(entry) for entry in entries]
 
 
 def _check_settings(entry: Entry) -> None:
@@ -118,22 +121,19 @@ def is_evaluated(entry: Entry) -> bool:
     return is_run(entry) and _rows(entry)[0].get("evaluations") == str(entry.evaluations)
 
 
-def run_entry(entry: Entry) -> RaceCurve:
+def run_entry(entry: Entry, wait: bool = True) -> None:
     """Train, and evaluate every recommendation; what another race has done already is not done again.
 
-    While another race is at this training, this one waits.
-
     :param entry: training of the race
-    :return: scores of the training's recommendations
+    :param wait: whether to wait while another race is at this training, and not to leave it out
     :raises RunFolderError: if the training is in use by something else than a race, or cannot be resumed here
     """
     run = _run_folder(entry)
-    with locked(entry.folder / LOCK_FILE):
-        if not is_evaluated(entry):
+    with locked(entry.folder / LOCK_FILE, wait) as is_ours:
+        if is_ours and not is_evaluated(entry):
             if not run.is_finished:
                 _train(entry, run)
             _evaluate_recommendations(entry, run)
-        return read_curve(entry)
 
 
 def _run_folder(entry: Entry) -> RunFolder:

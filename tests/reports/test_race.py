@@ -19,8 +19,9 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Workers
 from sarah.errors import ResumeError, RunFolderError
+from sarah.files import locked
 from sarah.reports import race as race_module
-from sarah.reports.race import RaceCurve, entries_of, is_run, race, read_curve, run_entry
+from sarah.reports.race import LOCK_FILE, RaceCurve, entries_of, is_run, race, read_curve, run_entry
 from sarah.reports.rankings import as_markdown, episodes_until, interquartile_mean, rankings, write_csv
 from sarah.runs import origin as origin_module
 from sarah.runs.config import ALGORITHMS, TrainingConfig
@@ -109,7 +110,7 @@ def test_a_race_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert curves[0].scores[-1] == pytest.approx(sum(simulate(spec).score for spec in specs) / 2)
 
     third = EpisodeSpec(run.parameters(), 2, config=TINY.episode)
-    monkeypatch.setattr(race_module, "run_entry", lambda entry: pytest.fail("it is there already"))
+    monkeypatch.setattr(race_module, "run_entry", lambda *_: pytest.fail("it is there already"))
     assert race(entries, Workers()) == curves
     monkeypatch.undo()
     monkeypatch.setattr(race_module, "train", lambda *_, **__: pytest.fail("it is trained already"))
@@ -183,7 +184,9 @@ def test_a_race_waits_for_another_that_is_at_the_same_training(tmp_path: Path, m
         with pytest.raises(FutureTimeoutError):
             second.result(0.3)
         may_end.set()
-        assert second.result(60) == first.result(60)
+        first.result(60)
+        second.result(60)
+    assert read_curve(entry).episodes == (5, 10, 10)
 
 
 RACE = ("--algorithms", "random", "--seeds", "1", "--episodes", "30", "--evaluations", "2", "--episode.time-limit", "2")
@@ -223,6 +226,22 @@ def test_a_killed_race_resumes_and_two_races_at_once_share_the_work(tmp_path: Pa
     assert journal.read_bytes().startswith(kept[: kept.rindex(b"\n") + 1])
     found = read_curve(dataclasses.replace(entry, folder=run))
     assert found.scores == undisturbed.scores and found.seconds > earlier
+
+
+def test_a_race_leaves_out_what_another_is_at_and_waits_for_it_at_its_end(tmp_path: Path) -> None:
+    entries = entries_of(("random", "cma-es"), range(2), TINY, 1, tmp_path)
+    busy, *others = entries
+    RunFolder.create(busy.folder, busy.config)
+    curves: list[RaceCurve] = []
+    second = threading.Thread(target=lambda: curves.extend(race(entries, Workers())))
+    with locked(busy.folder / LOCK_FILE):
+        second.start()
+        deadline = time.monotonic() + 60.0
+        while not all(map(is_run, others)) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        assert all(map(is_run, others)) and not is_run(busy) and not curves
+    second.join(60.0)
+    assert is_run(busy) and [curve.algo for curve in curves] == ["random", "cma-es"] * 2
 
 
 @pytest.mark.parametrize(
