@@ -1,10 +1,10 @@
-"""The situations that the shipped parameters are judged in."""
+"""The box that is wider than the paper's."""
 
 from typing import Any
 
 import pytest
 
-from experiments.conditions import ending_of_wide_box
+from experiments.box_limit import ending_of_wide_box
 from sarah.control.pattern_generator import Phase
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tick import Tick
