@@ -128,7 +128,7 @@ class RunFolder:
         kind = "training" if unfinished else "finished training"
         for file in (run._config_path,) if unfinished else (run._config_path, run._parameters_path):
             if not file.is_file():
-                inside = next((found for found in sorted(path.glob(f"*/{file.name}"))), None)
+                inside = next(iter(sorted(path.glob(f"*/{file.name}"))), None)
                 hint = f", and {inside.parent} has one" if inside else ""
                 raise RunFolderError(f"{path} is not the folder of a {kind}: it has no {file.name}{hint}")
         return run
