@@ -60,8 +60,8 @@ class AtEverySetting(OnWorkers):
     :param time_limit: time limit of an episode, in s
     """
 
-    seeds: int = 4
-    time_limit: float = 12.0
+    seeds: int = 8
+    time_limit: float = 10.0
 
     def results(
         self,
@@ -88,7 +88,8 @@ class AtEverySetting(OnWorkers):
                 stepping=stepping,  # type: ignore[arg-type]
                 push=Push(newtons=(0.0, 0.0)),
             )
-            specs = [EpisodeSpec(balance, seed, BALANCE, config) for seed in range(self.seeds)]
+            seeds = self.seeds if randomisation.enabled else 1  # without randomisation, all episodes are the same
+            specs = [EpisodeSpec(balance, seed, BALANCE, config) for seed in range(seeds)]
             yield name, list(workers.simulate_all(specs))
 
 
@@ -122,6 +123,7 @@ class FinenessInConditions(AtEverySetting):
                                 "setting": setting,
                                 **compared(results, finest),
                                 "steps_per_second": mean(result.steps_per_second for result in results),
+                                "shifts_timed_out": 1.0 - mean(result.shifts_by_sensors for result in results),
                                 "sole_clearance_mm": 1000.0 * mean(result.sole_clearance for result in results),
                             }
                             finest = finest or results
@@ -162,6 +164,8 @@ class FinenessAnywhere(AtEverySetting):
 def compared(results: Sequence[EpisodeResult], finest: Sequence[EpisodeResult] | None) -> Row:
     """Mean score, its distance from the finest setting's, and the standard error of that, from the seeds in pairs.
 
+    A single seed has no error.
+
     :param results: results at a setting
     :param finest: results of the same seeds at the finest, unless this is it
     """
@@ -170,5 +174,5 @@ def compared(results: Sequence[EpisodeResult], finest: Sequence[EpisodeResult] |
         return {"score": score, "difference": None, "difference_error": None}
     fine = mean(result.score for result in finest)
     differences = [one.score - other.score for one, other in zip(results, finest, strict=True)]
-    error = stdev(differences) / len(differences) ** 0.5
-    return {"score": score, "difference": score / fine - 1.0, "difference_error": error / fine}
+    error = stdev(differences) / len(differences) ** 0.5 / fine if len(differences) > 1 else None
+    return {"score": score, "difference": score / fine - 1.0, "difference_error": error}
