@@ -136,7 +136,9 @@ def _subject_among(arguments: Sequence[str], default: EpisodeOptions, given: Map
     try:
         with contextlib.redirect_stderr(io.StringIO()):
             options: Any = parse_options(type(default), "", arguments, every)
-    except (SystemExit, ConfigurationError):  # the real parser will say so
+    except ConfigurationError:  # the real parser will say so
+        return without
+    except SystemExit:  # and so it will here, unless the subject has options that no other has
         return next(filter(is_there, arguments), without)
     subjects = getattr(options, "subjects", None)
     subject: str | None = subjects[0] if subjects else getattr(options, "subject", None)

@@ -163,8 +163,11 @@ def _one_line(box: str) -> str:
     for pattern, words in PYTHON_WORDS.items():
         message = re.sub(pattern, words, message)
     message = re.sub(r"^(Unrecognized options: --[^,]*),.*", r"\1", message)
-    meant = re.search(r"Perhaps you meant:\s+(--[\w.-]+)", text)
-    return f"{message}, did you mean {meant[1]}?" if meant else message
+    meant = re.search(r"Perhaps you meant:\s+(--[\w.-]+)(?:, (--[\w.-]*no-[\w.-]+))?", text)
+    if not meant:
+        return message
+    is_negative = re.match(r"Unrecognized options: --([\w.-]+\.)?no[-_]", message)
+    return f"{message}, did you mean {meant[2] if meant[2] and is_negative else meant[1]}?"
 
 
 def say_engine(config: EpisodeConfig, asked: str | None) -> None:
