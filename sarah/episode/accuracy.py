@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from sarah.control.hip_law import LOCKED_HIPS
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import Task, controller_of
 from sarah.simulation.physics import PHYSICS
@@ -14,20 +15,23 @@ LOWEST_ROUGH_RATE = 200
 """Physics steps per second below which PyBullet's feet get through bumps, in Hz."""
 LATE_SECONDS = 0.015
 """Delay of the signals from which a robot with a low P1 steps too fast, in s."""
+LATE_SECONDS_WITH_HIPS = 0.010
+"""The same of a robot whose hips move."""
 
 
 def physics_warning(task: Task[Any], parameters: tuple[float, ...], config: EpisodeConfig) -> str | None:
-    """Sentence that says why a score at this physics is too high; ``None`` where it is known to be right.
+    """Sentence that says why a score at this physics can be far off; ``None`` where none is known to be.
 
     :param task: task that owns the parameters
     :param parameters: values of the task's parameters, in order
     :param config: settings of the episodes
     """
-    stepping, _ = controller_of(task, parameters, config)
+    stepping, balance = controller_of(task, parameters, config)
+    late_from = LATE_SECONDS if balance in (None, LOCKED_HIPS) else LATE_SECONDS_WITH_HIPS
     is_coarse = config.engine == "pybullet" and config.physics.rate < PHYSICS["reference"].rate
-    is_late = config.randomisation.enabled and config.randomisation.delay_seconds >= LATE_SECONDS
+    is_late = config.randomisation.enabled and config.randomisation.delay_seconds >= late_from
     if is_coarse and is_late and stepping.P1 < LOW_P1:
-        return f"P1 below {LOW_P1:g} with late signals scores too high here: check it with --physics reference"
+        return f"P1 below {LOW_P1:g} with late signals can score far off here: check it with --physics reference"
     if config.engine == "pybullet" and config.terrain.roughness[1] > 0.0 and config.physics.rate < LOWEST_ROUGH_RATE:
         return f"below {LOWEST_ROUGH_RATE} Hz PyBullet's feet sink into bumps: take more steps per second"
     return None

@@ -81,7 +81,10 @@ MISTAKES = {
         (f"{GIVEN} --episode.terrain.roughness 10", "terrain.roughness must be between 0 and 0.05 m, not 10.0"),
         (f"{GIVEN} --episode.terrain.friction-left ice", "must be one number, or two for a range, not ice"),
         (f"{GIVEN} --episode.terrain.roughness", "must be one number, or two for a range, not nothing"),
-        ("--episode.push.newtons 100,125", "--episode.push.newtons must be one number, or two for a range, not 100,125"),
+        (
+            "--episode.push.newtons 100,125",
+            "--episode.push.newtons must be one number, or two for a range, not 100,125",
+        ),
         (f"{GIVEN} --episode.terrain.roughness 0 0.01 0.02", "or two for a range, not 0 0.01 0.02"),
         (
             f"{GIVEN} --episode.reward-form symetric",

@@ -37,9 +37,19 @@ def test_a_low_p1_with_late_signals_at_coarse_physics_is_doubted(
 
 
 @NEEDS_PYBULLET
-def test_the_legs_of_a_second_training_are_asked_too() -> None:
-    config = BalanceConfig(engine="pybullet", stepping=LOW, randomisation=LATE.randomisation)
-    assert physics_warning(BALANCE, (1.0, 0.0, 1.0, 0.0), config) is not None
+@pytest.mark.parametrize(
+    ("balance", "delay_seconds", "warns"),
+    [
+        ((1.0, 0.0, 1.0, 0.0), 0.010, True),
+        ((1.0, 0.0, 1.0, 0.0), 0.005, False),
+        ((0.0, 0.0, 0.0, 0.0), 0.010, False),
+        ((0.0, 0.0, 0.0, 0.0), 0.020, True),
+    ],
+)
+def test_hips_that_move_are_doubted_earlier(balance: tuple[float, ...], delay_seconds: float, warns: bool) -> None:
+    randomisation = Randomisation(delay_seconds=delay_seconds)
+    config = BalanceConfig(engine="pybullet", stepping=LOW, randomisation=randomisation)
+    assert (physics_warning(BALANCE, balance, config) is not None) == warns
 
 
 @NEEDS_PYBULLET
