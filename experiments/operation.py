@@ -104,7 +104,7 @@ class Operation(OnWorkers):
     def _best_known(self, robot: str, workers: Workers) -> Parameters:
         """Of what long sessions on other seeds end with, the parameters that do best on these seeds."""
         seeds = range(FIRST_TUNING_SEED, FIRST_TUNING_SEED + self.best_seeds)
-        long, short = self._config(robot, self.best_minutes), self._config(robot, 2.0)
+        long, short = (self._config(robot, minutes) for minutes in (self.best_minutes, min(2.0, self.best_minutes)))
         sessions = [workers.submit(run_session, SessionSpec(SHIPPED, "gp", seed, long)) for seed in seeds]
         candidates = [SHIPPED, *(job.result().parameters for job in sessions)]
         judged = [

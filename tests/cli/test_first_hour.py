@@ -11,7 +11,7 @@ from terminal import run
 
 from sarah.simulation.engines import default_engine
 
-QUICK = ("--episode.time-limit", "3", "--workers", "2")
+QUICK = ("--episode.time-limit", "1.5", "--workers", "2")
 
 
 def typed(line: str, folder: Path) -> str:

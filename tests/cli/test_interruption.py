@@ -11,13 +11,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from terminal import COARSE
 
 from experiments import record
 
 BIN = Path(sys.executable).parent
-COARSE = ("--episode.time-limit", "2", "--episode.physics.rate", "100", "--episode.physics.solver-iterations", "5")
 # Long enough to be interrupted three times also where the test itself has to wait for the processor.
-TRAINING = ("--episodes", "60", "--slots", "2", "--run-dir", "run", *COARSE)
+TRAINING = ("--episodes", "60", "--slots", "2", "--run-dir", "run", "--episode.time-limit", "2", *COARSE)
 RECORDS = ("episodes.csv", "recommendations.csv", "progress.csv", "parameters.json")
 
 

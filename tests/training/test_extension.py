@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 import yaml
 from laboratory import NEEDS_PYBULLET
-from terminal import run, tree
+from terminal import COARSE, run, tree
 
 from sarah.errors import ConfigurationError
 from sarah.runs.config import TrainingConfig
 
-SHORT = ("--episode.time-limit", "2", "--seed", "1")
+SHORT = ("--episode.time-limit", "1.5", *COARSE, "--seed", "1")
 
 
 @pytest.fixture(scope="module", params=["naf", "cma-es"])
