@@ -14,9 +14,7 @@ LOW_P1 = 0.1
 LOWEST_ROUGH_RATE = 200
 """Physics steps per second below which PyBullet's feet get through bumps, in Hz."""
 LATE_SECONDS = 0.015
-"""Delay of the signals from which a robot with a low P1 steps too fast, in s."""
-LATE_SECONDS_WITH_HIPS = 0.010
-"""The same of a robot whose hips move."""
+"""Delay of the signals from which a robot with a low P1 and locked hips steps too fast, in s."""
 
 
 def physics_warning(task: Task[Any], parameters: tuple[float, ...], config: EpisodeConfig) -> str | None:
@@ -27,11 +25,11 @@ def physics_warning(task: Task[Any], parameters: tuple[float, ...], config: Epis
     :param config: settings of the episodes
     """
     stepping, balance = controller_of(task, parameters, config)
-    late_from = LATE_SECONDS if balance in (None, LOCKED_HIPS) else LATE_SECONDS_WITH_HIPS
+    hips_move = balance not in (None, LOCKED_HIPS)
     is_coarse = config.engine == "pybullet" and config.physics.rate < PHYSICS["reference"].rate
-    is_late = config.randomisation.enabled and config.randomisation.delay_seconds >= late_from
-    if is_coarse and is_late and stepping.P1 < LOW_P1:
-        return f"P1 below {LOW_P1:g} with late signals can score far off here: check it with --physics reference"
+    is_late = config.randomisation.enabled and config.randomisation.delay_seconds >= LATE_SECONDS
+    if is_coarse and stepping.P1 < LOW_P1 and (is_late or hips_move):
+        return f"P1 below {LOW_P1:g} can score far off here: check it with --physics reference"
     if config.engine == "pybullet" and config.terrain.roughness[1] > 0.0 and config.physics.rate < LOWEST_ROUGH_RATE:
         return f"below {LOWEST_ROUGH_RATE} Hz PyBullet's feet sink into bumps: take more steps per second"
     return None

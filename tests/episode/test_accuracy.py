@@ -41,12 +41,14 @@ def test_a_low_p1_with_late_signals_at_coarse_physics_is_doubted(
     ("balance", "delay_seconds", "warns"),
     [
         ((1.0, 0.0, 1.0, 0.0), 0.010, True),
-        ((1.0, 0.0, 1.0, 0.0), 0.005, False),
+        ((1.0, 0.0, 1.0, 0.0), 0.0, True),
         ((0.0, 0.0, 0.0, 0.0), 0.010, False),
         ((0.0, 0.0, 0.0, 0.0), 0.020, True),
     ],
 )
-def test_hips_that_move_are_doubted_earlier(balance: tuple[float, ...], delay_seconds: float, warns: bool) -> None:
+def test_hips_that_move_are_doubted_with_any_delay(
+    balance: tuple[float, ...], delay_seconds: float, warns: bool
+) -> None:
     randomisation = Randomisation(delay_seconds=delay_seconds)
     config = BalanceConfig(engine="pybullet", stepping=LOW, randomisation=randomisation)
     assert (physics_warning(BALANCE, balance, config) is not None) == warns
