@@ -10,7 +10,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, NoReturn, TypeVar, get_type_hints
+from typing import Any, NoReturn, TypeVar, get_args, get_type_hints
 
 import tyro
 
@@ -48,8 +48,22 @@ def _task_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.P
     )
 
 
+def _range_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
+    """How tyro shows a range, of which one number may stand for both ends."""
+    if info.type_origin is not tuple or get_args(info.type) != (float, float):
+        return None
+    return tyro.constructors.PrimitiveConstructorSpec(
+        nargs=2,
+        metavar="FLOAT [FLOAT]",
+        instance_from_str=lambda words: tuple(map(float, words)),
+        is_instance=lambda value: isinstance(value, tuple) and len(value) == 2,
+        str_from_instance=lambda ends: list(map(str, ends)),
+    )
+
+
 _REGISTRY = tyro.constructors.ConstructorRegistry()
 _REGISTRY.primitive_rule(_task_rule)
+_REGISTRY.primitive_rule(_range_rule)
 
 
 def named_task(reference: str | None) -> Task[Any] | None:
