@@ -52,11 +52,12 @@ def neighbourhood_means(
 def average_ranks(values: np.ndarray) -> np.ndarray:
     """
     Ranks scaled to [0, 1], 0 for the lowest value and 1 for the highest; equal values share their mean rank.
+    What is not a number ranks lowest.
 
     :param values: Values to rank, of shape (n,)
     :return: Ranks of shape (n,)
     """
-    _, inverse, counts = np.unique(values, return_inverse=True, return_counts=True)
+    _, inverse, counts = np.unique(np.where(np.isnan(values), -np.inf, values), return_inverse=True, return_counts=True)
     mean_positions = np.cumsum(counts) - (counts + 1) / 2
     return mean_positions[inverse] / max(len(values) - 1, 1)
 
@@ -97,6 +98,8 @@ class RankReplayBuffer(ReplayBuffer):
     ) -> None:
         if optimize_memory_usage:
             raise NotImplementedError("RankReplayBuffer doesn't support optimize_memory_usage=True")
+        if isinstance(observation_space, spaces.Dict):
+            raise NotImplementedError("RankReplayBuffer doesn't support Dict observations: flatten them before")
         # One row a transition, whichever environment it comes from: ranks know no environments
         super().__init__(
             buffer_size,

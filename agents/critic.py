@@ -44,9 +44,9 @@ class QuadraticCritic(BaseModel):
 
     With layers for ``W`` in place of ``V``, ``W`` is a network that knows no actions: the mean of what actions near
     ``mu`` led to. The layers that ``mu`` and ``L`` share have one output more, by which the best action is better:
-    ``V = W + gain``, and no gradient of ``Q`` reaches ``W``. Targets take ``W`` of the next state. ``V`` lies above
-    what was done by what the parabola promises, and noise in the targets makes it promise too much: targets with ``V``
-    add up such promises over the horizon.
+    ``V = W + gain``, and no gradient of ``Q`` reaches the layers of ``W``. Targets take ``W`` of the next state. ``V``
+    lies above what was done by what the parabola promises, and noise in the targets makes it promise too much: targets
+    with ``V`` add up such promises over the horizon.
 
     :param observation_space: Observation space
     :param action_space: Action space

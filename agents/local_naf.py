@@ -1,5 +1,6 @@
 """NAF for tasks of one step, which explores around the best action so far."""
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,9 @@ from sarah.agents.arguments import check_number, checked_schedule
 from sarah.agents.buffers import RankReplayBuffer
 from sarah.agents.naf import NAF
 from sarah.agents.policies import NAFPolicy
+
+FAR_REWARD = 5.0
+"""Mean of the rewards from which on they are far from 0, in deviations and in units of reward."""
 
 
 class LocalNAF(NAF):
@@ -92,6 +96,29 @@ class LocalNAF(NAF):
             scaled_action[0] = 0.0  # Of the first environment: the others warm up as ever
             action = self.policy.unscale_action(scaled_action)
         return action, scaled_action
+
+    def train(self, gradient_steps: int, batch_size: int = 100) -> None:
+        """
+        Sample the replay buffer and do the updates. Before the first one, rewards that are far from 0 get a warning.
+
+        :param gradient_steps: Number of updates
+        :param batch_size: Minibatch size for each update
+        """
+        if self._n_updates == 0:
+            self._check_rewards()
+        super().train(gradient_steps, batch_size)
+
+    def _check_rewards(self) -> None:
+        """Warn if all rewards are far from 0, where networks begin: ``mu`` would be wrong before ``V`` is there."""
+        assert self.replay_buffer is not None
+        rewards = self.replay_buffer.rewards[: self.replay_buffer.size()]
+        mean, std = float(rewards.mean()), float(rewards.std())
+        if abs(mean) > FAR_REWARD * max(1.0, std):
+            warnings.warn(
+                f"rewards of {mean:.3g} on average are far from 0, and mu learns from them slowly or not at all. "
+                f"Remedy: take their mean off in the environment, as reward + {-mean:.3g}",
+                stacklevel=2,
+            )
 
     def _knows_a_best_action(self, learning_starts: int) -> bool:
         """Whether the draws around it may begin: after the warm-up, or with the outcome of the centre."""

@@ -25,6 +25,8 @@ SelfNAF = TypeVar("SelfNAF", bound="NAF")
 
 RUNAWAY_RATIO = 1.5
 """V over its bound from which on a warning says that it runs away."""
+SMALL_REWARD = 0.01
+"""Largest reward below which the noise of learning rates is larger."""
 EVEN_SHARE = 0.2
 """Share of the weight in the loss of W that all replayed actions have alike."""
 FRESH_UPDATES = 1000
@@ -169,7 +171,7 @@ class NAF(OffPolicyAlgorithm):
 
         self.max_grad_norm = max_grad_norm
         self.exploration_std = exploration_std
-        self.value_bound = 0.0
+        self.value_bound = self.value_ceiling = 0.0
         self.warned_of_values = False
 
         if _init_setup_model:
@@ -227,7 +229,7 @@ class NAF(OffPolicyAlgorithm):
         parameters, target_parameters = list(self.q_net.parameters()), list(self.q_net_target.parameters())
         average_parameters = get_ema_multi_avg_fn(1 - self.tau)
 
-        losses, mean_q_values = [], []
+        losses, w_losses, mean_q_values = [], [], []
         for _ in range(gradient_steps):
             # Sample replay buffer
             replay_data = self.replay_buffer.sample(batch_size, env=self._vec_normalize_env)  # type: ignore[union-attr]
@@ -249,7 +251,9 @@ class NAF(OffPolicyAlgorithm):
             loss = nn.functional.mse_loss(current_values.q, target_q_values)
             losses.append(loss.detach())
             if self.q_net.gain_net is not None:
-                loss = loss + nearby_loss(current_values, target_q_values)
+                w_loss = nearby_loss(current_values, target_q_values)
+                w_losses.append(w_loss.detach())
+                loss = loss + w_loss
 
             # Optimize the policy
             self.policy.optimizer.zero_grad()
@@ -267,33 +271,42 @@ class NAF(OffPolicyAlgorithm):
 
         self.logger.record("train/n_updates", self._n_updates, exclude="tensorboard")
         self.logger.record("train/loss", th.stack(losses).mean().item())
+        if w_losses:
+            self.logger.record("train/w_loss", th.stack(w_losses).mean().item())
         self.logger.record("train/q", th.stack(mean_q_values).mean().item())
         if 0 < self.gamma < 1:  # The last batch is a sample as good as all of them
-            bounds = replay_data.rewards.abs() / (1 - discounts)
-            self._check_values(current_values.best.max().item(), bounds.max().item())
+            forever = replay_data.rewards / (1 - discounts)
+            self._check_values(current_values.best.max().item(), forever.min().item(), forever.max().item())
 
-    def _check_values(self, largest: float, bound: float) -> None:
+    def _check_values(self, largest: float, lowest_forever: float, highest_forever: float) -> None:
         """
         Log how near ``V`` comes to the largest value that rewards allow, and warn once if it is far beyond.
 
+        That value is the ceiling: of the highest reward at every step, or 0 where all are negative, as an episode may
+        end. Where ``V`` exceeds it, the excess counts in units of the bound, of the largest reward whatever its sign.
+
         :param largest: Largest ``V`` of a batch
-        :param bound: Value of the largest reward of this batch if it came at every step
+        :param lowest_forever: Value of the lowest reward of this batch if it came at every step
+        :param highest_forever: The same of the highest
         """
-        self.value_bound = max(self.value_bound, bound)
+        self.value_bound = max(self.value_bound, highest_forever, -lowest_forever)
+        self.value_ceiling = max(self.value_ceiling, highest_forever)
         if self.value_bound == 0:
             return
-        ratio = largest / self.value_bound
+        ratio = 1 + (largest - self.value_ceiling) / self.value_bound
         self.logger.record("train/value_over_bound", ratio)
         if ratio > RUNAWAY_RATIO and self._n_updates > FRESH_UPDATES and not self.warned_of_values:
             self.warned_of_values = True
-            remedy = (
-                "give net_arch as a list, or with layers for W in place of V"
-                if self.q_net.gain_net is None
-                else "take a wider exploration_std or a lower learning_rate"
-            )
+            if self.value_bound * (1 - self.gamma) < SMALL_REWARD:
+                remedy = "scale the rewards up, they are smaller than what networks resolve"
+            elif self.q_net.gain_net is None:
+                remedy = "give net_arch as a list, or with layers for W in place of V"
+            else:
+                remedy = "take a wider exploration_std or a lower learning_rate"
             warnings.warn(
-                f"V of {largest:.3g} is {ratio:.2g} times the largest value that the rewards so far allow, "
-                f"|reward| / (1 - gamma) = {self.value_bound:.3g}: it runs away. Remedy: {remedy}",
+                f"V of {largest:.3g} is beyond {self.value_ceiling:.3g}, the largest value that the rewards so far "
+                f"allow, by {ratio - 1:.2g} times |reward| / (1 - gamma) = {self.value_bound:.3g}: it runs away. "
+                f"Remedy: {remedy}",
                 stacklevel=2,
             )
 

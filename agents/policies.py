@@ -89,6 +89,8 @@ class NAFPolicy(BasePolicy):
                 f"net_arch must be a list or have the keys W or V, mu and L and perhaps shared, not {sorted(net_arch)}"
             )
         for name, widths in net_arch.items():
+            if not isinstance(widths, list | tuple):
+                raise ValueError(f"net_arch[{name!r}] must be a list of widths, not {widths!r}")
             for width in widths:
                 check_number(f"a width in net_arch[{name!r}]", width, 1, whole=True)
 

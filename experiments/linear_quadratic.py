@@ -273,8 +273,8 @@ class Watched(NAF):
 
     highest_ratio = 0.0
 
-    def _check_values(self, largest: float, bound: float) -> None:
-        super()._check_values(largest, bound)
+    def _check_values(self, *values: float) -> None:
+        super()._check_values(*values)
         self.highest_ratio = max(self.highest_ratio, self.logger.name_to_value["train/value_over_bound"])
 
 

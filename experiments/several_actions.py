@@ -63,15 +63,18 @@ class SeveralActions(OnWorkers):
     def rows(self) -> Iterator[Row]:
         """A row for each task, algorithm and evaluation."""
         every = self.steps // self.evaluations
-        size = identity((self.steps, every, self.episodes), ["agents"])
-        folder = self.runs / f"several-actions-{size}"
+        settings = (self.steps, every, self.episodes)
+        folders = {
+            algorithm: self.runs / f"several-actions-{identity(settings, () if algorithm == 'ddpg' else ('agents',))}"
+            for algorithm in self.algorithms
+        }
         with Workers(self.workers) as workers:
             jobs: dict[tuple[str, str], list[Any]] = {
                 (task, algorithm): [] for task in self.tasks for algorithm in self.algorithms
             }
             for seed in range(self.seeds):  # the first seed of all tasks comes first
                 for (task, algorithm), running in jobs.items():
-                    file = folder / f"{task}-{algorithm}-s{seed}.json"
+                    file = folders[algorithm] / f"{task}-{algorithm}-s{seed}.json"
                     running.append(
                         workers.submit(kept, file, course, task, algorithm, seed, self.steps, every, self.episodes)
                     )

@@ -51,6 +51,12 @@ def test_bad_widths_of_layers(width):
         NAF("MlpPolicy", "Pendulum-v1", policy_kwargs={"net_arch": {"V": [8], "mu": [width], "L": []}})
 
 
+@pytest.mark.parametrize("net_arch", [8, {"W": 8, "mu": [], "L": []}, {"W": None, "mu": [], "L": []}])
+def test_layers_that_are_no_list(net_arch):
+    with pytest.raises(ValueError, match=r"net_arch\['W'\] must be a list of widths, not (8|None)"):
+        NAF("MlpPolicy", "Pendulum-v1", policy_kwargs={"net_arch": net_arch})
+
+
 @pytest.mark.parametrize("ends", [(-0.1, 0.5), (0.5, 2.0)])
 def test_schedules_are_judged_by_their_ends(ends):
     end, value = (1, ends[0]) if ends[0] < 0 else (0, ends[1])

@@ -89,7 +89,7 @@ def test_a_warning_names_the_remedy_once():
         model.train(1000, 16)
     bias.data.fill_(1000.0)
     with pytest.warns(
-        UserWarning, match=r"^V of 1\.\d\de\+03 is .* times .*: it runs away\. Remedy: .* layers for W in place of V"
+        UserWarning, match=r"^V of 1\.\d\de\+03 is beyond .*: it runs away\. Remedy: .* layers for W in place of V"
     ) as seen:
         model.train(1, 16)
         model.train(1, 16)
@@ -98,14 +98,41 @@ def test_a_warning_names_the_remedy_once():
 
 def test_value_over_bound_is_that_of_the_largest_reward_so_far():
     model = trained(1100)
-    largest = np.abs(model.replay_buffer.rewards[:1100]).max()
-    assert model.value_bound == pytest.approx(largest / (1 - GAMMA), rel=1e-5)
+    rewards = model.replay_buffer.rewards[:1100]
+    assert model.value_bound == pytest.approx(np.abs(rewards).max() / (1 - GAMMA), rel=1e-5)
+    assert model.value_ceiling == pytest.approx(rewards.max() / (1 - GAMMA), rel=1e-5)
     model.replay_buffer.rewards[:] = 0.0
     model.train(1, 1100)
     with th.no_grad():
         values = model.q_net.value(th.as_tensor(model.replay_buffer.observations[:1100, 0]))
     logged = model.logger.name_to_value["train/value_over_bound"]
-    assert logged == pytest.approx(values.max().item() / model.value_bound, rel=0.2)
+    expected = 1 + (values.max().item() - model.value_ceiling) / model.value_bound
+    assert logged == pytest.approx(expected, rel=0.2)
+
+
+def with_rewards(model, reward):
+    """The model as if it had seen one reward only."""
+    model.replay_buffer.rewards[:] = reward
+    model.value_bound = model.value_ceiling = 0.0
+    return model
+
+
+def test_where_all_rewards_are_negative_no_value_is_above_zero():
+    model = with_rewards(trained(1100), -1.0)
+    model.q_net.value_net[-1].bias.data.fill_(50.0)
+    with th.no_grad():
+        highest = model.q_net.value(th.as_tensor(model.replay_buffer.observations[:1100, 0])).max().item()
+    model.train(1, 1100)
+    assert model.value_ceiling == 0.0
+    assert model.logger.name_to_value["train/value_over_bound"] == pytest.approx(1 + highest / 100, rel=0.05)
+
+
+def test_rewards_smaller_than_what_networks_resolve_are_to_be_scaled():
+    model = trained(1000)
+    model.train(1000, 16)
+    with_rewards(model, 1e-6).q_net.value_net[-1].bias.data.fill_(1.0)
+    with pytest.warns(UserWarning, match="Remedy: scale the rewards up"):
+        model.train(1, 16)
 
 
 @pytest.mark.parametrize("gamma", [0.0, 1.0])

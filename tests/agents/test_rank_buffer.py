@@ -136,6 +136,16 @@ def test_memory_optimisation_is_refused():
         fill([], optimize_memory_usage=True)
 
 
+def test_dict_observations_are_refused():
+    space = spaces.Dict(a=spaces.Box(-1, 1, (1,)))
+    with pytest.raises(NotImplementedError, match="doesn't support Dict observations: flatten them"):
+        RankReplayBuffer(10, space, spaces.Box(-1, 1, (1,)))
+
+
+def test_what_is_not_a_number_ranks_lowest():
+    assert average_ranks(np.array([1.0, np.nan, 2.0])).tolist() == [0.5, 0.0, 1.0]
+
+
 def test_the_best_action_is_the_one_among_good_ones():
     rng = np.random.default_rng(0)
     buffer = fill([])
