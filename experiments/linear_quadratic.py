@@ -64,7 +64,7 @@ class Task:
 
 CLEAR: dict[str, Any] = {}
 """Differences of tasks in which an action decides much of what follows."""
-FAINT: dict[str, Any] = dict(gain=2.0, noise=3.0, cost=0.0002, effort=0.005, offset=0.5, reward_noise=0.1)
+FAINT: dict[str, Any] = dict(gain=2.0, noise=3.0, cost=0.0002, effort=0.04, offset=0.5, reward_noise=0.1)
 """Differences of tasks in which noise decides most of it, and states are large."""
 TASKS = {
     "two actions, clear": Task(2, 2, **CLEAR),
