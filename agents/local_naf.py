@@ -13,7 +13,7 @@ from sarah.agents.naf import NAF
 from sarah.agents.policies import NAFPolicy
 
 FAR_REWARD = 5.0
-"""Mean of the rewards from which on they are far from 0, in deviations and in units of reward."""
+"""Distance of the rewards' mean below 0 that is far, in deviations and in units of reward."""
 
 
 class LocalNAF(NAF):
@@ -99,7 +99,7 @@ class LocalNAF(NAF):
 
     def train(self, gradient_steps: int, batch_size: int = 100) -> None:
         """
-        Sample the replay buffer and do the updates. Before the first one, rewards that are far from 0 get a warning.
+        Sample the replay buffer and do the updates. Before the first one, rewards far below 0 get a warning.
 
         :param gradient_steps: Number of updates
         :param batch_size: Minibatch size for each update
@@ -109,13 +109,17 @@ class LocalNAF(NAF):
         super().train(gradient_steps, batch_size)
 
     def _check_rewards(self) -> None:
-        """Warn if all rewards are far from 0, where networks begin: ``mu`` would be wrong before ``V`` is there."""
+        """
+        Warn if all rewards are far below 0, where networks begin
+
+        Until ``V`` is down there, the parabola follows them sooner by pushing ``mu`` away from what was tried.
+        """
         assert self.replay_buffer is not None
         rewards = self.replay_buffer.rewards[: self.replay_buffer.size()]
         mean, std = float(rewards.mean()), float(rewards.std())
-        if abs(mean) > FAR_REWARD * max(1.0, std):
+        if mean < -FAR_REWARD * max(1.0, std):
             warnings.warn(
-                f"rewards of {mean:.3g} on average are far from 0, and mu learns from them slowly or not at all. "
+                f"rewards of {mean:.3g} on average are far below 0, and mu learns from them slowly or not at all. "
                 f"Remedy: take their mean off in the environment, as reward + {-mean:.3g}",
                 stacklevel=2,
             )

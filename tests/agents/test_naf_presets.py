@@ -53,15 +53,15 @@ def test_one_step_over_several_environments():
 
 
 class Far(Cliff):
-    """The same, with rewards that are all far from 0."""
+    """The same, with rewards that are all far below 0."""
 
     def score(self, action) -> float:
         return super().score(action) - 100.0
 
 
-def test_rewards_far_from_zero_get_a_warning_once():
+def test_rewards_far_below_zero_get_a_warning_once():
     """With them mu ends at the bounds, whatever the best action is."""
-    with pytest.warns(UserWarning, match=r"rewards of -9\d.* are far from 0.* as reward \+ 9\d") as seen:
+    with pytest.warns(UserWarning, match=r"rewards of -9\d.* are far below 0.* as reward \+ 9\d") as seen:
         LocalNAF("MlpPolicy", Far(0), seed=0, **PRESETS["one-step"]).learn(8)
     assert len(seen) == 1
 
