@@ -1,7 +1,7 @@
 """NAF and DDPG on tasks of MuJoCo with two to six actions, as in Gu et al. (2016), along the training.
 
-All trainings together take most of a day. So the course of each is kept, and not run again while the
-sources of the agents stay as they are.
+All trainings together take most of a day. So the course of each is kept, and not run again while its algorithm does
+the same to the bit.
 NAF and DDPG run with the defaults of their classes, DDPG with the noise that its documentation adds. NAF as published
 has targets with V, and the exploration noise of DDPG.
 """
@@ -27,6 +27,7 @@ from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
 from experiments.experiment import OnWorkers
 from experiments.linear_quadratic import Watched
+from experiments.made_with import short_hash
 from experiments.record import Row
 from experiments.trainings import identity, kept
 from sarah.episode.workers import Workers
@@ -37,6 +38,8 @@ PUBLISHED: dict[str, Any] = dict(V=[256, 256], shared=[256, 256], mu=[], L=[])
 NOISE = 0.1
 """Standard deviation of the exploration noise of DDPG, and of NAF as published."""
 EVALUATION_SEED = 10_000
+FINGERPRINT_TASK, FINGERPRINT_STEPS = "Reacher-v5", 110
+"""What tells one state of an algorithm's code from another: two actions, and ten updates."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +68,7 @@ class SeveralActions(OnWorkers):
         every = self.steps // self.evaluations
         settings = (self.steps, every, self.episodes)
         folders = {
-            algorithm: self.runs / f"several-actions-{identity(settings, () if algorithm == 'ddpg' else ('agents',))}"
+            algorithm: self.runs / f"several-actions-{identity((*settings, fingerprint(algorithm)), ())}"
             for algorithm in self.algorithms
         }
         with Workers(self.workers) as workers:
@@ -131,6 +134,17 @@ def course(task: str, algorithm: str, seed: int, steps: int, every: int, episode
         warnings.simplefilter("ignore")  # That V runs away is what the rows say
         model(algorithm, gym.make(task), seed).learn(steps, callback=evaluations)
     return evaluations.course
+
+
+def fingerprint(algorithm: str) -> str:
+    """Hash of what an algorithm makes of a few steps: another state of the code with the same one is no other.
+
+    :param algorithm: name of the algorithm
+    """
+    torch.set_num_threads(1)
+    learned = model(algorithm, gym.make(FINGERPRINT_TASK), 0).learn(FINGERPRINT_STEPS)
+    weights = [tensor.tolist() for tensor in learned.policy.state_dict().values()]
+    return short_hash([weights, getattr(learned, "highest_ratio", 0.0)])
 
 
 def model(algorithm: str, env: gym.Env, seed: int) -> OffPolicyAlgorithm:
