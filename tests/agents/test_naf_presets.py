@@ -60,7 +60,6 @@ class Far(Cliff):
 
 
 def test_rewards_far_below_zero_get_a_warning_once():
-    """With them mu ends at the bounds, whatever the best action is."""
     with pytest.warns(UserWarning, match=r"rewards of -9\d.* are far below 0.* as reward \+ 9\d") as seen:
         LocalNAF("MlpPolicy", Far(0), seed=0, **PRESETS["one-step"]).learn(8)
     assert len(seen) == 1
