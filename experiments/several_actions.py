@@ -1,16 +1,17 @@
 """NAF and DDPG on tasks of MuJoCo with two to six actions, as in Gu et al. (2016), along the training.
 
-All trainings together take most of a day. So the course of each is kept, and not run again while its algorithm does
-the same to the bit.
+All trainings together take most of a day. So the course of each is kept in a file beside the results, and not run again
+while its algorithm does the same.
 NAF and DDPG run with the defaults of their classes, DDPG with the noise that its documentation adds. NAF as published
 has targets with V, and the exploration noise of DDPG.
 """
 
 from __future__ import annotations
 
+import json
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -24,13 +25,13 @@ from stable_baselines3.common.evaluation import evaluate_policy
 from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.noise import NormalActionNoise
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
+from torch.nn.utils import parameters_to_vector
 
 from experiments.experiment import OnWorkers
 from experiments.linear_quadratic import Watched
-from experiments.made_with import short_hash
-from experiments.record import Row
-from experiments.trainings import identity, kept
+from experiments.record import RESULTS, Row
 from sarah.episode.workers import Workers
+from sarah.files import replace_text
 
 TASKS = ("HalfCheetah-v5", "Hopper-v5", "Walker2d-v5", "Reacher-v5", "Swimmer-v5")
 ALGORITHMS = ("naf", "naf with V, as published", "ddpg")
@@ -40,6 +41,11 @@ NOISE = 0.1
 EVALUATION_SEED = 10_000
 FINGERPRINT_TASK, FINGERPRINT_STEPS = "Reacher-v5", 110
 """What tells one state of an algorithm's code from another: two actions, and ten updates."""
+FINGERPRINT_TOLERANCE = 1e-3
+"""Relative difference of fingerprints that another processor may make, and no other code."""
+
+Course = list[tuple[float, float]]
+"""Return and largest V over its bound at each evaluation of a training."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +58,7 @@ class SeveralActions(OnWorkers):
     :param seeds: number of trainings of each algorithm
     :param evaluations: number of evaluations along a training, the last at its end
     :param episodes: number of episodes of an evaluation
-    :param runs: folder that keeps the courses of the trainings; one that is there is not run again
+    :param courses: folder that keeps the courses of the trainings; one that is there is not run again
     """
 
     tasks: tuple[str, ...] = TASKS
@@ -61,26 +67,20 @@ class SeveralActions(OnWorkers):
     seeds: int = 5
     evaluations: int = 10
     episodes: int = 5
-    runs: Path = Path("runs/experiments")
+    courses: Path = RESULTS / "several_actions"
 
     def rows(self) -> Iterator[Row]:
         """A row for each task, algorithm and evaluation."""
         every = self.steps // self.evaluations
-        settings = (self.steps, every, self.episodes)
-        folders = {
-            algorithm: self.runs / f"several-actions-{identity((*settings, fingerprint(algorithm)), ())}"
-            for algorithm in self.algorithms
-        }
+        fingerprints = {algorithm: fingerprint(algorithm) for algorithm in self.algorithms}
         with Workers(self.workers) as workers:
             jobs: dict[tuple[str, str], list[Any]] = {
                 (task, algorithm): [] for task in self.tasks for algorithm in self.algorithms
             }
             for seed in range(self.seeds):  # the first seed of all tasks comes first
                 for (task, algorithm), running in jobs.items():
-                    file = folders[algorithm] / f"{task}-{algorithm}-s{seed}.json"
-                    running.append(
-                        workers.submit(kept, file, course, task, algorithm, seed, self.steps, every, self.episodes)
-                    )
+                    training = Training(task, algorithm, seed, self.steps, every, self.episodes)
+                    running.append(workers.submit(kept_course, training, self.courses, fingerprints[algorithm]))
             for (task, algorithm), running in jobs.items():
                 courses = [job.result() for job in running]
                 for index in range(self.evaluations):
@@ -97,6 +97,26 @@ class SeveralActions(OnWorkers):
                     }
 
 
+@dataclass(frozen=True)
+class Training:
+    """What decides the course of a training.
+
+    :param task: name of the task
+    :param algorithm: name of the algorithm
+    :param seed: its seed
+    :param steps: number of its steps
+    :param every: number of steps between evaluations
+    :param episodes: number of episodes of an evaluation
+    """
+
+    task: str
+    algorithm: str
+    seed: int
+    steps: int
+    every: int
+    episodes: int
+
+
 class Evaluations(BaseCallback):
     """Mean returns of the same episodes along a training, and the largest V over its bound until then.
 
@@ -107,7 +127,7 @@ class Evaluations(BaseCallback):
 
     def __init__(self, env: gym.Env, every: int, episodes: int) -> None:
         super().__init__()
-        self.course: list[tuple[float, float]] = []
+        self.course: Course = []
         self._env, self._every, self._episodes = env, every, episodes
 
     def _on_step(self) -> bool:
@@ -118,33 +138,52 @@ class Evaluations(BaseCallback):
         return True
 
 
-def course(task: str, algorithm: str, seed: int, steps: int, every: int, episodes: int) -> list[tuple[float, float]]:
-    """Return and largest V over its bound at each evaluation of a training.
+def kept_course(training: Training, folder: Path, wanted: list[float]) -> Course:
+    """The course of a training, from its file if that is of the same settings and the same algorithm.
 
-    :param task: name of the task
-    :param algorithm: name of the algorithm
-    :param seed: seed of the training
-    :param steps: number of its steps
-    :param every: number of steps between evaluations
-    :param episodes: number of episodes of an evaluation
+    :param training: the training
+    :param folder: folder of the files
+    :param wanted: fingerprint of today's algorithm
+    """
+    file = folder / f"{training.task}-{training.algorithm}-s{training.seed}.json".replace(" ", "_").replace(",", "")
+    if file.exists():
+        kept = json.loads(file.read_text(encoding="utf-8"))
+        same = np.allclose(kept["fingerprint"], wanted, rtol=FINGERPRINT_TOLERANCE, atol=0.0)
+        if same and kept["training"] == asdict(training):
+            return kept["course"]
+    course = course_of(training)
+    folder.mkdir(parents=True, exist_ok=True)
+    replace_text(file, json.dumps({"training": asdict(training), "fingerprint": wanted, "course": course}) + "\n")
+    return course
+
+
+def course_of(training: Training) -> Course:
+    """The course of a training, which it runs.
+
+    :param training: the training
     """
     torch.set_num_threads(1)
-    evaluations = Evaluations(Monitor(gym.make(task)), every, episodes)
+    evaluations = Evaluations(Monitor(gym.make(training.task)), training.every, training.episodes)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # That V runs away is what the rows say
-        model(algorithm, gym.make(task), seed).learn(steps, callback=evaluations)
+        agent = model(training.algorithm, gym.make(training.task), training.seed)
+        agent.learn(training.steps, callback=evaluations)
     return evaluations.course
 
 
-def fingerprint(algorithm: str) -> str:
-    """Hash of what an algorithm makes of a few steps: another state of the code with the same one is no other.
+def fingerprint(algorithm: str) -> list[float]:
+    """Length of all weights before and after a few updates, and of their change.
+
+    Another state of the code with the same fingerprint is the same algorithm.
 
     :param algorithm: name of the algorithm
     """
     torch.set_num_threads(1)
-    learned = model(algorithm, gym.make(FINGERPRINT_TASK), 0).learn(FINGERPRINT_STEPS)
-    weights = [tensor.tolist() for tensor in learned.policy.state_dict().values()]
-    return short_hash([weights, getattr(learned, "highest_ratio", 0.0)])
+    agent = model(algorithm, gym.make(FINGERPRINT_TASK), 0)
+    before = parameters_to_vector(agent.policy.parameters()).detach().clone()
+    agent.learn(FINGERPRINT_STEPS)
+    after = parameters_to_vector(agent.policy.parameters()).detach()
+    return [vector.norm().item() for vector in (before, after, after - before)]
 
 
 def model(algorithm: str, env: gym.Env, seed: int) -> OffPolicyAlgorithm:
