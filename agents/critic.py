@@ -42,19 +42,18 @@ class QuadraticCritic(BaseModel):
     of 64 units that all three shared, seeds of Pendulum failed. Actions are scaled to [-1, 1]. The output layer of
     ``mu`` starts at zero: an untrained critic proposes the centre of the action space whatever it observes.
 
-    With layers for ``W`` in place of ``V``, ``W`` is a network that knows no actions: the mean of what actions near
-    ``mu`` led to. The layers that ``mu`` and ``L`` share have one output more, by which the best action is better:
-    ``V = W + gain``, and no gradient of ``Q`` reaches the layers of ``W``. Targets take ``W`` of the next state. ``V``
-    lies above what was done by what the parabola promises, and noise in the targets makes it promise too much: targets
-    with ``V`` add up such promises over the horizon.
+    With layers for ``W`` in place of ``V``, these have a second output: ``W``, the mean of what actions near ``mu`` led
+    to. It has a loss of its own, and targets take it of the next state. ``V`` lies above what was done by what the
+    parabola promises, and noise in the targets makes it promise too much: targets with ``V`` add up such promises over
+    the horizon.
 
     :param observation_space: Observation space
     :param action_space: Action space
     :param features_extractor: Network to extract features
         (a CNN when using images, a nn.Flatten() layer otherwise)
     :param features_dim: Number of features
-    :param net_arch: Hidden layers by name: of each head, ``V`` or ``W``, ``mu`` and ``L``, and ``shared``, which come
-        before those of ``mu`` and ``L`` and serve both
+    :param net_arch: Hidden layers by name: of each head, ``mu``, ``L`` and either ``V`` alone or ``W``, for ``V`` and
+        ``W``, and ``shared``, which come before those of ``mu`` and ``L`` and serve both
     :param activation_fn: Activation function
     :param normalize_images: Whether to normalize images or not,
          dividing by 255.0 (True by default)
@@ -86,6 +85,7 @@ class QuadraticCritic(BaseModel):
             normalize_images=normalize_images,
         )
         self.min_curvature = min_curvature
+        self.has_w = "W" in net_arch
 
         action_dim = get_action_dim(action_space)
         rows, columns = th.tril_indices(action_dim, action_dim)
@@ -93,9 +93,8 @@ class QuadraticCritic(BaseModel):
         self.register_buffer("rows", rows, persistent=False)
         self.register_buffer("columns", columns, persistent=False)
 
-        # V, or W if there is one: the value that targets take
-        value_arch = net_arch["W"] if "W" in net_arch else net_arch["V"]
-        self.value_net = nn.Sequential(*create_mlp(features_dim, 1, value_arch, activation_fn))
+        outputs, value_arch = (2, net_arch["W"]) if self.has_w else (1, net_arch["V"])
+        self.value_net = nn.Sequential(*create_mlp(features_dim, outputs, value_arch, activation_fn))
         self.shared_net = nn.Sequential(*create_mlp(features_dim, -1, net_arch["shared"], activation_fn))
         shared_dim = [features_dim, *net_arch["shared"]][-1]
         self.mu_net = nn.Sequential(*create_mlp(shared_dim, action_dim, net_arch["mu"], activation_fn, squash_mu))
@@ -104,7 +103,6 @@ class QuadraticCritic(BaseModel):
         mu_output = [layer for layer in self.mu_net if isinstance(layer, nn.Linear)][-1]
         nn.init.zeros_(mu_output.weight)
         nn.init.zeros_(mu_output.bias)
-        self.gain_net = nn.Linear(shared_dim, 1) if "W" in net_arch else None
 
     def forward(self, obs: PyTorchObs, actions: th.Tensor) -> th.Tensor:
         """
@@ -133,9 +131,9 @@ class QuadraticCritic(BaseModel):
         distance = from_mu.square().sum(dim=1, keepdim=True)
         if self.min_curvature > 0:
             squared_length = squared_length + self.min_curvature * distance
-        target_values = self.value_net(features)
-        best_values = self._best_values(target_values, shared)
-        return Values(best_values - 0.5 * squared_length, best_values, target_values, distance)
+        values = self.value_net(features)
+        best_values = values[:, :1]
+        return Values(best_values - 0.5 * squared_length, best_values, values[:, -1:], distance)
 
     def value(self, obs: PyTorchObs) -> th.Tensor:
         """
@@ -144,8 +142,7 @@ class QuadraticCritic(BaseModel):
         :param obs: Observations
         :return: ``V`` of shape (batch, 1)
         """
-        features = self.extract_features(obs, self.features_extractor)
-        return self._best_values(self.value_net(features), self.shared_net(features))
+        return self.value_net(self.extract_features(obs, self.features_extractor))[:, :1]
 
     def target_value(self, obs: PyTorchObs) -> th.Tensor:
         """
@@ -154,7 +151,7 @@ class QuadraticCritic(BaseModel):
         :param obs: Observations
         :return: ``W`` of shape (batch, 1), or ``V`` where there is no ``W``
         """
-        return self.value_net(self.extract_features(obs, self.features_extractor))
+        return self.value_net(self.extract_features(obs, self.features_extractor))[:, -1:]
 
     def mu(self, obs: PyTorchObs) -> th.Tensor:
         """
@@ -181,6 +178,3 @@ class QuadraticCritic(BaseModel):
         lower = outputs.new_zeros(len(outputs), action_dim, action_dim)
         lower[:, self.rows, self.columns] = th.where(self.rows == self.columns, diagonals, outputs)
         return lower
-
-    def _best_values(self, target_values: th.Tensor, shared: th.Tensor) -> th.Tensor:
-        return target_values if self.gain_net is None else target_values.detach() + self.gain_net(shared)

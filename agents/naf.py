@@ -250,7 +250,7 @@ class NAF(OffPolicyAlgorithm):
 
             loss = nn.functional.mse_loss(current_values.q, target_q_values)
             losses.append(loss.detach())
-            if self.q_net.gain_net is not None:
+            if self.q_net.has_w:
                 w_loss = nearby_loss(current_values, target_q_values)
                 w_losses.append(w_loss.detach())
                 loss = loss + w_loss
@@ -299,7 +299,7 @@ class NAF(OffPolicyAlgorithm):
             self.warned_of_values = True
             if self.value_bound * (1 - self.gamma) < SMALL_REWARD:
                 remedy = "scale the rewards up, they are smaller than what networks resolve"
-            elif self.q_net.gain_net is None:
+            elif not self.q_net.has_w:
                 remedy = "give net_arch as a list, or with layers for W in place of V"
             else:
                 remedy = "take a wider exploration_std or a lower learning_rate"

@@ -26,10 +26,11 @@ class NAFPolicy(BasePolicy):
     :param observation_space: Observation space
     :param action_space: Action space
     :param lr_schedule: Learning rate schedule (could be constant)
-    :param net_arch: Hidden layers. A list is for those of ``W``, and for those that ``mu`` and ``L`` share
-        (``[256, 256]`` by default, as SAC's). With ``dict(W=[...], mu=[...], L=[...])`` each has layers of its own;
-        with the key ``shared`` as well, those of ``mu`` and ``L`` follow layers in common. With ``V`` in place of ``W``
-        targets take the value of the best action, as in the publication: for tasks of one step or one action
+    :param net_arch: Hidden layers. A list is for those of the values, and for those that ``mu`` and ``L`` share
+        (``[256, 256]`` by default, as SAC's). With ``dict(W=[...], mu=[...], L=[...])`` each has layers of its own,
+        where ``V`` and ``W`` are outputs of the same layers; with the key ``shared`` as well, those of ``mu`` and ``L``
+        follow layers in common. With ``V`` in place of ``W`` there is no ``W``, and targets take the value of the best
+        action, as in the publication: for tasks of one step or one action
     :param activation_fn: Activation function (ReLU by default). Tanh suits smooth tasks of one step,
         but fails where values are large; with sigmoid, deeper networks hardly learn.
     :param features_extractor_class: Features extractor to use.

@@ -23,7 +23,7 @@ from sarah.errors import ConfigurationError, unknown_name
 COMMAND = "python -m experiments"
 OTHER_RESULTS = record.ROOT / "build" / "experiments"
 """Folder for the rows of experiments that options change."""
-HARMLESS = {"workers", "runs"}
+HARMLESS = {"workers", "runs", "courses"}
 """Options that change no row."""
 
 

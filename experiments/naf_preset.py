@@ -52,6 +52,7 @@ UPDATES = {name: ONE_STEP[name] for name in ("gradient_steps", "learning_starts"
 """What the others spend on learning, for those that are not the preset."""
 PLAIN: dict[str, dict[str, Any]] = {
     "NAF's defaults": {},
+    "NAF's defaults, with V": {"policy_kwargs": {"net_arch": dict(V=[256, 256], shared=[256, 256], mu=[], L=[])}},
     "the paper's preset": PAPER,
     "the paper's preset with tanh": TANH,
     "the one-step preset with the paper's networks": {**ONE_STEP, **PAPER},

@@ -29,7 +29,7 @@ from torch.nn.utils import parameters_to_vector
 
 from experiments.experiment import OnWorkers
 from experiments.linear_quadratic import Watched
-from experiments.record import RESULTS, Row
+from experiments.record import Row
 from sarah.episode.workers import Workers
 from sarah.files import replace_text
 
@@ -67,7 +67,7 @@ class SeveralActions(OnWorkers):
     seeds: int = 5
     evaluations: int = 10
     episodes: int = 5
-    courses: Path = RESULTS / "several_actions"
+    courses: Path = Path("results/several_actions")
 
     def rows(self) -> Iterator[Row]:
         """A row for each task, algorithm and evaluation."""
@@ -145,7 +145,8 @@ def kept_course(training: Training, folder: Path, wanted: list[float]) -> Course
     :param folder: folder of the files
     :param wanted: fingerprint of today's algorithm
     """
-    file = folder / f"{training.task}-{training.algorithm}-s{training.seed}.json".replace(" ", "_").replace(",", "")
+    name = f"{training.task}-{training.algorithm}-{training.steps}-s{training.seed}"
+    file = folder / f"{name.replace(', ', '-').replace(' ', '-')}.json"
     if file.exists():
         kept = json.loads(file.read_text(encoding="utf-8"))
         same = np.allclose(kept["fingerprint"], wanted, rtol=FINGERPRINT_TOLERANCE, atol=0.0)

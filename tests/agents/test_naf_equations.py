@@ -201,20 +201,26 @@ def test_what_targets_take_shares_no_layer(net_arch):
     assert all(p.grad is None for net in (critic.shared_net, critic.mu_net, critic.lower_net) for p in net.parameters())
 
 
-def test_w_learns_nothing_from_q():
-    """What a parabola promises cannot get into targets."""
+def test_v_and_w_are_two_outputs_of_the_same_layers():
+    critic = make_critic(3)
+    obs, actions = draw(3)
+    with th.no_grad():
+        v, w = critic.value_net(obs).split(1, dim=1)
+        th.testing.assert_close(critic.value(obs), v)
+        th.testing.assert_close(critic.target_value(obs), w)
+        values = critic.all_values(obs, actions)
+    th.testing.assert_close(values.best, v)
+    th.testing.assert_close(values.target, w)
+    assert not th.allclose(v, w)
+
+
+def test_q_does_not_reach_the_output_of_w():
+    """What a parabola promises cannot get into targets, but by the layers that V and W share."""
     critic = make_critic(3)
     critic(*draw(3)).sum().backward()
-    assert all(p.grad is None for p in critic.value_net.parameters())
-
-
-def test_v_is_w_and_the_gain():
-    critic = make_critic(3)
-    obs = draw(3)[0]
-    with th.no_grad():
-        expected = critic.target_value(obs) + critic.gain_net(critic.shared_net(obs))
-        th.testing.assert_close(critic.value(obs), expected)
-        assert not th.allclose(critic.value(obs), critic.target_value(obs))
+    output = critic.value_net[-1]
+    assert output.weight.grad[0].any() and not output.weight.grad[1].any()
+    assert output.bias.grad[0] != 0 and output.bias.grad[1] == 0
 
 
 def test_heads_take_their_own_sizes():
@@ -227,7 +233,7 @@ def test_heads_take_their_own_sizes():
 
     assert sizes(dict(V=[7, 8], mu=[], L=[5])) == [[7, 8, 1], [], [2], [5, 3]]
     assert sizes(dict(V=[7], shared=[6, 4], mu=[], L=[5])) == [[7, 1], [6, 4], [2], [5, 3]]
-    assert sizes([6, 4]) == [[6, 4, 1], [6, 4], [2], [3]]
+    assert sizes([6, 4]) == [[6, 4, 2], [6, 4], [2], [3]]
     with pytest.raises(ValueError, match=r"W or V, mu and L and perhaps shared, not \['pi'\]"):
         sizes(dict(pi=[4]))
     with pytest.raises(ValueError, match=r"not \['L', 'V', 'W', 'mu'\]"):

@@ -49,7 +49,7 @@ def fill_target(model) -> dict[int, float]:
     for parameter in model.q_net_target.parameters():
         nn.init.normal_(parameter)
     with th.no_grad():
-        return {i: model.q_net_target.value_net(th.tensor([[float(i)]])).item() for i in range(11)}
+        return {i: model.q_net_target.target_value(th.tensor([[float(i)]])).item() for i in range(11)}
 
 
 def one_update(model, batch_size=64):
@@ -168,7 +168,7 @@ def test_fast_updates_are_the_plain_ones():
         for n in range(32):
             obs, next_obs = batch.observations[n : n + 1], batch.next_observations[n : n + 1]
             with th.no_grad():
-                next_value = target.value_net(next_obs)[0, 0]
+                next_value = target.value_net(next_obs)[0, 1]
                 wanted = batch.rewards[n, 0] + GAMMA * (1 - batch.dones[n, 0]) * next_value
             difference = batch.actions[n] - q_net.mu(obs)[0]
             outputs = q_net.lower_net(q_net.shared_net(obs))[0]
@@ -180,8 +180,8 @@ def test_fast_updates_are_the_plain_ones():
                     k += 1
             for j in range(len(difference)):
                 advantage -= 0.5 * sum(difference[i] * lower[i, j] for i in range(j, len(difference))) ** 2
-            w = q_net.value_net(obs)[0, 0]
-            loss += (w.detach() + q_net.gain_net(q_net.shared_net(obs))[0, 0] + advantage - wanted) ** 2 / 32
+            v, w = q_net.value_net(obs)[0]
+            loss += (v + advantage - wanted) ** 2 / 32
             loss += (0.8 * weights[n] / sum(weights) + 0.2 / 32) * (w - wanted) ** 2
         optimizer.zero_grad()
         loss.backward()
