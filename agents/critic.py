@@ -65,6 +65,7 @@ class QuadraticCritic(BaseModel):
     features_extractor: BaseFeaturesExtractor
     rows: th.Tensor
     columns: th.Tensor
+    on_diagonal: th.Tensor
 
     def __init__(
         self,
@@ -89,9 +90,10 @@ class QuadraticCritic(BaseModel):
 
         action_dim = get_action_dim(action_space)
         rows, columns = th.tril_indices(action_dim, action_dim)
-        # Where in L its entries are, row by row
-        self.register_buffer("rows", rows, persistent=False)
-        self.register_buffer("columns", columns, persistent=False)
+        # Row and column of each entry of L, one-hot: products with them are faster than filling a matrix
+        self.register_buffer("rows", nn.functional.one_hot(rows, action_dim).T.float(), persistent=False)
+        self.register_buffer("columns", nn.functional.one_hot(columns, action_dim).float(), persistent=False)
+        self.register_buffer("on_diagonal", rows == columns, persistent=False)
 
         outputs, value_arch = (2, net_arch["W"]) if self.has_w else (1, net_arch["V"])
         self.value_net = nn.Sequential(*create_mlp(features_dim, outputs, value_arch, activation_fn))
@@ -126,9 +128,9 @@ class QuadraticCritic(BaseModel):
         shared = self.shared_net(features)
         from_mu = actions - self.mu_net(shared)
         # (u - mu)^T L L^T (u - mu) is the squared length of the row (u - mu)^T L
-        projected = (from_mu.unsqueeze(2) * self._lower(shared)).sum(dim=1)
-        squared_length = projected.square().sum(dim=1, keepdim=True)
-        distance = from_mu.square().sum(dim=1, keepdim=True)
+        projected = (from_mu @ self.rows * self._entries(shared)) @ self.columns
+        squared_length = (projected * projected).sum(dim=1, keepdim=True)
+        distance = (from_mu * from_mu).sum(dim=1, keepdim=True)
         if self.min_curvature > 0:
             squared_length = squared_length + self.min_curvature * distance
         values = self.value_net(features)
@@ -169,12 +171,9 @@ class QuadraticCritic(BaseModel):
         :param obs: Observations
         :return: ``L`` of shape (batch, action dim, action dim)
         """
-        return self._lower(self.shared_net(self.extract_features(obs, self.features_extractor)))
+        entries = self._entries(self.shared_net(self.extract_features(obs, self.features_extractor)))
+        return entries.unsqueeze(1) * self.rows @ self.columns
 
-    def _lower(self, shared: th.Tensor) -> th.Tensor:
+    def _entries(self, shared: th.Tensor) -> th.Tensor:
         outputs = self.lower_net(shared)
-        diagonals = outputs.clamp(LOG_DIAGONAL_MIN, LOG_DIAGONAL_MAX).exp()
-        action_dim = get_action_dim(self.action_space)
-        lower = outputs.new_zeros(len(outputs), action_dim, action_dim)
-        lower[:, self.rows, self.columns] = th.where(self.rows == self.columns, diagonals, outputs)
-        return lower
+        return th.where(self.on_diagonal, outputs.clamp(LOG_DIAGONAL_MIN, LOG_DIAGONAL_MAX).exp(), outputs)

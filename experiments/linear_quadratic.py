@@ -178,17 +178,15 @@ class OneCurvature(QuadraticCritic):
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
-        self.lower_net = SameEverywhere(len(self.rows))
+        self.lower_net = SameEverywhere(len(self.columns))
 
 
 class BoundedCurvature(QuadraticCritic):
     """Entries of L within one of zero."""
 
-    def _lower(self, shared: th.Tensor) -> th.Tensor:
+    def _entries(self, shared: th.Tensor) -> th.Tensor:
         outputs = self.lower_net(shared)
-        lower = outputs.new_zeros(len(outputs), *[int(self.rows[-1]) + 1] * 2)
-        lower[:, self.rows, self.columns] = th.where(self.rows == self.columns, outputs.sigmoid(), outputs.tanh())
-        return lower
+        return th.where(self.on_diagonal, outputs.sigmoid(), outputs.tanh())
 
 
 class NormalisedLayers(QuadraticCritic):
