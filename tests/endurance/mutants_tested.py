@@ -91,8 +91,8 @@ EXPLAINED: dict[str, dict[str, str]] = {
         "if self.min_curvature > -1:": NO_CURVATURE,
         'self.shared_net = nn.Sequential(*create_mlp(features_dim, - 2, net_arch["shared"], activation_fn))': NO_OUTPUT,
         'self.shared_net = nn.Sequential(*create_mlp(features_dim, - 0, net_arch["shared"], activation_fn))': NO_OUTPUT,
-        'self.register_buffer("on_diagonal", rows <= columns, persistent=False)': "a lower triangle has no entries above "
-        "the diagonal",
+        'self.register_buffer("on_diagonal", rows <= columns, persistent=False)': "a lower triangle has no entries "
+        "above the diagonal",
     },
     "agents/buffers.py": {
         "n_envs: int = 2,": ONE_ROW,
