@@ -178,7 +178,7 @@ TABLE: dict[str, Maker] = {
     ),
     "naf_pendulum": Maker(
         "How does NAF do on Pendulum-v1, next to TD3, SAC and DDPG?",
-        StandardTask("Pendulum-v1", steps=10_000),
+        StandardTask("Pendulum-v1", steps=10_000, seeds=10),
         {"steps": 120, "seeds": 1, "episodes": 1},
         of_robot=False,
     ),
