@@ -1,6 +1,7 @@
 """Values of NAF: the networks V or W, mu and L."""
 
-from typing import NamedTuple
+from functools import partial
+from typing import Any, NamedTuple
 
 import torch as th
 from gymnasium import spaces
@@ -42,10 +43,14 @@ class QuadraticCritic(BaseModel):
     of 64 units that all three shared, seeds of Pendulum failed. Actions are scaled to [-1, 1]. The output layer of
     ``mu`` starts at zero: an untrained critic proposes the centre of the action space whatever it observes.
 
-    With layers for ``W`` in place of ``V``, these have a second output: ``W``, the mean of what actions near ``mu`` led
-    to. It has a loss of its own, and targets take it of the next state. ``V`` lies above what was done by what the
-    parabola promises, and noise in the targets makes it promise too much: targets with ``V`` add up such promises over
-    the horizon.
+    With layers for ``W`` in place of ``V``, two things are added to the publication. Both are there because the
+    parabola, which has many outputs, learns noise by heart, and that makes it steep:
+
+    - Those layers have a second output: ``W``, the mean of what actions near ``mu`` led to. It has a loss of its own,
+      and targets take it of the next state. ``V`` lies above what was done by what the parabola promises, so targets
+      with ``V`` add up promises over the horizon.
+    - Hidden layers of ``mu`` and ``L`` have dropout and layer normalisation, as those of critics in DroQ (Hiraoka et
+      al. 2022, https://arxiv.org/abs/2110.02034).
 
     :param observation_space: Observation space
     :param action_space: Action space
@@ -58,6 +63,8 @@ class QuadraticCritic(BaseModel):
     :param normalize_images: Whether to normalize images or not,
          dividing by 255.0 (True by default)
     :param squash_mu: Whether ``mu`` ends in a tanh; if not, it is linear and may leave [-1, 1]
+    :param dropout: Share of the units that an update leaves out of each hidden layer of ``mu`` and ``L``; without
+        effect where there is no ``W``
     :param min_curvature: Curvature that is added to that of ``L L^T``, see :class:`NAFPolicy`
     """
 
@@ -77,6 +84,7 @@ class QuadraticCritic(BaseModel):
         activation_fn: type[nn.Module] = nn.ReLU,
         normalize_images: bool = True,
         squash_mu: bool = True,
+        dropout: float = 0.2,
         min_curvature: float = 0.0,
     ) -> None:
         super().__init__(
@@ -97,10 +105,12 @@ class QuadraticCritic(BaseModel):
 
         outputs, value_arch = (2, net_arch["W"]) if self.has_w else (1, net_arch["V"])
         self.value_net = nn.Sequential(*create_mlp(features_dim, outputs, value_arch, activation_fn))
-        self.shared_net = nn.Sequential(*create_mlp(features_dim, -1, net_arch["shared"], activation_fn))
+        after: list[Any] = [lambda width: nn.Dropout(dropout), nn.LayerNorm] if self.has_w else []
+        make_layers = partial(create_mlp, activation_fn=activation_fn, post_linear_modules=after)
+        self.shared_net = nn.Sequential(*make_layers(features_dim, -1, net_arch["shared"]))
         shared_dim = [features_dim, *net_arch["shared"]][-1]
-        self.mu_net = nn.Sequential(*create_mlp(shared_dim, action_dim, net_arch["mu"], activation_fn, squash_mu))
-        self.lower_net = nn.Sequential(*create_mlp(shared_dim, len(rows), net_arch["L"], activation_fn))
+        self.mu_net = nn.Sequential(*make_layers(shared_dim, action_dim, net_arch["mu"], squash_output=squash_mu))
+        self.lower_net = nn.Sequential(*make_layers(shared_dim, len(rows), net_arch["L"]))
 
         mu_output = [layer for layer in self.mu_net if isinstance(layer, nn.Linear)][-1]
         nn.init.zeros_(mu_output.weight)

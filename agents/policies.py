@@ -30,7 +30,7 @@ class NAFPolicy(BasePolicy):
         (``[256, 256]`` by default, as SAC's). With ``dict(W=[...], mu=[...], L=[...])`` each has layers of its own,
         where ``V`` and ``W`` are outputs of the same layers; with the key ``shared`` as well, those of ``mu`` and ``L``
         follow layers in common. With ``V`` in place of ``W`` there is no ``W``, and targets take the value of the best
-        action, as in the publication: for tasks of one step or one action
+        action, as in the publication: for tasks of one step or one action. Then ``dropout`` has no effect
     :param activation_fn: Activation function (ReLU by default). Tanh suits smooth tasks of one step,
         but fails where values are large; with sigmoid, deeper networks hardly learn.
     :param features_extractor_class: Features extractor to use.
@@ -44,6 +44,8 @@ class NAFPolicy(BasePolicy):
         excluding the learning rate, to pass to the optimizer
     :param squash_mu: Whether ``mu`` ends in a tanh (True by default). If not, it is linear,
         as in the original paper, and the policy clips it to the action space.
+    :param dropout: Share of the units that an update leaves out of each hidden layer of ``mu`` and ``L`` (0.2 by
+        default), before a layer normalisation. Noise that the parabola learns by heart makes it too steep without.
     :param min_curvature: Curvature of ``Q`` that is added in all directions of the action (0 by default). Where it is
         flat ``mu`` gets no gradient: without it, ``mu`` may stay wrong in a direction that ``L`` makes flat to fit.
     """
@@ -65,6 +67,7 @@ class NAFPolicy(BasePolicy):
         optimizer_class: type[th.optim.Optimizer] = th.optim.Adam,
         optimizer_kwargs: dict[str, Any] | None = None,
         squash_mu: bool = True,
+        dropout: float = 0.2,
         min_curvature: float = 0.0,
     ) -> None:
         if optimizer_kwargs is None and optimizer_class is th.optim.Adam:
@@ -81,6 +84,7 @@ class NAFPolicy(BasePolicy):
             normalize_images=normalize_images,
         )
         check_number("min_curvature", min_curvature, 0.0)
+        check_number("dropout", dropout, 0.0, 0.9)
         if net_arch is None:
             net_arch = [256, 256]
         if not isinstance(net_arch, dict):
@@ -102,6 +106,7 @@ class NAFPolicy(BasePolicy):
             "activation_fn": activation_fn,
             "normalize_images": normalize_images,
             "squash_mu": squash_mu,
+            "dropout": dropout,
             "min_curvature": min_curvature,
         }
 
@@ -167,6 +172,7 @@ class NAFPolicy(BasePolicy):
                 net_arch=self.net_args["net_arch"],
                 activation_fn=self.net_args["activation_fn"],
                 squash_mu=self.net_args["squash_mu"],
+                dropout=self.net_args["dropout"],
                 min_curvature=self.net_args["min_curvature"],
                 lr_schedule=self._dummy_schedule,  # dummy lr schedule, not needed for loading policy alone
                 optimizer_class=self.optimizer_class,

@@ -23,12 +23,12 @@ from stable_baselines3 import DDPG
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.evaluation import evaluate_policy
 from stable_baselines3.common.monitor import Monitor
-from stable_baselines3.common.noise import NormalActionNoise
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from torch.nn.utils import parameters_to_vector
 
+from experiments.baselines import NOISE, documented_noise
 from experiments.experiment import OnWorkers
-from experiments.linear_quadratic import Watched
+from experiments.naf_variants import Watched
 from experiments.record import Row
 from sarah.episode.workers import Workers
 from sarah.files import replace_text
@@ -36,8 +36,6 @@ from sarah.files import replace_text
 TASKS = ("HalfCheetah-v5", "Hopper-v5", "Walker2d-v5", "Reacher-v5", "Swimmer-v5")
 ALGORITHMS = ("naf", "naf with V, as published", "ddpg")
 PUBLISHED: dict[str, Any] = dict(V=[256, 256], shared=[256, 256], mu=[], L=[])
-NOISE = 0.1
-"""Standard deviation of the exploration noise of DDPG, and of NAF as published."""
 EVALUATION_SEED = 10_000
 FINGERPRINT_TASK, FINGERPRINT_STEPS = "Reacher-v5", 110
 """What tells one state of an algorithm's code from another: two actions, and ten updates."""
@@ -198,8 +196,5 @@ def model(algorithm: str, env: gym.Env, seed: int) -> OffPolicyAlgorithm:
     if algorithm == "naf":
         return Watched("MlpPolicy", env, **shared)
     if algorithm == "ddpg":
-        assert isinstance(env.action_space, gym.spaces.Box)
-        (dimensions,) = env.action_space.shape
-        noise = NormalActionNoise(np.zeros(dimensions), np.full(dimensions, NOISE))
-        return DDPG("MlpPolicy", env, action_noise=noise, **shared)
+        return DDPG("MlpPolicy", env, action_noise=documented_noise(env), **shared)
     return Watched("MlpPolicy", env, exploration_std=NOISE, policy_kwargs=dict(net_arch=PUBLISHED), **shared)

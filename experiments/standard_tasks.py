@@ -10,14 +10,13 @@ from dataclasses import dataclass
 from statistics import median
 
 import gymnasium as gym
-import numpy as np
 import torch
 import tyro
 from stable_baselines3 import DDPG, SAC, TD3
 from stable_baselines3.common.evaluation import evaluate_policy
 from stable_baselines3.common.monitor import Monitor
-from stable_baselines3.common.noise import NormalActionNoise
 
+from experiments.baselines import documented_noise
 from experiments.experiment import OnWorkers
 from experiments.record import Row
 from sarah.agents import NAF
@@ -78,9 +77,7 @@ def trained_return(task: str, algo: str, seed: int, steps: int, episodes: int) -
     env = gym.make(task)
     settings = {}
     if algo in ("td3", "ddpg"):
-        assert isinstance(env.action_space, gym.spaces.Box)
-        (dimensions,) = env.action_space.shape
-        settings["action_noise"] = NormalActionNoise(np.zeros(dimensions), np.full(dimensions, 0.1))
+        settings["action_noise"] = documented_noise(env)
     model = ALGORITHMS[algo]("MlpPolicy", env, seed=seed, device="cpu", **settings).learn(steps)
     judged = Monitor(gym.make(task))
     judged.reset(seed=EVALUATION_SEED)

@@ -22,9 +22,9 @@ from experiments.engines import Engines
 from experiments.experiment import Experiment, OnWorkers
 from experiments.first_training import FirstTraining
 from experiments.flexion_laws import FlexionLaws
+from experiments.known_truth import KnownTruth
 from experiments.landscape import Landscape
 from experiments.lateral_limit import LateralLimit
-from experiments.linear_quadratic import LinearQuadraticTasks
 from experiments.naf_preset import NafPreset
 from experiments.noise_limit import NoiseLimit
 from experiments.observed_reward import ObservedReward
@@ -164,9 +164,9 @@ TABLE: dict[str, Maker] = {
         {"seeds": 1, "episodes": 8},
         of_robot=False,
     ),
-    "linear_quadratic": Maker(
+    "known_truth": Maker(
         "What does NAF make of tasks whose truth is known?",
-        LinearQuadraticTasks(),
+        KnownTruth(),
         {"steps": 110, "seeds": 1},
         of_robot=False,
     ),

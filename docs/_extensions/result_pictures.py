@@ -96,7 +96,7 @@ def several_actions(rows: Rows) -> Figure:
     return figure
 
 
-def linear_quadratic(rows: Rows) -> Figure:
+def known_truth(rows: Rows) -> Figure:
     """Largest V over its bound by variant, a panel for each task."""
     tasks = grouped(rows, "{task}")
     figure, axes = panels(len(tasks), 0.35, sharey=True, sharex=True)
@@ -302,7 +302,7 @@ PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
     "naf_pendulum": (("naf_pendulum",), standard_task),
     "naf_inverted_pendulum": (("naf_inverted_pendulum",), standard_task),
     "several_actions": (("several_actions",), several_actions),
-    "linear_quadratic": (("linear_quadratic",), linear_quadratic),
+    "known_truth": (("known_truth",), known_truth),
     "naf_preset": (("naf_preset",), naf_preset),
     "robustness": (("robustness",), robustness),
     "conditions": (("conditions",), partial(pushes, situation="situation")),

@@ -24,7 +24,8 @@ BAD = [
 
 
 def refusal(name: str, value: object) -> str:
-    return f"^{re.escape(name)} must be a (whole )?number (from|above) [01]( to 1)?, not {re.escape(repr(value))}$"
+    said = re.escape(repr(value))
+    return rf"^{re.escape(name)} must be a (whole )?number (from|above) [01]( to (1|0\.9))?, not {said}$"
 
 
 @pytest.mark.parametrize(
@@ -41,6 +42,12 @@ def test_bad_values_of_replay_and_policy(value):
         LocalNAF("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL, replay_buffer_kwargs={"temperature": value})
     with pytest.raises(ValueError, match=refusal("min_curvature", value)):
         NAF("MlpPolicy", "Pendulum-v1", policy_kwargs={**SMALL, "min_curvature": value})
+
+
+@pytest.mark.parametrize("value", [-0.1, 1.0, math.nan, "0.2"])
+def test_bad_shares_of_units_to_leave_out(value):
+    with pytest.raises(ValueError, match=refusal("dropout", value)):
+        NAF("MlpPolicy", "Pendulum-v1", policy_kwargs={**SMALL, "dropout": value})
 
 
 @pytest.mark.parametrize("width", [0, -8, 2.5, "8"])

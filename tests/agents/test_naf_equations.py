@@ -34,6 +34,7 @@ def make_critic(action_dim: int, seed: int = 0, **policy_kwargs) -> QuadraticCri
     )
     for parameter in policy.q_net.parameters():
         nn.init.normal_(parameter, std=0.5)
+    policy.set_training_mode(False)
     return policy.q_net
 
 
@@ -221,6 +222,33 @@ def test_q_does_not_reach_the_output_of_w():
     output = critic.value_net[-1]
     assert output.weight.grad[0].any() and not output.weight.grad[1].any()
     assert output.bias.grad[0] != 0 and output.bias.grad[1] == 0
+
+
+def normalised_and_left_out(net: nn.Module) -> list[type[nn.Module]]:
+    return [type(layer) for layer in net if isinstance(layer, nn.Dropout | nn.LayerNorm)]
+
+
+def test_hidden_layers_of_mu_and_l_have_dropout_and_normalisation_where_there_is_w():
+    for net_arch in ([16, 16], dict(W=[16], mu=[16], L=[16])):
+        critic = make_critic(2, net_arch=net_arch, dropout=0.3)
+        nets = [critic.shared_net] if isinstance(net_arch, list) else [critic.mu_net, critic.lower_net]
+        hidden = 2 if isinstance(net_arch, list) else 1
+        assert all(normalised_and_left_out(net) == hidden * [nn.Dropout, nn.LayerNorm] for net in nets)
+        assert all(layer.p == 0.3 for net in nets for layer in net if isinstance(layer, nn.Dropout))
+        assert not normalised_and_left_out(critic.value_net)
+    published = make_critic(2, net_arch=ARCHITECTURES["published"])
+    assert not any(isinstance(layer, nn.Dropout | nn.LayerNorm) for layer in published.modules())
+
+
+def test_only_updates_leave_units_out():
+    th.manual_seed(0)
+    policy = MlpPolicy(spaces.Box(-1, 1, (OBS_DIM,)), spaces.Box(-1, 1, (2,)), ConstantSchedule(1e-3), net_arch=[16])
+    nn.init.normal_(policy.q_net.mu_net[0].weight)
+    obs = draw(2)[0]
+    policy.set_training_mode(True)
+    assert not th.equal(policy.q_net.mu(obs), policy.q_net.mu(obs))
+    np.testing.assert_array_equal(policy.predict(obs.numpy())[0], policy.predict(obs.numpy())[0])
+    th.testing.assert_close(policy.q_net_target.lower(obs), policy.q_net_target.lower(obs))
 
 
 def test_heads_take_their_own_sizes():

@@ -95,7 +95,7 @@ def test_set_parameters():
 
 
 def test_policy_alone(tmp_path):
-    model = make_model(policy_kwargs=dict(net_arch=[8], squash_mu=False, min_curvature=0.5)).learn(60)
+    model = make_model(policy_kwargs=dict(net_arch=[8], squash_mu=False, dropout=0.3, min_curvature=0.5)).learn(60)
     model.policy.save(tmp_path / "policy")
     loaded = MlpPolicy.load(tmp_path / "policy")
     np.testing.assert_array_equal(model.predict(OBS)[0], loaded.predict(OBS)[0])

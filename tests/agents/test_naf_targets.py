@@ -41,7 +41,7 @@ WITHOUT_W = dict(V=[8], shared=[8], mu=[], L=[])
 
 def make_model(env, net_arch=WITH_W, **kwargs):
     kwargs = {"gamma": GAMMA, "learning_starts": 1000, "buffer_size": 200, "seed": 0, **kwargs}
-    return NAF("MlpPolicy", env, policy_kwargs=dict(net_arch=net_arch), **kwargs)
+    return NAF("MlpPolicy", env, policy_kwargs=dict(net_arch=net_arch, dropout=0), **kwargs)
 
 
 def fill_target(model) -> dict[int, float]:
@@ -152,7 +152,8 @@ def test_fast_updates_are_the_plain_ones():
     """Fused Adam, averaging in one call and L in one piece change nothing but rounding: here all of it in loops."""
     env = Corridor()
     env.action_space = spaces.Box(-1, 1, (3,))
-    model = NAF("MlpPolicy", env, gamma=GAMMA, learning_starts=40, gradient_steps=0, seed=0)
+    settings = dict(gamma=GAMMA, learning_starts=40, gradient_steps=0, seed=0, policy_kwargs=dict(dropout=0))
+    model = NAF("MlpPolicy", env, **settings)
     model.learn(60)
     q_net, target = deepcopy(model.q_net), deepcopy(model.q_net_target)
     optimizer = th.optim.Adam(q_net.parameters(), lr=model.learning_rate, foreach=False)

@@ -102,12 +102,13 @@ def test_value_over_bound_is_that_of_the_largest_reward_so_far():
     assert model.value_bound == pytest.approx(np.abs(rewards).max() / (1 - GAMMA), rel=1e-5)
     assert model.value_ceiling == pytest.approx(rewards.max() / (1 - GAMMA), rel=1e-5)
     model.replay_buffer.rewards[:] = 0.0
+    model.q_net.value_net[-1].bias.data.fill_(50.0)  # Beside it, which of the transitions a batch has does not count
     model.train(1, 1100)
     with th.no_grad():
         values = model.q_net.value(th.as_tensor(model.replay_buffer.observations[:1100, 0]))
     logged = model.logger.name_to_value["train/value_over_bound"]
     logged_value = model.value_ceiling + (logged - 1) * model.value_bound
-    assert logged_value == pytest.approx(values.max().item(), rel=0.2)
+    assert logged_value == pytest.approx(values.max().item(), rel=0.02)
 
 
 def with_rewards(model, reward):
