@@ -31,23 +31,6 @@ class Values(NamedTuple):
     distance: th.Tensor
 
 
-class UnitDropout(nn.Dropout1d):
-    """
-    Dropout that leaves the same units out for all states of a batch, which takes few random numbers.
-
-    :param p: Share of the units that are left out
-    """
-
-    def forward(self, features: th.Tensor) -> th.Tensor:
-        """
-        Leave units out, others at every call; in evaluation mode none.
-
-        :param features: Outputs of the units, of shape (batch, units)
-        :return: The same with some units at zero, and the others larger by as much as is lost
-        """
-        return super().forward(features.T).T
-
-
 class QuadraticCritic(BaseModel):
     r"""
     Action value that is quadratic in the action (Gu et al. 2016, https://arxiv.org/abs/1603.00748):
@@ -122,7 +105,7 @@ class QuadraticCritic(BaseModel):
 
         outputs, value_arch = (2, net_arch["W"]) if self.has_w else (1, net_arch["V"])
         self.value_net = nn.Sequential(*create_mlp(features_dim, outputs, value_arch, activation_fn))
-        after: list[Any] = [lambda width: UnitDropout(dropout), nn.LayerNorm] if self.has_w else []
+        after: list[Any] = [lambda width: nn.Dropout(dropout), nn.LayerNorm] if self.has_w else []
         make_layers = partial(create_mlp, activation_fn=activation_fn, post_linear_modules=after)
         self.shared_net = nn.Sequential(*make_layers(features_dim, -1, net_arch["shared"]))
         shared_dim = [features_dim, *net_arch["shared"]][-1]
