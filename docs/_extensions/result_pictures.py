@@ -105,8 +105,9 @@ def known_truth(rows: Rows) -> Figure:
         axis.plot(numbers(group, "largest_v_over_bound"), heights, "o", color=COLOURS[0], markersize=4)
         axis.axvline(1.0, color="grey", linewidth=0.8)
         axis.set_yticks(heights, [row["variant"] for row in group])
-        axis.set_title(name, fontsize="small")
-        axis.set(xscale="log", xlabel="largest V over its bound")
+        axis.set_title(name.replace(", ", "\n"), fontsize="small")
+        axis.set(xscale="log")
+    figure.supxlabel("largest V over its bound", fontsize="medium")
     return figure
 
 
