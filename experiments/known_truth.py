@@ -162,6 +162,7 @@ def of_value(judged: Judgement, model: Watched, env: KnownTask, states: np.ndarr
     :param states: newest states, of shape (n, observations)
     :param actions: replayed actions, of shape (n, actions)
     """
+    model.policy.set_training_mode(False)
     observations = th.as_tensor(states, dtype=th.float32)
     with th.no_grad():
         values = model.q_net.all_values(observations, th.as_tensor(actions, dtype=th.float32))
