@@ -11,6 +11,8 @@ from stable_baselines3.common.torch_layers import BaseFeaturesExtractor, create_
 from stable_baselines3.common.type_aliases import PyTorchObs
 from torch import nn
 
+from sarah.agents.dropout import ByteDropout
+
 LOG_DIAGONAL_MIN = -5.0
 LOG_DIAGONAL_MAX = 5.0
 
@@ -49,8 +51,8 @@ class QuadraticCritic(BaseModel):
     - Those layers have a second output: ``W``, the mean of what actions near ``mu`` led to. It has a loss of its own,
       and targets take it of the next state. ``V`` lies above what was done by what the parabola promises, so targets
       with ``V`` add up promises over the horizon.
-    - Hidden layers of ``mu`` and ``L`` have dropout and layer normalisation, as those of critics in DroQ (Hiraoka et
-      al. 2022, https://arxiv.org/abs/2110.02034).
+    - Hidden layers of ``mu`` and ``L`` have dropout, as those of critics in DroQ (Hiraoka et al. 2022,
+      https://arxiv.org/abs/2110.02034).
 
     :param observation_space: Observation space
     :param action_space: Action space
@@ -105,7 +107,7 @@ class QuadraticCritic(BaseModel):
 
         outputs, value_arch = (2, net_arch["W"]) if self.has_w else (1, net_arch["V"])
         self.value_net = nn.Sequential(*create_mlp(features_dim, outputs, value_arch, activation_fn))
-        after: list[Any] = [lambda width: nn.Dropout(dropout), nn.LayerNorm] if self.has_w else []
+        after: list[Any] = [lambda width: ByteDropout(dropout)] if self.has_w else []
         make_layers = partial(create_mlp, activation_fn=activation_fn, post_linear_modules=after)
         self.shared_net = nn.Sequential(*make_layers(features_dim, -1, net_arch["shared"]))
         shared_dim = [features_dim, *net_arch["shared"]][-1]

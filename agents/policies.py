@@ -45,7 +45,7 @@ class NAFPolicy(BasePolicy):
     :param squash_mu: Whether ``mu`` ends in a tanh (True by default). If not, it is linear,
         as in the original paper, and the policy clips it to the action space.
     :param dropout: Share of the units that an update leaves out of each hidden layer of ``mu`` and ``L`` (0.2 by
-        default), before a layer normalisation. Noise that the parabola learns by heart makes it too steep without.
+        default). Without it the parabola learns noise by heart, which makes it too steep.
     :param min_curvature: Curvature of ``Q`` that is added in all directions of the action (0 by default). Where it is
         flat ``mu`` gets no gradient: without it, ``mu`` may stay wrong in a direction that ``L`` makes flat to fit.
     """
