@@ -76,6 +76,10 @@ FORMATS = {
     "replayed_in_s": ".1f",
     "time": ".0f",
     "td3": ".2f",
+    "over_bound": ".2f",
+    "over_true": ".2f",
+    "over_centre": ".2f",
+    "curvature": ".2f",
 }
 """Format by the end of a column's name; the longest that fits counts."""
 DIGITS = 5
