@@ -158,8 +158,12 @@ class RankReplayBuffer(ReplayBuffer):
         """
         The action around which ranks are highest, so that one lucky transition does not win.
 
-        :return: One of the stored scaled actions, of shape (action dim,)
+        :return: One of the stored actions, scaled to [-1, 1], of shape (action dim,); ``unscale_action`` of the policy
+            makes one of the environment of it
+        :raises ValueError: if the buffer is empty, as it is after loading an agent
         """
+        if self.size() == 0:
+            raise ValueError("the replay buffer is empty, so there is no best action; an agent's file does not hold it")
         actions, ranks = self._newest()
         highest = np.argsort(-ranks, kind="stable")[:BEST_CANDIDATES]
         means = neighbourhood_means(actions[highest], actions, ranks, NEIGHBOURHOOD)

@@ -178,6 +178,10 @@ class NAF(OffPolicyAlgorithm):
             self._setup_model()
 
     def _setup_model(self) -> None:
+        if not issubclass(self.policy_class, NAFPolicy):
+            raise ValueError(
+                f"the policy of NAF must be NAFPolicy or a subclass of it, not {self.policy_class.__name__}"
+            )
         super()._setup_model()
         self._create_aliases()
         # Running mean and running var, which the target network copies
@@ -219,6 +223,7 @@ class NAF(OffPolicyAlgorithm):
 
         :param gradient_steps: Number of updates
         :param batch_size: Minibatch size for each update
+        :raises ValueError: if the loss is not finite, as no later update would mend the networks
         """
         # Switch to train mode (this affects batch norm / dropout)
         self.policy.set_training_mode(True)
@@ -269,8 +274,14 @@ class NAF(OffPolicyAlgorithm):
         # Increase update counter
         self._n_updates += gradient_steps
 
+        mean_loss = th.stack(losses).mean().item()
+        if not math.isfinite(mean_loss):
+            raise ValueError(
+                f"the loss is {mean_loss}, and the agent is lost: an observation or a reward is no number, or by far "
+                "too large. VecCheckNan of stable-baselines3 around the environment finds it"
+            )
         self.logger.record("train/n_updates", self._n_updates, exclude="tensorboard")
-        self.logger.record("train/loss", th.stack(losses).mean().item())
+        self.logger.record("train/loss", mean_loss)
         if w_losses:
             self.logger.record("train/w_loss", th.stack(w_losses).mean().item())
         self.logger.record("train/q", th.stack(mean_q_values).mean().item())
@@ -297,15 +308,16 @@ class NAF(OffPolicyAlgorithm):
         self.logger.record("train/value_over_bound", ratio)
         if ratio > RUNAWAY_RATIO and self._n_updates > FRESH_UPDATES and not self.warned_of_values:
             self.warned_of_values = True
+            cause = "it runs away"
             if self.value_bound * (1 - self.gamma) < SMALL_REWARD:
-                remedy = "scale the rewards up, they are smaller than what networks resolve"
+                cause, remedy = "the rewards are smaller than what networks resolve", "scale the rewards up"
             elif not self.q_net.has_w:
                 remedy = "give net_arch as a list, or with layers for W in place of V"
             else:
                 remedy = "take a wider exploration_std or a lower learning_rate"
             warnings.warn(
                 f"V of {largest:.3g} is beyond {self.value_ceiling:.3g}, the largest value that the rewards so far "
-                f"allow, by {ratio - 1:.2g} times |reward| / (1 - gamma) = {self.value_bound:.3g}: it runs away. "
+                f"allow, by {ratio - 1:.2g} times |reward| / (1 - gamma) = {self.value_bound:.3g}: {cause}. "
                 f"Remedy: {remedy}",
                 stacklevel=2,
             )

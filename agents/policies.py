@@ -87,6 +87,8 @@ class NAFPolicy(BasePolicy):
         check_number("dropout", dropout, 0.0, 0.9)
         if net_arch is None:
             net_arch = [256, 256]
+        if not isinstance(net_arch, list | tuple | dict):
+            raise ValueError(f"net_arch must be a list of widths or a dict of lists, not {net_arch!r}")
         if not isinstance(net_arch, dict):
             net_arch = dict(W=net_arch, shared=net_arch, mu=[], L=[])
         if set(net_arch) - {"shared"} not in ({"W", "mu", "L"}, {"V", "mu", "L"}):

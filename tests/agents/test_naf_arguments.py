@@ -3,8 +3,10 @@
 import math
 import re
 
+import gymnasium as gym
 import numpy as np
 import pytest
+from stable_baselines3 import TD3
 from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.utils import LinearSchedule
 
@@ -58,7 +60,7 @@ def test_bad_widths_of_layers(width):
         NAF("MlpPolicy", "Pendulum-v1", policy_kwargs={"net_arch": {"V": [8], "mu": [width], "L": []}})
 
 
-@pytest.mark.parametrize("net_arch", [8, {"W": 8, "mu": [], "L": []}, {"W": None, "mu": [], "L": []}])
+@pytest.mark.parametrize("net_arch", [{"W": 8, "mu": [], "L": []}, {"W": None, "mu": [], "L": []}])
 def test_layers_that_are_no_list(net_arch):
     with pytest.raises(ValueError, match=r"net_arch\['W'\] must be a list of widths, not (8|None)"):
         NAF("MlpPolicy", "Pendulum-v1", policy_kwargs={"net_arch": net_arch})
@@ -91,3 +93,40 @@ def test_ends_of_the_ranges_are_allowed():
     )
     schedules = (model.elite_share_schedule, model.elite_std_schedule, model.exploration_schedule)
     assert [schedule(0.5) for schedule in schedules] == [1.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize("net_arch", [64, "64, 64"])
+def test_layers_that_are_neither_list_nor_dict(net_arch):
+    with pytest.raises(ValueError, match=rf"^net_arch must be a list of widths or a dict of lists, not {net_arch!r}$"):
+        NAF("MlpPolicy", "Pendulum-v1", policy_kwargs={"net_arch": net_arch})
+
+
+def test_the_file_of_another_algorithm_is_refused(tmp_path):
+    TD3("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL).save(tmp_path / "td3")
+    with pytest.raises(ValueError, match=r"^the policy of NAF must be NAFPolicy or a subclass of it, not TD3Policy$"):
+        NAF.load(tmp_path / "td3")
+
+
+class OneReward(gym.RewardWrapper):
+    """A reward in the place of every tenth one."""
+
+    def __init__(self, value: float):
+        super().__init__(gym.make("Pendulum-v1"))
+        self.value, self.steps = value, 0
+
+    def reward(self, reward):
+        self.steps += 1
+        return self.value if self.steps % 10 == 0 else reward
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, 1e30])
+def test_rewards_that_ruin_the_networks_end_the_training(value):
+    with pytest.raises(ValueError, match=r"^the loss is (nan|inf), and the agent is lost: .* VecCheckNan"):
+        NAF("MlpPolicy", OneReward(value), learning_starts=30, policy_kwargs=SMALL, seed=0).learn(100)
+
+
+def test_a_loaded_agent_knows_no_best_action_yet(tmp_path):
+    model = LocalNAF("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL)
+    model.save(tmp_path / "naf")
+    with pytest.raises(ValueError, match=r"^the replay buffer is empty, so there is no best action"):
+        LocalNAF.load(tmp_path / "naf", env=model.get_env()).replay_buffer.best_action()
