@@ -45,14 +45,16 @@ class QuadraticCritic(BaseModel):
     of 64 units that all three shared, seeds of Pendulum failed. Actions are scaled to [-1, 1]. The output layer of
     ``mu`` starts at zero: an untrained critic proposes the centre of the action space whatever it observes.
 
-    With layers for ``W`` in place of ``V``, two things are added to the publication. Both are there because the
-    parabola, which has many outputs, learns noise by heart, and that makes it steep:
+    With layers for ``W`` in place of ``V``, three things are added to the publication. The first two are there because
+    the parabola, which has many outputs, learns noise by heart, and that makes it steep:
 
     - Those layers have a second output: ``W``, the mean of what actions near ``mu`` led to. It has a loss of its own,
       and targets take it of the next state. ``V`` lies above what was done by what the parabola promises, so targets
       with ``V`` add up promises over the horizon.
     - Hidden layers of ``mu`` and ``L`` have dropout, as those of critics in DroQ (Hiraoka et al. 2022,
       https://arxiv.org/abs/2110.02034).
+    - The first layer of ``V`` and ``W`` is normalised, as those of critics in RLPD (Ball et al. 2023,
+      https://arxiv.org/abs/2302.02948). So what they say of states that nobody has seen is bounded.
 
     :param observation_space: Observation space
     :param action_space: Action space
@@ -106,7 +108,10 @@ class QuadraticCritic(BaseModel):
         self.register_buffer("on_diagonal", rows == columns, persistent=False)
 
         outputs, value_arch = (2, net_arch["W"]) if self.has_w else (1, net_arch["V"])
-        self.value_net = nn.Sequential(*create_mlp(features_dim, outputs, value_arch, activation_fn))
+        value_layers = create_mlp(features_dim, outputs, value_arch, activation_fn)
+        if self.has_w and value_arch:
+            value_layers.insert(1, nn.LayerNorm(value_arch[0]))
+        self.value_net = nn.Sequential(*value_layers)
         after: list[Any] = [lambda width: ByteDropout(dropout)] if self.has_w else []
         make_layers = partial(create_mlp, activation_fn=activation_fn, post_linear_modules=after)
         self.shared_net = nn.Sequential(*make_layers(features_dim, -1, net_arch["shared"]))

@@ -18,7 +18,6 @@ import numpy as np
 from gymnasium import spaces
 
 GAMMA = 0.99
-STEPS_OF_AN_EPISODE = 200
 
 
 class KnownTask(gym.Env, ABC):
@@ -31,6 +30,7 @@ class KnownTask(gym.Env, ABC):
 
     curvature: float
     """Largest eigenvalue of P, the curvature of Q in the actions; the same everywhere."""
+    steps_of_an_episode = 200
 
     def __init__(self, observations: int, actions: int, seed: int) -> None:
         self.observation_space = spaces.Box(-np.inf, np.inf, (observations,))
@@ -67,7 +67,7 @@ class KnownTask(gym.Env, ABC):
         """One step."""
         self._state, reward = self.follow(self._state, np.asarray(action, float))
         self._steps += 1
-        return self._state.astype(np.float32), float(reward), False, self._steps == STEPS_OF_AN_EPISODE, {}
+        return self._state.astype(np.float32), float(reward), False, self._steps == self.steps_of_an_episode, {}
 
 
 @dataclass(frozen=True)
@@ -83,6 +83,7 @@ class Size:
     :param effort: cost of an action's squared length
     :param offset: reward at rest
     :param reward_noise: standard deviation of the reward's noise
+    :param steps_of_an_episode: number of steps after which it is cut
     """
 
     states: int
@@ -94,6 +95,7 @@ class Size:
     effort: float = 0.5
     offset: float = 1.0
     reward_noise: float = 0.3
+    steps_of_an_episode: int = 200
 
 
 class LinearQuadratic(KnownTask):
@@ -105,7 +107,7 @@ class LinearQuadratic(KnownTask):
 
     def __init__(self, size: Size, seed: int) -> None:
         super().__init__(size.states, size.actions, seed)
-        self._size = size
+        self._size, self.steps_of_an_episode = size, size.steps_of_an_episode
         fixed = np.random.default_rng(size.actions)
         self._a = size.decay * rotation(size.states, fixed)
         self._b = size.gain * rotation(size.states, fixed)[:, : size.actions] * np.linspace(1.0, 0.5, size.actions)
@@ -208,11 +210,14 @@ def rotation(size: int, generator: np.random.Generator) -> np.ndarray:
 
 FAINT: dict[str, Any] = dict(gain=2.0, noise=3.0, cost=0.0002, effort=0.04, offset=0.5, reward_noise=0.1)
 """Numbers of tasks in which noise decides most of what follows, and states are large."""
+DRIFTING: dict[str, Any] = dict(decay=1.0, noise=0.02, cost=0.3, effort=0.1, reward_noise=0.0, steps_of_an_episode=30)
+"""Numbers of a task in which nothing pulls the state back, and episodes are cut long before 1 / (1 - gamma) steps."""
 TASKS: dict[str, Callable[[int], KnownTask]] = {
     "two actions, clear": partial(LinearQuadratic, Size(2, 2)),
     "six actions, clear": partial(LinearQuadratic, Size(6, 6)),
     "two actions, faint": partial(LinearQuadratic, Size(6, 2, **FAINT)),
     "six actions, faint": partial(LinearQuadratic, Size(17, 6, **FAINT)),
+    "three actions, drifting": partial(LinearQuadratic, Size(3, 3, **DRIFTING)),
     "two actions, at the bounds": partial(Signs, 2),
     "six actions, at the bounds": partial(Signs, 6),
 }

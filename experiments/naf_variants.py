@@ -89,6 +89,14 @@ class NormalisedLayers(QuadraticCritic):
         self.value_net = nn.Sequential(*layers, output)
 
 
+class PlainValues(QuadraticCritic):
+    """No layer normalisation in the layers of V and W."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self.value_net = nn.Sequential(*(layer for layer in self.value_net if not isinstance(layer, nn.LayerNorm)))
+
+
 def policy_with(critic: type[QuadraticCritic]) -> type[MlpPolicy]:
     """A policy with another critic.
 
@@ -125,6 +133,7 @@ VARIANTS = {
     "NAF": Variant(WITH_W),
     "W of all actions": Variant(WITH_W, OfAllActions),
     "no dropout": Variant(WITH_W, dropout=0.0),
+    "no normalisation": Variant(WITH_W, PlainValues),
     "one L for all states": Variant(WITH_W, OneCurvature),
     "V, as published": Variant(WITH_V),
     "V less the cost of noise": Variant(WITH_V, ExpectedUnderNoise),

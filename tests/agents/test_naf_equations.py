@@ -237,6 +237,24 @@ def test_hidden_layers_of_mu_and_l_have_dropout_where_there_is_w():
     assert dropout_of(make_critic(2, net_arch=ARCHITECTURES["published"])) == []
 
 
+def test_values_of_states_that_nobody_has_seen_are_bounded():
+    """They grow along with the distance of a state otherwise, and targets with them."""
+    th.manual_seed(0)
+    far = th.randn(1000, OBS_DIM)
+
+    def growth(net_arch) -> float:
+        critic = make_critic(2, net_arch=net_arch)
+        critic.value_net[0].bias.data.zero_()
+        with th.no_grad():
+            near, further = (critic.target_value(distance * far).abs().max().item() for distance in (1e2, 1e6))
+        return further / near
+
+    assert growth([16, 16]) == pytest.approx(1, abs=0.01)
+    assert growth(dict(W=[16], mu=[16], L=[16])) == pytest.approx(1, abs=0.01)
+    assert growth(ARCHITECTURES["published"]) > 1e3
+    assert make_critic(2, net_arch=dict(W=[], mu=[], L=[])).value_net[0].out_features == 2  # nothing to normalise
+
+
 def test_only_updates_leave_units_out():
     th.manual_seed(0)
     policy = MlpPolicy(spaces.Box(-1, 1, (OBS_DIM,)), spaces.Box(-1, 1, (2,)), ConstantSchedule(1e-3), net_arch=[16])
