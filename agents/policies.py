@@ -30,7 +30,8 @@ class NAFPolicy(BasePolicy):
         (``[256, 256]`` by default, as SAC's). With ``dict(W=[...], mu=[...], L=[...])`` each has layers of its own,
         where ``V`` and ``W`` are outputs of the same layers; with the key ``shared`` as well, those of ``mu`` and ``L``
         follow layers in common. With ``V`` in place of ``W`` there is no ``W``, and targets take the value of the best
-        action, as in the publication: for tasks of one step or one action. Then ``dropout`` has no effect
+        action, as in the publication: for tasks of one step or one action. Then layers are plain, and
+        ``dropout`` has no effect
     :param activation_fn: Activation function (ReLU by default). Tanh suits smooth tasks of one step,
         but fails where values are large; with sigmoid, deeper networks hardly learn.
     :param features_extractor_class: Features extractor to use.

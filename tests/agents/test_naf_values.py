@@ -132,7 +132,8 @@ def test_rewards_smaller_than_what_networks_resolve_are_to_be_scaled():
     model = trained(1000)
     model.train(1000, 16)
     with_rewards(model, 1e-6).q_net.value_net[-1].bias.data.fill_(1.0)
-    with pytest.warns(UserWarning, match="Remedy: scale the rewards up"):
+    said = r": the rewards are smaller than what networks resolve\. Remedy: scale the rewards up$"
+    with pytest.warns(UserWarning, match=said):
         model.train(1, 16)
 
 
