@@ -189,7 +189,8 @@ class NAF(OffPolicyAlgorithm):
         self.batch_norm_stats_target = get_parameters_by_name(self.q_net_target, ["running_"])
         check_number("batch_size", self.batch_size, 1, whole=True)
         check_number("gamma", self.gamma, 0.0, 1.0)
-        check_number("tau", self.tau, 0.0, 1.0)
+        check_number("tau", self.tau, 0.0, 1.0, above=True)
+        check_number("n_steps", self.n_steps, 1, whole=True)
         check_number("max_grad_norm", self.max_grad_norm, 0.0, highest=math.inf, above=True)
         self.exploration_schedule = checked_schedule("exploration_std", self.exploration_std, 0.0)
         if isinstance(self.replay_buffer, RankReplayBuffer) and self.replay_buffer.temperature > 0 and self.gamma != 0:

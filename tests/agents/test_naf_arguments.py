@@ -15,7 +15,8 @@ from sarah.agents import NAF, LocalNAF
 SMALL = {"net_arch": [8]}
 BAD = [
     (NAF, "gamma", [math.nan, -0.1, 2.0]),
-    (NAF, "tau", [math.nan, -0.1, 2.0]),
+    (NAF, "tau", [math.nan, -0.1, 0.0, 2.0]),
+    (NAF, "n_steps", [0, -1, 1.5]),
     (NAF, "max_grad_norm", [0.0, -1.0, math.nan, "1", None]),
     (NAF, "batch_size", [0, -1, 2.5, None]),
     (NAF, "exploration_std", [-0.1, math.inf, math.nan, "0.1", None]),
