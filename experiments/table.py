@@ -22,6 +22,7 @@ from experiments.engines import Engines
 from experiments.experiment import Experiment, OnWorkers
 from experiments.first_training import FirstTraining
 from experiments.flexion_laws import FlexionLaws
+from experiments.held_actions import HeldActions
 from experiments.known_truth import KnownTruth
 from experiments.landscape import Landscape
 from experiments.lateral_limit import LateralLimit
@@ -174,6 +175,12 @@ TABLE: dict[str, Maker] = {
         "How does NAF do on tasks with several actions, next to DDPG?",
         SeveralActions(),
         {"tasks": ("Swimmer-v5",), "steps": 120, "seeds": 1, "evaluations": 1, "episodes": 1},
+        of_robot=False,
+    ),
+    "held_actions": Maker(
+        "What does an action decide on Hopper where NAF stays, and what do values make of it?",
+        HeldActions(),
+        {"steps": 120, "seeds": 1, "draws": 2, "held_steps": (1,)},
         of_robot=False,
     ),
     "naf_pendulum": Maker(
