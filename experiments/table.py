@@ -22,6 +22,7 @@ from experiments.engines import Engines
 from experiments.experiment import Experiment, OnWorkers
 from experiments.first_training import FirstTraining
 from experiments.flexion_laws import FlexionLaws
+from experiments.goal_tasks import GoalTasks
 from experiments.held_actions import HeldActions
 from experiments.known_truth import KnownTruth
 from experiments.landscape import Landscape
@@ -175,6 +176,12 @@ TABLE: dict[str, Maker] = {
         "How does NAF do on tasks with several actions, next to DDPG?",
         SeveralActions(),
         {"tasks": ("Swimmer-v5",), "steps": 120, "seeds": 1, "evaluations": 1, "episodes": 1},
+        of_robot=False,
+    ),
+    "goal_tasks": Maker(
+        "How does NAF do where a place is to be reached, next to DDPG and TD3?",
+        GoalTasks(),
+        {"steps": 120, "seeds": 1},
         of_robot=False,
     ),
     "held_actions": Maker(

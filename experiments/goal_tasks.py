@@ -1,0 +1,216 @@
+"""NAF, DDPG and TD3 on small tasks of two to four actions in which a point is to reach a place.
+
+What makes them hard is that nothing tells the way before the place was reached once, or that nothing brings the point
+back.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from statistics import median
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import torch as th
+from gymnasium import spaces
+from gymnasium.wrappers import TimeLimit
+from stable_baselines3 import DDPG, TD3, HerReplayBuffer
+from stable_baselines3.common.evaluation import evaluate_policy
+from stable_baselines3.common.monitor import Monitor
+from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
+
+from experiments.baselines import documented_noise
+from experiments.experiment import OnWorkers
+from experiments.naf_variants import Watched
+from experiments.record import Row
+from sarah.episode.workers import Workers
+
+WALL = 1.5
+"""Largest coordinate of the point, in m."""
+STEP = 0.15
+"""Way of an action of 1, in m."""
+EPISODES = 20
+EVALUATION_SEED = 10_000
+
+
+class Point(gym.Env):
+    """A point, x' = x + 0.15 u, which is cut at walls, and whose reward falls with its distance from 0.
+
+    :param actions: number of actions, and of coordinates
+    """
+
+    def __init__(self, actions: int) -> None:
+        self.observation_space: spaces.Space = spaces.Box(-WALL, WALL, (actions,), dtype=np.float32)
+        self.action_space = spaces.Box(-1.0, 1.0, (actions,), dtype=np.float32)
+        self.at = np.zeros(actions)
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict]:
+        """Begin anywhere within 1."""
+        super().reset(seed=seed)
+        self.at = self.np_random.uniform(-1.0, 1.0, len(self.at))
+        return self.observation(), {}
+
+    def step(self, action: np.ndarray) -> tuple[Any, float, bool, bool, dict]:
+        """One step."""
+        self.at = np.clip(self.at + STEP * np.asarray(action, float), -WALL, WALL)
+        return self.observation(), self.reward(), self.reached(), False, {}
+
+    def observation(self) -> Any:
+        """Where the point is."""
+        return self.at.astype(np.float32)
+
+    def reward(self) -> float:
+        """Less the mean square of the coordinates."""
+        return -float(np.square(self.at).mean())
+
+    def reached(self) -> bool:
+        """Whether the episode ends."""
+        return False
+
+
+class StepCost(Point):
+    """Every step costs 1 until the point is at 0, which ends the episode."""
+
+    radius = 0.25
+
+    def reward(self) -> float:
+        """Cost of a step."""
+        return -1.0
+
+    def reached(self) -> bool:
+        """Whether all coordinates are near 0."""
+        return bool(np.abs(self.at).max() < self.radius)
+
+
+class Sparse(StepCost):
+    """The only reward is 1 at 0, which ends the episode."""
+
+    def reward(self) -> float:
+        """1 at the end."""
+        return float(self.reached())
+
+
+class Goals(Point):
+    """Every step costs 1 while the point is not at the goal of the episode, which the observation tells.
+
+    :param actions: number of actions, and of coordinates
+    """
+
+    radius = 0.2
+
+    def __init__(self, actions: int) -> None:
+        super().__init__(actions)
+        place = self.observation_space
+        self.observation_space = spaces.Dict(observation=place, achieved_goal=place, desired_goal=place)
+        self._goal = np.zeros(actions)
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict]:
+        """Begin anywhere within 1, with a goal within 1."""
+        super().reset(seed=seed)
+        self._goal = self.np_random.uniform(-1.0, 1.0, len(self.at))
+        return self.observation(), {}
+
+    def observation(self) -> dict[str, np.ndarray]:
+        """Where the point is, and where it should be."""
+        at = self.at.astype(np.float32)
+        return {"observation": at, "achieved_goal": at, "desired_goal": self._goal.astype(np.float32)}
+
+    def compute_reward(self, achieved_goal: np.ndarray, desired_goal: np.ndarray, info: Any) -> np.ndarray:
+        """Rewards of places, of shape (n, actions), for as many goals; hindsight replay asks for them."""
+        return -(np.linalg.norm(achieved_goal - desired_goal, axis=-1) > self.radius).astype(np.float32)
+
+    def reward(self) -> float:
+        """Cost of a step."""
+        return float(self.compute_reward(self.at, self._goal, {}))
+
+
+@dataclass(frozen=True)
+class PointTask:
+    """A task and what its agents need.
+
+    :param make: makes the environment, without a time limit
+    :param limit: number of steps of an episode
+    :param policy: name of the policy
+    :param settings: arguments of all algorithms
+    """
+
+    make: Callable[[], Point]
+    limit: int
+    policy: str = "MlpPolicy"
+    settings: dict[str, Any] = field(default_factory=dict)
+
+    def env(self) -> gym.Env:
+        """A new environment."""
+        return TimeLimit(self.make(), self.limit)
+
+
+TASKS = {
+    "a step costs 1": PointTask(partial(StepCost, 2), limit=50),
+    "1 at the end only": PointTask(partial(Sparse, 2), limit=50),
+    "hindsight replay": PointTask(
+        partial(Goals, 2), 30, "MultiInputPolicy", dict(replay_buffer_class=HerReplayBuffer, gamma=0.95)
+    ),
+    "short episodes": PointTask(partial(Point, 4), limit=50),
+    "long episodes": PointTask(partial(Point, 4), limit=1000),
+}
+ALGORITHMS: dict[str, type[OffPolicyAlgorithm]] = {"naf": Watched, "ddpg": DDPG, "td3": TD3}
+
+
+@dataclass(frozen=True)
+class GoalTasks(OnWorkers):
+    """NAF, DDPG and TD3 on each task, with the defaults of their classes but for narrower layers.
+
+    :param steps: number of steps of a training
+    :param seeds: number of trainings of each algorithm
+    """
+
+    steps: int = 4000
+    seeds: int = 5
+
+    def rows(self) -> Iterator[Row]:
+        """A row for each task and algorithm."""
+        with Workers(self.workers) as workers:
+            jobs = {
+                (task, algorithm): [
+                    workers.submit(trained, task, algorithm, seed, self.steps) for seed in range(self.seeds)
+                ]
+                for task in TASKS
+                for algorithm in ALGORITHMS
+            }
+            for (task, algorithm), running in jobs.items():
+                returns, ratios = zip(*(job.result() for job in running), strict=True)
+                yield {
+                    "task": task,
+                    "algorithm": algorithm,
+                    "seeds": self.seeds,
+                    "median_return": median(returns),
+                    "lowest_return": min(returns),
+                    "highest_return": max(returns),
+                    "largest_v_over_bound": max(ratios) if algorithm == "naf" else None,
+                }
+
+
+def trained(task: str, algorithm: str, seed: int, steps: int) -> tuple[float, float]:
+    """Mean return of evaluation episodes after a training, and the largest V over its bound.
+
+    :param task: name of the task
+    :param algorithm: name of the algorithm
+    :param seed: seed of the training
+    :param steps: number of its steps
+    """
+    th.set_num_threads(1)
+    of, layers = TASKS[task], dict(net_arch=[64, 64])
+    env = of.env()
+    noise = {} if algorithm == "naf" else dict(action_noise=documented_noise(env))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # That V runs away is what the rows say
+        model = ALGORITHMS[algorithm](
+            of.policy, env, seed=seed, device="cpu", policy_kwargs=layers, **of.settings, **noise
+        ).learn(steps)
+    judged = Monitor(of.env())
+    judged.reset(seed=EVALUATION_SEED)
+    return float(evaluate_policy(model, judged, EPISODES)[0]), getattr(model, "highest_ratio", 0.0)
