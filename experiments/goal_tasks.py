@@ -27,14 +27,13 @@ from experiments.baselines import documented_noise
 from experiments.experiment import OnWorkers
 from experiments.naf_variants import Watched
 from experiments.record import Row
+from experiments.several_actions import EVALUATION_SEED
 from sarah.episode.workers import Workers
 
 WALL = 1.5
 """Largest coordinate of the point, in m."""
 STEP = 0.15
 """Way of an action of 1, in m."""
-EPISODES = 20
-EVALUATION_SEED = 10_000
 
 
 class Point(gym.Env):
@@ -166,17 +165,20 @@ class GoalTasks(OnWorkers):
 
     :param steps: number of steps of a training
     :param seeds: number of trainings of each algorithm
+    :param episodes: number of evaluation episodes
     """
 
     steps: int = 4000
     seeds: int = 5
+    episodes: int = 20
 
     def rows(self) -> Iterator[Row]:
         """A row for each task and algorithm."""
         with Workers(self.workers) as workers:
             jobs = {
                 (task, algorithm): [
-                    workers.submit(trained, task, algorithm, seed, self.steps) for seed in range(self.seeds)
+                    workers.submit(trained, task, algorithm, seed, self.steps, self.episodes)
+                    for seed in range(self.seeds)
                 ]
                 for task in TASKS
                 for algorithm in ALGORITHMS
@@ -194,13 +196,14 @@ class GoalTasks(OnWorkers):
                 }
 
 
-def trained(task: str, algorithm: str, seed: int, steps: int) -> tuple[float, float]:
+def trained(task: str, algorithm: str, seed: int, steps: int, episodes: int) -> tuple[float, float]:
     """Mean return of evaluation episodes after a training, and the largest V over its bound.
 
     :param task: name of the task
     :param algorithm: name of the algorithm
     :param seed: seed of the training
     :param steps: number of its steps
+    :param episodes: number of evaluation episodes
     """
     th.set_num_threads(1)
     of, layers = TASKS[task], dict(net_arch=[64, 64])
@@ -213,4 +216,4 @@ def trained(task: str, algorithm: str, seed: int, steps: int) -> tuple[float, fl
         ).learn(steps)
     judged = Monitor(of.env())
     judged.reset(seed=EVALUATION_SEED)
-    return float(evaluate_policy(model, judged, EPISODES)[0]), getattr(model, "highest_ratio", 0.0)
+    return float(evaluate_policy(model, judged, episodes)[0]), getattr(model, "highest_ratio", 0.0)

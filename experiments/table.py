@@ -181,7 +181,7 @@ TABLE: dict[str, Maker] = {
     "goal_tasks": Maker(
         "How does NAF do where a place is to be reached, next to DDPG and TD3?",
         GoalTasks(),
-        {"steps": 120, "seeds": 1},
+        {"steps": 120, "seeds": 1, "episodes": 1},
         of_robot=False,
     ),
     "held_actions": Maker(
