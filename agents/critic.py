@@ -19,17 +19,19 @@ LOG_DIAGONAL_MAX = 5.0
 
 class Values(NamedTuple):
     """
-    Values of some states and actions, each of shape (batch, 1).
+    What a critic says of some states and actions, of shape (batch, 1) but for ``mu``.
 
     :param q: ``Q``, of the actions
     :param best: ``V``, of the best actions
     :param target: what targets take of such a state: ``W``, or ``V`` where there is no ``W``
+    :param mu: the best actions, of shape (batch, action dim)
     :param distance: Squared distance of the actions from ``mu``
     """
 
     q: th.Tensor
     best: th.Tensor
     target: th.Tensor
+    mu: th.Tensor
     distance: th.Tensor
 
 
@@ -45,8 +47,9 @@ class QuadraticCritic(BaseModel):
     of 64 units that all three shared, seeds of Pendulum failed. Actions are scaled to [-1, 1]. The output layer of
     ``mu`` starts at zero: an untrained critic proposes the centre of the action space whatever it observes.
 
-    With layers for ``W`` in place of ``V``, three things are added to the publication. The first two are there because
-    the parabola, which has many outputs, learns noise by heart, and that makes it steep:
+    With layers for ``W`` in place of ``V``, three things are added to the publication here, and a pull of ``mu`` to the
+    centre in the loss, see :func:`~sarah.agents.naf.centre_loss`. The first two are there because the parabola, which
+    has many outputs, learns noise by heart, and that makes it steep:
 
     - Those layers have a second output: ``W``, the mean of what actions near ``mu`` led to. It has a loss of its own,
       and targets take it of the next state. ``V`` lies above what was done by what the parabola promises, so targets
@@ -143,7 +146,8 @@ class QuadraticCritic(BaseModel):
         """
         features = self.extract_features(obs, self.features_extractor)
         shared = self.shared_net(features)
-        from_mu = actions - self.mu_net(shared)
+        mu = self.mu_net(shared)
+        from_mu = actions - mu
         # (u - mu)^T L L^T (u - mu) is the squared length of the row (u - mu)^T L
         projected = (from_mu @ self.rows * self._entries(shared)) @ self.columns
         squared_length = (projected * projected).sum(dim=1, keepdim=True)
@@ -152,7 +156,7 @@ class QuadraticCritic(BaseModel):
             squared_length = squared_length + self.min_curvature * distance
         values = self.value_net(features)
         best_values = values[:, :1]
-        return Values(best_values - 0.5 * squared_length, best_values, values[:, -1:], distance)
+        return Values(best_values - 0.5 * squared_length, best_values, values[:, -1:], mu, distance)
 
     def value(self, obs: PyTorchObs) -> th.Tensor:
         """

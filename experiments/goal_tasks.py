@@ -25,9 +25,11 @@ from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
 from experiments.baselines import documented_noise
 from experiments.experiment import OnWorkers
-from experiments.naf_variants import Watched
+from experiments.naf_variants import NoPull, Watched, policy_with
 from experiments.record import Row
 from experiments.several_actions import EVALUATION_SEED
+from sarah.agents import NAF
+from sarah.agents.critic import QuadraticCritic
 from sarah.episode.workers import Workers
 
 WALL = 1.5
@@ -156,7 +158,8 @@ TASKS = {
     "short episodes": PointTask(partial(Point, 4), limit=50),
     "long episodes": PointTask(partial(Point, 4), limit=1000),
 }
-ALGORITHMS: dict[str, type[OffPolicyAlgorithm]] = {"naf": Watched, "ddpg": DDPG, "td3": TD3}
+CRITICS = {"naf": QuadraticCritic, "naf, no pull to the centre": NoPull}
+OTHERS: dict[str, type[OffPolicyAlgorithm]] = {"ddpg": DDPG, "td3": TD3}
 
 
 @dataclass(frozen=True)
@@ -181,7 +184,7 @@ class GoalTasks(OnWorkers):
                     for seed in range(self.seeds)
                 ]
                 for task in TASKS
-                for algorithm in ALGORITHMS
+                for algorithm in (*CRITICS, *OTHERS)
             }
             for (task, algorithm), running in jobs.items():
                 returns, ratios = zip(*(job.result() for job in running), strict=True)
@@ -192,7 +195,7 @@ class GoalTasks(OnWorkers):
                     "median_return": median(returns),
                     "lowest_return": min(returns),
                     "highest_return": max(returns),
-                    "largest_v_over_bound": max(ratios) if algorithm == "naf" else None,
+                    "largest_v_over_bound": max(ratios) if algorithm in CRITICS else None,
                 }
 
 
@@ -206,14 +209,23 @@ def trained(task: str, algorithm: str, seed: int, steps: int, episodes: int) -> 
     :param episodes: number of evaluation episodes
     """
     th.set_num_threads(1)
-    of, layers = TASKS[task], dict(net_arch=[64, 64])
-    env = of.env()
-    noise = {} if algorithm == "naf" else dict(action_noise=documented_noise(env))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # That V runs away is what the rows say
-        model = ALGORITHMS[algorithm](
-            of.policy, env, seed=seed, device="cpu", policy_kwargs=layers, **of.settings, **noise
-        ).learn(steps)
-    judged = Monitor(of.env())
+        model = agent(TASKS[task], algorithm, seed).learn(steps)
+    judged = Monitor(TASKS[task].env())
     judged.reset(seed=EVALUATION_SEED)
     return float(evaluate_policy(model, judged, episodes)[0]), getattr(model, "highest_ratio", 0.0)
+
+
+def agent(task: PointTask, algorithm: str, seed: int) -> OffPolicyAlgorithm:
+    """An agent that has learned nothing yet.
+
+    :param task: its task
+    :param algorithm: name of the algorithm
+    :param seed: its seed
+    """
+    env = task.env()
+    common: dict[str, Any] = dict(seed=seed, device="cpu", policy_kwargs=dict(net_arch=[64, 64]), **task.settings)
+    if algorithm in OTHERS:
+        return OTHERS[algorithm](task.policy, env, action_noise=documented_noise(env), **common)
+    return Watched(policy_with(CRITICS[algorithm], NAF.policy_aliases[task.policy]), env, **common)

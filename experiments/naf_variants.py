@@ -10,6 +10,7 @@ from torch import nn
 
 from sarah.agents import NAF, MlpPolicy
 from sarah.agents.critic import QuadraticCritic, Values
+from sarah.agents.policies import NAFPolicy
 
 LAYERS = [64, 64]
 EXPLORATION_STD = 0.3
@@ -97,13 +98,23 @@ class PlainValues(QuadraticCritic):
         self.value_net = nn.Sequential(*(layer for layer in self.value_net if not isinstance(layer, nn.LayerNorm)))
 
 
-def policy_with(critic: type[QuadraticCritic]) -> type[MlpPolicy]:
+class NoPull(QuadraticCritic):
+    """The loss does not pull mu to the centre of the action space."""
+
+    def all_values(self, obs: th.Tensor, actions: th.Tensor) -> Values:
+        """Values of actions, beside a mu that is at the centre already."""
+        values = super().all_values(obs, actions)
+        return values._replace(mu=th.zeros_like(values.mu))
+
+
+def policy_with(critic: type[QuadraticCritic], base: type[NAFPolicy] = MlpPolicy) -> type[NAFPolicy]:
     """A policy with another critic.
 
     :param critic: class of the critic
+    :param base: class of the policy
     """
 
-    class Policy(MlpPolicy):
+    class Policy(base):  # type: ignore[valid-type, misc]
         def make_q_net(self) -> QuadraticCritic:
             net_args = self._update_features_extractor(self.net_args, features_extractor=None)
             return critic(**net_args).to(self.device)
@@ -134,6 +145,7 @@ VARIANTS = {
     "W of all actions": Variant(WITH_W, OfAllActions),
     "no dropout": Variant(WITH_W, dropout=0.0),
     "no normalisation": Variant(WITH_W, PlainValues),
+    "no pull to the centre": Variant(WITH_W, NoPull),
     "one L for all states": Variant(WITH_W, OneCurvature),
     "V, as published": Variant(WITH_V),
     "V less the cost of noise": Variant(WITH_V, ExpectedUnderNoise),

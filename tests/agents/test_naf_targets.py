@@ -165,7 +165,7 @@ def test_fast_updates_are_the_plain_ones():
         with th.no_grad():
             distances = [(batch.actions[n] - q_net.mu(batch.observations[n : n + 1])[0]).norm() ** 2 for n in range(32)]
         weights = [th.exp(-distance * 32 / sum(distances)) for distance in distances]
-        loss = 0.0
+        q_loss, w_loss, mu_length = 0.0, 0.0, 0.0
         for n in range(32):
             obs, next_obs = batch.observations[n : n + 1], batch.next_observations[n : n + 1]
             with th.no_grad():
@@ -182,10 +182,11 @@ def test_fast_updates_are_the_plain_ones():
             for j in range(len(difference)):
                 advantage -= 0.5 * sum(difference[i] * lower[i, j] for i in range(j, len(difference))) ** 2
             v, w = q_net.value_net(obs)[0]
-            loss += (v + advantage - wanted) ** 2 / 32
-            loss += (0.8 * weights[n] / sum(weights) + 0.2 / 32) * (w - wanted) ** 2
+            q_loss += (v + advantage - wanted) ** 2 / 32
+            w_loss += (0.8 * weights[n] / sum(weights) + 0.2 / 32) * (w - wanted) ** 2
+            mu_length += sum(entry**2 for entry in q_net.mu(obs)[0]) / 32
         optimizer.zero_grad()
-        loss.backward()
+        (q_loss + w_loss + 0.1 * q_loss.detach() * mu_length).backward()
         norm = sum(parameter.grad.square().sum() for parameter in q_net.parameters()).sqrt()
         for parameter in q_net.parameters():
             parameter.grad *= min(1.0, model.max_grad_norm / (norm + 1e-6))

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from sarah.agents import NAF
 from sarah.agents.critic import Values
-from sarah.agents.naf import nearby_loss
+from sarah.agents.naf import centre_loss, nearby_loss
 
 LAYERS = [64, 64]
 PUBLISHED = dict(V=LAYERS, shared=LAYERS, mu=[], L=[])
@@ -149,7 +149,7 @@ def test_w_is_the_mean_of_what_actions_near_mu_led_to():
     distances = th.tensor([[0.0], [1.0], [2.0]])
     weights = 0.8 * th.exp(-distances) / th.exp(-distances).sum() + 0.2 / 3
     w = th.zeros(1, 1, requires_grad=True)
-    values = Values(targets, targets, w.expand(3, 1), distances)
+    values = Values(targets, targets, w.expand(3, 1), targets, distances)
     for _ in range(200):
         (slope,) = th.autograd.grad(nearby_loss(values._replace(target=w.expand(3, 1)), targets), w)
         w = (w - 0.25 * slope).detach().requires_grad_()
@@ -161,7 +161,7 @@ def test_w_follows_its_targets_also_where_nobody_acts_near_mu():
     targets = th.zeros(10, 1)
     distances = th.cat([th.zeros(9, 1), th.full((1, 1), 100.0)])
     w = th.ones(10, 1, requires_grad=True)
-    (slope,) = th.autograd.grad(nearby_loss(Values(targets, targets, w, distances), targets), w)
+    (slope,) = th.autograd.grad(nearby_loss(Values(targets, targets, w, targets, distances), targets), w)
     assert slope[-1].item() == pytest.approx(2 * 0.2 / 10, rel=1e-3)
 
 
@@ -173,6 +173,18 @@ def test_w_has_a_mean_whatever_the_distances(distance, seed):
     targets = th.randn(16, 1, generator=generator)
     distances = distance * th.rand(16, 1, generator=generator)
     w = targets.max().expand(16, 1).clone().requires_grad_()
-    loss = nearby_loss(Values(targets, targets, w, distances), targets)
+    loss = nearby_loss(Values(targets, targets, w, targets, distances), targets)
     (slope,) = th.autograd.grad(loss, w)
     assert th.isfinite(loss) and slope.isfinite().all() and (slope >= 0).all()
+
+
+@pytest.mark.parametrize(("update", "weight"), [(1, 0.1), (300, 0.1), (600, 0.05), (30_000, 0.001)])
+def test_the_pull_of_mu_to_the_centre_has_the_units_of_the_loss_and_fades(update, weight):
+    """Mean of |mu|^2 over states is (1 + 4) / 2; the error of Q is in reward^2, and is not made smaller by it."""
+    mu = th.tensor([[1.0, 0.0], [0.0, -2.0]], requires_grad=True)
+    q_loss = th.tensor(9.0, requires_grad=True)
+    other = th.zeros(2, 1)
+    loss = centre_loss(Values(other, other, other, mu, other), q_loss, update)
+    assert loss.item() == pytest.approx(weight * 9 * 2.5)
+    (slope,) = th.autograd.grad(loss, mu)
+    assert slope.numpy() == pytest.approx(weight * 9 * mu.detach().numpy())
