@@ -29,10 +29,10 @@ SMALL_REWARD = 0.01
 """Largest reward below which the noise of learning rates is larger."""
 EVEN_SHARE = 0.2
 """Share of the weight in the loss of W that all replayed actions have alike."""
-PULL = 0.1
-"""Weight of the distance of mu from the centre, in units of the error of Q, in the first updates."""
-FULL_PULL_UPDATES = 300
-"""Number of updates with that weight, which falls from then on."""
+PRIOR_ACTIONS = 30
+"""Number of replayed actions for which the prior of mu counts, if their distance from mu is 1."""
+HIGHEST_PULL = 0.1
+"""Largest weight of that prior beside the mean error of Q, while few actions are replayed."""
 FRESH_UPDATES = 1000
 """Number of updates in which V may still be that of fresh networks, whatever rewards are."""
 
@@ -55,20 +55,20 @@ def nearby_loss(values: Values, targets: th.Tensor) -> th.Tensor:
     return (weights * (values.target - targets).square()).sum()
 
 
-def centre_loss(values: Values, q_loss: th.Tensor, update: int) -> th.Tensor:
+def centre_loss(values: Values, q_loss: th.Tensor, n_transitions: int) -> th.Tensor:
     """
-    Loss of ``mu`` away from the centre of the action space, which counts for less and less.
+    Loss of ``mu`` away from the centre of the action space, which counts for less the more transitions are stored.
 
-    Until ``V`` is settled, the parabola also follows targets by pushing ``mu`` away from all replayed actions. There
-    ``mu`` stays: at its bound it gets no gradient. The pull is a normal prior of ``mu``, and the error of ``Q`` the
-    noise of the data beside it. So it has the units of the loss, and wins where replayed actions say little.
+    Until ``V`` is settled, the parabola also follows targets by pushing ``mu`` away from all replayed actions. Where
+    the tanh of ``mu`` and the parabola are flat, it gets no gradient, and stays. The pull is a normal prior of ``mu``,
+    and the error of ``Q`` the noise of the data beside it. So it has the units of the loss.
 
     :param values: Values of replayed actions
     :param q_loss: Mean squared error of ``Q``
-    :param update: Number of the update, from 1 on
+    :param n_transitions: Number of transitions in the replay buffer
     :return: Mean squared length of ``mu``, times its weight
     """
-    weight = PULL / max(1.0, update / FULL_PULL_UPDATES)
+    weight = min(HIGHEST_PULL, PRIOR_ACTIONS / n_transitions)
     return weight * q_loss.detach() * values.mu.square().sum(dim=1).mean()
 
 
@@ -256,9 +256,9 @@ class NAF(OffPolicyAlgorithm):
         parameters, target_parameters = list(self.q_net.parameters()), list(self.q_net_target.parameters())
         average_parameters = get_ema_multi_avg_fn(1 - self.tau)
 
+        n_transitions = self.replay_buffer.size() * self.n_envs  # type: ignore[union-attr]
         losses, w_losses, mean_q_values = [], [], []
         for _ in range(gradient_steps):
-            self._n_updates += 1
             # Sample replay buffer
             replay_data = self.replay_buffer.sample(batch_size, env=self._vec_normalize_env)  # type: ignore[union-attr]
             # For n-step replay, discount factor is gamma**n_steps (when no early termination)
@@ -281,7 +281,7 @@ class NAF(OffPolicyAlgorithm):
             if self.q_net.has_w:
                 w_loss = nearby_loss(current_values, target_q_values)
                 w_losses.append(w_loss.detach())
-                loss = q_loss + w_loss + centre_loss(current_values, q_loss, self._n_updates)
+                loss = q_loss + w_loss + centre_loss(current_values, q_loss, n_transitions)
 
             # Optimize the policy
             self.policy.optimizer.zero_grad()
@@ -293,6 +293,9 @@ class NAF(OffPolicyAlgorithm):
             average_parameters(target_parameters, parameters, 1)
             # Copy running stats, as all algorithms of stable-baselines3 do
             polyak_update(self.batch_norm_stats, self.batch_norm_stats_target, 1.0)
+
+        # Increase update counter
+        self._n_updates += gradient_steps
 
         mean_loss = th.stack(losses).mean().item()
         if not math.isfinite(mean_loss):

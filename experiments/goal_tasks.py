@@ -1,7 +1,7 @@
-"""NAF, DDPG and TD3 on small tasks of two to four actions in which a point is to reach a place.
+"""NAF, DDPG and TD3 on small tasks of two to four actions, in most of which a point is to reach a place.
 
-What makes them hard is that nothing tells the way before the place was reached once, or that nothing brings the point
-back.
+What makes them hard is that nothing tells the way before the place was reached once, that nothing brings the point
+back, or noise beside a best action at the bounds.
 """
 
 from __future__ import annotations
@@ -44,10 +44,12 @@ class Point(gym.Env):
     :param actions: number of actions, and of coordinates
     """
 
+    drift = 0.0
+
     def __init__(self, actions: int) -> None:
         self.observation_space: spaces.Space = spaces.Box(-WALL, WALL, (actions,), dtype=np.float32)
         self.action_space = spaces.Box(-1.0, 1.0, (actions,), dtype=np.float32)
-        self.at = np.zeros(actions)
+        self.at, self.action = np.zeros(actions), np.zeros(actions)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict]:
         """Begin anywhere within 1."""
@@ -57,7 +59,8 @@ class Point(gym.Env):
 
     def step(self, action: np.ndarray) -> tuple[Any, float, bool, bool, dict]:
         """One step."""
-        self.at = np.clip(self.at + STEP * np.asarray(action, float), -WALL, WALL)
+        self.action = np.asarray(action, float)
+        self.at = np.clip(self.at + STEP * self.action + self.drift, -WALL, WALL)
         return self.observation(), self.reward(), self.reached(), False, {}
 
     def observation(self) -> Any:
@@ -71,6 +74,21 @@ class Point(gym.Env):
     def reached(self) -> bool:
         """Whether the episode ends."""
         return False
+
+
+class Drifting(Point):
+    """A point that is carried off with every step; four fifths of an action hold it."""
+
+    drift = 0.12
+
+
+class NoisySlope(Point):
+    """Wherever the point is, the reward is the mean of the actions, two of them with the other sign, and noise of 1."""
+
+    def reward(self) -> float:
+        """Slope along the action, with noise."""
+        signs = np.where(np.arange(len(self.action)) % 2, -1.0, 1.0)
+        return float((signs * self.action).mean() + self.np_random.normal())
 
 
 class StepCost(Point):
@@ -157,6 +175,8 @@ TASKS = {
     ),
     "short episodes": PointTask(partial(Point, 4), limit=50),
     "long episodes": PointTask(partial(Point, 4), limit=1000),
+    "drift": PointTask(partial(Drifting, 4), limit=50),
+    "noisy slope": PointTask(partial(NoisySlope, 4), limit=50),
 }
 CRITICS = {"naf": QuadraticCritic, "naf, no pull to the centre": NoPull}
 OTHERS: dict[str, type[OffPolicyAlgorithm]] = {"ddpg": DDPG, "td3": TD3}
@@ -172,7 +192,7 @@ class GoalTasks(OnWorkers):
     """
 
     steps: int = 4000
-    seeds: int = 5
+    seeds: int = 10
     episodes: int = 20
 
     def rows(self) -> Iterator[Row]:

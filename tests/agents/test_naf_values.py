@@ -12,6 +12,7 @@ import torch as th
 from gymnasium import spaces
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from stable_baselines3.common.env_util import make_vec_env
 
 from sarah.agents import NAF
 from sarah.agents.critic import Values
@@ -178,13 +179,23 @@ def test_w_has_a_mean_whatever_the_distances(distance, seed):
     assert th.isfinite(loss) and slope.isfinite().all() and (slope >= 0).all()
 
 
-@pytest.mark.parametrize(("update", "weight"), [(1, 0.1), (300, 0.1), (600, 0.05), (30_000, 0.001)])
-def test_the_pull_of_mu_to_the_centre_has_the_units_of_the_loss_and_fades(update, weight):
+@pytest.mark.parametrize(("transitions", "weight"), [(1, 0.1), (300, 0.1), (600, 0.05), (30_000, 0.001)])
+def test_the_pull_of_mu_to_the_centre_has_the_units_of_the_loss_and_fades_with_data(transitions, weight):
     """Mean of |mu|^2 over states is (1 + 4) / 2; the error of Q is in reward^2, and is not made smaller by it."""
     mu = th.tensor([[1.0, 0.0], [0.0, -2.0]], requires_grad=True)
     q_loss = th.tensor(9.0, requires_grad=True)
     other = th.zeros(2, 1)
-    loss = centre_loss(Values(other, other, other, mu, other), q_loss, update)
+    loss = centre_loss(Values(other, other, other, mu, other), q_loss, transitions)
     assert loss.item() == pytest.approx(weight * 9 * 2.5)
     (slope,) = th.autograd.grad(loss, mu)
     assert slope.numpy() == pytest.approx(weight * 9 * mu.detach().numpy())
+
+
+@pytest.mark.parametrize("n_envs", [1, 4])
+def test_transitions_of_all_environments_count_beside_the_prior(n_envs, monkeypatch):
+    counted = []
+    monkeypatch.setattr(
+        "sarah.agents.naf.centre_loss", lambda values, loss, n: counted.append(n) or centre_loss(values, loss, n)
+    )
+    NAF("MlpPolicy", make_vec_env(Drift, n_envs), learning_starts=20, batch_size=8, device="cpu").learn(100)
+    assert counted[-1] == 100
