@@ -21,7 +21,6 @@ from sarah.episode.workers import Workers
 
 FRESH = 2000
 """Number of the newest transitions on which an agent is judged."""
-EVALUATION_EPISODES = 10
 EVALUATION_SEED = 10_000
 SATURATED = 0.95
 """Size of an entry of mu from which on it counts as at the bound."""
@@ -56,17 +55,20 @@ class KnownTruth(OnWorkers):
 
     :param steps: number of steps of a training
     :param seeds: number of trainings of each variant
+    :param episodes: number of evaluation episodes
     """
 
     steps: int = 5000
     seeds: int = 2
+    episodes: int = 10
 
     def rows(self) -> Iterator[Row]:
         """A row for each task and variant."""
         with Workers(self.workers) as workers:
             jobs = {
                 (task, variant): [
-                    workers.submit(judgement, task, variant, self.steps, seed) for seed in range(self.seeds)
+                    workers.submit(judgement, task, variant, self.steps, seed, self.episodes)
+                    for seed in range(self.seeds)
                 ]
                 for task in TASKS
                 for variant in (*VARIANTS, DDPG_NAME)
@@ -105,13 +107,14 @@ def of_known(function: Callable[[list[float]], float], values: list[float | None
     return function(known) if known else None
 
 
-def judgement(task: str, variant: str, steps: int, seed: int) -> Judgement:
+def judgement(task: str, variant: str, steps: int, seed: int, episodes: int) -> Judgement:
     """Train an agent and judge it.
 
     :param task: name of the task
     :param variant: name of the variant
     :param steps: number of steps of the training
     :param seed: its seed
+    :param episodes: number of evaluation episodes
     """
     th.set_num_threads(1)
     env = TASKS[task](seed)
@@ -125,7 +128,7 @@ def judgement(task: str, variant: str, steps: int, seed: int) -> Judgement:
     true_mu = env.mu(states)
     mu, _ = model.predict(states.astype(np.float32), deterministic=True)
     of_action = Judgement(
-        score=score(task, lambda state: model.predict(state)[0]),
+        score=score(task, lambda state: model.predict(state)[0], episodes),
         mu_error=float(np.sqrt(np.square(mu - true_mu).mean() / np.square(true_mu).mean())),
         saturated=float((np.abs(mu) > SATURATED).mean()),
     )
@@ -176,31 +179,33 @@ def of_value(judged: Judgement, model: Watched, env: KnownTask, states: np.ndarr
     )
 
 
-def score(task: str, law: Callable[[np.ndarray], np.ndarray]) -> float:
+def score(task: str, law: Callable[[np.ndarray], np.ndarray], episodes: int) -> float:
     """Return of a law in some episodes, from that of the centre, 0, to that of the best law, 1.
 
     :param task: name of the task
     :param law: action by state
+    :param episodes: number of episodes
     """
     env = TASKS[task](EVALUATION_SEED)
     assert env.action_space.shape is not None
     centre = np.zeros(env.action_space.shape)
     learned, best, idle = (
-        mean_return(task, one) for one in (law, lambda state: env.mu(state[None])[0], lambda state: centre)
+        mean_return(task, one, episodes) for one in (law, lambda state: env.mu(state[None])[0], lambda state: centre)
     )
     return (learned - idle) / (best - idle)
 
 
-def mean_return(task: str, law: Callable[[np.ndarray], np.ndarray]) -> float:
+def mean_return(task: str, law: Callable[[np.ndarray], np.ndarray], episodes: int) -> float:
     """Mean return of some episodes, the same for every law.
 
     :param task: name of the task
     :param law: action by state
+    :param episodes: number of episodes
     """
     env, total = TASKS[task](EVALUATION_SEED), 0.0
-    for _ in range(EVALUATION_EPISODES):
+    for _ in range(episodes):
         state, truncated = env.reset()[0], False
         while not truncated:
             state, reward, _, truncated, _ = env.step(law(state))
             total += reward
-    return total / EVALUATION_EPISODES
+    return total / episodes

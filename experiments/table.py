@@ -169,7 +169,7 @@ TABLE: dict[str, Maker] = {
     "known_truth": Maker(
         "What does NAF make of tasks whose truth is known?",
         KnownTruth(),
-        {"steps": 110, "seeds": 1},
+        {"steps": 110, "seeds": 1, "episodes": 1},
         of_robot=False,
     ),
     "several_actions": Maker(

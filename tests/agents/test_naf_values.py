@@ -68,7 +68,6 @@ def trained(steps, **kwargs):
 
 
 def test_v_stays_within_the_bound_where_the_published_targets_let_it_run_away():
-    """And where it runs away the curvature is more than five times that with W."""
     held = trained(5000)
     with pytest.warns(UserWarning, match="it runs away"):
         published = trained(5000, policy_kwargs=dict(net_arch=PUBLISHED))
