@@ -48,8 +48,8 @@ class QuadraticCritic(BaseModel):
     ``mu`` starts at zero: an untrained critic proposes the centre of the action space whatever it observes.
 
     With layers for ``W`` in place of ``V``, three things are added to the publication here, and a pull of ``mu`` to the
-    centre in the loss, see :func:`~sarah.agents.naf.centre_loss`. The first two are there because the parabola, which
-    has many outputs, learns noise by heart, and that makes it steep:
+    centre in the loss, see :func:`~sarah.agents.losses.centre_loss`. The first two are there because the parabola,
+    which has many outputs, learns noise by heart, and that makes it steep:
 
     - Those layers have a second output: ``W``, the mean of what actions near ``mu`` led to. It has a loss of its own,
       and targets take it of the next state. ``V`` lies above what was done by what the parabola promises, so targets

@@ -1,6 +1,5 @@
 """NAF for tasks of one step, which explores around the best action so far."""
 
-import warnings
 from typing import Any
 
 import numpy as np
@@ -11,9 +10,6 @@ from sarah.agents.arguments import check_number, checked_schedule
 from sarah.agents.buffers import RankReplayBuffer
 from sarah.agents.naf import NAF
 from sarah.agents.policies import NAFPolicy
-
-FAR_REWARD = 5.0
-"""Distance of the rewards' mean below 0 that is far, in deviations and in units of reward."""
 
 
 class LocalNAF(NAF):
@@ -96,33 +92,6 @@ class LocalNAF(NAF):
             scaled_action[0] = 0.0  # Of the first environment: the others warm up as ever
             action = self.policy.unscale_action(scaled_action)
         return action, scaled_action
-
-    def train(self, gradient_steps: int, batch_size: int = 100) -> None:
-        """
-        Sample the replay buffer and do the updates. Before the first one, rewards far below 0 get a warning.
-
-        :param gradient_steps: Number of updates
-        :param batch_size: Minibatch size for each update
-        """
-        if self._n_updates == 0:
-            self._check_rewards()
-        super().train(gradient_steps, batch_size)
-
-    def _check_rewards(self) -> None:
-        """
-        Warn if all rewards are far below 0, where networks begin
-
-        Until ``V`` is down there, the parabola follows them sooner by pushing ``mu`` away from what was tried.
-        """
-        assert self.replay_buffer is not None
-        rewards = self.replay_buffer.rewards[: self.replay_buffer.size()]
-        mean, std = float(rewards.mean()), float(rewards.std())
-        if mean < -FAR_REWARD * max(1.0, std):
-            warnings.warn(
-                f"rewards of {mean:.3g} on average are far below 0, and mu learns from them slowly or not at all. "
-                f"Remedy: take their mean off in the environment, as reward + {-mean:.3g}",
-                stacklevel=2,
-            )
 
     def _knows_a_best_action(self, learning_starts: int) -> bool:
         """Whether the draws around it may begin: after the warm-up, or with the outcome of the centre."""

@@ -18,7 +18,8 @@ from torch.optim.swa_utils import get_ema_multi_avg_fn
 
 from sarah.agents.arguments import check_number, checked_schedule
 from sarah.agents.buffers import RankReplayBuffer
-from sarah.agents.critic import QuadraticCritic, Values
+from sarah.agents.critic import QuadraticCritic
+from sarah.agents.losses import centre_loss, nearby_loss
 from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy, NAFPolicy
 
 SelfNAF = TypeVar("SelfNAF", bound="NAF")
@@ -27,49 +28,10 @@ RUNAWAY_RATIO = 1.5
 """V over its bound from which on a warning says that it runs away."""
 SMALL_REWARD = 0.01
 """Largest reward below which the noise of learning rates is larger."""
-EVEN_SHARE = 0.2
-"""Share of the weight in the loss of W that all replayed actions have alike."""
-PRIOR_ACTIONS = 30
-"""Number of replayed actions for which the prior of mu counts, if their distance from mu is 1."""
-HIGHEST_PULL = 0.1
-"""Largest weight of that prior beside the mean error of Q, while few actions are replayed."""
+FAR_REWARD = 5.0
+"""Distance of the rewards' mean below 0 that is far, in deviations and in units of reward."""
 FRESH_UPDATES = 1000
 """Number of updates in which V may still be that of fresh networks, whatever rewards are."""
-
-
-def nearby_loss(values: Values, targets: th.Tensor) -> th.Tensor:
-    """
-    Loss of ``W``, by which it becomes the mean of the targets of actions near ``mu``.
-
-    An action whose squared distance from ``mu`` is the batch's mean counts by a factor of e less than ``mu`` itself. A
-    share of the weight is spread evenly: where nobody acts near ``mu``, ``W`` would otherwise follow no target at all.
-    Whatever the weights, a mean is never above the largest target. The network may be, in states that it hardly knows.
-
-    :param values: Values of replayed actions
-    :param targets: What these actions led to
-    :return: Mean squared error of ``W``, weighted by the nearness of the actions
-    """
-    distances = values.distance.detach()
-    weights = th.softmax(distances / (-distances.mean() - 1e-8), dim=0)
-    weights = (1 - EVEN_SHARE) * weights + EVEN_SHARE / len(weights)
-    return (weights * (values.target - targets).square()).sum()
-
-
-def centre_loss(values: Values, q_loss: th.Tensor, n_transitions: int) -> th.Tensor:
-    """
-    Loss of ``mu`` away from the centre of the action space, which counts for less the more transitions are stored.
-
-    Until ``V`` is settled, the parabola also follows targets by pushing ``mu`` away from all replayed actions. Where
-    the tanh of ``mu`` and the parabola are flat, it gets no gradient, and stays. The pull is a normal prior of ``mu``,
-    and the error of ``Q`` the noise of the data beside it. So it has the units of the loss.
-
-    :param values: Values of replayed actions
-    :param q_loss: Mean squared error of ``Q``
-    :param n_transitions: Number of transitions in the replay buffer
-    :return: Mean squared length of ``mu``, times its weight
-    """
-    weight = min(HIGHEST_PULL, PRIOR_ACTIONS / n_transitions)
-    return weight * q_loss.detach() * values.mu.square().sum(dim=1).mean()
 
 
 class NAF(OffPolicyAlgorithm):
@@ -203,6 +165,11 @@ class NAF(OffPolicyAlgorithm):
             raise ValueError(
                 f"the policy of NAF must be NAFPolicy or a subclass of it, not {self.policy_class.__name__}"
             )
+        low, high = self.action_space.low, self.action_space.high
+        if not (low < high).all():
+            raise ValueError(
+                f"every action must have a range, but the lowest are {low.tolist()}, the highest {high.tolist()}"
+            )
         super()._setup_model()
         self._create_aliases()
         # Running mean and running var, which the target network copies
@@ -257,12 +224,15 @@ class NAF(OffPolicyAlgorithm):
         average_parameters = get_ema_multi_avg_fn(1 - self.tau)
 
         n_transitions = self.replay_buffer.size() * self.n_envs  # type: ignore[union-attr]
-        losses, w_losses, mean_q_values = [], [], []
+        losses: list[th.Tensor] = []
+        w_losses, mean_q_values = [], []
         for _ in range(gradient_steps):
             # Sample replay buffer
             replay_data = self.replay_buffer.sample(batch_size, env=self._vec_normalize_env)  # type: ignore[union-attr]
             # For n-step replay, discount factor is gamma**n_steps (when no early termination)
             discounts = replay_data.discounts if replay_data.discounts is not None else self.gamma
+            if self._n_updates + len(losses) == 0:
+                self._check_rewards(replay_data.rewards)
 
             target_q_values = replay_data.rewards
             if self.gamma > 0:  # Otherwise what comes next does not count
@@ -311,6 +281,23 @@ class NAF(OffPolicyAlgorithm):
         if 0 < self.gamma < 1:  # The last batch is a sample as good as all of them
             forever = replay_data.rewards / (1 - discounts)
             self._check_values(current_values.best.max().item(), forever.min().item(), forever.max().item())
+
+    def _check_rewards(self, rewards: th.Tensor) -> None:
+        """
+        Warn if all rewards are far below 0, where networks begin
+
+        Until ``V`` is down there, the parabola follows them sooner by pushing ``mu`` away from what was tried.
+
+        :param rewards: Those of the first batch, normalised where the environment does so
+        """
+        mean, std = rewards.mean().item(), rewards.std(correction=0).item()
+        if mean < -FAR_REWARD * max(1.0, std):
+            warnings.warn(
+                f"rewards of {mean:.3g} on average are far below 0, and mu learns from them slowly or not at all. "
+                f"Remedy: take their mean off in the environment, as reward + {-mean:.3g}; or scale them, if it is for "
+                "the agent to end the episode",
+                stacklevel=2,
+            )
 
     def _check_values(self, largest: float, lowest_forever: float, highest_forever: float) -> None:
         """

@@ -84,6 +84,8 @@ class NAFPolicy(BasePolicy):
             squash_output=True,
             normalize_images=normalize_images,
         )
+        if not isinstance(squash_mu, bool):
+            raise ValueError(f"squash_mu must be True or False, not {squash_mu!r}")
         check_number("min_curvature", min_curvature, 0.0)
         check_number("dropout", dropout, 0.0, 0.9)
         if net_arch is None:

@@ -25,6 +25,8 @@ OTHER_RESULTS = record.ROOT / "build" / "experiments"
 """Folder for the rows of experiments that options change."""
 HARMLESS = {"workers", "runs", "courses"}
 """Options that change no row."""
+LOWEST = {"workers": 0, "seed": 0, "first_seed": 0, "balance_seed": 0}
+"""Lowest whole numbers of options; of all others, which count something, it is 1."""
 
 
 def main(arguments: Sequence[str]) -> None:
@@ -63,6 +65,9 @@ def make(name: str, arguments: Sequence[str]) -> None:
     maker = TABLE[name]
     default = maker.quick_experiment if shared.quick else maker.experiment
     experiment = parse_options(type(default), f"{COMMAND} {name}", own, default)
+    check_counts(experiment)
+    if shared.out and shared.out.exists() and not shared.out.is_dir():
+        raise ConfigurationError(f"--out must be a folder, and {shared.out} is a file")
     rows = []
     for row in experiment.rows():
         print(", ".join(f"{column} {record.cell(value)}" for column, value in row.items()), flush=True)
@@ -74,6 +79,18 @@ def make(name: str, arguments: Sequence[str]) -> None:
     print(folder / f"{name}.csv")
     if isinstance(experiment, ShippedParameters) and folder.resolve() == record.RESULTS:
         ship(record.read(name))
+
+
+def check_counts(experiment: Experiment) -> None:
+    """Refuse whole numbers that are too low.
+
+    :param experiment: an experiment with some options
+    """
+    for option, value in vars(experiment).items():
+        lowest = LOWEST.get(option, 1)
+        for number in value if isinstance(value, tuple) else (value,):
+            if isinstance(number, int) and not isinstance(number, bool) and number < lowest:
+                raise ConfigurationError(f"--{option.replace('_', '-')} must be at least {lowest}, not {number}")
 
 
 def makes_the_result(experiment: Experiment, full: Experiment) -> bool:

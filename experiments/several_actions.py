@@ -31,6 +31,7 @@ from experiments.experiment import OnWorkers
 from experiments.naf_variants import Watched
 from experiments.record import Row
 from sarah.episode.workers import Workers
+from sarah.errors import ConfigurationError, unknown_name
 from sarah.files import replace_text
 
 TASKS = ("HalfCheetah-v5", "Hopper-v5", "Walker2d-v5", "Reacher-v5", "Swimmer-v5")
@@ -69,6 +70,8 @@ class SeveralActions(OnWorkers):
 
     def rows(self) -> Iterator[Row]:
         """A row for each task, algorithm and evaluation."""
+        for task in self.tasks:
+            check_task(task)
         every = self.steps // self.evaluations
         fingerprints = {algorithm: fingerprint(algorithm) for algorithm in self.algorithms}
         with Workers(self.workers) as workers:
@@ -185,6 +188,17 @@ def fingerprint(algorithm: str) -> list[float]:
     return [vector.norm().item() for vector in (before, after, after - before)]
 
 
+def check_task(task: str) -> None:
+    """Refuse the name of a task that gymnasium does not have.
+
+    :param task: name of the task
+    """
+    try:
+        gym.spec(task)
+    except gym.error.Error as error:
+        raise ConfigurationError(f"unknown task {task!r}: {error}") from error
+
+
 def model(algorithm: str, env: gym.Env, seed: int) -> OffPolicyAlgorithm:
     """An agent that has learned nothing yet.
 
@@ -192,6 +206,8 @@ def model(algorithm: str, env: gym.Env, seed: int) -> OffPolicyAlgorithm:
     :param env: its environment
     :param seed: its seed
     """
+    if algorithm not in ALGORITHMS:
+        raise ConfigurationError(unknown_name("algorithm", algorithm, ALGORITHMS))
     shared: dict[str, Any] = dict(seed=seed, device="cpu")
     if algorithm == "naf":
         return Watched("MlpPolicy", env, **shared)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from benchmarks.decisions import Decisions
@@ -175,7 +176,14 @@ TABLE: dict[str, Maker] = {
     "several_actions": Maker(
         "How does NAF do on tasks with several actions, next to DDPG?",
         SeveralActions(),
-        {"tasks": ("Swimmer-v5",), "steps": 120, "seeds": 1, "evaluations": 1, "episodes": 1},
+        {
+            "tasks": ("Swimmer-v5",),
+            "steps": 120,
+            "seeds": 1,
+            "evaluations": 1,
+            "episodes": 1,
+            "courses": Path("build/experiments/several_actions"),
+        },
         of_robot=False,
     ),
     "goal_tasks": Maker(

@@ -102,6 +102,26 @@ def test_layers_that_are_neither_list_nor_dict(net_arch):
         NAF("MlpPolicy", "Pendulum-v1", policy_kwargs={"net_arch": net_arch})
 
 
+def test_what_is_neither_true_nor_false():
+    with pytest.raises(ValueError, match=r"^squash_mu must be True or False, not 'no'$"):
+        NAF("MlpPolicy", "Pendulum-v1", policy_kwargs={"squash_mu": "no"})
+
+
+class NoRange(gym.ActionWrapper):
+    """A second action, which can only be 1."""
+
+    action_space = gym.spaces.Box(np.float32([-2, 1]), np.float32([2, 1]))
+
+    def action(self, action):
+        return action[:1]
+
+
+def test_an_action_without_a_range_is_refused():
+    said = r"^every action must have a range, but the lowest are \[-2.0, 1.0\], the highest \[2.0, 1.0\]$"
+    with pytest.raises(ValueError, match=said):
+        NAF("MlpPolicy", NoRange(gym.make("Pendulum-v1")))
+
+
 def test_the_file_of_another_algorithm_is_refused(tmp_path):
     TD3("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL).save(tmp_path / "td3")
     with pytest.raises(ValueError, match=r"^the policy of NAF must be NAFPolicy or a subclass of it, not TD3Policy$"):

@@ -59,9 +59,12 @@ class Far(Cliff):
         return super().score(action) - 100.0
 
 
-def test_rewards_far_below_zero_get_a_warning_once():
+@pytest.mark.parametrize(
+    ("algorithm", "arguments"), [(LocalNAF, PRESETS["one-step"]), (NAF, dict(learning_starts=5, batch_size=32))]
+)
+def test_rewards_far_below_zero_get_a_warning_once(algorithm, arguments):
     with pytest.warns(UserWarning, match=r"rewards of -9\d.* are far below 0.* as reward \+ 9\d") as seen:
-        LocalNAF("MlpPolicy", Far(0), seed=0, **PRESETS["one-step"]).learn(8)
+        algorithm("MlpPolicy", Far(0), seed=0, **arguments).learn(8).learn(8, reset_num_timesteps=False)
     assert len(seen) == 1
 
 

@@ -16,7 +16,7 @@ from stable_baselines3.common.env_util import make_vec_env
 
 from sarah.agents import NAF
 from sarah.agents.critic import Values
-from sarah.agents.naf import centre_loss, nearby_loss
+from sarah.agents.losses import centre_loss, nearby_loss
 
 LAYERS = [64, 64]
 PUBLISHED = dict(V=LAYERS, shared=LAYERS, mu=[], L=[])
