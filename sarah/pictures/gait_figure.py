@@ -77,10 +77,11 @@ def draw_gait_cycle(
         _both(length, time, 1000 * joints[:, 4], 1000 * joints[:, 5])
         length.set_ylabel("leg\nretraction\n(mm)")
         if has_hips:
-            _both(axes[4], time, np.degrees(joints[:, 2]), np.degrees(joints[:, 3]))
-            axes[4].plot(
-                time, np.degrees(joints[:, :2].mean(axis=1)), color="black", linewidth=1.0, label="abduction of both"
-            )
+            abduction, left, right = np.degrees((joints[:, :2].mean(axis=1), joints[:, 2], joints[:, 3]))
+            # The left one is wider: where both hips are flexed alike it would hide under the right one
+            axes[4].plot(time, left, color=LEFT, linewidth=2.4, label="flexion, left")
+            axes[4].plot(time, right, color=RIGHT, linewidth=1.2, label="flexion, right")
+            axes[4].plot(time, abduction, color="black", linewidth=1.0, label="abduction of both")
             axes[4].set_ylabel("hip angle\n(degrees)")
             axes[4].legend(loc="best")
         axes[-1].set_xlabel("time (s)")

@@ -140,8 +140,10 @@ def _draw_panel(axis: Axes, curves: RunCurves, column: str, label: str, colour: 
     if len(values) == 1:
         dots: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 1.6, "color": colour, "alpha": 0.5}
         axis.plot(steps[learned], values[0, learned], markeredgewidth=0, **dots)
-        for others in (slice(curves.warm_up), slice(curves.learning, None)):
-            axis.plot(steps[others], values[0, others], markerfacecolor="none", markeredgewidth=0.4, **dots)
+        dots |= {"markerfacecolor": "none", "markeredgewidth": 0.4}
+        axis.plot(steps[: curves.warm_up], values[0, : curves.warm_up], **dots)
+        if curves.learning < len(steps):
+            axis.plot(steps[curves.learning :], values[0, curves.learning :], label="compared at the end", **dots)
     else:
         low, high = np.quantile(smooth, (0.25, 0.75), axis=0)
         axis.fill_between(steps[learned], low, high, color=colour, alpha=0.25, linewidth=0)
@@ -208,9 +210,11 @@ def draw_survival(controllers: Mapping[str, Sequence[PushedEpisode]], path: Path
             layout="constrained",
         )
         for axis, (name, episodes) in zip(axes[0], controllers.items(), strict=True):
-            mesh = _draw_survival(axis, survival_by_direction(episodes, finest_sectors(episodes)))
+            survival = survival_by_direction(episodes, finest_sectors(episodes))
+            mesh = _draw_survival(axis, survival)
             axis.set_title(name)
-        figure.colorbar(mesh, ax=axes, label="survival (white: no push this way)", orientation="horizontal", shrink=0.6)
+        label = f"survival of {len(episodes) // len(survival)} pushes of each force (white: none this way)"
+        figure.colorbar(mesh, ax=axes, label=label, orientation="horizontal", shrink=0.6)
         return save(figure, path)
 
 
