@@ -56,8 +56,7 @@ def describe_warm_up(config: TrainingConfig) -> str:
         return "none: every episode was random" if config.algo == "random" else "none"
     if count >= config.episodes:
         return f"all {config.episodes} episodes were random: to learn takes more than {warm_up(config)}"
-    text = f"{count} of the {config.episodes} episodes were random"
     if not begins_at_centre(config.task):
-        return text
-    near_best = ", and some drawn around the best so far" if getattr(config.agent, "elite_share", 0.0) > 0.0 else ""
-    return f"{text}, the first neutral{near_best}"
+        return f"{count} of the {config.episodes} episodes were random"
+    near_best = " or around the best so far" if getattr(config.agent, "elite_share", 0.0) > 0.0 else ""
+    return f"{count} of the {config.episodes} episodes: the first neutral, the others random{near_best}"

@@ -37,10 +37,10 @@ def rows(run: RunFolder) -> list[dict[str, str]]:
         (TrainingConfig(algo="td3", agent=TD3Settings(learning_starts=30)), "30 of the 100 episodes were random"),
         (TrainingConfig(episodes=6), "all 6 episodes were random: to learn takes more than 8"),
         (TrainingConfig(agent=NAFSettings(learning_starts=999)), "90 of the 100 episodes were random"),
-        (TrainingConfig("balance", "td3"), "8 of the 100 episodes were random, the first neutral"),
+        (TrainingConfig("balance", "td3"), "8 of the 100 episodes: the first neutral, the others random"),
         (
             TrainingConfig("balance"),
-            "8 of the 100 episodes were random, the first neutral, and some drawn around the best so far",
+            "8 of the 100 episodes: the first neutral, the others random or around the best so far",
         ),
         (TrainingConfig(dataclasses.replace(BALANCE, neutral=(1.0,) * 4)), "8 of the 100 episodes were random"),
         (TrainingConfig(algo="cma-es"), "none"),
