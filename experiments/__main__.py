@@ -25,8 +25,8 @@ OTHER_RESULTS = record.ROOT / "build" / "experiments"
 """Folder for the rows of experiments that options change."""
 HARMLESS = {"workers", "runs", "courses"}
 """Options that change no row."""
-LOWEST = {"workers": 0, "seed": 0, "first_seed": 0, "balance_seed": 0}
-"""Lowest whole numbers of options; of all others, which count something, it is 1."""
+MAY_BE_0 = {"workers", "seed", "first_seed", "balance_seed", "reference_episodes", "reference_pushes"}
+"""Options of a whole number that may be 0; all others count what an experiment cannot do without."""
 
 
 def main(arguments: Sequence[str]) -> None:
@@ -87,7 +87,7 @@ def check_counts(experiment: Experiment) -> None:
     :param experiment: an experiment with some options
     """
     for option, value in vars(experiment).items():
-        lowest = LOWEST.get(option, 1)
+        lowest = 0 if option in MAY_BE_0 else 1
         for number in value if isinstance(value, tuple) else (value,):
             if isinstance(number, int) and not isinstance(number, bool) and number < lowest:
                 raise ConfigurationError(f"--{option.replace('_', '-')} must be at least {lowest}, not {number}")
