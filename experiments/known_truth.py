@@ -59,7 +59,7 @@ class KnownTruth(OnWorkers):
     """
 
     steps: int = 5000
-    seeds: int = 2
+    seeds: int = 5
     episodes: int = 10
 
     def rows(self) -> Iterator[Row]:
