@@ -62,6 +62,8 @@ def make(name: str, arguments: Sequence[str]) -> None:
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--out", type=Path)
     shared, own = parser.parse_known_args(arguments)
+    if {"-h", "--help"} & set(own):
+        print("Every experiment has --quick, for a size that takes seconds, and --out FOLDER, for the files.\n")
     maker = TABLE[name]
     default = maker.quick_experiment if shared.quick else maker.experiment
     experiment = parse_options(type(default), f"{COMMAND} {name}", own, default)

@@ -66,6 +66,13 @@ def test_without_a_name_all_are_listed(capsys: pytest.CaptureFixture[str]) -> No
     assert all(name in listed and maker.question in listed for name, maker in TABLE.items())
 
 
+def test_the_help_of_an_experiment_has_the_options_of_all_and_its_own(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        main(["clock", "--help"])
+    shown = capsys.readouterr().out
+    assert end.value.code == 0 and all(option in shown for option in ("--quick", "--out FOLDER", "--random-sets"))
+
+
 def test_an_unknown_name_is_one_line_with_the_nearest() -> None:
     with pytest.raises(ConfigurationError, match=r"unknown experiment 'clok', did you mean 'clock'\?"):
         main(["clok"])
