@@ -214,6 +214,8 @@ class NAF(OffPolicyAlgorithm):
         :param batch_size: Minibatch size for each update
         :raises ValueError: if the loss is not finite, as no later update would mend the networks
         """
+        if self._n_updates == 0:
+            self._check_rewards()
         # Switch to train mode (this affects batch norm / dropout)
         self.policy.set_training_mode(True)
         # Update learning rate according to schedule
@@ -224,15 +226,12 @@ class NAF(OffPolicyAlgorithm):
         average_parameters = get_ema_multi_avg_fn(1 - self.tau)
 
         n_transitions = self.replay_buffer.size() * self.n_envs  # type: ignore[union-attr]
-        losses: list[th.Tensor] = []
-        w_losses, mean_q_values = [], []
+        losses, w_losses, mean_q_values = [], [], []
         for _ in range(gradient_steps):
             # Sample replay buffer
             replay_data = self.replay_buffer.sample(batch_size, env=self._vec_normalize_env)  # type: ignore[union-attr]
             # For n-step replay, discount factor is gamma**n_steps (when no early termination)
             discounts = replay_data.discounts if replay_data.discounts is not None else self.gamma
-            if self._n_updates + len(losses) == 0:
-                self._check_rewards(replay_data.rewards)
 
             target_q_values = replay_data.rewards
             if self.gamma > 0:  # Otherwise what comes next does not count
@@ -282,15 +281,17 @@ class NAF(OffPolicyAlgorithm):
             forever = replay_data.rewards / (1 - discounts)
             self._check_values(current_values.best.max().item(), forever.min().item(), forever.max().item())
 
-    def _check_rewards(self, rewards: th.Tensor) -> None:
+    def _check_rewards(self) -> None:
         """
         Warn if all rewards are far below 0, where networks begin
 
         Until ``V`` is down there, the parabola follows them sooner by pushing ``mu`` away from what was tried.
-
-        :param rewards: Those of the first batch, normalised where the environment does so
         """
-        mean, std = rewards.mean().item(), rewards.std(correction=0).item()
+        assert self.replay_buffer is not None
+        rewards = self.replay_buffer.rewards[: self.replay_buffer.size()]
+        if self._vec_normalize_env is not None:
+            rewards = self._vec_normalize_env.normalize_reward(rewards)
+        std, mean = (one.item() for one in th.std_mean(th.as_tensor(rewards), correction=0))
         if mean < -FAR_REWARD * max(1.0, std):
             warnings.warn(
                 f"rewards of {mean:.3g} on average are far below 0, and mu learns from them slowly or not at all. "

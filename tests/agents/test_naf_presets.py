@@ -1,5 +1,7 @@
 """The presets: "one-step" solves a task of one step, "paper" is the paper's networks."""
 
+import warnings
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -60,12 +62,21 @@ class Far(Cliff):
 
 
 @pytest.mark.parametrize(
-    ("algorithm", "arguments"), [(LocalNAF, PRESETS["one-step"]), (NAF, dict(learning_starts=5, batch_size=32))]
+    ("algorithm", "arguments"),
+    [(LocalNAF, PRESETS["one-step"]), (NAF, dict(learning_starts=5)), (NAF, dict(learning_starts=5, n_steps=3))],
 )
 def test_rewards_far_below_zero_get_a_warning_once(algorithm, arguments):
     with pytest.warns(UserWarning, match=r"rewards of -9\d.* are far below 0.* as reward \+ 9\d") as seen:
         algorithm("MlpPolicy", Far(0), seed=0, **arguments).learn(8).learn(8, reset_num_timesteps=False)
     assert len(seen) == 1
+
+
+def test_it_is_the_reward_of_a_step_that_counts():
+    """A sum of three steps would be far below 0, a step is not."""
+    env = gym.wrappers.TransformReward(gym.make("MountainCarContinuous-v0"), lambda reward: reward - 3.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        NAF("MlpPolicy", env, seed=0, learning_starts=5, n_steps=3).learn(12)
 
 
 def test_paper_networks():
