@@ -28,7 +28,7 @@ from sarah.errors import (
     TaskError,
     TrainingInterruptedError,
 )
-from sarah.runs.agent_settings import NAFSettings, settings_of
+from sarah.runs.agent_settings import AGENT_SETTINGS, NAFSettings, settings_of
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import first_difference, read_config
 
@@ -198,6 +198,7 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
     task = named_task(given.get("task"))
     training = _of_file(Path(given["config"]), task) if "config" in given else TrainingConfig()
     training = _with_agent(training, given.get("algo"), given.get("agent.preset"))
+    _check_agent_options(arguments, training)
     task = task or training.task
     episode = task.config_of(training.episode) if "config" in given else task.episode
     episode = with_given_engine(episode, given)
@@ -254,6 +255,20 @@ def _with_agent(training: TrainingConfig, algo: str | None, preset: str | None) 
     if preset is not None and isinstance(training.agent, NAFSettings) and preset != training.agent.preset:
         training = dataclasses.replace(training, agent=training.agent.with_preset(preset))
     return training
+
+
+def _check_agent_options(arguments: Sequence[str], training: TrainingConfig) -> None:
+    """Refuse ``--agent.…`` options of settings that only other algorithms have.
+
+    :param arguments: all arguments of the command
+    :param training: settings of the training, with its algorithm
+    """
+    for argument in arguments:
+        option = argument.partition("=")[0]
+        name = option.removeprefix("--agent.").replace("-", "_")
+        others = [algo for algo, settings in AGENT_SETTINGS.items() if name in settings.__dataclass_fields__]
+        if option.startswith("--agent.") and others and not hasattr(training.agent, name):
+            raise ConfigurationError(f"{option} is for --algo {' or '.join(others)}, not {training.algo!r}")
 
 
 def _on_learned_stepping(path: Path, episode: EpisodeConfig) -> EpisodeConfig:
