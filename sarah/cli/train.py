@@ -265,7 +265,7 @@ def _check_agent_options(arguments: Sequence[str], training: TrainingConfig) -> 
     """
     for argument in arguments:
         option = argument.partition("=")[0]
-        name = option.removeprefix("--agent.").replace("-", "_")
+        name = option.removeprefix("--agent.").replace("-", "_").removeprefix("no_")
         others = [algo for algo, settings in AGENT_SETTINGS.items() if name in settings.__dataclass_fields__]
         if option.startswith("--agent.") and others and not hasattr(training.agent, name):
             raise ConfigurationError(f"{option} is for --algo {' or '.join(others)}, not {training.algo!r}")

@@ -104,6 +104,7 @@ def test_the_help_shows_the_settings_of_the_algorithm(
         ("--agent.preset papr", "unknown agent.preset 'papr', did you mean 'paper'?"),
         ("--agent.device gpu", "agent.device must be 'cpu', 'cuda', 'cuda:' and a number, or 'auto', not 'gpu'"),
         ("--algo td3 --agent.preset paper", "--agent.preset is for --algo naf, not 'td3'"),
+        ("--algo sac --agent.no-squash-mu", "--agent.no-squash-mu is for --algo naf, not 'sac'"),
         ("--algo random --agent.tau 1", "--agent.tau is for --algo naf or td3 or sac or ddpg, not 'random'"),
         ("--algo sac --agent.ent-coef high", "--agent.ent-coef must be FLOAT|{auto}, not ['high']"),
         ("--algo cma-es --agent.population 1", "agent.population must be between 2 and 1000, not 1"),
