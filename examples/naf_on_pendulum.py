@@ -14,7 +14,7 @@ from stable_baselines3.common.monitor import Monitor
 from sarah.agents import NAF
 
 torch.set_num_threads(1)  # the networks are small: more threads only wait for each other
-steps = int(sys.argv[1]) if len(sys.argv) > 1 else 1200
+steps = int(sys.argv[1]) if len(sys.argv) > 1 else 600
 model = NAF("MlpPolicy", "Pendulum-v1", seed=0)
 for learned in (0, steps):
     if learned:

@@ -31,7 +31,7 @@ if __name__ == "__main__":
     from sarah.runs.run_folder import RunFolder
     from sarah.training.train import train
 
-    config = TrainingConfig(task=sarah.load_task(f"{__file__}:THRIFTY"), algo="random", episodes=12)
+    config = TrainingConfig(task=sarah.load_task(f"{__file__}:THRIFTY"), algo="random", episodes=8)
     learned = train(config, RunFolder.create(Path(tempfile.mkdtemp()), config))
     print(f"P1 to P5  {', '.join(f'{value:.2f}' for value in learned.parameters)}")
     print(f"power     {learned.evaluation.mean('actuator_power'):.0f} W")

@@ -14,7 +14,7 @@ from sarah.runs.run_folder import RunFolder
 from sarah.training.train import train
 
 path = Path(sys.argv[1] if len(sys.argv) > 1 else tempfile.mkdtemp())
-episode = sarah.EpisodeConfig(time_limit=6.0)
+episode = sarah.EpisodeConfig(time_limit=3.0)
 config = TrainingConfig(task="stepping", algo="naf", episodes=12, seed=0, episode=episode)
 learned = train(config, RunFolder.create(path, config))
 print(f"P1 to P5    {', '.join(f'{value:.2f}' for value in learned.parameters)}")

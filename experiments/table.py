@@ -170,7 +170,7 @@ TABLE: dict[str, Maker] = {
     "known_truth": Maker(
         "What does NAF make of tasks whose truth is known?",
         KnownTruth(),
-        {"steps": 110, "seeds": 1, "episodes": 1},
+        {"steps": 102, "seeds": 1, "episodes": 1},
         of_robot=False,
     ),
     "several_actions": Maker(
@@ -189,7 +189,7 @@ TABLE: dict[str, Maker] = {
     "goal_tasks": Maker(
         "How does NAF do where a place is to be reached, next to DDPG and TD3?",
         GoalTasks(),
-        {"steps": 120, "seeds": 1, "episodes": 1},
+        {"steps": 102, "seeds": 1, "episodes": 1},
         of_robot=False,
     ),
     "held_actions": Maker(

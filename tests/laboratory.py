@@ -15,11 +15,13 @@ from sarah.episode.result import EpisodeResult
 from sarah.robot.description import PLATES
 from sarah.robot.reading import SensorReading, Side, Vector
 from sarah.simulation.engines import is_installed
-from sarah.simulation.physics import PHYSICS
+from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.pybullet_client import pybullet
 from sarah.simulation.simulator import Simulator, TorsoState
 
 CONTROL_DT = PHYSICS["standard"].control_dt
+COARSE_PHYSICS = Physics(rate=100, solver_iterations=5)
+"""Physics that takes a fifth of the time, for tests that do not look at the robot."""
 RESULT = EpisodeResult(
     termination="time_limit",
     final_position=(0.03, 0.04, 0.84),

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 from laboratory import NEEDS_PYBULLET
-from terminal import run
+from terminal import COARSE, run
 
 from sarah.simulation.engines import default_engine
 
-QUICK = ("--episode.time-limit", "1.5", "--workers", "2")
+QUICK = ("--episode.time-limit", "1.5", *COARSE, "--workers", "2")
 
 
 def typed(line: str, folder: Path) -> str:
@@ -51,7 +51,7 @@ def test_train_and_evaluate_on_unseen_seeds(trained: Path) -> None:
 
 
 def test_td3_against_naf_in_one_picture(trained: Path) -> None:
-    typed("sarah-train --algo td3 --episodes 20 --seed 1 --run-dir td3 --episode.time-limit 3", trained)
+    typed(f"sarah-train --algo td3 --episodes 20 --seed 1 --run-dir td3 {' '.join(QUICK)}", trained)
     assert "figure_4_reward_and_frequency.png" in typed("sarah-figures run td3 --out figures", trained)
 
 
@@ -94,7 +94,7 @@ def test_an_own_algorithm_in_a_race(tmp_path: Path) -> None:
     (script,) = (block for block in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "HillClimber" in block)
     (tmp_path / "my_race.py").write_text(script)
     race = "my_race.py race --algorithms climber random --seeds 1 --episodes 6 --evaluations 1 --episode.time-limit 2"
-    command = [sys.executable, *race.split(), "--workers", "1"]
+    command = [sys.executable, *race.split(), *COARSE, "--workers", "1"]
     process = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=300)
     assert process.returncode == 0, process.stderr
     assert "| climber | 1 |" in process.stdout and (tmp_path / "race" / "race.png").exists()

@@ -25,9 +25,9 @@ def reward(tick, config):
     return sarah.equation_2(tick, config) - 0.01 * tick.power
 
 
-THRIFTY = dataclasses.replace(
-    sarah.STEPPING, name="thrifty", reward=reward, episode=sarah.PushedConfig(time_limit=2.0, push=sarah.Push(30))
-)
+COARSE = sarah.Physics(rate=100, solver_iterations=5)
+EPISODE = sarah.PushedConfig(time_limit=2.0, push=sarah.Push(30), physics=COARSE)
+THRIFTY = dataclasses.replace(sarah.STEPPING, name="thrifty", reward=reward, episode=EPISODE)
 """
 TASK = ("--task", "my_task.py:THRIFTY")
 

@@ -18,7 +18,7 @@ import dask
 import distributed  # its settings are there before a test changes one, and stay when that ends
 import psutil
 import pytest
-from laboratory import NEEDS_PYBULLET
+from laboratory import COARSE_PHYSICS, NEEDS_PYBULLET
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode import cluster as cluster_module
@@ -35,8 +35,9 @@ from sarah.simulation.pybullet_client import pybullet
 from sarah.training.train import train
 from sarah.versions import source_hash
 
-# Longer than the 8 simulations of warm-up; some episodes fall, most last a second of stepping.
-TRAINING = TrainingConfig(episodes=20, slots=4, seed=5, episode=EpisodeConfig(time_limit=2.0))
+# Longer than the 8 simulations of warm-up; episodes end at several times, as robots fall.
+COARSE = EpisodeConfig(time_limit=2.0, physics=COARSE_PHYSICS)
+TRAINING = TrainingConfig(episodes=20, slots=4, seed=5, episode=COARSE)
 SPEC = EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), seed=1, config=EpisodeConfig(time_limit=2.0))
 
 

@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from terminal import BIN
+from laboratory import COARSE_PHYSICS
+from terminal import BIN, COARSE
 
 from sarah.episode.episode import simulate
 from sarah.episode.evaluation import Evaluation
@@ -28,7 +29,7 @@ from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 
-TINY = TrainingConfig(episodes=10, slots=1, episode=EpisodeConfig(time_limit=1.5))
+TINY = TrainingConfig(episodes=10, slots=1, episode=EpisodeConfig(time_limit=1.5, physics=COARSE_PHYSICS))
 
 
 def curve(algo: str, *scores: float) -> RaceCurve:
@@ -189,11 +190,11 @@ def test_a_race_waits_for_another_that_is_at_the_same_training(tmp_path: Path, m
     assert read_curve(entry).episodes == (5, 10, 10)
 
 
-RACE = ("--algorithms", "random", "--seeds", "1", "--episodes", "30", "--evaluations", "2", "--episode.time-limit", "2")
+RACE = f"--algorithms random --seeds 1 --episodes 30 --evaluations 2 --episode.time-limit 2 {' '.join(COARSE)}"
 
 
 def begin(folder: Path) -> subprocess.Popen[str]:
-    command = [BIN / "sarah-compare", "race", *RACE]
+    command = [BIN / "sarah-compare", "race", *RACE.split()]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=folder)
 
 
@@ -218,7 +219,8 @@ def test_a_killed_race_resumes_and_two_races_at_once_share_the_work(tmp_path: Pa
     assert first.returncode == second.returncode == 0, errors + other_errors
     assert told == also_told and "| random | 1 |" in told
 
-    config = TrainingConfig(algo="random", episodes=30, slots=1, episode=EpisodeConfig(time_limit=2.0))
+    episode = EpisodeConfig(time_limit=2.0, physics=COARSE_PHYSICS)
+    config = TrainingConfig(algo="random", episodes=30, slots=1, episode=episode)
     (entry,) = entries_of(("random",), range(1), config, 2, tmp_path / "undisturbed")
     (undisturbed,) = race([entry], Workers())
     for name in ("episodes.csv", "recommendations.csv", "parameters.json", "journal.jsonl"):

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from laboratory import COARSE_PHYSICS
 from stable_baselines3 import DDPG, SAC, TD3
 from stable_baselines3.common.base_class import BaseAlgorithm
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
@@ -25,8 +26,9 @@ from sarah.runs.run_folder import RunFolder, new_run_path
 from sarah.training.recommendation import Tried, merit
 from sarah.training.train import SUMMARY_EPISODES, train
 
+BRIEF = EpisodeConfig(time_limit=1.2, physics=COARSE_PHYSICS)
 # Longer than the warm-up, on episodes of one second of stepping.
-SHORT = TrainingConfig(episodes=16, slots=1, seed=3, episode=EpisodeConfig(time_limit=2.0))
+SHORT = TrainingConfig(episodes=16, slots=1, seed=3, episode=EpisodeConfig(time_limit=2.0, physics=COARSE_PHYSICS))
 
 
 @pytest.fixture(scope="module")
@@ -144,7 +146,7 @@ def test_second_training_learns_v_with_the_legs_of_the_first(tmp_path: Path) -> 
 @pytest.mark.parametrize(("algo", "algorithm"), [("td3", TD3), ("sac", SAC), ("ddpg", DDPG)])
 def test_other_algorithms_run_the_same_path(algo: str, algorithm: type[BaseAlgorithm], tmp_path: Path) -> None:
     agent = settings_of(algo)(learning_starts=6)  # type: ignore[call-arg]  # of a learner
-    config = TrainingConfig(algo=algo, episodes=12, slots=1, agent=agent, episode=EpisodeConfig(time_limit=1.5))
+    config = TrainingConfig(algo=algo, episodes=12, slots=1, agent=agent, episode=BRIEF)
     run = RunFolder.create(tmp_path / algo, config)
     learned = train(config, run)
     assert isinstance(algorithm.load(run.model_path), algorithm)
@@ -154,7 +156,7 @@ def test_other_algorithms_run_the_same_path(algo: str, algorithm: type[BaseAlgor
 
 @pytest.mark.parametrize("algo", OPTIMISERS)
 def test_optimisers_write_the_same_run_folder(algo: str, tmp_path: Path) -> None:
-    config = TrainingConfig(algo=algo, episodes=20, slots=3, episode=EpisodeConfig(time_limit=1.2))
+    config = TrainingConfig(algo=algo, episodes=20, slots=3, episode=BRIEF)
     run = RunFolder.create(tmp_path / algo, config)
     learned = train(config, run)
     assert len(list(run.episodes())) == 20 and len({row["seed"] for row in run.episodes()}) == 20
@@ -163,7 +165,7 @@ def test_optimisers_write_the_same_run_folder(algo: str, tmp_path: Path) -> None
 
 
 def test_budget_is_kept_with_episodes_in_flight(tmp_path: Path) -> None:
-    config = TrainingConfig(episodes=5, slots=2, episode=EpisodeConfig(time_limit=1.5))
+    config = TrainingConfig(episodes=5, slots=2, episode=BRIEF)
     run = RunFolder.create(tmp_path / "run", config)
     train(config, run)
     rows = list(run.episodes())
@@ -173,7 +175,7 @@ def test_budget_is_kept_with_episodes_in_flight(tmp_path: Path) -> None:
 def test_trainings_of_neighbouring_seeds_share_no_episode(tmp_path: Path) -> None:
     seeds = []
     for seed in (0, 1):
-        config = TrainingConfig(episodes=6, slots=2, seed=seed, episode=EpisodeConfig(time_limit=1.2))
+        config = TrainingConfig(episodes=6, slots=2, seed=seed, episode=BRIEF)
         run = RunFolder.create(tmp_path / str(seed), config)
         train(config, run)
         seeds += [row["seed"] for row in run.episodes()]
@@ -184,7 +186,7 @@ def test_candidates_are_compared_on_the_same_seeds_within_the_budget(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(TrainingConfig, "candidate_count", 2)
-    config = TrainingConfig(episodes=16, slots=1, episode=EpisodeConfig(time_limit=2.0))
+    config = TrainingConfig(episodes=16, slots=1, episode=SHORT.episode)
     run = RunFolder.create(tmp_path / "run", config)
     parameters = train(config, run).parameters
     rows = list(run.episodes())
