@@ -77,6 +77,8 @@ def main() -> None:
 
 def _train(arguments: Sequence[str]) -> None:
     arguments = [re.sub(r"^--simulations(?==|$)", "--episodes", argument) for argument in arguments]  # an alias
+    if arguments and not arguments[0].startswith("-"):  # other commands begin with what they look at
+        raise ConfigurationError(f"{arguments[0]!r} is no option: a task is given as --task {arguments[0]}")
     options = parse_options(TrainOptions, COMMAND, arguments, _defaults(arguments))
     config = options.training
     config = dataclasses.replace(config, episode=with_engine(config.episode, options.engine))

@@ -19,7 +19,7 @@ MISTAKES = {
         ("--episode.reward-form print", "--episode.reward-form"),
         ("--episode.dimensions tigh_length 0.3", "did you mean 'thigh_length'?"),
         ("--episode.dimensions foot_length 0.2", "unknown robot dimension 'foot_length'"),
-        ("balance", "Unrecognized options: balance"),
+        ("balance", "'balance' is no option: a task is given as --task balance"),
     ],
     "wrong types": [
         ("--task", "--task"),
