@@ -32,7 +32,7 @@ def nearby_loss(values: Values, targets: th.Tensor) -> th.Tensor:
 
 def centre_loss(values: Values, q_loss: th.Tensor, n_transitions: int) -> th.Tensor:
     """
-    Loss of ``mu`` away from the centre of the action space, which counts for less the more transitions are stored.
+    Loss of ``mu`` away from the centre of the action space, which counts for less the more transitions there were.
 
     Until ``V`` is settled, the parabola also follows targets by pushing ``mu`` away from all replayed actions. Where
     the tanh of ``mu`` and the parabola are flat, it gets no gradient, and stays. The pull is a normal prior of ``mu``,
@@ -40,7 +40,7 @@ def centre_loss(values: Values, q_loss: th.Tensor, n_transitions: int) -> th.Ten
 
     :param values: Values of replayed actions
     :param q_loss: Mean squared error of ``Q``
-    :param n_transitions: Number of transitions in the replay buffer
+    :param n_transitions: Number of transitions so far
     :return: Mean squared length of ``mu``, times its weight
     """
     weight = min(HIGHEST_PULL, PRIOR_ACTIONS / n_transitions)

@@ -30,6 +30,8 @@ SMALL_REWARD = 0.01
 """Largest reward below which the noise of learning rates is larger."""
 FAR_REWARD = 5.0
 """Distance of the rewards' mean below 0 that is far, in deviations and in units of reward."""
+FEWEST_REWARDS = 5
+"""Number of rewards below which their mean and deviation say nothing."""
 FRESH_UPDATES = 1000
 """Number of updates in which V may still be that of fresh networks, whatever rewards are."""
 
@@ -225,11 +227,13 @@ class NAF(OffPolicyAlgorithm):
         parameters, target_parameters = list(self.q_net.parameters()), list(self.q_net_target.parameters())
         average_parameters = get_ema_multi_avg_fn(1 - self.tau)
 
-        n_transitions = self.replay_buffer.size() * self.n_envs  # type: ignore[union-attr]
+        assert self.replay_buffer is not None
+        # A small replay buffer has forgotten some, and a loaded one has others
+        n_transitions = max(self.num_timesteps, self.replay_buffer.size() * self.replay_buffer.n_envs)
         losses, w_losses, mean_q_values = [], [], []
         for _ in range(gradient_steps):
             # Sample replay buffer
-            replay_data = self.replay_buffer.sample(batch_size, env=self._vec_normalize_env)  # type: ignore[union-attr]
+            replay_data = self.replay_buffer.sample(batch_size, env=self._vec_normalize_env)
             # For n-step replay, discount factor is gamma**n_steps (when no early termination)
             discounts = replay_data.discounts if replay_data.discounts is not None else self.gamma
 
@@ -288,7 +292,9 @@ class NAF(OffPolicyAlgorithm):
         Until ``V`` is down there, the parabola follows them sooner by pushing ``mu`` away from what was tried.
         """
         assert self.replay_buffer is not None
-        rewards = self.replay_buffer.rewards[: self.replay_buffer.size()]
+        rewards = getattr(self.replay_buffer, "rewards", np.empty(0))[: self.replay_buffer.size()]
+        if rewards.size < FEWEST_REWARDS:
+            return
         if self._vec_normalize_env is not None:
             rewards = self._vec_normalize_env.normalize_reward(rewards)
         std, mean = (one.item() for one in th.std_mean(th.as_tensor(rewards), correction=0))

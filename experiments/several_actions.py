@@ -176,7 +176,8 @@ def course_of(training: Training) -> Course:
 def fingerprint(algorithm: str) -> list[float]:
     """Length of all weights before and after a few updates, and of their change.
 
-    Another state of the code with the same fingerprint is the same algorithm.
+    Another state of the code with the same fingerprint is the same algorithm, but for what acts later in a
+    training only: whoever changes that deletes the courses.
 
     :param algorithm: name of the algorithm
     """

@@ -71,6 +71,12 @@ def test_rewards_far_below_zero_get_a_warning_once(algorithm, arguments):
     assert len(seen) == 1
 
 
+def test_so_few_rewards_say_nothing():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        NAF("MlpPolicy", Far(0), seed=0, learning_starts=0).learn(8)
+
+
 def test_it_is_the_reward_of_a_step_that_counts():
     """A sum of three steps would be far below 0, a step is not."""
     env = gym.wrappers.TransformReward(gym.make("MountainCarContinuous-v0"), lambda reward: reward - 3.0)

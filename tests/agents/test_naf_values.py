@@ -12,9 +12,11 @@ import torch as th
 from gymnasium import spaces
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from stable_baselines3.common.buffers import BaseBuffer
 from stable_baselines3.common.env_util import make_vec_env
+from stable_baselines3.common.type_aliases import ReplayBufferSamples
 
-from sarah.agents import NAF
+from sarah.agents import NAF, RankReplayBuffer
 from sarah.agents.critic import Values
 from sarah.agents.losses import centre_loss, nearby_loss
 
@@ -191,10 +193,46 @@ def test_the_pull_of_mu_to_the_centre_has_the_units_of_the_loss_and_fades_with_d
 
 
 @pytest.mark.parametrize("n_envs", [1, 4])
-def test_transitions_of_all_environments_count_beside_the_prior(n_envs, monkeypatch):
+@pytest.mark.parametrize(
+    "buffer",
+    [
+        {},
+        dict(buffer_size=40),
+        dict(replay_buffer_class=RankReplayBuffer, replay_buffer_kwargs=dict(temperature=0)),
+    ],
+)
+def test_all_transitions_count_beside_the_prior_of_mu(n_envs, buffer, monkeypatch):
+    """Those of all environments, and also those that a small replay buffer has forgotten."""
     counted = []
     monkeypatch.setattr(
         "sarah.agents.naf.centre_loss", lambda values, loss, n: counted.append(n) or centre_loss(values, loss, n)
     )
-    NAF("MlpPolicy", make_vec_env(Drift, n_envs), learning_starts=20, batch_size=8, device="cpu").learn(100)
+    env = make_vec_env(Drift, n_envs)
+    model = NAF("MlpPolicy", env, learning_starts=20, batch_size=8, device="cpu", **buffer).learn(100)
     assert counted[-1] == 100
+    again = NAF("MlpPolicy", env, learning_starts=20, batch_size=8, device="cpu", **buffer)
+    again.replay_buffer = model.replay_buffer
+    again.learn(20)
+    again.train(1, 8)
+    assert counted[-1] == min(120, buffer.get("buffer_size", 120))
+
+
+def test_a_replay_buffer_of_ones_own_needs_no_rewards():
+    """Only the samples that it gives are looked at."""
+
+    class Own(BaseBuffer):
+        def __init__(self, *args, optimize_memory_usage=False, **kwargs):
+            super().__init__(*args, **kwargs)
+            self.kept = []
+
+        def add(self, obs, next_obs, action, reward, done, infos):
+            self.kept.append([th.as_tensor(part, dtype=th.float32) for part in (obs, action, next_obs, done, reward)])
+            self.pos += 1
+
+        def _get_samples(self, batch_inds, env=None):
+            parts = zip(*(self.kept[index] for index in batch_inds), strict=True)
+            obs, action, next_obs, done, reward = map(th.cat, parts)
+            return ReplayBufferSamples(obs, action, next_obs, done.reshape(-1, 1), reward.reshape(-1, 1))
+
+    model = NAF("MlpPolicy", Drift(), learning_starts=20, replay_buffer_class=Own, device="cpu").learn(30)
+    assert model.logger.name_to_value["train/loss"] > 0.0
