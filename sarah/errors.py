@@ -130,6 +130,7 @@ def unknown_name(kind: str, name: str, allowed: Iterable[str]) -> str:
     names = sorted(allowed)
     if len(name) > LONGEST_NAME:
         return f"unknown {kind} {shortened(name)} (allowed: {', '.join(names) or 'none'})"
-    nearest = get_close_matches(name, names, n=1, cutoff=0.5)
-    guess = f", did you mean {nearest[0]!r}?" if nearest else ""
+    by_lower_case = {allowed_name.lower(): allowed_name for allowed_name in names}
+    nearest = get_close_matches(name.lower(), by_lower_case, n=1, cutoff=0.5)
+    guess = f", did you mean {by_lower_case[nearest[0]]!r}?" if nearest else ""
     return f"unknown {kind} {name!r}{guess} (allowed: {', '.join(names) or 'none'})"

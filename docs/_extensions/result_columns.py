@@ -80,6 +80,7 @@ FORMATS = {
     "over_true": ".2f",
     "over_centre": ".2f",
     "curvature": ".2f",
+    "v_error": ".0f",
 }
 """Format by the end of a column's name; the longest that fits counts."""
 DIGITS = 5

@@ -10,6 +10,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterator, Sequence
+from difflib import get_close_matches
 from typing import Any, NoReturn, TypeVar, get_args, get_type_hints
 
 import tyro
@@ -163,11 +164,25 @@ def parse_options(
     except SystemExit as exit_request:
         if not exit_request.code:
             raise
-        fail(command, _one_line(errors.getvalue()))
+        fail(command, _one_line(errors.getvalue(), list(_ungrouped(default))))
 
 
-def _one_line(box: str) -> str:
-    """Message in tyro's frame, with the name that tyro suggests."""
+def _ungrouped(config: Any) -> Iterator[str]:
+    """Names of the options that are in no group."""
+    for item in dataclasses.fields(config):
+        value = getattr(config, item.name)
+        if item.name == "training":
+            yield from _ungrouped(value)
+        elif not dataclasses.is_dataclass(value):
+            yield item.name.replace("_", "-")
+
+
+def _one_line(box: str, ungrouped: Sequence[str]) -> str:
+    """Message in tyro's frame, with the name that is nearest: one that is in no group, or what tyro suggests.
+
+    :param box: what tyro printed
+    :param ungrouped: names of the options that are in no group
+    """
     # The title is dropped. A terminal without frames gets plain rules, and one of them comes first.
     text = " ".join(line.strip("╭╮╰╯│ ") for line in box.splitlines()[1:])
     message = next(section.strip() for section in re.split("[─-]{5,}", text) if section.strip())
@@ -177,6 +192,9 @@ def _one_line(box: str) -> str:
     for pattern, words in PYTHON_WORDS.items():
         message = re.sub(pattern, words, message)
     message = re.sub(r"^(Unrecognized options: --[^,]*),.*", r"\1", message)
+    unknown = re.match(r"Unrecognized options: --(?!no-)([\w-]+)$", message)
+    if unknown and (nearest := get_close_matches(unknown[1], ungrouped, n=1, cutoff=0.8)):
+        return f"{message}, did you mean --{nearest[0]}?"
     meant = re.search(r"Perhaps you meant:\s+(--[\w.-]+)(?:, (--[\w.-]*no-[\w.-]+))?", text)
     if not meant:
         return message

@@ -84,7 +84,7 @@ def test_an_unknown_name_is_one_line_with_the_nearest() -> None:
         ("clock --random-sets 0", "--random-sets must be at least 1, not 0"),
         ("decisions --episodes 10 -1", "--episodes must be at least 1, not -1"),
         ("clock --workers -1", "--workers must be at least 0, not -1"),
-        ("several_actions --algorithms NAF", "unknown algorithm 'NAF' .allowed: ddpg, naf, "),
+        ("several_actions --algorithms NAF", "unknown algorithm 'NAF', did you mean 'naf'. .allowed: ddpg, naf, "),
         ("several_actions --tasks Hoper-v5", "unknown task 'Hoper-v5': .* Did you mean: `Hopper`"),
         (f"clock --out {__file__}", "--out must be a folder, and .* is a file"),
     ],
