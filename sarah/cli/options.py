@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import functools
 import io
 import itertools
 import os
@@ -151,30 +152,18 @@ def parse_options(
     :param arguments: arguments after the command's name
     :param default: options with their default values
     """
+    parse = functools.partial(tyro.cli, options_type, prog=command, default=default, registry=_REGISTRY)
     errors = io.StringIO()
     try:
         with contextlib.redirect_stderr(errors):
-            return tyro.cli(
-                options_type,
-                prog=command,
-                args=_none_empty(_with_both_ends(arguments, default)),
-                default=default,
-                registry=_REGISTRY,
-            )
+            return parse(args=_none_empty(_with_both_ends(arguments, default)))
     except SystemExit as exit_request:
         if not exit_request.code:
             raise
-        fail(command, _one_line(errors.getvalue(), list(_ungrouped(default))))
-
-
-def _ungrouped(config: Any) -> Iterator[str]:
-    """Names of the options that are in no group."""
-    for item in dataclasses.fields(config):
-        value = getattr(config, item.name)
-        if item.name == "training":
-            yield from _ungrouped(value)
-        elif not dataclasses.is_dataclass(value):
-            yield item.name.replace("_", "-")
+    help_text = io.StringIO()
+    with contextlib.redirect_stdout(help_text), contextlib.suppress(SystemExit):
+        parse(args=["--help"])
+    fail(command, _one_line(errors.getvalue(), re.findall(r"(?m)^[│\s]*--([\w-]+)(?![\w.-])", help_text.getvalue())))
 
 
 def _one_line(box: str, ungrouped: Sequence[str]) -> str:

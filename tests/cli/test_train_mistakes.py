@@ -16,6 +16,7 @@ MISTAKES = {
         ("--engine mujco", "unknown engine 'mujco', did you mean 'mujoco'?"),
         ("--episods 5", "did you mean --episodes?"),
         ("--episode 5", "did you mean --episodes?"),
+        ("--fron run", "did you mean --from?"),
         ("--episode.phisics.rate 300", "did you mean --episode.physics.rate?"),
         ("--episode.controller.time-out 1", "did you mean --episode.controller.time-out-seconds?"),
         ("--episode.reward-form print", "--episode.reward-form"),

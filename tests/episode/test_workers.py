@@ -35,8 +35,8 @@ from sarah.simulation.pybullet_client import pybullet
 from sarah.training.train import train
 from sarah.versions import source_hash
 
-# Longer than the 8 simulations of warm-up; episodes end at several times, as robots fall.
-COARSE = EpisodeConfig(time_limit=2.0, physics=COARSE_PHYSICS)
+# Longer than the 8 simulations of warm-up; a quarter of the episodes end early, as robots fall.
+COARSE = EpisodeConfig(time_limit=3.0, physics=COARSE_PHYSICS)
 TRAINING = TrainingConfig(episodes=20, slots=4, seed=5, episode=COARSE)
 SPEC = EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), seed=1, config=EpisodeConfig(time_limit=2.0))
 
