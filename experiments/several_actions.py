@@ -57,6 +57,7 @@ class SeveralActions(OnWorkers):
     :param seeds: number of trainings of each algorithm
     :param evaluations: number of evaluations along a training, the last at its end
     :param episodes: number of episodes of an evaluation
+    :param action_repeat: number of steps for which an action is held
     :param courses: folder that keeps the courses of the trainings; one that is there is not run again
     """
 
@@ -66,6 +67,7 @@ class SeveralActions(OnWorkers):
     seeds: int = 5
     evaluations: int = 10
     episodes: int = 5
+    action_repeat: int = 1
     courses: Path = Path("results/several_actions")
 
     def rows(self) -> Iterator[Row]:
@@ -80,7 +82,7 @@ class SeveralActions(OnWorkers):
             }
             for seed in range(self.seeds):  # the first seed of all tasks comes first
                 for (task, algorithm), running in jobs.items():
-                    training = Training(task, algorithm, seed, self.steps, every, self.episodes)
+                    training = Training(task, algorithm, seed, self.steps, every, self.episodes, self.action_repeat)
                     running.append(workers.submit(kept_course, training, self.courses, fingerprints[algorithm]))
             for (task, algorithm), running in jobs.items():
                 courses = [job.result() for job in running]
@@ -108,6 +110,7 @@ class Training:
     :param steps: number of its steps
     :param every: number of steps between evaluations
     :param episodes: number of episodes of an evaluation
+    :param action_repeat: number of steps for which an action is held
     """
 
     task: str
@@ -116,26 +119,52 @@ class Training:
     steps: int
     every: int
     episodes: int
+    action_repeat: int
+
+    def env(self) -> gym.Env:
+        """A new environment of the task."""
+        return ActionRepeat(gym.make(self.task), self.action_repeat)
+
+
+class ActionRepeat(gym.Wrapper):
+    """Hold each action for some steps; its reward is their mean, so that the size of rewards stays the same.
+
+    :param env: the environment
+    :param steps: number of steps
+    """
+
+    def __init__(self, env: gym.Env, steps: int) -> None:
+        super().__init__(env)
+        self._steps = steps
+
+    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        """Steps with the same action, up to the end of the episode."""
+        rewards = 0.0
+        for _ in range(self._steps):
+            observation, reward, terminated, truncated, info = self.env.step(action)
+            rewards += float(reward)
+            if terminated or truncated:
+                break
+        return observation, rewards / self._steps, terminated, truncated, info
 
 
 class Evaluations(BaseCallback):
     """Mean returns of the same episodes along a training, and the largest V over its bound until then.
 
-    :param env: environment of the episodes
-    :param every: number of steps between evaluations
-    :param episodes: number of episodes
+    :param training: the training
     """
 
-    def __init__(self, env: gym.Env, every: int, episodes: int) -> None:
+    def __init__(self, training: Training) -> None:
         super().__init__()
         self.course: Course = []
-        self._env, self._every, self._episodes = env, every, episodes
+        self._env, self._episodes = Monitor(training.env()), training.episodes
+        self._action_repeat, self._every = training.action_repeat, training.every // training.action_repeat
 
     def _on_step(self) -> bool:
         if self.num_timesteps % self._every == 0:
             self._env.reset(seed=EVALUATION_SEED)
             mean_return = float(evaluate_policy(self.model, self._env, self._episodes)[0])
-            self.course.append((mean_return, getattr(self.model, "highest_ratio", 0.0)))
+            self.course.append((self._action_repeat * mean_return, getattr(self.model, "highest_ratio", 0.0)))
         return True
 
 
@@ -146,7 +175,8 @@ def kept_course(training: Training, folder: Path, wanted: list[float]) -> Course
     :param folder: folder of the files
     :param wanted: fingerprint of today's algorithm
     """
-    name = f"{training.task}-{training.algorithm}-{training.steps}-s{training.seed}"
+    held = f"-held-{training.action_repeat}" if training.action_repeat > 1 else ""
+    name = f"{training.task}-{training.algorithm}-{training.steps}{held}-s{training.seed}"
     file = folder / f"{name.replace(', ', '-').replace(' ', '-')}.json"
     if file.exists():
         kept = json.loads(file.read_text(encoding="utf-8"))
@@ -165,11 +195,11 @@ def course_of(training: Training) -> Course:
     :param training: the training
     """
     torch.set_num_threads(1)
-    evaluations = Evaluations(Monitor(gym.make(training.task)), training.every, training.episodes)
+    evaluations = Evaluations(training)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # That V runs away is what the rows say
-        agent = model(training.algorithm, gym.make(training.task), training.seed)
-        agent.learn(training.steps, callback=evaluations)
+        agent = model(training.algorithm, training.env(), training.seed)
+        agent.learn(training.steps // training.action_repeat, callback=evaluations)
     return evaluations.course
 
 

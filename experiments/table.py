@@ -28,6 +28,7 @@ from experiments.held_actions import HeldActions
 from experiments.known_truth import KnownTruth
 from experiments.landscape import Landscape
 from experiments.lateral_limit import LateralLimit
+from experiments.longer_actions import LongerActions
 from experiments.naf_preset import NafPreset
 from experiments.noise_limit import NoiseLimit
 from experiments.observed_reward import ObservedReward
@@ -196,6 +197,19 @@ TABLE: dict[str, Maker] = {
         "What does an action decide on Hopper where NAF stays, and what do values make of it?",
         HeldActions(),
         {"steps": 120, "seeds": 1, "draws": 2, "held_steps": (1,)},
+        of_robot=False,
+    ),
+    "longer_actions": Maker(
+        "What does it change on Hopper if each action is held for several steps?",
+        LongerActions(),
+        {
+            "action_repeats": (2,),
+            "steps": 240,
+            "seeds": 1,
+            "evaluations": 1,
+            "episodes": 1,
+            "courses": Path("build/experiments/several_actions"),
+        },
         of_robot=False,
     ),
     "naf_pendulum": Maker(
