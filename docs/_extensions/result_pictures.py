@@ -83,11 +83,11 @@ def standard_task(rows: Rows) -> Figure:
     return figure
 
 
-def several_actions(rows: Rows) -> Figure:
-    """Return along the training, median and lowest to highest seed, a panel for each task."""
-    tasks = grouped(rows, "{task}")
-    figure, axes = panels(len(tasks), 0.35)
-    for axis, (name, group) in zip(axes, tasks.items(), strict=True):
+def learning_curves(rows: Rows, panel: str) -> Figure:
+    """Return along the training, median and lowest to highest seed, a panel for each group of rows."""
+    groups = grouped(rows, panel)
+    figure, axes = panels(len(groups), 0.35)
+    for axis, (name, group) in zip(axes, groups.items(), strict=True):
         draw_lines(axis, group, "steps", "return", "{algorithm}")
         axis.set_title(name, fontsize="small")
         axis.set_ylabel("return" if axis is axes[0] else "")
@@ -302,7 +302,11 @@ PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
     "race_balance": (("race_balance",), race),
     "naf_pendulum": (("naf_pendulum",), standard_task),
     "naf_inverted_pendulum": (("naf_inverted_pendulum",), standard_task),
-    "several_actions": (("several_actions",), several_actions),
+    "several_actions": (("several_actions",), partial(learning_curves, panel="{task}")),
+    "longer_actions": (
+        ("longer_actions",),
+        partial(learning_curves, panel="steps per action: {action_repeat}"),
+    ),
     "known_truth": (("known_truth",), known_truth),
     "naf_preset": (("naf_preset",), naf_preset),
     "robustness": (("robustness",), robustness),

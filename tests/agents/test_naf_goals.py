@@ -37,7 +37,7 @@ class Goals(gym.Env):
         return -(np.linalg.norm(achieved_goal - desired_goal, axis=-1) > RADIUS).astype(np.float32)
 
 
-@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_mu_leads_to_the_goal_with_hindsight_replay(seed):
     """Without the pull to the centre an entry of mu ends at one bound in all states, and leads right in two thirds."""
     model = NAF(
