@@ -3,6 +3,7 @@
 import contextlib
 import json
 import os
+import resource
 import shutil
 import signal
 import socket
@@ -279,6 +280,21 @@ def test_waiting_episodes_are_bounded_and_forgotten(stood: Stood, monkeypatch: p
             begin_episode(EpisodeSpec(SPEC.parameters, seed, config=SPEC.config))
         assert len(stood.open) == 2
     assert not stood.open
+
+
+def pages_taken(megabytes: int) -> int:
+    """Pages that a process takes from the system while it makes and forgets arrays of a megabyte."""
+    bytearray(2**20)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+    for _ in range(megabytes):
+        bytearray(2**20)
+    return resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="counts what Linux gives to a process")
+def test_workers_keep_the_memory_that_they_use_again() -> None:
+    with Workers(1) as workers:
+        assert workers.submit(pages_taken, 100).result() < 1000  # and not the 256 of each megabyte
 
 
 def test_workers_listen_to_this_machine_only() -> None:
