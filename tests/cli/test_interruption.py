@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from terminal import COARSE
+from terminal import COARSE, run
 
 from experiments import record
 
@@ -34,71 +34,67 @@ def begin(folder: Path, *arguments: str) -> subprocess.Popen[str]:
     )
 
 
-def wait_for_rows(process: subprocess.Popen[str], run: Path, count: int) -> None:
+def wait_for_rows(process: subprocess.Popen[str], folder: Path, count: int) -> None:
     """Until so many rows are in the journal."""
     while process.poll() is None:
-        if (run / "journal.jsonl").exists() and (run / "journal.jsonl").read_bytes().count(b"\n") >= count:
+        if (folder / "journal.jsonl").exists() and (folder / "journal.jsonl").read_bytes().count(b"\n") >= count:
             return
         time.sleep(0.01)
     raise AssertionError(process.communicate())
 
 
-def rows(run: Path) -> list[bytes]:
-    return (run / "journal.jsonl").read_bytes().splitlines()
+def rows(folder: Path) -> list[bytes]:
+    return (folder / "journal.jsonl").read_bytes().splitlines()
 
 
 @pytest.fixture(scope="module")
 def expected(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     folder = tmp_path_factory.mktemp("expected")
-    process = begin(folder, *TRAINING)
-    _, errors = process.communicate(timeout=400)
-    assert process.returncode == 0, errors
+    finished = run("sarah-train", *TRAINING, cwd=folder)
+    assert finished.returncode == 0, finished.stderr
     return {name: (folder / "run" / name).read_bytes() for name in RECORDS}
 
 
 def test_killed_locked_stopped_and_resumed(expected: dict[str, bytes], tmp_path: Path) -> None:
-    run = tmp_path / "run"
+    folder = tmp_path / "run"
     process = begin(tmp_path, *TRAINING)
-    wait_for_rows(process, run, 4)
+    wait_for_rows(process, folder, 4)
     process.send_signal(signal.SIGSTOP)  # so that it is still there when the other has started
-    intruder = begin(tmp_path, "--resume", "run")
-    _, errors = intruder.communicate(timeout=400)
-    assert intruder.returncode == 2 and "run folder run is in use by another training" in errors
+    intruder = run("sarah-train", "--resume", "run", cwd=tmp_path)
+    assert intruder.returncode == 2 and "run folder run is in use by another training" in intruder.stderr
     assert process.poll() is None
     process.kill()  # its lock dies with it
     process.communicate()
-    kept = rows(run)
+    kept = rows(folder)
 
     process = begin(tmp_path, "--resume", "run")
-    wait_for_rows(process, run, len(kept) + 1)
+    wait_for_rows(process, folder, len(kept) + 1)
     process.terminate()
     _, errors = process.communicate(timeout=400)
     assert process.returncode == 128 + signal.SIGTERM and "Traceback" not in errors
     assert "sarah-train: interrupted; go on with sarah-train --resume run" in errors
-    assert rows(run)[: len(kept)] == kept
-    kept = rows(run)
+    assert rows(folder)[: len(kept)] == kept
+    kept = rows(folder)
 
     process = begin(tmp_path, "--resume", "run", "--workers", "2")
-    wait_for_rows(process, run, len(kept) + 1)
+    wait_for_rows(process, folder, len(kept) + 1)
     os.killpg(process.pid, signal.SIGINT)  # as Ctrl-C does, to the workers too
     _, errors = process.communicate(timeout=400)
     assert process.returncode == 128 + signal.SIGINT and "Traceback" not in errors
-    assert rows(run)[: len(kept)] == kept
+    assert rows(folder)[: len(kept)] == kept
 
     (command,) = re.findall(r"go on with (sarah-train --resume \S+)", errors)
-    process = begin(tmp_path, *shlex.split(command)[1:])
-    _, errors = process.communicate(timeout=400)
-    assert process.returncode == 0, errors
-    assert {name: (run / name).read_bytes() for name in RECORDS} == expected
+    finished = run(*shlex.split(command), cwd=tmp_path)
+    assert finished.returncode == 0, finished.stderr
+    assert {name: (folder / name).read_bytes() for name in RECORDS} == expected
 
-    process = begin(tmp_path, "--resume", "run")
-    output, errors = process.communicate(timeout=400)
-    assert (process.returncode, output, errors) == (
+    again = run("sarah-train", "--resume", "run", cwd=tmp_path)
+    assert (again.returncode, again.stdout, again.stderr) == (
         0,
         "run is finished: to go on, add --episodes with more than its 60\n",
         "",
     )
-    assert {name: (run / name).read_bytes() for name in RECORDS} == expected
+    assert {name: (folder / name).read_bytes() for name in RECORDS} == expected
 
 
 @pytest.fixture
@@ -114,26 +110,23 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
 
 
 def test_a_full_disk_stops_the_training_and_space_lets_it_go_on(expected: dict[str, bytes], small_disk: Path) -> None:
-    process = begin(small_disk, *TRAINING)
-    _, errors = process.communicate(timeout=400)
-    assert process.returncode == 2 and "Traceback" not in errors
-    assert re.search(r"sarah-train: error: .*No space left on device.*go on with sarah-train --resume run\n", errors)
+    stopped = run("sarah-train", *TRAINING, cwd=small_disk)
+    assert stopped.returncode == 2 and "Traceback" not in stopped.stderr
+    said = r"sarah-train: error: .*No space left on device.*go on with sarah-train --resume run\n"
+    assert re.search(said, stopped.stderr)
     kept = rows(small_disk / "run")
     subprocess.run(["mount", "-o", "remount,size=8m", str(small_disk)], check=True)
-    process = begin(small_disk, "--resume", "run")
-    _, errors = process.communicate(timeout=400)
-    assert process.returncode == 0, errors
+    finished = run("sarah-train", "--resume", "run", cwd=small_disk)
+    assert finished.returncode == 0, finished.stderr
     assert {name: (small_disk / "run" / name).read_bytes() for name in RECORDS} == expected
     assert set(kept[:-1]) <= set(rows(small_disk / "run"))  # the last one may be half a row
 
 
 def test_a_folder_that_cannot_be_written_is_one_line(small_disk: Path) -> None:
     subprocess.run(["mount", "-o", "remount,ro", str(small_disk)], check=True)
-    process = begin(small_disk, *TRAINING)
-    _, errors = process.communicate(timeout=400)
-    assert process.returncode == 2 and errors == (
-        "sarah-train: error: cannot write run folder run: Read-only file system\n"
-    )
+    refused = run("sarah-train", *TRAINING, cwd=small_disk)
+    said = "sarah-train: error: cannot write run folder run: Read-only file system\n"
+    assert (refused.returncode, refused.stderr) == (2, said)
     assert not list(small_disk.iterdir())
 
 
