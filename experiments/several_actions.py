@@ -74,6 +74,9 @@ class SeveralActions(OnWorkers):
         """A row for each task, algorithm and evaluation."""
         for task in self.tasks:
             check_task(task)
+        if self.steps % (self.evaluations * self.action_repeat):
+            share = f"{self.evaluations} evaluations with actions of {self.action_repeat} steps"
+            raise ConfigurationError(f"--steps must be a multiple of {share}, not {self.steps}")
         every = self.steps // self.evaluations
         fingerprints = {algorithm: fingerprint(algorithm) for algorithm in self.algorithms}
         with Workers(self.workers) as workers:
