@@ -29,7 +29,7 @@ UNWATCHED = {
 which takes the processor from the episodes."""
 ENVIRONMENT, FREES_MEMORY = "distributed.nanny.pre-spawn-environ", "MALLOC_TRIM_THRESHOLD_"
 """Dask's setting of the environment of workers, and the variable in it with which they take every array above 128 kB
-from the system and give it back. That is a third of the time of a training in a worker."""
+from the system and give it back. That slows trainings of large networks."""
 ATTEMPTS = 20
 """Largest number of times that a call is submitted: a scheduler gives it up after the deaths of a few workers."""
 
