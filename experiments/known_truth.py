@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from statistics import median
 
+import gymnasium as gym
 import numpy as np
 import torch as th
 from stable_baselines3 import DDPG
@@ -135,7 +136,7 @@ def judgement(task: str, variant: str, steps: int, seed: int, episodes: int) -> 
     return of_value(of_action, model, env, states, actions) if isinstance(model, Watched) else of_action
 
 
-def agent(variant: str, env: KnownTask, seed: int) -> OffPolicyAlgorithm:
+def agent(variant: str, env: gym.Env, seed: int) -> OffPolicyAlgorithm:
     """An agent that has learned nothing yet.
 
     :param variant: name of a variant of NAF, or DDPG

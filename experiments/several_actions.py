@@ -19,6 +19,7 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import torch
+from gymnasium.wrappers import ClipAction, TransformAction
 from stable_baselines3 import DDPG
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.evaluation import evaluate_policy
@@ -58,6 +59,7 @@ class SeveralActions(OnWorkers):
     :param evaluations: number of evaluations along a training, the last at its end
     :param episodes: number of episodes of an evaluation
     :param action_repeat: number of steps for which an action is held
+    :param action_scale: factor of actions, which are cut at their bounds
     :param courses: folder that keeps the courses of the trainings; one that is there is not run again
     """
 
@@ -68,6 +70,7 @@ class SeveralActions(OnWorkers):
     evaluations: int = 10
     episodes: int = 5
     action_repeat: int = 1
+    action_scale: float = 1.0
     courses: Path = Path("results/several_actions")
 
     def rows(self) -> Iterator[Row]:
@@ -85,7 +88,8 @@ class SeveralActions(OnWorkers):
             }
             for seed in range(self.seeds):  # the first seed of all tasks comes first
                 for (task, algorithm), running in jobs.items():
-                    training = Training(task, algorithm, seed, self.steps, every, self.episodes, self.action_repeat)
+                    changes = self.action_repeat, self.action_scale
+                    training = Training(task, algorithm, seed, self.steps, every, self.episodes, *changes)
                     running.append(workers.submit(kept_course, training, self.courses, fingerprints[algorithm]))
             for (task, algorithm), running in jobs.items():
                 courses = [job.result() for job in running]
@@ -114,6 +118,7 @@ class Training:
     :param every: number of steps between evaluations
     :param episodes: number of episodes of an evaluation
     :param action_repeat: number of steps for which an action is held
+    :param action_scale: factor of actions, which are cut at their bounds
     """
 
     task: str
@@ -123,10 +128,20 @@ class Training:
     every: int
     episodes: int
     action_repeat: int
+    action_scale: float
 
     def env(self) -> gym.Env:
         """A new environment of the task."""
-        return ActionRepeat(gym.make(self.task), self.action_repeat)
+        return ActionRepeat(with_scaled_actions(gym.make(self.task), self.action_scale), self.action_repeat)
+
+
+def with_scaled_actions(env: gym.Env, scale: float) -> gym.Env:
+    """The environment with actions that are multiplied, and then cut at their bounds.
+
+    :param env: the environment; its actions reach as far below 0 as above
+    :param scale: factor of the actions
+    """
+    return TransformAction(ClipAction(env), lambda action: scale * action, env.action_space)
 
 
 class ActionRepeat(gym.Wrapper):
@@ -178,8 +193,10 @@ def kept_course(training: Training, folder: Path, wanted: list[float]) -> Course
     :param folder: folder of the files
     :param wanted: fingerprint of today's algorithm
     """
-    held = f"-held-{training.action_repeat}" if training.action_repeat > 1 else ""
-    name = f"{training.task}-{training.algorithm}-{training.steps}{held}-s{training.seed}"
+    name = f"{training.task}-{training.algorithm}-{training.steps}"
+    name += f"-held-{training.action_repeat}" if training.action_repeat > 1 else ""
+    name += f"-scaled-{training.action_scale:g}" if training.action_scale != 1.0 else ""
+    name += f"-s{training.seed}"
     file = folder / f"{name.replace(', ', '-').replace(' ', '-')}.json"
     if file.exists():
         kept = json.loads(file.read_text(encoding="utf-8"))

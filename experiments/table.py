@@ -25,10 +25,10 @@ from experiments.first_training import FirstTraining
 from experiments.flexion_laws import FlexionLaws
 from experiments.goal_tasks import GoalTasks
 from experiments.held_actions import HeldActions
+from experiments.hopper_actions import HopperActions
 from experiments.known_truth import KnownTruth
 from experiments.landscape import Landscape
 from experiments.lateral_limit import LateralLimit
-from experiments.longer_actions import LongerActions
 from experiments.naf_preset import NafPreset
 from experiments.noise_limit import NoiseLimit
 from experiments.observed_reward import ObservedReward
@@ -39,6 +39,7 @@ from experiments.rank_replay import RankReplay
 from experiments.robot_dimensions import RobotDimensions
 from experiments.robustness import Robustness
 from experiments.rough_ground import RoughGround
+from experiments.scaled_actions import ScaledActions
 from experiments.second_training import SecondTraining
 from experiments.sensor_faults import SensorFaults
 from experiments.several_actions import SeveralActions
@@ -199,17 +200,23 @@ TABLE: dict[str, Maker] = {
         {"steps": 120, "seeds": 1, "draws": 2, "held_steps": (1,)},
         of_robot=False,
     ),
-    "longer_actions": Maker(
-        "What does it change on Hopper if each action is held for several steps?",
-        LongerActions(),
+    "hopper_actions": Maker(
+        "What does it change on Hopper if actions are held for several steps, or larger?",
+        HopperActions(),
         {
-            "action_repeats": (2,),
-            "steps": 240,
+            "actions": ("held for four steps",),
+            "steps": 480,
             "seeds": 1,
             "evaluations": 1,
             "episodes": 1,
             "courses": Path("build/experiments/several_actions"),
         },
+        of_robot=False,
+    ),
+    "scaled_actions": Maker(
+        "Where the best action is at the bounds, what do actions change that reach them sooner?",
+        ScaledActions(),
+        {"tasks": ("six actions, clear",), "steps": 120, "seeds": 1, "episodes": 1},
         of_robot=False,
     ),
     "naf_pendulum": Maker(

@@ -303,10 +303,7 @@ PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
     "naf_pendulum": (("naf_pendulum",), standard_task),
     "naf_inverted_pendulum": (("naf_inverted_pendulum",), standard_task),
     "several_actions": (("several_actions",), partial(learning_curves, panel="{task}")),
-    "longer_actions": (
-        ("longer_actions",),
-        partial(learning_curves, panel="steps per action: {action_repeat}"),
-    ),
+    "hopper_actions": (("hopper_actions",), partial(learning_curves, panel="{actions}")),
     "known_truth": (("known_truth",), known_truth),
     "naf_preset": (("naf_preset",), naf_preset),
     "robustness": (("robustness",), robustness),

@@ -86,7 +86,9 @@ def test_an_unknown_name_is_one_line_with_the_nearest() -> None:
         ("clock --workers -1", "--workers must be at least 0, not -1"),
         ("several_actions --algorithms NAF", "unknown algorithm 'NAF', did you mean 'naf'. .allowed: ddpg, naf, "),
         ("several_actions --tasks Hoper-v5", "unknown task 'Hoper-v5': .* Did you mean: `Hopper`"),
-        ("longer_actions --steps 35", "--steps must be a multiple of 10 evaluations .*, not 35"),
+        ("hopper_actions --steps 35", "--steps must be a multiple of 10 evaluations .*, not 35"),
+        ("hopper_actions --actions held", "unknown actions 'held' .allowed: as they are, held for four steps, "),
+        ("scaled_actions --tasks six", "unknown task 'six' .*six actions, clear"),
         (f"clock --out {__file__}", "--out must be a folder, and .* is a file"),
     ],
 )
