@@ -30,7 +30,7 @@ class Change(NamedTuple):
 CHANGES = {
     "as they are": Change(),
     "held for four steps": Change(action_repeat=4),
-    "three times as large": Change(action_scale=3.0, algorithms=("naf",)),  # DDPG's are at their bounds as it is
+    "three times as large": Change(action_scale=3.0, algorithms=("naf",)),  # DDPG is at the bounds anyway
 }
 
 
