@@ -1,4 +1,4 @@
-"""NAF and DDPG on Hopper with other actions: what keeps NAF low there."""
+"""NAF and DDPG on Hopper with other actions, which NAF does better with."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Change(NamedTuple):
 CHANGES = {
     "as they are": Change(),
     "held for four steps": Change(action_repeat=4),
-    "three times as large": Change(action_scale=3.0, algorithms=("naf",)),  # DDPG is at the bounds anyway
+    "three times as large": Change(action_scale=3.0, algorithms=("naf",)),
 }
 
 
