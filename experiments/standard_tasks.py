@@ -1,6 +1,7 @@
 """NAF on standard tasks, against stable-baselines3's TD3, SAC and DDPG: mean return of evaluation episodes at the end.
 
-Every algorithm runs with the defaults of its class; TD3 and DDPG with the noise that their documentation adds.
+Every algorithm runs with the defaults of its class; TD3 and DDPG with the noise that their documentation adds, and NAF
+with wider noise as well.
 """
 
 from __future__ import annotations
@@ -8,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from statistics import median
+from typing import Any
 
 import gymnasium as gym
 import torch
@@ -15,6 +17,7 @@ import tyro
 from stable_baselines3 import DDPG, SAC, TD3
 from stable_baselines3.common.evaluation import evaluate_policy
 from stable_baselines3.common.monitor import Monitor
+from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
 from experiments.baselines import documented_noise
 from experiments.experiment import OnWorkers
@@ -22,13 +25,21 @@ from experiments.record import Row
 from sarah.agents import NAF
 from sarah.episode.workers import Workers
 
-ALGORITHMS = {"naf": NAF, "td3": TD3, "sac": SAC, "ddpg": DDPG}
+WIDER_NOISE: dict[str, Any] = dict(exploration_std=0.5)
+ALGORITHMS: dict[str, tuple[type[OffPolicyAlgorithm], dict[str, Any]]] = {
+    "naf": (NAF, {}),
+    "naf, wider noise": (NAF, WIDER_NOISE),
+    "td3": (TD3, {}),
+    "sac": (SAC, {}),
+    "ddpg": (DDPG, {}),
+}
+"""Class of each, and its settings beside the defaults."""
 EVALUATION_SEED = 10_000
 
 
 @dataclass(frozen=True)
 class StandardTask(OnWorkers):
-    """Four algorithms on a task of gymnasium, a training for each worker at a time.
+    """Algorithms on a task of gymnasium, a training for each worker at a time.
 
     :param task: name of the task
     :param steps: number of steps of a training
@@ -75,10 +86,10 @@ def trained_return(task: str, algo: str, seed: int, steps: int, episodes: int) -
     """
     torch.set_num_threads(1)
     env = gym.make(task)
-    settings = {}
-    if algo in ("td3", "ddpg"):
-        settings["action_noise"] = documented_noise(env)
-    model = ALGORITHMS[algo]("MlpPolicy", env, seed=seed, device="cpu", **settings).learn(steps)
+    algorithm, settings = ALGORITHMS[algo]
+    if algorithm in (TD3, DDPG):
+        settings = settings | {"action_noise": documented_noise(env)}
+    model = algorithm("MlpPolicy", env, seed=seed, device="cpu", **settings).learn(steps)
     judged = Monitor(gym.make(task))
     judged.reset(seed=EVALUATION_SEED)
     return float(evaluate_policy(model, judged, episodes)[0])
