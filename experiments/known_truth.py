@@ -136,12 +136,13 @@ def judgement(task: str, variant: str, steps: int, seed: int, episodes: int) -> 
     return of_value(of_action, model, env, states, actions) if isinstance(model, Watched) else of_action
 
 
-def agent(variant: str, env: gym.Env, seed: int) -> OffPolicyAlgorithm:
+def agent(variant: str, env: gym.Env, seed: int, exploration_std: float = EXPLORATION_STD) -> OffPolicyAlgorithm:
     """An agent that has learned nothing yet.
 
     :param variant: name of a variant of NAF, or DDPG
     :param env: its task
     :param seed: its seed
+    :param exploration_std: standard deviation of NAF's noise; DDPG has that of its documentation
     """
     if variant == DDPG_NAME:
         layers = dict(net_arch=LAYERS)
@@ -152,7 +153,7 @@ def agent(variant: str, env: gym.Env, seed: int) -> OffPolicyAlgorithm:
         env,
         seed=seed,
         device="cpu",
-        exploration_std=EXPLORATION_STD,
+        exploration_std=exploration_std,
         policy_kwargs=dict(net_arch=chosen.net_arch, dropout=chosen.dropout),
     )
 

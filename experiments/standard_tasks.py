@@ -28,7 +28,7 @@ from sarah.episode.workers import Workers
 WIDER_NOISE: dict[str, Any] = dict(exploration_std=0.5)
 ALGORITHMS: dict[str, tuple[type[OffPolicyAlgorithm], dict[str, Any]]] = {
     "naf": (NAF, {}),
-    "naf, wider noise": (NAF, WIDER_NOISE),
+    "naf with wider noise": (NAF, WIDER_NOISE),
     "td3": (TD3, {}),
     "sac": (SAC, {}),
     "ddpg": (DDPG, {}),
