@@ -1,7 +1,8 @@
 """Times gradient updates of NAF and of stable-baselines3's TD3 with equal layers, on one thread.
 
 Every round times each of them once, on random transitions, one after the other; ratios are medians over the rounds. The
-products are the bare matrix products of NAF's update, forward and backward, as a share of the update's time.
+products are the bare matrix products of NAF's update, forward and backward, as a share of the update's time. NAF is
+timed as it is, and with V in place of W: so without W, dropout and normalised layers.
 """
 
 from __future__ import annotations
@@ -58,20 +59,22 @@ class Updates:
                     "naf_updates_per_second": round(1.0 / median(times["naf"])),
                     "td3_updates_per_second": round(1.0 / median(times["td3"])),
                     "naf_over_td3": ratio(times["td3"], times["naf"]),
+                    "naf_with_v_over_td3": ratio(times["td3"], times["naf with V"]),
                     "products_share": ratio(times["products"], times["naf"]),
                 }
 
     def _times(self, layers: tuple[int, ...], dimensions: tuple[int, int]) -> dict[str, list[float]]:
         """Seconds of an update in every round, by what is timed."""
-        settings: dict[str, Any] = dict(
-            policy_kwargs=dict(net_arch=list(layers)), buffer_size=5000, seed=0, device="cpu"
-        )
-        naf, td3 = (filled(algorithm("MlpPolicy", Noise(*dimensions), **settings)) for algorithm in (NAF, TD3))
-        timed: dict[str, Callable[[int], None]] = {
-            "naf": partial(naf.train, batch_size=self.batch_size),
-            "td3": partial(td3.train, batch_size=self.batch_size),
-            "products": products(naf, self.batch_size),
+        env, widths = Noise(*dimensions), list(layers)
+        models = {
+            "naf": filled(NAF, env, widths),
+            "naf with V": filled(NAF, env, dict(V=widths, shared=widths, mu=[], L=[])),
+            "td3": filled(TD3, env, widths),
         }
+        timed: dict[str, Callable[[int], None]] = {
+            name: partial(model.train, batch_size=self.batch_size) for name, model in models.items()
+        }
+        timed["products"] = products(models["naf"], self.batch_size)
         for run in timed.values():
             run(WARM_UP)
         times: dict[str, list[float]] = {name: [] for name in timed}
@@ -104,11 +107,14 @@ def ratio(upper: list[float], lower: list[float]) -> float:
     return median(one / other for one, other in zip(upper, lower, strict=True))
 
 
-def filled(model: OffPolicyAlgorithm) -> OffPolicyAlgorithm:
-    """The model with random transitions in its replay buffer.
+def filled(algorithm: type[OffPolicyAlgorithm], env: gym.Env, net_arch: Any) -> OffPolicyAlgorithm:
+    """A model with random transitions in its replay buffer.
 
-    :param model: an algorithm
+    :param algorithm: its class
+    :param env: its spaces
+    :param net_arch: its layers
     """
+    model = algorithm("MlpPolicy", env, policy_kwargs=dict(net_arch=net_arch), buffer_size=5000, seed=0, device="cpu")
     observation_dim, action_dim = model.observation_space.shape[0], model.action_space.shape[0]
     generator = np.random.default_rng(0)
     for _ in range(TRANSITIONS):
