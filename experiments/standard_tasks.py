@@ -1,7 +1,7 @@
 """NAF on standard tasks, against stable-baselines3's TD3, SAC and DDPG: mean return of evaluation episodes at the end.
 
-Every algorithm runs with the defaults of its class; TD3 and DDPG with the noise that their documentation adds, and NAF
-with wider noise as well.
+Every algorithm runs with the defaults of its class, TD3 and DDPG with the noise that their documentation adds. NAF can be
+tried with wider noise as well.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from experiments.experiment import OnWorkers
 from experiments.record import Row
 from sarah.agents import NAF
 from sarah.episode.workers import Workers
+from sarah.errors import ConfigurationError, unknown_name
 
 WIDER_NOISE: dict[str, Any] = dict(exploration_std=0.5)
 ALGORITHMS: dict[str, tuple[type[OffPolicyAlgorithm], dict[str, Any]]] = {
@@ -43,24 +44,29 @@ class StandardTask(OnWorkers):
 
     :param task: name of the task
     :param steps: number of steps of a training
+    :param algorithms: names of the algorithms
     :param seeds: number of trainings of each algorithm
     :param episodes: number of evaluation episodes
     """
 
     task: tyro.conf.Suppress[str]
     steps: int
+    algorithms: tuple[str, ...] = ("naf", "td3", "sac", "ddpg")
     seeds: int = 5
     episodes: int = 20
 
     def rows(self) -> Iterator[Row]:
         """A row for each algorithm."""
+        for algo in self.algorithms:
+            if algo not in ALGORITHMS:
+                raise ConfigurationError(unknown_name("algorithm", algo, ALGORITHMS))
         with Workers(self.workers) as workers:
             jobs = {
                 algo: [
                     workers.submit(trained_return, self.task, algo, seed, self.steps, self.episodes)
                     for seed in range(self.seeds)
                 ]
-                for algo in ALGORITHMS
+                for algo in self.algorithms
             }
             for algo, running in jobs.items():
                 returns = [job.result() for job in running]

@@ -225,6 +225,12 @@ TABLE: dict[str, Maker] = {
         {"steps": 120, "seeds": 1, "episodes": 1},
         of_robot=False,
     ),
+    "naf_noise": Maker(
+        "What does wider exploration noise change for NAF on Pendulum-v1?",
+        StandardTask("Pendulum-v1", steps=10_000, algorithms=("naf", "naf with wider noise"), seeds=10),
+        {"steps": 120, "seeds": 1, "episodes": 1},
+        of_robot=False,
+    ),
     "naf_inverted_pendulum": Maker(
         "How does NAF do on InvertedPendulum-v5, next to TD3, SAC and DDPG?",
         StandardTask("InvertedPendulum-v5", steps=5000),

@@ -43,7 +43,7 @@ HEADINGS = {
     "score_from_8_min": "from minute 8",
 }
 """Headings that do not follow from the column's name."""
-WORDS = {"pybullet": "PyBullet:", "mujoco": "MuJoCo:", "naf": "NAF", "td3": "TD3", "mu": "mu,"}
+WORDS = {"pybullet": "PyBullet:", "mujoco": "MuJoCo:", "naf": "NAF", "td3": "TD3", "mu": "mu,", "v": "V"}
 """Words of column names that are written otherwise."""
 FORMATS = {
     "score": ".3f",
@@ -81,6 +81,9 @@ FORMATS = {
     "over_centre": ".2f",
     "curvature": ".2f",
     "v_error": ".0f",
+    "true_change": ".1f",
+    "std_of_error": ".1f",
+    "correlation": ".2f",
 }
 """Format by the end of a column's name; the longest that fits counts."""
 DIGITS = 5
