@@ -13,7 +13,7 @@ import warnings
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from statistics import median
+from statistics import mean, median
 from typing import Any
 
 import gymnasium as gym
@@ -39,6 +39,8 @@ TASKS = ("HalfCheetah-v5", "Hopper-v5", "Walker2d-v5", "Reacher-v5", "Swimmer-v5
 ALGORITHMS = ("naf", "naf with V, as published", "ddpg")
 PUBLISHED: dict[str, Any] = dict(V=[256, 256], shared=[256, 256], mu=[], L=[])
 EVALUATION_SEED = 10_000
+RECENT = 3
+"""Number of evaluations up to one that are recent: one alone says little, as returns swing."""
 FINGERPRINT_TASK, FINGERPRINT_STEPS = "Reacher-v5", 110
 """What tells one state of an algorithm's code from another: two actions, and ten updates."""
 FINGERPRINT_TOLERANCE = 1e-3
@@ -95,6 +97,9 @@ class SeveralActions(OnWorkers):
                 courses = [job.result() for job in running]
                 for index in range(self.evaluations):
                     returns, ratios = zip(*(one[index] for one in courses), strict=True)
+                    recent = [
+                        mean(value for value, _ in one[max(0, index + 1 - RECENT) : index + 1]) for one in courses
+                    ]
                     yield {
                         "task": task,
                         "algorithm": algorithm,
@@ -103,6 +108,9 @@ class SeveralActions(OnWorkers):
                         "return": median(returns),
                         "return_low": min(returns),
                         "return_high": max(returns),
+                        "recent_return": median(recent),
+                        "recent_return_low": min(recent),
+                        "recent_return_high": max(recent),
                         "largest_v_over_bound": None if algorithm == "ddpg" else max(ratios),
                     }
 

@@ -1,7 +1,7 @@
 """NAF on standard tasks, against stable-baselines3's TD3, SAC and DDPG: mean return of evaluation episodes at the end.
 
-Every algorithm runs with the defaults of its class, TD3 and DDPG with the noise that their documentation adds. NAF can be
-tried with wider noise as well.
+Every algorithm runs with the defaults of its class, TD3 and DDPG with the noise that their documentation adds. NAF can
+be tried with wider noise as well.
 """
 
 from __future__ import annotations
