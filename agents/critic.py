@@ -54,8 +54,8 @@ class QuadraticCritic(BaseModel):
     - Those layers have a second output: ``W``, the mean of what actions near ``mu`` led to. It has a loss of its own,
       and targets take it of the next state. ``V`` lies above what was done by what the parabola promises, so targets
       with ``V`` add up promises over the horizon.
-    - Hidden layers of ``mu`` and ``L`` have dropout, as those of critics in DroQ (Hiraoka et al. 2022,
-      https://arxiv.org/abs/2110.02034).
+    - Hidden layers of ``mu`` and ``L`` have dropout before their activation, as those of critics in DroQ (Hiraoka et
+      al. 2022, https://arxiv.org/abs/2110.02034).
     - The first layer of ``V`` and ``W`` is normalised, as those of critics in RLPD (Ball et al. 2023,
       https://arxiv.org/abs/2302.02948). So what they say of states that nobody has seen is bounded.
 

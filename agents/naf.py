@@ -29,7 +29,9 @@ RUNAWAY_RATIO = 1.5
 SMALL_REWARD = 0.01
 """Largest reward below which the noise of learning rates is larger."""
 FAR_REWARD = 5.0
-"""Distance of the rewards' mean below 0 that is far, in deviations and in units of reward."""
+"""Distance of the rewards' mean from 0 that is far, in deviations and in units of reward."""
+LARGE_DEVIATION = 30.0
+"""Deviation of the rewards that is large: somewhat above it first seeds of a small task fail."""
 FEWEST_REWARDS = 5
 """Number of rewards below which their mean and deviation say nothing."""
 FRESH_UPDATES = 1000
@@ -172,6 +174,11 @@ class NAF(OffPolicyAlgorithm):
             raise ValueError(
                 f"every action must have a range, but the lowest are {low.tolist()}, the highest {high.tolist()}"
             )
+        with np.errstate(over="ignore"):
+            if not np.isfinite(high - low).all():
+                raise ValueError(
+                    f"every action must have a finite range, but {low.tolist()} to {high.tolist()} has none"
+                )
         super()._setup_model()
         self._create_aliases()
         # Running mean and running var, which the target network copies
@@ -287,9 +294,10 @@ class NAF(OffPolicyAlgorithm):
 
     def _check_rewards(self) -> None:
         """
-        Warn if all rewards are far below 0, where networks begin
+        Warn if all rewards are far from 0, where networks begin, or if they are large
 
-        Until ``V`` is down there, the parabola follows them sooner by pushing ``mu`` away from what was tried.
+        Until ``V`` is down there, the parabola follows them sooner by pushing ``mu`` away from what was tried. Until it
+        is up there, the error of ``Q`` is large, and so is the pull of ``mu`` to the centre.
         """
         assert self.replay_buffer is not None
         rewards = getattr(self.replay_buffer, "rewards", np.empty(0))[: self.replay_buffer.size()]
@@ -298,11 +306,18 @@ class NAF(OffPolicyAlgorithm):
         if self._vec_normalize_env is not None:
             rewards = self._vec_normalize_env.normalize_reward(rewards)
         std, mean = (one.item() for one in th.std_mean(th.as_tensor(rewards), correction=0))
-        if mean < -FAR_REWARD * max(1.0, std):
+        if abs(mean) > FAR_REWARD * max(1.0, std):
+            side, remedy = ("below", f"reward + {-mean:.3g}") if mean < 0 else ("above", f"reward - {mean:.3g}")
             warnings.warn(
-                f"rewards of {mean:.3g} on average are far below 0, and mu learns from them slowly or not at all. "
-                f"Remedy: take their mean off in the environment, as reward + {-mean:.3g}; or scale them, if it is for "
+                f"rewards of {mean:.3g} on average are far {side} 0, and mu learns from them slowly or not at all. "
+                f"Remedy: take their mean off in the environment, as {remedy}; or scale them, if it is for "
                 "the agent to end the episode",
+                stacklevel=2,
+            )
+        elif std > LARGE_DEVIATION:
+            warnings.warn(
+                f"rewards with a deviation of {std:.3g} are large, and mu learns from them slowly or ends at its "
+                "bounds. Remedy: scale them to about 1",
                 stacklevel=2,
             )
 

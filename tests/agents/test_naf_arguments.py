@@ -122,6 +122,20 @@ def test_an_action_without_a_range_is_refused():
         NAF("MlpPolicy", NoRange(gym.make("Pendulum-v1")))
 
 
+class Endless(gym.ActionWrapper):
+    """Bounds so far apart that the range between them is infinite."""
+
+    action_space = gym.spaces.Box(-3e38, 3e38, (1,))
+
+    def action(self, action):
+        return action
+
+
+def test_an_action_with_an_endless_range_is_refused():
+    with pytest.raises(ValueError, match=r"^the range of every action must be finite, not \[-3\S+\] to \[3\S+\]$"):
+        NAF("MlpPolicy", Endless(gym.make("Pendulum-v1")))
+
+
 def test_the_file_of_another_algorithm_is_refused(tmp_path):
     TD3("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL).save(tmp_path / "td3")
     with pytest.raises(ValueError, match=r"^the policy of NAF must be NAFPolicy or a subclass of it, not TD3Policy$"):

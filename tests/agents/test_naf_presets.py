@@ -55,10 +55,16 @@ def test_one_step_over_several_environments():
 
 
 class Far(Cliff):
-    """The same, with rewards that are all far below 0."""
+    """The same, with rewards that are all far from 0."""
+
+    constant = -100.0
 
     def score(self, action) -> float:
-        return super().score(action) - 100.0
+        return super().score(action) + self.constant
+
+
+class FarAbove(Far):
+    constant = 100.0
 
 
 @pytest.mark.parametrize(
@@ -69,6 +75,17 @@ def test_rewards_far_below_zero_get_a_warning_once(algorithm, arguments):
     with pytest.warns(UserWarning, match=r"rewards of -9\d.* are far below 0.* as reward \+ 9\d") as seen:
         algorithm("MlpPolicy", Far(0), seed=0, **arguments).learn(8).learn(8, reset_num_timesteps=False)
     assert len(seen) == 1
+
+
+def test_rewards_far_above_zero_get_a_warning_too():
+    with pytest.warns(UserWarning, match=r"rewards of 10\d on average are far above 0.* as reward - 10\d"):
+        NAF("MlpPolicy", FarAbove(0), seed=0, learning_starts=5).learn(8)
+
+
+def test_large_rewards_get_a_warning():
+    env = gym.wrappers.TransformReward(gym.make("Pendulum-v1"), lambda reward: 100.0 * reward)
+    with pytest.warns(UserWarning, match=r"rewards with a deviation of \d+ are large.* Remedy: scale them to about 1"):
+        NAF("MlpPolicy", env, seed=0).learn(102)
 
 
 def test_so_few_rewards_say_nothing():
