@@ -176,9 +176,7 @@ class NAF(OffPolicyAlgorithm):
             )
         with np.errstate(over="ignore"):
             if not np.isfinite(high - low).all():
-                raise ValueError(
-                    f"every action must have a finite range, but {low.tolist()} to {high.tolist()} has none"
-                )
+                raise ValueError(f"the range of every action must be finite, not {low.tolist()} to {high.tolist()}")
         super()._setup_model()
         self._create_aliases()
         # Running mean and running var, which the target network copies
