@@ -65,21 +65,21 @@ class ScaledActions(OnWorkers):
     """NAF and DDPG on tasks whose truth is known, by the factor of their actions and the width of their noise.
 
     :param tasks: names of the tasks
-    :param cases: names of what is changed
+    :param actions: names of what is changed
     :param steps: number of steps of a training
     :param seeds: number of trainings of each algorithm
     :param episodes: number of evaluation episodes
     """
 
     tasks: tuple[str, ...] = ("six actions, at the bounds", "six actions, clear")
-    cases: tuple[str, ...] = tuple(CASES)
+    actions: tuple[str, ...] = tuple(CASES)
     steps: int = 5000
     seeds: int = 5
     episodes: int = 10
 
     def rows(self) -> Iterator[Row]:
-        """A row for each task and case."""
-        for kind, names, known in (("task", self.tasks, TASKS), ("cases", self.cases, CASES)):
+        """A row for each task and change of actions."""
+        for kind, names, known in (("task", self.tasks, TASKS), ("actions", self.actions, CASES)):
             for name in names:
                 if name not in known:
                     raise ConfigurationError(unknown_name(kind, name, known))
@@ -87,7 +87,7 @@ class ScaledActions(OnWorkers):
             jobs = {
                 (task, name): [workers.submit(judged, task, CASES[name], seed, self) for seed in range(self.seeds)]
                 for task in self.tasks
-                for name in self.cases
+                for name in self.actions
             }
             for (task, name), running in jobs.items():
                 scores, saturated = zip(*(job.result() for job in running), strict=True)

@@ -90,7 +90,7 @@ def test_an_unknown_name_is_one_line_with_the_nearest() -> None:
         ("hopper_actions --actions held", "unknown actions 'held' .allowed: as they are, held for four steps, "),
         ("scaled_actions --tasks six", "unknown task 'six' .*six actions, clear"),
         ("naf_pendulum --algorithms NAF", "unknown algorithm 'NAF', did you mean 'naf'. .allowed: ddpg, naf, "),
-        ("scaled_actions --cases NAV", "unknown cases .NAV., did you mean .NAF."),
+        ("scaled_actions --actions NAV", "unknown actions .NAV., did you mean .NAF."),
         (f"clock --out {__file__}", "--out must be a folder, and .* is a file"),
     ],
 )
