@@ -247,7 +247,10 @@ def test_the_optimiser_of_the_page_keeps_to_the_protocol_and_climbs(monkeypatch:
 
 def texts_of_the_code() -> Iterator[str]:
     """Every text in the code, what is filled in left out, and the Makefile."""
-    for path in (ROOT / "sarah").rglob("*.py"):
+    for path in (
+        *(ROOT / "sarah").rglob("*.py"),
+        *(ROOT / "agents").glob("*.py"),
+    ):  # sarah links to it
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.JoinedStr):
                 parts = (part.value if isinstance(part, ast.Constant) else "…" for part in node.values)
