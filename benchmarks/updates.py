@@ -2,7 +2,7 @@
 
 Every round times each of them once, on random transitions, one after the other; ratios are medians over the rounds. The
 products are the bare matrix products of NAF's update, forward and backward, as a share of the update's time. NAF is
-timed as it is, and with V in place of W: so without W, dropout and normalised layers.
+timed as it is, and with V in place of W: so without W, dropout, normalised layers and the pull.
 """
 
 from __future__ import annotations

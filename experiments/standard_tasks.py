@@ -26,10 +26,9 @@ from sarah.agents import NAF
 from sarah.episode.workers import Workers
 from sarah.errors import ConfigurationError, unknown_name
 
-WIDER_NOISE: dict[str, Any] = dict(exploration_std=0.5)
 ALGORITHMS: dict[str, tuple[type[OffPolicyAlgorithm], dict[str, Any]]] = {
     "naf": (NAF, {}),
-    "naf with wider noise": (NAF, WIDER_NOISE),
+    "naf with wider noise": (NAF, {"exploration_std": 0.5}),
     "td3": (TD3, {}),
     "sac": (SAC, {}),
     "ddpg": (DDPG, {}),
