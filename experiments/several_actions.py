@@ -3,7 +3,7 @@
 All trainings together take most of a day. So the course of each is kept in a file beside the results, and not run again
 while its algorithm does the same.
 NAF and DDPG run with the defaults of their classes, DDPG with the noise that its documentation adds. NAF as published
-has targets with V, and the exploration noise of DDPG.
+has targets with V, and the exploration noise of DDPG. NAF can be tried with noise three times as wide as well.
 """
 
 from __future__ import annotations
@@ -36,8 +36,14 @@ from sarah.errors import ConfigurationError, unknown_name
 from sarah.files import replace_text
 
 TASKS = ("HalfCheetah-v5", "Hopper-v5", "Walker2d-v5", "Reacher-v5", "Swimmer-v5")
-ALGORITHMS = ("naf", "naf with V, as published", "ddpg")
 PUBLISHED: dict[str, Any] = dict(V=[256, 256], shared=[256, 256], mu=[], L=[])
+NAFS: dict[str, dict[str, Any]] = {
+    "naf": {},
+    "naf with wider noise": dict(exploration_std=0.9),
+    "naf with V, as published": dict(exploration_std=NOISE, policy_kwargs=dict(net_arch=PUBLISHED)),
+}
+"""Arguments of each NAF beside the defaults of its class."""
+ALGORITHMS = (*NAFS, "ddpg")
 EVALUATION_SEED = 10_000
 RECENT = 3
 """Number of evaluations up to one that are recent: one alone says little, as returns swing."""
@@ -66,7 +72,7 @@ class SeveralActions(OnWorkers):
     """
 
     tasks: tuple[str, ...] = TASKS
-    algorithms: tuple[str, ...] = ALGORITHMS
+    algorithms: tuple[str, ...] = ("naf", "naf with V, as published", "ddpg")
     steps: int = 100_000
     seeds: int = 5
     evaluations: int = 10
@@ -267,9 +273,6 @@ def model(algorithm: str, env: gym.Env, seed: int) -> OffPolicyAlgorithm:
     """
     if algorithm not in ALGORITHMS:
         raise ConfigurationError(unknown_name("algorithm", algorithm, ALGORITHMS))
-    shared: dict[str, Any] = dict(seed=seed, device="cpu")
-    if algorithm == "naf":
-        return Watched("MlpPolicy", env, **shared)
-    if algorithm == "ddpg":
-        return DDPG("MlpPolicy", env, action_noise=documented_noise(env), **shared)
-    return Watched("MlpPolicy", env, exploration_std=NOISE, policy_kwargs=dict(net_arch=PUBLISHED), **shared)
+    if algorithm in NAFS:
+        return Watched("MlpPolicy", env, seed=seed, device="cpu", **NAFS[algorithm])
+    return DDPG("MlpPolicy", env, seed=seed, device="cpu", action_noise=documented_noise(env))

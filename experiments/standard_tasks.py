@@ -1,7 +1,7 @@
 """NAF on standard tasks, against stable-baselines3's TD3, SAC and DDPG: mean return of evaluation episodes at the end.
 
 Every algorithm runs with the defaults of its class, TD3 and DDPG with the noise that their documentation adds. NAF can
-be tried with wider noise as well.
+be tried with wider noise as well, and without parts of it.
 """
 
 from __future__ import annotations
@@ -21,19 +21,21 @@ from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
 from experiments.baselines import documented_noise
 from experiments.experiment import OnWorkers
+from experiments.naf_variants import NoPull, policy_with
 from experiments.record import Row
 from sarah.agents import NAF
 from sarah.episode.workers import Workers
 from sarah.errors import ConfigurationError, unknown_name
 
-ALGORITHMS: dict[str, tuple[type[OffPolicyAlgorithm], dict[str, Any]]] = {
+NAFS: dict[str, tuple[type[OffPolicyAlgorithm], dict[str, Any]]] = {
     "naf": (NAF, {}),
     "naf with wider noise": (NAF, {"exploration_std": 0.5}),
-    "td3": (TD3, {}),
-    "sac": (SAC, {}),
-    "ddpg": (DDPG, {}),
+    "naf, no pull to the centre": (NAF, {"policy": policy_with(NoPull)}),
+    "naf, no dropout": (NAF, {"policy_kwargs": {"dropout": 0.0}}),
 }
 """Class of each, and its settings beside the defaults."""
+ALGORITHMS = {**NAFS, "td3": (TD3, {}), "sac": (SAC, {}), "ddpg": (DDPG, {})}
+"""The same of all algorithms."""
 EVALUATION_SEED = 10_000
 
 
@@ -94,7 +96,8 @@ def trained_return(task: str, algo: str, seed: int, steps: int, episodes: int) -
     algorithm, settings = ALGORITHMS[algo]
     if algorithm in (TD3, DDPG):
         settings = settings | {"action_noise": documented_noise(env)}
-    model = algorithm("MlpPolicy", env, seed=seed, device="cpu", **settings).learn(steps)
+    arguments: dict[str, Any] = {"policy": "MlpPolicy", **settings}
+    model = algorithm(env=env, seed=seed, device="cpu", **arguments).learn(steps)
     judged = Monitor(gym.make(task))
     judged.reset(seed=EVALUATION_SEED)
     return float(evaluate_policy(model, judged, episodes)[0])
