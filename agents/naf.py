@@ -21,21 +21,9 @@ from sarah.agents.buffers import RankReplayBuffer
 from sarah.agents.critic import QuadraticCritic
 from sarah.agents.losses import centre_loss, nearby_loss
 from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy, NAFPolicy
+from sarah.agents.runaway import FRESH_UPDATES, RUNAWAY_RATIO, reward_warning, value_warning
 
 SelfNAF = TypeVar("SelfNAF", bound="NAF")
-
-RUNAWAY_RATIO = 1.5
-"""V over its bound from which on a warning says that it runs away."""
-SMALL_REWARD = 0.01
-"""Largest reward below which the noise of learning rates is larger."""
-FAR_REWARD = 5.0
-"""Distance of the rewards' mean from 0 that is far, in deviations and in units of reward."""
-LARGE_DEVIATION = 30.0
-"""Deviation of the rewards that is large: somewhat above it first seeds of a small task fail."""
-FEWEST_REWARDS = 5
-"""Number of rewards below which their mean and deviation say nothing."""
-FRESH_UPDATES = 1000
-"""Number of updates in which V may still be that of fresh networks, whatever rewards are."""
 
 
 class NAF(OffPolicyAlgorithm):
@@ -291,33 +279,13 @@ class NAF(OffPolicyAlgorithm):
             self._check_values(current_values.best.max().item(), forever.min().item(), forever.max().item())
 
     def _check_rewards(self) -> None:
-        """
-        Warn if all rewards are far from 0, where networks begin, or if they are large
-
-        Until ``V`` is down there, the parabola follows them sooner by pushing ``mu`` away from what was tried. Until it
-        is up there, the error of ``Q`` is large, and so is the pull of ``mu`` to the centre.
-        """
+        """Warn if the rewards of the warm-up are such that ``mu`` learns badly from them."""
         assert self.replay_buffer is not None
         rewards = getattr(self.replay_buffer, "rewards", np.empty(0))[: self.replay_buffer.size()]
-        if rewards.size < FEWEST_REWARDS:
-            return
         if self._vec_normalize_env is not None:
             rewards = self._vec_normalize_env.normalize_reward(rewards)
-        std, mean = (one.item() for one in th.std_mean(th.as_tensor(rewards), correction=0))
-        if abs(mean) > FAR_REWARD * max(1.0, std):
-            side, remedy = ("below", f"reward + {-mean:.3g}") if mean < 0 else ("above", f"reward - {mean:.3g}")
-            warnings.warn(
-                f"rewards of {mean:.3g} on average are far {side} 0, and mu learns from them slowly or not at all. "
-                f"Remedy: take their mean off in the environment, as {remedy}; or scale them, if it is for "
-                "the agent to end the episode",
-                stacklevel=2,
-            )
-        elif std > LARGE_DEVIATION:
-            warnings.warn(
-                f"rewards with a deviation of {std:.3g} are large, and mu learns from them slowly or ends at its "
-                "bounds. Remedy: scale them to about 1",
-                stacklevel=2,
-            )
+        if (text := reward_warning(rewards)) is not None:
+            warnings.warn(text, stacklevel=2)
 
     def _check_values(self, largest: float, lowest_forever: float, highest_forever: float) -> None:
         """
@@ -338,19 +306,8 @@ class NAF(OffPolicyAlgorithm):
         self.logger.record("train/value_over_bound", ratio)
         if ratio > RUNAWAY_RATIO and self._n_updates > FRESH_UPDATES and not self.warned_of_values:
             self.warned_of_values = True
-            cause = "it runs away"
-            if self.value_bound * (1 - self.gamma) < SMALL_REWARD:
-                cause, remedy = "the rewards are smaller than what networks resolve", "scale the rewards up"
-            elif not self.q_net.has_w:
-                remedy = "give net_arch as a list, or with layers for W in place of V"
-            else:
-                remedy = "take a wider exploration_std or a lower learning_rate"
-            warnings.warn(
-                f"V of {largest:.3g} is beyond {self.value_ceiling:.3g}, the largest value that the rewards so far "
-                f"allow, by {ratio - 1:.2g} times |reward| / (1 - gamma) = {self.value_bound:.3g}: {cause}. "
-                f"Remedy: {remedy}",
-                stacklevel=2,
-            )
+            text = value_warning(largest, self.value_ceiling, self.value_bound, self.gamma, self.q_net.has_w)
+            warnings.warn(text, stacklevel=2)
 
     def learn(
         self: SelfNAF,
