@@ -3,7 +3,7 @@
 All trainings together take most of a day. So the course of each is kept in a file beside the results, and not run again
 while its algorithm does the same.
 NAF and DDPG run with the defaults of their classes, DDPG with the noise that its documentation adds. NAF as published
-has targets with V, and the exploration noise of DDPG. NAF can be tried with noise three times as wide as well.
+has targets with V, and the exploration noise of DDPG. NAF can be tried with wider noise than its 0.3 as well.
 """
 
 from __future__ import annotations
@@ -39,7 +39,8 @@ TASKS = ("HalfCheetah-v5", "Hopper-v5", "Walker2d-v5", "Reacher-v5", "Swimmer-v5
 PUBLISHED: dict[str, Any] = dict(V=[256, 256], shared=[256, 256], mu=[], L=[])
 NAFS: dict[str, dict[str, Any]] = {
     "naf": {},
-    "naf with wider noise": dict(exploration_std=0.9),
+    "naf, noise of 0.5": dict(exploration_std=0.5),
+    "naf, noise of 0.9": dict(exploration_std=0.9),
     "naf with V, as published": dict(exploration_std=NOISE, policy_kwargs=dict(net_arch=PUBLISHED)),
 }
 """Arguments of each NAF beside the defaults of its class."""

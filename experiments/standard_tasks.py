@@ -29,7 +29,7 @@ from sarah.errors import ConfigurationError, unknown_name
 
 NAFS: dict[str, tuple[type[OffPolicyAlgorithm], dict[str, Any]]] = {
     "naf": (NAF, {}),
-    "naf with wider noise": (NAF, {"exploration_std": 0.5}),
+    "naf, noise of 0.5": (NAF, {"exploration_std": 0.5}),
     "naf, no pull to the centre": (NAF, {"policy": policy_with(NoPull)}),
     "naf, no dropout": (NAF, {"policy_kwargs": {"dropout": 0.0}}),
 }
