@@ -30,7 +30,7 @@ class Change(NamedTuple):
 CHANGES = {
     "as they are": Change(algorithms=("naf", "naf, noise of 0.9", "ddpg")),
     "held for four steps": Change(action_repeat=4),
-    "three times as large": Change(action_scale=3.0),
+    "three times as large": Change(action_scale=3.0, algorithms=("naf",)),
 }
 
 
