@@ -1,4 +1,4 @@
-"""NAF and DDPG on Hopper with other actions, which NAF does better with."""
+"""NAF and DDPG on Hopper with other actions or wider noise, which NAF does better with."""
 
 from __future__ import annotations
 

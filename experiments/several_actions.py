@@ -39,7 +39,6 @@ TASKS = ("HalfCheetah-v5", "Hopper-v5", "Walker2d-v5", "Reacher-v5", "Swimmer-v5
 PUBLISHED: dict[str, Any] = dict(V=[256, 256], shared=[256, 256], mu=[], L=[])
 NAFS: dict[str, dict[str, Any]] = {
     "naf": {},
-    "naf, noise of 0.5": dict(exploration_std=0.5),
     "naf, noise of 0.9": dict(exploration_std=0.9),
     "naf with V, as published": dict(exploration_std=NOISE, policy_kwargs=dict(net_arch=PUBLISHED)),
 }

@@ -194,18 +194,6 @@ TABLE: dict[str, Maker] = {
         {"steps": 102, "seeds": 1, "episodes": 1},
         of_robot=False,
     ),
-    "cheetah_noise": Maker(
-        "What does wider exploration noise change for NAF on HalfCheetah-v5?",
-        SeveralActions(tasks=("HalfCheetah-v5",), algorithms=("naf", "naf, noise of 0.5")),
-        {
-            "steps": 120,
-            "seeds": 1,
-            "evaluations": 1,
-            "episodes": 1,
-            "courses": Path("build/experiments/several_actions"),
-        },
-        of_robot=False,
-    ),
     "held_actions": Maker(
         "What does an action decide on Hopper where NAF stays, and what do values make of it?",
         HeldActions(),
@@ -213,7 +201,7 @@ TABLE: dict[str, Maker] = {
         of_robot=False,
     ),
     "hopper_actions": Maker(
-        "What does it change on Hopper if actions are held for several steps, or larger?",
+        "What does it change on Hopper if actions are held for several steps, larger, or noisier?",
         HopperActions(),
         {
             "actions": ("held for four steps",),
