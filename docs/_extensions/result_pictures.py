@@ -88,7 +88,7 @@ def learning_curves(rows: Rows, panel: str) -> Figure:
     groups = grouped(rows, panel)
     figure, axes = panels(len(groups), 0.35)
     for axis, (name, group) in zip(axes, groups.items(), strict=True):
-        draw_lines(axis, group, "steps", "return", "{algorithm}")
+        draw_lines(axis, group, "steps", "return", "{algorithm}", rows)
         axis.set_title(name, fontsize="small")
         axis.set_ylabel("return" if axis is axes[0] else "")
         axis.xaxis.set_major_formatter(EngFormatter(sep=""))

@@ -42,7 +42,7 @@ def numbers(rows: Iterable[Row], column: str) -> list[float]:
     return [float(row[column] or "nan") for row in rows]
 
 
-def draw_lines(axis: Axes, rows: Rows, x: str, y: str, label: str) -> None:
+def draw_lines(axis: Axes, rows: Rows, x: str, y: str, label: str, of_figure: Rows | None = None) -> None:
     """A line for each group, with its interval if there is one.
 
     :param axis: to draw on
@@ -50,8 +50,11 @@ def draw_lines(axis: Axes, rows: Rows, x: str, y: str, label: str) -> None:
     :param x: column
     :param y: column
     :param label: template that names the groups
+    :param of_figure: rows of all panels, by which a group has the same colour in each; those of the panel by default
     """
-    for colour, (name, group) in zip(COLOURS, grouped(rows, label).items(), strict=False):
+    colours = dict(zip(grouped(of_figure or rows, label), COLOURS, strict=False))
+    for name, group in grouped(rows, label).items():
+        colour = colours[name]
         across = numbers(group, x)
         axis.plot(across, numbers(group, y), ".-", color=colour, linewidth=1.0, label=name)
         if f"{y}_low" in group[0]:
