@@ -20,8 +20,8 @@ from sarah.agents.arguments import check_number, checked_schedule
 from sarah.agents.buffers import RankReplayBuffer
 from sarah.agents.critic import QuadraticCritic
 from sarah.agents.losses import centre_loss, nearby_loss
+from sarah.agents.naf_warnings import FRESH_UPDATES, RUNAWAY_RATIO, reward_warning, value_warning
 from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy, NAFPolicy
-from sarah.agents.runaway import FRESH_UPDATES, RUNAWAY_RATIO, reward_warning, value_warning
 
 SelfNAF = TypeVar("SelfNAF", bound="NAF")
 

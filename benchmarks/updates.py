@@ -129,7 +129,7 @@ def filled(algorithm: type[OffPolicyAlgorithm], env: gym.Env, policy_kwargs: dic
 
 
 def products(model: NAF, batch_size: int) -> Callable[[int], None]:
-    """The matrix products of updates: all layers on a batch with their gradients, and the target's V.
+    """The matrix products of updates: all layers on a batch with their gradients, and the target's W.
 
     :param model: an agent
     :param batch_size: number of transitions in a minibatch

@@ -1,4 +1,4 @@
-"""NAF and DDPG on Hopper with other actions or wider noise, which NAF does better with."""
+"""NAF and DDPG on Hopper with other actions, and NAF with wider noise."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Change(NamedTuple):
 
     :param action_repeat: number of steps for which an action is held
     :param action_scale: factor of actions, which are cut at their bounds
-    :param algorithms: algorithms that have their actions changed
+    :param algorithms: names of the algorithms
     """
 
     action_repeat: int = 1
@@ -28,7 +28,7 @@ class Change(NamedTuple):
 
 
 CHANGES = {
-    "as they are": Change(algorithms=("naf", "naf, noise of 0.9", "ddpg")),
+    "as they are": Change(algorithms=("naf", "ddpg", "naf, noise of 0.9")),
     "held for four steps": Change(action_repeat=4),
     "three times as large": Change(action_scale=3.0, algorithms=("naf",)),
 }

@@ -27,14 +27,14 @@ from sarah.agents import NAF
 from sarah.episode.workers import Workers
 from sarah.errors import ConfigurationError, unknown_name
 
-NAFS: dict[str, tuple[type[OffPolicyAlgorithm], dict[str, Any]]] = {
+NAF_VARIANTS: dict[str, tuple[type[OffPolicyAlgorithm], dict[str, Any]]] = {
     "naf": (NAF, {}),
     "naf, noise of 0.5": (NAF, {"exploration_std": 0.5}),
     "naf, no pull to the centre": (NAF, {"policy": policy_with(NoPull)}),
     "naf, no dropout": (NAF, {"policy_kwargs": {"dropout": 0.0}}),
 }
 """Class of each, and its settings beside the defaults."""
-ALGORITHMS = {**NAFS, "td3": (TD3, {}), "sac": (SAC, {}), "ddpg": (DDPG, {})}
+ALGORITHMS = {**NAF_VARIANTS, "td3": (TD3, {}), "sac": (SAC, {}), "ddpg": (DDPG, {})}
 """The same of all algorithms."""
 EVALUATION_SEED = 10_000
 

@@ -47,7 +47,7 @@ from experiments.shift_endings import ShiftEndings
 from experiments.shipped_parameters import ShippedParameters
 from experiments.slots import SlotsSchedule
 from experiments.slots_cost import SlotsCost
-from experiments.standard_tasks import NAFS, StandardTask
+from experiments.standard_tasks import NAF_VARIANTS, StandardTask
 from experiments.stepping_and_hips import SteppingAndHips
 from experiments.transfer import TransferBetweenEngines
 from tests.endurance.killed_workers import KilledWorkers
@@ -225,9 +225,9 @@ TABLE: dict[str, Maker] = {
         {"steps": 120, "seeds": 1, "episodes": 1},
         of_robot=False,
     ),
-    "pendulum_parts": Maker(
-        "What keeps NAF from the top of Pendulum-v1?",
-        StandardTask("Pendulum-v1", steps=10_000, algorithms=tuple(NAFS), seeds=10),
+    "pendulum_variants": Maker(
+        "What do noise, pull and dropout change for NAF on Pendulum-v1?",
+        StandardTask("Pendulum-v1", steps=10_000, algorithms=tuple(NAF_VARIANTS), seeds=10),
         {"steps": 120, "seeds": 1, "episodes": 1},
         of_robot=False,
     ),

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import replace
+from pathlib import Path
+
 import gymnasium as gym
 import numpy as np
 import pytest
 
-from experiments.several_actions import ActionRepeat, with_scaled_actions
+from experiments.several_actions import ActionRepeat, Training, kept_course, with_scaled_actions
 
 
 def test_held_actions_add_up_to_the_episode_that_repeats_them() -> None:
@@ -38,3 +42,16 @@ def test_scaled_actions_are_cut_at_the_bounds_of_the_task() -> None:
         observation, reward, *_ = scaled.step(np.array([action], np.float32))
         expected, expected_reward, *_ = plain.step(np.array([done], np.float32))
         assert observation == pytest.approx(expected) and reward == pytest.approx(expected_reward)
+
+
+def test_a_kept_course_is_that_of_the_same_settings_and_the_same_algorithm(tmp_path: Path) -> None:
+    training = Training("Pendulum-v1", "naf, noise of 0.9", 0, 102, 51, 1, action_repeat=1, action_scale=1.0)
+    course = kept_course(training, tmp_path, [1.0, 2.0])
+    (file,) = tmp_path.iterdir()
+    assert file.name == "Pendulum-v1-naf-noise-of-0.9-102-s0.json" and len(course) == 2
+    marked = json.loads(file.read_text()) | {"course": [[0.0, 0.0]]}
+    file.write_text(json.dumps(marked))
+    assert kept_course(training, tmp_path, [1.0, 2.0001]) == [[0.0, 0.0]]
+    for other, fingerprint in ((replace(training, episodes=2), [1.0, 2.0]), (training, [1.0, 2.1])):
+        file.write_text(json.dumps(marked))
+        assert len(kept_course(other, tmp_path, fingerprint)) == 2

@@ -1,6 +1,7 @@
 """Warnings of NAF: of rewards that mu learns badly from, and of values that run away."""
 
 import numpy as np
+import torch as th
 
 RUNAWAY_RATIO = 1.5
 """V over its bound from which on a warning says that it runs away."""
@@ -28,7 +29,7 @@ def reward_warning(rewards: np.ndarray) -> str | None:
     """
     if rewards.size < FEWEST_REWARDS:
         return None
-    mean, std = rewards.mean(dtype=float), rewards.std(dtype=float)
+    std, mean = (one.item() for one in th.std_mean(th.as_tensor(rewards), correction=0))
     if abs(mean) > FAR_REWARD * max(1.0, std):
         side, remedy = ("below", f"reward + {-mean:.3g}") if mean < 0 else ("above", f"reward - {mean:.3g}")
         return (
