@@ -27,7 +27,7 @@ def reward_warning(rewards: np.ndarray) -> str | None:
     :param rewards: Rewards of the warm-up
     :return: The warning; none if there is nothing to say
     """
-    if rewards.size < FEWEST_REWARDS:
+    if rewards.size < FEWEST_REWARDS or not np.isfinite(rewards).all():
         return None
     std, mean = (one.item() for one in th.std_mean(th.as_tensor(rewards), correction=0))
     if abs(mean) > FAR_REWARD * max(1.0, std):

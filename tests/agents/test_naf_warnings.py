@@ -35,7 +35,7 @@ def test_a_few_rewards_say_nothing():
 def test_what_is_no_number_is_for_the_loss_to_refuse(wrong):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert reward_warning(np.full(5, wrong, np.float32)) is None
+        assert reward_warning(np.array([0.0, 0.0, 0.0, 0.0, wrong], np.float32)) is None
 
 
 @pytest.mark.parametrize(
