@@ -267,7 +267,7 @@ class NAF(OffPolicyAlgorithm):
         if not math.isfinite(mean_loss):
             raise ValueError(
                 f"the loss is {mean_loss}, and the agent is lost: an observation or a reward is no number, or by far "
-                "too large. VecCheckNan of stable-baselines3 around the environment finds it"
+                "too large. VecCheckNan of stable-baselines3, with raise_exception=True, finds what is no number"
             )
         self.logger.record("train/n_updates", self._n_updates, exclude="tensorboard")
         self.logger.record("train/loss", mean_loss)
