@@ -24,6 +24,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
 from sarah.episode.workers import Executor, Job, begin_episode, finish_episode
 from sarah.robot.reading import SensorReading
+from sarah.simulation.world import HoldsWorld
 
 
 class _Running(NamedTuple):
@@ -34,7 +35,7 @@ class _Running(NamedTuple):
     job: Job
 
 
-class EpisodeVecEnv(VecEnv):
+class EpisodeVecEnv(HoldsWorld, VecEnv):
     """Episodes of one :class:`~sarah.envs.sarah_env.SarahEnv`, several of them in flight.
 
     Step k submits the episode of its action and returns the outcome of step ``k - slots + 1``: the reward is that

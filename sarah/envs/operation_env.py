@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
 from typing import Any
 
@@ -105,6 +106,10 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         if values.shape != (len(PARAMETERS),) or not (np.abs(values) <= 1.0).all():
             raise ConfigurationError(f"an action must be {len(PARAMETERS)} numbers within -1 and 1, not {action!r}")
         return from_shares(to_shares(self.first) + self._reach * values)
+
+    def __copy__(self) -> SarahOperationEnv:
+        """Copy with a robot of its own, as one that both had would run the windows of both."""
+        return copy.deepcopy(self)
 
     def close(self) -> None:
         """Give the physics engine's resources back."""
