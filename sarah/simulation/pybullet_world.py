@@ -114,7 +114,10 @@ class PyBulletWorld(HoldsWorld):
             raise SimulationError("the simulated world is closed: make another one")
         if self._count is None:
             self._count = pybullet.getNumBodies(physicsClientId=client)
-        if not _carries(client, self._name, self._bodies) or pybullet.getNumBodies(physicsClientId=client) != self._count:
+        if (
+            not _carries(client, self._name, self._bodies)
+            or pybullet.getNumBodies(physicsClientId=client) != self._count
+        ):
             raise SimulationError(
                 "other code in this process has added bodies to the robot's world in PyBullet, removed some, reset it "
                 f"or disconnected it: it must leave client {client} alone"

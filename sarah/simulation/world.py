@@ -26,8 +26,8 @@ class HoldsWorld:
         :raises SimulationError: always
         """
         raise SimulationError(
-            f"{type(self).__name__} holds simulated worlds, which a copy would share, so it cannot be copied or pickled: "
-            "make another one with the same settings and seed"
+            f"{type(self).__name__} holds simulated worlds, which a copy would share, so it cannot be copied or "
+            "pickled: make another one with the same settings and seed"
         )
 
 
