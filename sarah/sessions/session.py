@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from threadpoolctl import threadpool_limits
+
 from sarah.episode.from_mapping import convert_fields
 from sarah.errors import ConfigurationError, check_range, unknown_name
 from sarah.operation.robot_in_operation import RobotInOperation
@@ -82,7 +84,9 @@ def run_session(
     """
     robot = WatchedRobot(RobotInOperation(spec.config, spec.seed), known, watch)
     try:
-        parameters = LEARNERS[spec.learner](spec.parameters, spec.seed).operate(robot)
+        learner = LEARNERS[spec.learner](spec.parameters, spec.seed)
+        with threadpool_limits(1):  # several threads of numpy's and scipy's add the parts of a sum in another order
+            parameters = learner.operate(robot)
     finally:
         robot.close()
     return SessionResult(tuple(robot.windows), parameters)
