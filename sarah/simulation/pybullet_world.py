@@ -43,6 +43,8 @@ pybullet = _import_pybullet()
 
 _spare: list[tuple[int, str]] = []
 """Clients whose worlds are empty, and the names that these worlds carry."""
+_open: set[str] = set()
+"""Names of the worlds that are open."""
 
 
 class PyBulletWorld(HoldsWorld):
@@ -64,6 +66,7 @@ class PyBulletWorld(HoldsWorld):
         self._bodies: list[int] = []
         self._count: int | None = None
         self.client = _emptied_client()
+        _open.add(self._name)
         self._give_back = weakref.finalize(self, _give_back, self.client, self._name, self._bodies)
         self._give_back.atexit = False
 
@@ -146,10 +149,12 @@ def _emptied_client() -> int:
 
 def _give_back(client: int, name: str, bodies: list[int]) -> None:
     """Empty a client's world, and keep the client, unless it is no longer ours."""
+    _open.discard(name)
     if not _carries(client, name, bodies):
         return
     pybullet.resetSimulation(physicsClientId=client)
-    pybullet.setPhysicsEngineParameter(contactBreakingThreshold=BULLETS_CONTACT_MARGIN, physicsClientId=client)
+    if not _open:  # another thread may be about to advance one of them
+        pybullet.setPhysicsEngineParameter(contactBreakingThreshold=BULLETS_CONTACT_MARGIN, physicsClientId=client)
     body = pybullet.createMultiBody(0.0, physicsClientId=client)
     pybullet.addUserData(body, MARK, name, physicsClientId=client)
     _spare.append((client, name))
