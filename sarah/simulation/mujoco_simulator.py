@@ -15,6 +15,7 @@ import numpy as np
 
 from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Side, Vector
+from sarah.simulation.ground import Ground
 from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.randomisation import NOMINAL, Conditions
 from sarah.simulation.simulator import TorsoState, rotate_to_world, specific_force
@@ -239,6 +240,11 @@ class MujocoSimulator:
         speeds = self._qvel.tolist()
         efforts = [share * limit for share, limit in zip(self._shares, self._limits, strict=True)]
         return tuple([speeds[index] for index in self._speeds]), tuple(efforts)
+
+    @property
+    def ground(self) -> Ground:
+        """Ground under the robot."""
+        return self._ground
 
     def sole_height(self, side: Side) -> float:
         """Height of a foot's lowest sole contact over the ground, in m.
