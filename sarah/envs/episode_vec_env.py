@@ -23,6 +23,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
 from sarah.episode.workers import Executor, Job, begin_episode, finish_episode
+from sarah.errors import ConfigurationError
 from sarah.robot.reading import SensorReading
 from sarah.simulation.world import HoldsWorld
 
@@ -40,8 +41,8 @@ class EpisodeVecEnv(HoldsWorld, VecEnv):
 
     Step k submits the episode of its action and returns the outcome of step ``k - slots + 1``: the reward is that
     episode's return, and ``info`` contains its ``spec``, ``result`` and ``transition`` (observation, action, last
-    observation). The first ``slots - 1`` steps have no outcome, which ``info["transition"] = None`` says. The last
-    ``slots - 1`` steps submit nothing. So :attr:`episodes` take ``episodes + slots - 1`` steps.
+    observation). The first ``slots - 1`` steps have no outcome: no episode ends, and ``info["transition"]`` is ``None``.
+    The last ``slots - 1`` steps submit nothing. So :attr:`episodes` take ``episodes + slots - 1`` steps.
 
     :param task: task, or the name of one of this package
     :param config: settings of the episodes
@@ -65,6 +66,7 @@ class EpisodeVecEnv(HoldsWorld, VecEnv):
         self._workers = workers
         self._running: deque[_Running] = deque()
         self._waiting: deque[tuple[EpisodeSpec, Callable[[], SensorReading]]] = deque()
+        self._steps = self._steps_left = 0
 
     def reset(self) -> np.ndarray:
         """Begin anew, with the episodes that the seed of :meth:`seed` draws.
@@ -77,6 +79,7 @@ class EpisodeVecEnv(HoldsWorld, VecEnv):
         self._running.clear()
         self._waiting.clear()
         self._steps = self._begun = 0
+        self._steps_left = self.episodes + self._slots - 1
         for _ in range(min(self._slots, self.episodes)):
             spec = self._next_spec()
             self._waiting.append((spec, self._workers.submit(begin_episode, spec).result))
@@ -87,7 +90,10 @@ class EpisodeVecEnv(HoldsWorld, VecEnv):
         """Submit the episode of an action, unless all episodes have been submitted.
 
         :param actions: one action in [-1, 1], of shape (1, number of parameters)
+        :raises ConfigurationError: before the first reset, and if all episodes are over
         """
+        if self._steps == self._steps_left:
+            raise ConfigurationError("no episodes are left: call reset before step")
         self._steps += 1
         if self._steps > self.episodes:
             return
@@ -104,7 +110,8 @@ class EpisodeVecEnv(HoldsWorld, VecEnv):
         if self._steps >= self._slots:
             reward, info = self._oldest_outcome()
         self._observe()
-        return self._observation[None], np.array([reward], np.float32), np.array([True]), [info]
+        has_outcome = info["transition"] is not None
+        return self._observation[None], np.array([reward], np.float32), np.array([has_outcome]), [info]
 
     def _next_spec(self) -> EpisodeSpec:
         """Specification of the next episode, with the baseline's parameters until its own are known."""

@@ -13,6 +13,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
 from sarah.episode.tasks import STEPPING
 from sarah.episode.workers import Job, Workers
+from sarah.errors import ConfigurationError
 from sarah.training.replay import LateRankReplayBuffer, LateReplayBuffer
 
 SHORT = EpisodeConfig(time_limit=1.5)
@@ -26,7 +27,7 @@ def played(slots: int, episodes: int = 4, seed: int = 1) -> tuple[list[np.ndarra
     observations, rewards, infos = [env.reset()], [], []
     for step in range(episodes + slots - 1):
         observation, reward, done, info = env.step(ACTIONS[min(step, episodes - 1)][None])
-        assert done.all()
+        assert done.all() == (info[0]["transition"] is not None)  # otherwise learners would count an episode of 0
         observations.append(observation)
         rewards.append(float(reward[0]))
         infos.append(info[0])
@@ -46,6 +47,16 @@ def test_outcomes_come_in_order_after_the_slots_are_full(slots: int) -> None:
         assert spec.seed >= FIRST_TRAINING_SEED
         assert info["result"] == simulate(spec)
         assert reward == pytest.approx(info["result"].episode_return)
+
+
+def test_steps_without_episodes_are_refused() -> None:
+    env = EpisodeVecEnv("stepping", SHORT, 1, 1, Workers())
+    with pytest.raises(ConfigurationError, match="call reset before step"):
+        env.step(ACTIONS[:1])
+    env.reset()
+    env.step(ACTIONS[:1])
+    with pytest.raises(ConfigurationError, match="call reset before step"):
+        env.step(ACTIONS[:1])
 
 
 def test_slots_change_no_episode() -> None:
