@@ -42,7 +42,8 @@ class EpisodeVecEnv(HoldsWorld, VecEnv):
     Step k submits the episode of its action and returns the outcome of step ``k - slots + 1``: the reward is that
     episode's return, and ``info`` contains its ``spec``, ``result`` and ``transition`` (observation, action, last
     observation). The first ``slots - 1`` steps have no outcome: they end no episode, and have ``None`` as
-    ``info["transition"]``. The last ``slots - 1`` steps submit nothing. So :attr:`episodes` take ``episodes + slots - 1`` steps.
+    ``info["transition"]``. The last ``slots - 1`` steps submit nothing. So :attr:`episodes` take
+    ``episodes + slots - 1`` steps.
 
     :param task: task, or the name of one of this package
     :param config: settings of the episodes
