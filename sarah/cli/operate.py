@@ -22,6 +22,8 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, controller_of
 from sarah.errors import ConfigurationError, ResumeError, RunFolderError, TrainingInterruptedError, shortened
+from sarah.formats import read_yaml
+from sarah.number import number
 from sarah.operation.settings import SOFT_PUSHES, Change, OperationConfig, Parameters
 from sarah.sessions import is_session
 
@@ -143,18 +145,16 @@ def _nine(spec: Any) -> Parameters:
 
 def _change(text: str) -> Change:
     """A change such as ``5: randomisation.actuator_bandwidth=12``."""
-    import yaml
-
     minute, colon, assignment = text.partition(":")
     key, equals, value = assignment.strip().partition("=")
     try:
         if not colon or not equals:
             raise ValueError
-        settings: Any = yaml.safe_load(value)
+        settings = read_yaml(value)
         for name in reversed(key.strip().replace("-", "_").split(".")):
             settings = {name: settings}
-        return Change(float(minute), settings)
-    except (ValueError, yaml.YAMLError):
+        return Change(number(minute.strip()), settings)
+    except ValueError:
         raise ConfigurationError(
             f'change must be a minute and a setting, such as "5: randomisation.actuator_bandwidth=12", not {text!r}'
         ) from None

@@ -31,6 +31,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
 from sarah.errors import ConfigurationError, RunFolderError, shortened
 from sarah.files import read_lines, read_text, replace_text
+from sarah.formats import read_json
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import read_config, write_config
 from sarah.runs.recorded_task import SOURCE, record_task, recorded_task
@@ -268,14 +269,14 @@ class RunFolder:
         task = self.config().task
         names = task.parameter_names
         try:
-            learned = json.loads(read_text(self._parameters_path))["parameters"]
+            learned = read_json(read_text(self._parameters_path))["parameters"]
             if set(learned) != set(names):
                 found = shortened(", ".join(map(str, learned)))
                 raise ValueError(f"it names {found} instead of {', '.join(names)}")
             return task.checked([learned[name] for name in names])
         except OSError as error:
             raise _unreadable(self._parameters_path, error) from error
-        except (ValueError, KeyError, TypeError, RecursionError) as error:
+        except (ValueError, KeyError, TypeError) as error:
             raise RunFolderError(f"{self._parameters_path} does not hold learned parameters: {error}") from error
 
     def _rows(self, path: Path) -> Iterator[dict[str, str]]:

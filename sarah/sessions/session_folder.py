@@ -20,6 +20,8 @@ from pathlib import Path
 
 from sarah.errors import RunFolderError
 from sarah.files import read_lines, read_text, replace_text
+from sarah.formats import read_json
+from sarah.number import finite_number, whole_number
 from sarah.operation.settings import PARAMETERS, Parameters, checked_parameters
 from sarah.operation.window import FELT, Window
 from sarah.runs.config_files import read_config, write_config
@@ -163,9 +165,9 @@ class SessionFolder:
     def _left(self) -> Parameters | None:
         """Parameters that the robot was left with; ``None`` if there are none, or if the file is damaged."""
         try:
-            values = json.loads(read_text(self._parameters_path))["parameters"]
+            values = read_json(read_text(self._parameters_path))["parameters"]
             return checked_parameters([values[name] for name in NAMES])
-        except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        except (OSError, ValueError, KeyError, TypeError):
             return None
 
 
@@ -180,13 +182,13 @@ def _row(window: Window) -> tuple[object, ...]:
 
 def _window(row: Mapping[str, str]) -> Window:
     return Window(
-        index=int(row["index"]),
-        begin=float(row["begin"]),
-        seconds=float(row["seconds"]),
-        changes=int(row["changes"]),
-        parameters=checked_parameters([float(row[name]) for name in NAMES]),
-        score=float(row["score"]),
-        observed_reward=float(row["observed_reward"]),
+        index=whole_number(row["index"]),
+        begin=finite_number(row["begin"]),
+        seconds=finite_number(row["seconds"]),
+        changes=whole_number(row["changes"]),
+        parameters=checked_parameters([finite_number(row[name]) for name in NAMES]),
+        score=finite_number(row["score"]),
+        observed_reward=finite_number(row["observed_reward"]),
         fell=row["fell"] == "1",
-        felt=tuple(float(row[name]) for name in FELT),
+        felt=tuple(finite_number(row[name]) for name in FELT),
     )
