@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import shlex
 import signal
 import sys
 from collections.abc import Sequence
@@ -22,6 +21,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, controller_of
 from sarah.errors import ConfigurationError, ResumeError, RunFolderError, TrainingInterruptedError, shortened
+from sarah.files import quoted
 from sarah.formats import read_yaml
 from sarah.number import number
 from sarah.operation.settings import SOFT_PUSHES, Change, OperationConfig, Parameters
@@ -166,7 +166,7 @@ def _watched(folder: SessionFolder, spec: SessionSpec) -> SessionResult:
 
     from sarah.sessions.operate import operate
 
-    go_on = f"go on with {COMMAND} --resume {shlex.quote(str(folder.path))}"
+    go_on = f"go on with {COMMAND} --resume {quoted(folder.path)}"
     falls, seconds = 0, 60.0 * spec.config.minutes
     bar = tqdm(total=seconds, disable=None, bar_format="{l_bar}{bar}| {n:.0f} of {total:.0f} s{postfix}")
 

@@ -19,6 +19,7 @@ import tyro
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import Task, load_task
 from sarah.errors import ConfigurationError, SarahError, unknown_name
+from sarah.files import is_text
 from sarah.number import NUMBER, is_number, number, whole_number
 from sarah.simulation.engines import default_engine
 
@@ -129,17 +130,20 @@ def _with_both_ends(arguments: Sequence[str], config: Any) -> list[str]:
     return completed
 
 
-def _none_empty(words: Sequence[str]) -> Sequence[str]:
-    """Arguments, none of which is empty: an empty path would be the working directory.
+def _checked(words: Sequence[str]) -> Sequence[str]:
+    """Arguments, none of which is empty, or a name that no file, message or page could hold.
 
     :param words: the arguments
-    :raises ConfigurationError: if one is empty, as an unset variable of the shell is
+    :raises ConfigurationError: if one is empty, as an unset variable of the shell is: it would be the working folder; or
+        if one has control characters, or bytes that are not UTF-8
     """
     for before, word in zip(("", *words), words, strict=False):
         option, equals, value = word.partition("=")
+        name = option if equals and option else before if before.startswith("--") else "an argument"
         if not value and (equals or not option):
-            name = option or (before if before.startswith("--") else "an argument")
             raise ConfigurationError(f"{name} must not be empty")
+        if not is_text(word):
+            raise ConfigurationError(f"{name} must be UTF-8 text without control characters, not {word!r:.300}")
     return words
 
 
@@ -173,7 +177,7 @@ def parse_options(
     errors = io.StringIO()
     try:
         with contextlib.redirect_stderr(errors):
-            return parse(args=_none_empty(_with_both_ends(arguments, default)))
+            return parse(args=_checked(_with_both_ends(arguments, default)))
     except SystemExit as exit_request:
         if not exit_request.code:
             raise
