@@ -134,16 +134,17 @@ def _checked(words: Sequence[str]) -> Sequence[str]:
     """Arguments, none of which is empty, or a name that no file, message or page could hold.
 
     :param words: the arguments
-    :raises ConfigurationError: if one is empty, as an unset variable of the shell is: it would be the working folder; or
-        if one has control characters, or bytes that are not UTF-8
+    :raises ConfigurationError: if one is empty, as an unset variable of the shell is: it would be the working folder;
+        or if one has control characters, or bytes that are not UTF-8
     """
     for before, word in zip(("", *words), words, strict=False):
         option, equals, value = word.partition("=")
-        name = option if equals and option else before if before.startswith("--") else "an argument"
+        name = option if equals and option else before if before.startswith("--") and before[2:] else "an argument"
         if not value and (equals or not option):
             raise ConfigurationError(f"{name} must not be empty")
         if not is_text(word):
-            raise ConfigurationError(f"{name} must be UTF-8 text without control characters, not {word!r:.300}")
+            given = f"{value or word!r:.300}"
+            raise ConfigurationError(f"{name} must be UTF-8 text without control characters, not {given}")
     return words
 
 
