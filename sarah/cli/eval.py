@@ -184,6 +184,7 @@ def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers
     """Print the table as Markdown, and write the table and the picture. The command says what was asked for."""
     from tqdm import tqdm
 
+    from sarah.reports.markdown import code
     from sarah.reports.terrain import as_markdown, situations, try_terrain
     from sarah.reports.terrain_figure import draw_terrain
 
@@ -194,7 +195,7 @@ def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers
     rows = try_terrain(spec.task, spec.parameters, spec.config, options.seeds, workers, tried, progress)
     values = ", ".join(f"{value:g}" for value in spec.parameters)
     about = f"{spec.task.name} ({values}) in {spec.config.engine}, seeds {options.seeds[0]} to {options.seeds[-1]}"
-    table = f"{about}: {command}\n\n{as_markdown(rows)}"
+    table = f"{about}: {code(command)}\n\n{as_markdown(rows)}"
     print(table)
     (folder / "terrain.md").write_text(table + "\n", encoding="utf-8")
     for file in draw_terrain(rows, folder / "terrain"):
