@@ -12,7 +12,7 @@ import pytest
 
 import sarah
 from sarah.cli.eval import EvalOptions
-from sarah.cli.operate import _change
+from sarah.cli.operate import change_of
 from sarah.cli.options import parse_options
 from sarah.cli.subjects import numbers
 from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
@@ -115,7 +115,7 @@ def test_spellings_of_numbers_are_the_same_everywhere(text: str) -> None:
     value = ACCEPTED[text]
     assert number(text) == finite_number(text) == read_yaml(f"a: {text}")["a"] == numbers("it", text)[0] == value
     assert parse_options(EvalOptions, "", ["--episode.payload", text], EvalOptions()).episode.payload == value
-    assert _change(f"{text}: payload={text}").settings == {"payload": value}
+    assert change_of(f"{text}: payload={text}").settings == {"payload": value}
     assert value == int(value) or not text.isdigit()
 
 
@@ -130,7 +130,7 @@ def test_other_spellings_are_refused_by_name_everywhere(text: str, capsys: pytes
         with pytest.raises(ConfigurationError, match="time_limit must be a number, not '"):
             from_mapping(sarah.EpisodeConfig(), read_yaml(f"{{time_limit: {text}}}"))
     with pytest.raises(ConfigurationError, match="change must be a minute and a setting"):
-        _change(f"{text} : payload=3" if ":" not in text else "01: payload=3")
+        change_of(f"{text} : payload=3" if ":" not in text else "01: payload=3")
     for option, kind in (("--episodes", "a whole number"), ("--episode.time-limit", "a number")):
         with pytest.raises(SystemExit):
             parse_options(EvalOptions, "sarah-eval", [option, text], EvalOptions())

@@ -132,7 +132,7 @@ def _spec_of(options: OperateOptions) -> SessionSpec:
         measure_seconds=options.measure_seconds,
         fall_seconds=options.fall_seconds,
         push_seconds=options.push_seconds,
-        changes=tuple(map(_change, options.change)),
+        changes=tuple(map(change_of, options.change)),
     )
     return SessionSpec(_nine(subject), options.learner, options.seed, config)
 
@@ -143,8 +143,12 @@ def _nine(spec: Any) -> Parameters:
     return (*astuple(stepping), *(BALANCE.baseline if balance is None else astuple(balance)))
 
 
-def _change(text: str) -> Change:
-    """A change such as ``5: randomisation.actuator_bandwidth=12``."""
+def change_of(text: str) -> Change:
+    """Read a change, such as ``5: randomisation.actuator_bandwidth=12``.
+
+    :param text: value of the option, a minute and a setting
+    :raises ConfigurationError: if it is none
+    """
     minute, colon, assignment = text.partition(":")
     key, equals, value = assignment.strip().partition("=")
     try:
