@@ -15,13 +15,14 @@ from sarah.cli.eval import EvalOptions
 from sarah.cli.operate import change_of
 from sarah.cli.options import parse_options
 from sarah.cli.subjects import numbers
-from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
+from sarah.control.pattern_generator import PatternGenerator, Phase, SteppingParameters
 from sarah.envs.operation_env import SarahOperationEnv
 from sarah.episode.from_mapping import from_mapping
 from sarah.errors import ConfigurationError
 from sarah.formats import read_json, read_yaml
 from sarah.number import finite_number, number, whole_number
 from sarah.robot.description import describe_robot
+from sarah.robot.reading import SensorReading
 from sarah.runs.agent_settings import NAFSettings
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import read_config, settings_by_key, write_config
@@ -94,15 +95,20 @@ def test_what_is_made_of_numpys_numbers_can_be_written_and_read(tmp_path: Path) 
     json.dumps(settings_by_key(sarah.EpisodeConfig(time_limit=np.float32(8))))
 
 
-def test_single_precision_ends_where_settings_begin() -> None:
+def test_single_precision_ends_where_settings_and_readings_begin() -> None:
     single, double = (
         PatternGenerator(SteppingParameters(*map(kind, (0.5, 1.25, 0.125, 1, 1))), dt=kind(0.015625))
         for kind in (np.float32, float)
     )
-    assert (
-        single.parameters == double.parameters
-        and type(single.time_out(sarah.control.pattern_generator.Phase.LIFT)) is float
-    )
+    draw = np.random.default_rng(0)
+    for _ in range(100):
+        signals = [
+            draw.normal(mean, 1.0, count).astype(np.float32) for mean, count in ((9, 3), (0, 3), (75, 4), (0, 6))
+        ]
+        single.tick(SensorReading(*signals))
+        double.tick(SensorReading(*[tuple(values.tolist()) for values in signals]))
+    assert single.phase is not Phase.STAND and single.targets == double.targets
+    assert (single.tilt, single.rate) == (double.tilt, double.rate) and type(single.tilt) is float
     assert describe_robot({"ankle_damping": np.float32(1)}) is describe_robot({"ankle_damping": 1})
 
 
