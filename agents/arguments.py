@@ -2,21 +2,23 @@
 
 import sys
 from numbers import Integral, Real
+from typing import Any
 
+import numpy as np
 from stable_baselines3.common.type_aliases import Schedule
 from stable_baselines3.common.utils import FloatSchedule
 
 
-def check_number(
+def checked_number(
     name: str,
     value: float,
     lowest: float,
     highest: float = sys.float_info.max,
     above: bool = False,
     whole: bool = False,
-) -> None:
+) -> Any:
     """
-    Refuse what is no number in a range.
+    Refuse what is no number in a range, and make one of Python's own of any other, such as NumPy's.
 
     :param name: Name of the argument
     :param value: Its value
@@ -24,10 +26,13 @@ def check_number(
     :param highest: Highest value; by default any finite one
     :param above: Whether the lowest value itself is too low
     :param whole: Whether only whole numbers are allowed
+    :return: The number
     """
+    if isinstance(value, np.ndarray):
+        value = value.item() if value.ndim == 0 else value.tolist()
     is_number = isinstance(value, Integral if whole else Real) and not isinstance(value, bool)
     if is_number and lowest <= value <= highest and not (above and value == lowest):
-        return
+        return int(value) if isinstance(value, Integral) else float(value)
     ends = f"{'above' if above else 'from'} {lowest:g}" + (f" to {highest:g}" if highest < sys.float_info.max else "")
     raise ValueError(f"{name} must be a {'whole ' if whole else ''}number {ends}, not {value!r}")
 
@@ -45,8 +50,7 @@ def checked_schedule(
     :return: The schedule
     """
     if not callable(value):
-        check_number(name, value, lowest, highest)
-        return FloatSchedule(float(value))
+        return FloatSchedule(float(checked_number(name, value, lowest, highest)))
     for progress_remaining in (1, 0):
-        check_number(f"{name}({progress_remaining})", value(progress_remaining), lowest, highest)
+        checked_number(f"{name}({progress_remaining})", value(progress_remaining), lowest, highest)
     return FloatSchedule(value)

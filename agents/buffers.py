@@ -9,7 +9,7 @@ from stable_baselines3.common.buffers import ReplayBuffer
 from stable_baselines3.common.type_aliases import ReplayBufferSamples
 from stable_baselines3.common.vec_env import VecNormalize
 
-from sarah.agents.arguments import check_number
+from sarah.agents.arguments import checked_number
 
 DOUBT = 0.25
 """Worthless transitions that every neighbourhood is thought to hold, so that single lucky ones do not win."""
@@ -109,8 +109,7 @@ class RankReplayBuffer(ReplayBuffer):
             n_envs=1,
             handle_timeout_termination=handle_timeout_termination,
         )
-        check_number("temperature", temperature, 0.0)
-        self.temperature = temperature
+        self.temperature = checked_number("temperature", temperature, 0.0)
         self._cumulative_probabilities: np.ndarray | None = None
 
     def add(

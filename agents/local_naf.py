@@ -6,7 +6,7 @@ import numpy as np
 from stable_baselines3.common.noise import ActionNoise
 from stable_baselines3.common.type_aliases import GymEnv, Schedule
 
-from sarah.agents.arguments import check_number, checked_schedule
+from sarah.agents.arguments import checked_number, checked_schedule
 from sarah.agents.buffers import RankReplayBuffer
 from sarah.agents.naf import NAF
 from sarah.agents.policies import NAFPolicy
@@ -66,7 +66,7 @@ class LocalNAF(NAF):
 
     def _setup_model(self) -> None:
         super()._setup_model()
-        check_number("elite_draws", self.elite_draws, 1, whole=True)
+        self.elite_draws = checked_number("elite_draws", self.elite_draws, 1, whole=True)
         self.elite_share_schedule = checked_schedule("elite_share", self.elite_share, 0.0, 1.0)
         self.elite_std_schedule = checked_schedule("elite_std", self.elite_std, 0.0)
         if not isinstance(self.replay_buffer, RankReplayBuffer):

@@ -16,7 +16,7 @@ from stable_baselines3.common.utils import get_parameters_by_name, polyak_update
 from torch import nn
 from torch.optim.swa_utils import get_ema_multi_avg_fn
 
-from sarah.agents.arguments import check_number, checked_schedule
+from sarah.agents.arguments import checked_number, checked_schedule
 from sarah.agents.buffers import RankReplayBuffer
 from sarah.agents.critic import QuadraticCritic
 from sarah.agents.losses import centre_loss, nearby_loss
@@ -170,11 +170,11 @@ class NAF(OffPolicyAlgorithm):
         # Running mean and running var, which the target network copies
         self.batch_norm_stats = get_parameters_by_name(self.q_net, ["running_"])
         self.batch_norm_stats_target = get_parameters_by_name(self.q_net_target, ["running_"])
-        check_number("batch_size", self.batch_size, 1, whole=True)
-        check_number("gamma", self.gamma, 0.0, 1.0)
-        check_number("tau", self.tau, 0.0, 1.0, above=True)
-        check_number("n_steps", self.n_steps, 1, whole=True)
-        check_number("max_grad_norm", self.max_grad_norm, 0.0, highest=math.inf, above=True)
+        self.batch_size = checked_number("batch_size", self.batch_size, 1, whole=True)
+        self.gamma = checked_number("gamma", self.gamma, 0.0, 1.0)
+        self.tau = checked_number("tau", self.tau, 0.0, 1.0, above=True)
+        self.n_steps = checked_number("n_steps", self.n_steps, 1, whole=True)
+        self.max_grad_norm = checked_number("max_grad_norm", self.max_grad_norm, 0.0, highest=math.inf, above=True)
         self.exploration_schedule = checked_schedule("exploration_std", self.exploration_std, 0.0)
         if isinstance(self.replay_buffer, RankReplayBuffer) and self.replay_buffer.temperature > 0 and self.gamma != 0:
             raise ValueError(

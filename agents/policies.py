@@ -15,7 +15,7 @@ from stable_baselines3.common.torch_layers import (
 from stable_baselines3.common.type_aliases import PyTorchObs, Schedule
 from torch import nn
 
-from sarah.agents.arguments import check_number
+from sarah.agents.arguments import checked_number
 from sarah.agents.critic import QuadraticCritic
 
 
@@ -86,8 +86,8 @@ class NAFPolicy(BasePolicy):
         )
         if not isinstance(squash_mu, bool):
             raise ValueError(f"squash_mu must be True or False, not {squash_mu!r}")
-        check_number("min_curvature", min_curvature, 0.0)
-        check_number("dropout", dropout, 0.0, 0.9)
+        min_curvature = checked_number("min_curvature", min_curvature, 0.0)
+        dropout = checked_number("dropout", dropout, 0.0, 0.9)
         if net_arch is None:
             net_arch = [256, 256]
         if not isinstance(net_arch, list | tuple | dict):
@@ -101,8 +101,8 @@ class NAFPolicy(BasePolicy):
         for name, widths in net_arch.items():
             if not isinstance(widths, list | tuple):
                 raise ValueError(f"net_arch[{name!r}] must be a list of widths, not {widths!r}")
-            for width in widths:
-                check_number(f"a width in net_arch[{name!r}]", width, 1, whole=True)
+            where = f"a width in net_arch[{name!r}]"
+            net_arch = {**net_arch, name: [checked_number(where, width, 1, whole=True) for width in widths]}
 
         self.net_args: dict[str, Any] = {
             "observation_space": self.observation_space,

@@ -6,7 +6,9 @@ import contextlib
 import reprlib
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
-from numbers import Real
+from typing import Any
+
+from sarah.number import is_number, plain
 
 LONGEST_NAME = 100
 """Length in characters up to which a name is shown whole, and the nearest valid one is looked for."""
@@ -52,7 +54,7 @@ class TrainingInterruptedError(SarahError):
     """A training or a session was stopped before its end; it can be resumed."""
 
 
-def check_range(key: str, value: float | tuple[float, float], low: float, high: float, unit: str = "") -> None:
+def check_range(key: str, value: Any, low: float, high: float, unit: str = "") -> Any:
     """Refuse a value outside its range.
 
     :param key: name of the setting, as the user gives it
@@ -60,16 +62,18 @@ def check_range(key: str, value: float | tuple[float, float], low: float, high: 
     :param low: smallest allowed value
     :param high: largest allowed value
     :param unit: unit of the value and of its limits
+    :return: the value, in numbers of Python's own
     :raises ConfigurationError: naming key, value and range
     """
+    value = tuple(map(plain, value)) if isinstance(value, tuple) else plain(value)
     ends = value if isinstance(value, tuple) and len(value) == 2 else (value, value)
-    are_numbers = all(isinstance(end, Real) and not isinstance(end, bool) for end in ends)
-    if not are_numbers or not low <= ends[0] <= ends[1] <= high:
+    if not all(map(is_number, ends)) or not low <= ends[0] <= ends[1] <= high:
         is_range = isinstance(value, tuple) and ends[0] != ends[1]
         order, given = (" and in rising order", value) if is_range else ("", ends[0])
         raise ConfigurationError(
             f"{key} must be between {low:.10g} and {high:.10g}{unit and f' {unit}'}{order}, not {shortened(given)}"
         )
+    return value
 
 
 def to_ranges(config: object, *names: str) -> None:
@@ -79,36 +83,38 @@ def to_ranges(config: object, *names: str) -> None:
     :param names: names of the fields
     """
     for name in names:
-        value = getattr(config, name)
-        ends = tuple(value) if isinstance(value, (list, tuple)) else (value, value)
-        if len(ends) == 2 and all(isinstance(end, Real) and not isinstance(end, bool) for end in ends):
+        value = plain(getattr(config, name))
+        ends = tuple(map(plain, value)) if isinstance(value, (list, tuple)) else (value, value)
+        if len(ends) == 2 and all(map(is_number, ends)):
             with contextlib.suppress(OverflowError):  # a whole number beyond all ranges
                 object.__setattr__(config, name, tuple(map(float, ends)))
 
 
 def check_fields(key: str, config: object, plausible: Mapping[str, tuple[float, float, str]]) -> None:
-    """Refuse a configuration if one of its fields is outside its range.
+    """Refuse a configuration if one of its fields is outside its range, and make floats of all of them.
 
     :param key: prefix of the fields' names in messages
-    :param config: configuration to check
+    :param config: frozen configuration to check, while it is made
     :param plausible: lowest value, highest value and unit of each field, by name
     :raises ConfigurationError: naming key, value and range
     """
     for name, (low, high, unit) in plausible.items():
-        check_range(f"{key}.{name}", getattr(config, name), low, high, unit)
+        value = check_range(f"{key}.{name}", getattr(config, name), low, high, unit)
+        object.__setattr__(config, name, tuple(map(float, value)) if isinstance(value, tuple) else float(value))
 
 
 def check_types(config: object, **types: type) -> None:
     """Refuse a configuration if one of its fields is of another type.
 
-    :param config: configuration to check
+    :param config: frozen configuration to check, while it is made
     :param types: type of each field, by name
     :raises ConfigurationError: naming field, type and value
     """
     for name, expected in types.items():
-        value = getattr(config, name)
+        value = plain(getattr(config, name))
         if not isinstance(value, expected):
             raise ConfigurationError(f"{name} must be a {expected.__name__}, not {shortened(value)}")
+        object.__setattr__(config, name, value)
 
 
 def shortened(value: object) -> str:

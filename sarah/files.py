@@ -1,7 +1,8 @@
 """Files that are never half written, and files that are read within bounds, whoever wrote them.
 
 What is replaced keeps its old content until the new one is on the disk. What is read is a regular file of a bounded
-size: a FIFO would block for ever, and a file of gigabytes would fill the memory.
+size: a FIFO would block for ever, and a file of gigabytes would fill the memory. What could not be written is refused
+before the work that it is for.
 """
 
 from __future__ import annotations
@@ -10,12 +11,18 @@ import errno
 import fcntl
 import io
 import os
+import shlex
 import stat
+import sys
+import tempfile
+import unicodedata
 import uuid
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
+
+from sarah.errors import ConfigurationError
 
 SMALL = 65_536
 """Largest size of a small text file, in bytes: settings, parameters, versions."""
@@ -23,6 +30,77 @@ LONGEST_LINE = 16_384
 """Largest size of a line in a table, in bytes."""
 LARGEST = 2**30
 """Largest size of any file but a journal, in bytes: the table of a million episodes is less than half of it."""
+NO_TEXT = frozenset(("Cc", "Cs", "Zl", "Zp"))
+"""Unicode's categories of control characters, of bytes that are not UTF-8, and of ends of lines and paragraphs."""
+
+
+def is_text(name: object) -> bool:
+    """Whether a name can be written into any file and message: as one line, in UTF-8.
+
+    :param name: name of a file or folder, or another word that a user gave
+    """
+    return not any(unicodedata.category(letter) in NO_TEXT for letter in str(name))
+
+
+def check_name(path: Path) -> None:
+    """Refuse the name of a file or folder that no settings, message or page could hold, before it is made.
+
+    :param path: path of the file or folder
+    :raises ConfigurationError: if it has control characters, or bytes that are not UTF-8
+    """
+    if not is_text(path):
+        raise ConfigurationError(f"a name must be UTF-8 text without control characters, not {str(path)!r:.300}")
+
+
+def check_file(path: Path) -> None:
+    """Refuse a file that could not be written, before the work that it is for.
+
+    :param path: path of the file, which may be there already
+    :raises ConfigurationError: naming the file, and what is wrong with its name or its folder
+    """
+    check_name(path)
+    try:
+        if path.is_dir():
+            raise ConfigurationError(f"cannot write {path}: it is a folder")
+        if not path.parent.is_dir():
+            raise ConfigurationError(f"cannot write {path}: folder {path.parent} does not exist")
+        with suppress(FileNotFoundError):
+            path.lstat()  # a name can be too long
+        with tempfile.TemporaryFile(dir=path.parent):
+            pass
+    except OSError as error:
+        raise ConfigurationError(f"cannot write {path}: {error.strerror or error}") from error
+
+
+def make_folder(path: Path) -> None:
+    """Make a folder, unless it is there, and refuse one that could not be written to, before the work that it is for.
+
+    :param path: path of the folder
+    :raises ConfigurationError: naming the folder, and what is wrong with it
+    """
+    check_name(path)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=path):
+            pass
+    except OSError as error:
+        raise ConfigurationError(f"cannot write folder {path}: {error.strerror or error}") from error
+
+
+def quoted(path: Path | str) -> str:
+    """A path as one types it behind an option in a shell.
+
+    :param path: path, in which a dash at the beginning would be an option
+    """
+    return shlex.quote(f"./{path}" if str(path).startswith("-") else str(path))
+
+
+def write_command(path: Path) -> None:
+    """Write the command of this process, whatever its words are.
+
+    :param path: path of the file
+    """
+    replace_text(path, f"{shlex.join(sys.argv)}\n".encode(errors="backslashreplace").decode())
 
 
 @contextmanager
@@ -33,7 +111,8 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
 
     :param path: path of the file; if writing fails, its old content stays
     """
-    unfinished = path.with_name(f"{path.name}.{uuid.uuid4().hex}.new")
+    check_name(path)
+    unfinished = path.with_name(f".{uuid.uuid4().hex}.new")  # as long as it may be, whatever the other name
     try:
         with unfinished.open("xb") as file:  # "x" goes through no link
             yield file

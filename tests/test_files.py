@@ -1,15 +1,28 @@
 """What is replaced is whole or as before; a long run leaves nothing open."""
 
 import gc
+import os
+import shlex
+from collections.abc import Callable
 from pathlib import Path
 
 import psutil
 import pytest
+from matplotlib.figure import Figure
 
 from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.files import replace_text, replacing
+from sarah.episode.workers import Workers
+from sarah.errors import ConfigurationError
+from sarah.files import check_file, make_folder, quoted, replace_text, replacing
+from sarah.pictures.style import save
+from sarah.pictures.video import write_video
+from sarah.reports.report import write_report
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.sessions.session import SessionSpec
+from sarah.sessions.session_folder import SessionFolder
 from sarah.simulation.physics import Physics
 
 
@@ -37,6 +50,59 @@ def test_two_writers_at_once_leave_one_whole_file(tmp_path: Path) -> None:
         assert path.read_text() == "second"
         first.write(b"st")
     assert path.read_text() == "first" and [found.name for found in tmp_path.iterdir()] == ["file"]
+
+
+@pytest.mark.parametrize(
+    "name", ["a:b", "-x", "[x]*?", "%d $HOME 'a' \"b\"", "é👩\u200d🚀e\u0301", "<b>|#&", "a" * 255]
+)
+def test_any_name_of_a_file_works_that_is_a_line_of_text(name: str, tmp_path: Path) -> None:
+    check_file(tmp_path / name)
+    replace_text(tmp_path / name, "text")
+    assert [path.name for path in tmp_path.iterdir()] == [name] and (tmp_path / name).read_text() == "text"
+    make_folder(tmp_path / "folder" / name)
+    assert shlex.split(quoted(name)) == [f"./{name}" if name == "-x" else name]
+
+
+@pytest.mark.parametrize("name", [os.fsdecode(b"caf\xe9"), "a\nb", "a\x1b[2J", "a\u2028b", "a\0"])
+def test_other_names_are_refused_before_anything_is_made(name: str, tmp_path: Path) -> None:
+    path = tmp_path / name
+    making: list[Callable[[], object]] = [
+        lambda: check_file(path),
+        lambda: make_folder(path),
+        lambda: replace_text(path, "text"),
+        lambda: RunFolder.create(path, TrainingConfig()),
+        lambda: SessionFolder.create(path, SessionSpec()),
+        lambda: write_video([], path.with_suffix(".gif")),
+        lambda: save(Figure(), path),
+        lambda: write_report(RunFolder(tmp_path), path, Workers()),
+    ]
+    for make in making:
+        with pytest.raises(ConfigurationError, match="a name must be UTF-8 text without control characters") as caught:
+            make()
+        assert str(caught.value).isprintable()
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("folder", "it is a folder"),
+        ("a/b", "does not exist"),
+        ("folder/file/b", "does not exist"),
+        ("a" * 256, "too long"),
+    ],
+)
+def test_a_report_that_cannot_be_written_is_refused_first(name: str, words: str, tmp_path: Path) -> None:
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder" / "file").touch()
+    with pytest.raises(ConfigurationError, match=f"cannot write .*: .*{words}"):
+        write_report(RunFolder(tmp_path), tmp_path / name, Workers())
+
+
+def test_the_command_of_any_program_is_recorded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.argv", [os.fsdecode(b"/caf\xe9/sarah-train"), "é"])
+    run = RunFolder.create(tmp_path / "run", TrainingConfig())
+    assert (run.path / "command.txt").read_text() == "'/caf\\udce9/sarah-train' 'é'\n"
 
 
 def test_memory_and_open_files_stay_flat() -> None:

@@ -15,6 +15,7 @@ from sarah.cli.options import parse_options, run_command, say_engine
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import STEPPING, Task, load_task
 from sarah.errors import ConfigurationError, check_range
+from sarah.files import make_folder
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.sessions import is_session
 
@@ -111,7 +112,7 @@ def _compare(arguments: Sequence[str]) -> None:
     seeds = range(options.first_seed, options.first_seed + options.seeds)
     entries = entries_of(options.algorithms, seeds, base, options.evaluations, options.out)
     try_task(options.task, episode)
-    options.out.mkdir(parents=True, exist_ok=True)
+    make_folder(options.out)
     with Workers(options.workers, options.scheduler) as workers:
         say_engine(episode, options.engine)
         try:

@@ -19,6 +19,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.errors import ConfigurationError, check_range
+from sarah.files import make_folder
 
 if TYPE_CHECKING:
     from sarah.episode.workers import Workers
@@ -148,7 +149,7 @@ def _show_robustness(
 
     folder, neutral = options.robustness, BALANCE.neutral
     assert folder is not None and neutral is not None and isinstance(config, BalanceConfig)
-    _make_folder(folder)
+    make_folder(folder)
     say_engine(config, options.engine)
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
     pushed = push_many((neutral, parameters), config, workers, options.forces, options.episodes, options.first_seed)
@@ -183,25 +184,19 @@ def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers
     """Print the table as Markdown, and write the table and the picture. The command says what was asked for."""
     from tqdm import tqdm
 
+    from sarah.reports.markdown import code
     from sarah.reports.terrain import as_markdown, situations, try_terrain
     from sarah.reports.terrain_figure import draw_terrain
 
-    _make_folder(folder)
+    make_folder(folder)
     say_engine(spec.config, options.engine)
     tried = list(situations())
     progress = partial(tqdm, total=len(tried) * options.episodes, unit=" episodes")
     rows = try_terrain(spec.task, spec.parameters, spec.config, options.seeds, workers, tried, progress)
     values = ", ".join(f"{value:g}" for value in spec.parameters)
     about = f"{spec.task.name} ({values}) in {spec.config.engine}, seeds {options.seeds[0]} to {options.seeds[-1]}"
-    table = f"{about}: {command}\n\n{as_markdown(rows)}"
+    table = f"{about}: {code(command)}\n\n{as_markdown(rows)}"
     print(table)
     (folder / "terrain.md").write_text(table + "\n", encoding="utf-8")
     for file in draw_terrain(rows, folder / "terrain"):
         print(file)
-
-
-def _make_folder(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ConfigurationError(f"cannot write folder {folder}: {error.strerror}") from error

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import shlex
 import signal
 import sys
 from collections.abc import Sequence
@@ -22,6 +21,9 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, controller_of
 from sarah.errors import ConfigurationError, ResumeError, RunFolderError, TrainingInterruptedError, shortened
+from sarah.files import quoted
+from sarah.formats import read_yaml
+from sarah.number import number
 from sarah.operation.settings import SOFT_PUSHES, Change, OperationConfig, Parameters
 from sarah.sessions import is_session
 
@@ -130,7 +132,7 @@ def _spec_of(options: OperateOptions) -> SessionSpec:
         measure_seconds=options.measure_seconds,
         fall_seconds=options.fall_seconds,
         push_seconds=options.push_seconds,
-        changes=tuple(map(_change, options.change)),
+        changes=tuple(map(change_of, options.change)),
     )
     return SessionSpec(_nine(subject), options.learner, options.seed, config)
 
@@ -141,20 +143,22 @@ def _nine(spec: Any) -> Parameters:
     return (*astuple(stepping), *(BALANCE.baseline if balance is None else astuple(balance)))
 
 
-def _change(text: str) -> Change:
-    """A change such as ``5: randomisation.actuator_bandwidth=12``."""
-    import yaml
+def change_of(text: str) -> Change:
+    """Read a change, such as ``5: randomisation.actuator_bandwidth=12``.
 
+    :param text: value of the option, a minute and a setting
+    :raises ConfigurationError: if it is none
+    """
     minute, colon, assignment = text.partition(":")
     key, equals, value = assignment.strip().partition("=")
     try:
         if not colon or not equals:
             raise ValueError
-        settings: Any = yaml.safe_load(value)
+        settings = read_yaml(value)
         for name in reversed(key.strip().replace("-", "_").split(".")):
             settings = {name: settings}
-        return Change(float(minute), settings)
-    except (ValueError, yaml.YAMLError):
+        return Change(number(minute.strip()), settings)
+    except ValueError:
         raise ConfigurationError(
             f'change must be a minute and a setting, such as "5: randomisation.actuator_bandwidth=12", not {text!r}'
         ) from None
@@ -166,7 +170,7 @@ def _watched(folder: SessionFolder, spec: SessionSpec) -> SessionResult:
 
     from sarah.sessions.operate import operate
 
-    go_on = f"go on with {COMMAND} --resume {shlex.quote(str(folder.path))}"
+    go_on = f"go on with {COMMAND} --resume {quoted(folder.path)}"
     falls, seconds = 0, 60.0 * spec.config.minutes
     bar = tqdm(total=seconds, disable=None, bar_format="{l_bar}{bar}| {n:.0f} of {total:.0f} s{postfix}")
 

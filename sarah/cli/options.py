@@ -19,16 +19,23 @@ import tyro
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import Task, load_task
 from sarah.errors import ConfigurationError, SarahError, unknown_name
+from sarah.files import is_text
+from sarah.number import NUMBER, is_number, number, whole_number
 from sarah.simulation.engines import default_engine
 
 OptionsType = TypeVar("OptionsType")
 USAGE_ERROR = 2
 PYTHON_WORDS = {
-    r"^Error parsing (\S+): invalid literal for int\(\) with base 10: (.*)": r"\1 must be a whole number, not \2",
-    r"^Error parsing (\S+): could not convert string to float: (.*)": r"\1 must be a number, not \2",
+    r"^Error parsing (\S+): (must be .*)": r"\1 \2",
     r"^Error parsing (\S+): Could not parse arguments (.*) into tuple type .*": r"\1 must be numbers, not \2",
     r"^Error parsing (--forces): Could not find valid parse for arguments: (.*)": r"\1 must be numbers, not \2",
     r"^Error parsing (\S+): Could not find valid parse for arguments: (.*)": r"\1 must be whole numbers, not \2",
+    r"^Error parsing (\S+): no type matching \{None\}\|INT could be instantiated from \[(.*?)\]\.\s+Got errors.*": (
+        r"\1 must be a whole number, not \2"
+    ),
+    r"^Error parsing (\S+): no type matching \{None\}\|FLOAT could be instantiated from \[(.*?)\]\.\s+Got errors.*": (
+        r"\1 must be a number, not \2"
+    ),
     r"^Error parsing (\S+): no type matching (\S+) could be instantiated from (.*?)\.\s+Got errors.*": (
         r"\1 must be \2, not \3"
     ),
@@ -57,13 +64,27 @@ def _range_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.
     return tyro.constructors.PrimitiveConstructorSpec(
         nargs=2,
         metavar="FLOAT [FLOAT]",
-        instance_from_str=lambda words: tuple(map(float, words)),
+        instance_from_str=lambda words: tuple(map(number, words)),
         is_instance=lambda value: isinstance(value, tuple) and len(value) == 2,
         str_from_instance=lambda ends: list(map(str, ends)),
     )
 
 
+def _number_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
+    """How tyro reads a number: tyro itself takes Python's spellings, such as ``0100`` and ``1_000``."""
+    if info.type not in (int, float):
+        return None
+    return tyro.constructors.PrimitiveConstructorSpec(
+        nargs=1,
+        metavar="INT" if info.type is int else "FLOAT",
+        instance_from_str=lambda words: (whole_number if info.type is int else number)(words[0]),
+        is_instance=lambda value: is_number(value) and (info.type is float or isinstance(value, int)),
+        str_from_instance=lambda value: [str(value)],
+    )
+
+
 _REGISTRY = tyro.constructors.ConstructorRegistry()
+_REGISTRY.primitive_rule(_number_rule)
 _REGISTRY.primitive_rule(_task_rule)
 _REGISTRY.primitive_rule(_range_rule)
 
@@ -102,24 +123,28 @@ def _with_both_ends(arguments: Sequence[str], config: Any) -> list[str]:
         if word.replace("_", "-") in ranges:
             ends = list(itertools.takewhile(_is_number, words[index + 1 :]))
             following = words[index + 1 : index + 2]
-            if len(ends) > 2 or (not ends and following != ["None"]):
+            if len(ends) > 2 or not all(map(NUMBER.match, ends)) or (not ends and following != ["None"]):
                 given = " ".join(ends or following) or "nothing"
                 raise ConfigurationError(f"{word} must be one number, or two for a range, not {given}")
             completed += ends[:1] if len(ends) == 1 else []
     return completed
 
 
-def _none_empty(words: Sequence[str]) -> Sequence[str]:
-    """Arguments, none of which is empty: an empty path would be the working directory.
+def _checked(words: Sequence[str]) -> Sequence[str]:
+    """Arguments, none of which is empty, or a name that no file, message or page could hold.
 
     :param words: the arguments
-    :raises ConfigurationError: if one is empty, as an unset variable of the shell is
+    :raises ConfigurationError: if one is empty, as an unset variable of the shell is: it would be the working folder;
+        or if one has control characters, or bytes that are not UTF-8
     """
     for before, word in zip(("", *words), words, strict=False):
         option, equals, value = word.partition("=")
+        name = option if equals and option else before if before.startswith("--") and before[2:] else "an argument"
         if not value and (equals or not option):
-            name = option or (before if before.startswith("--") else "an argument")
             raise ConfigurationError(f"{name} must not be empty")
+        if not is_text(word):
+            given = f"{value or word!r:.300}"
+            raise ConfigurationError(f"{name} must be UTF-8 text without control characters, not {given}")
     return words
 
 
@@ -135,11 +160,8 @@ def _ranges_of(config: Any) -> Iterator[str]:
 
 
 def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
+    """Whether a word after a range is meant as one of its numbers; what is spelled otherwise is refused."""
+    return bool(NUMBER.match(text) or re.fullmatch(r"[-+]?\.?\d[\d._:]*", text.strip()))
 
 
 def parse_options(
@@ -156,7 +178,7 @@ def parse_options(
     errors = io.StringIO()
     try:
         with contextlib.redirect_stderr(errors):
-            return parse(args=_none_empty(_with_both_ends(arguments, default)))
+            return parse(args=_checked(_with_both_ends(arguments, default)))
     except SystemExit as exit_request:
         if not exit_request.code:
             raise

@@ -64,8 +64,6 @@ def _report(arguments: Sequence[str]) -> None:
 
     run = RunFolder.open(options.run, task=named_task(options.task))
     path = options.out or run.report_path
-    if not path.parent.is_dir():
-        raise ConfigurationError(f"cannot write {path}: folder {path.parent} does not exist")
     with Workers(options.workers) as workers:
         write_report(run, path, workers, options.episodes, options.seconds)
     print(path)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from sarah.episode.tasks import Task
 from sarah.errors import ConfigurationError, RunFolderError, shortened, unknown_name
+from sarah.number import number
 from sarah.sessions import is_session
 
 if TYPE_CHECKING:
@@ -136,6 +137,6 @@ def numbers(name: str, text: str) -> tuple[float, ...]:
     :raises ConfigurationError: if one of them is not a number
     """
     try:
-        return tuple(float(value) for value in text.split(","))
+        return tuple(number(value.strip(" ")) for value in text.split(","))
     except ValueError:
-        raise ConfigurationError(f"{name} must be numbers separated by commas, not {text!r}") from None
+        raise ConfigurationError(f"{name} must be numbers separated by commas, not {shortened(text)}") from None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import re
-import shlex
 import signal
 import sys
 from collections.abc import Mapping, Sequence
@@ -28,6 +27,7 @@ from sarah.errors import (
     TaskError,
     TrainingInterruptedError,
 )
+from sarah.files import quoted
 from sarah.runs.agent_settings import AGENT_SETTINGS, NAFSettings, settings_of
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import first_difference, read_config
@@ -119,7 +119,7 @@ def _train(arguments: Sequence[str]) -> None:
         say_engine(config.episode, options.engine)
         print(f"training {config.algo} on {config.task.name}: {config.episodes} episodes into {run.path}", flush=True)
         named = given_options(arguments, "task") if config.task.file is not None else {}
-        learned = _learned(config, run, workers, " ".join(f" --task {shlex.quote(task)}" for task in named.values()))
+        learned = _learned(config, run, workers, " ".join(f" --task {quoted(task)}" for task in named.values()))
     _summarise(config.task, learned, run.path)
 
 
@@ -173,7 +173,7 @@ def _learned(config: TrainingConfig, run: RunFolder, workers: Workers, task: str
     """Train; if the training stops early, the message says how to go on, with the option of a file's task."""
     from sarah.training.train import train
 
-    go_on = f"go on with {COMMAND} --resume {shlex.quote(str(run.path))}{task}"
+    go_on = f"go on with {COMMAND} --resume {quoted(run.path)}{task}"
     with Interruption(COMMAND) as interruption:
         try:
             return train(config, run, workers, True, interruption.came)

@@ -14,6 +14,7 @@ from sarah.cli.options import named_task, run_command
 from sarah.cli.subjects import episode_of, learner_of
 from sarah.episode.spec import FIRST_EVALUATION_SEED
 from sarah.errors import ConfigurationError
+from sarah.files import make_folder
 
 if TYPE_CHECKING:
     from sarah.reports.transfer import LearnedParameters
@@ -77,13 +78,13 @@ def _transfer(arguments: Sequence[str]) -> None:
     from sarah.runs.run_folder import RunFolder
 
     learned = [_learned(subject, arguments) for subject in options.subjects]
+    out = options.out or RunFolder(first).figures_path
+    make_folder(out)
     seeds = range(options.first_seed, options.first_seed + options.episodes)
     with Workers(options.workers, options.scheduler) as workers:
         transfers = transfer(learned, seeds, workers)
     table = as_markdown(transfers)
     print(table)
-    out = options.out or RunFolder(first).figures_path
-    out.mkdir(parents=True, exist_ok=True)
     (out / "transfer.md").write_text(table + "\n", encoding="utf-8")
     for file in draw_transfer(transfers, out / "transfer"):
         print(file)

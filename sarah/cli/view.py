@@ -18,6 +18,7 @@ from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episodes_of, is_shipped
 from sarah.errors import ConfigurationError
+from sarah.files import check_file
 
 if TYPE_CHECKING:
     from sarah.runs.run_episodes import RunEpisode
@@ -88,9 +89,7 @@ def _export(path: Path, chosen: RunEpisode) -> None:
     from sarah.viewer.recording import record
     from sarah.viewer.server import serving
 
-    if path.is_dir() or not path.parent.is_dir():  # checked before the long simulation
-        reason = "it is a folder" if path.is_dir() else f"folder {path.parent} does not exist"
-        raise ConfigurationError(f"cannot write {path}: {reason}")
+    check_file(path)
     if path.suffix.lower() not in (".html", ".htm"):
         raise ConfigurationError(f"an exported page must end in .html, not {path.name!r}; sarah-video makes videos")
     bar = tqdm(total=1.0, desc=chosen.label, bar_format="{desc}: {percentage:3.0f}% {bar}", disable=None)

@@ -62,7 +62,7 @@ class Baselines:
     def _gains_of_means(self, reading: SensorReading) -> list[float]:
         """Weights with which three signals enter the means of their finite readings so far."""
         signals = reading.acceleration[0], reading.angular_rate[0], reading.angular_rate[1]
-        are_finite = [abs(signal) < LARGEST_SIGNAL for signal in signals]
+        are_finite = [bool(abs(signal) < LARGEST_SIGNAL) for signal in signals]
         numbers = self._standing_readings = [
             number + is_finite for number, is_finite in zip(self._standing_readings, are_finite, strict=True)
         ]

@@ -32,6 +32,7 @@ from dataclasses import dataclass
 
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.lean import Lean
+from sarah.number import to_floats
 from sarah.robot.filters import LowPass, clipped, ramped
 from sarah.robot.reading import SensorReading, Side
 
@@ -50,6 +51,10 @@ class BalanceParameters:
     V2: float
     V3: float
     V4: float
+
+    def __post_init__(self) -> None:
+        """Make floats of all of them."""
+        to_floats(self, *self.__dataclass_fields__)
 
 
 LOCKED_HIPS = BalanceParameters(0.0, 0.0, 0.0, 0.0)

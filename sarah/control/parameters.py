@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from sarah.number import to_floats
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -23,6 +25,10 @@ class Parameter:
     unit: str
     meaning: str
     paper: str
+
+    def __post_init__(self) -> None:
+        """Make floats of the ends."""
+        to_floats(self, "low", "high")
 
     @property
     def label(self) -> str:

@@ -21,16 +21,15 @@ control tick, and on a robot.
 from __future__ import annotations
 
 import contextlib
-import math
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass
 from enum import Enum
-from numbers import Real
 
 from sarah.control.baselines import Baselines
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.hip_law import LOCKED_HIPS, NO_LIMITS, BalanceParameters, HipLaw
 from sarah.errors import ConfigurationError, check_range, shortened
+from sarah.number import is_finite, plain, to_floats
 from sarah.robot.filters import LowPass, clipped, low_pass_gain, ramped
 from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, SensorReading, Side
 
@@ -53,23 +52,16 @@ class Phase(Enum):
     LAND = "land"
 
 
-def _is_finite(value: object) -> bool:
-    try:
-        return isinstance(value, Real) and math.isfinite(value)
-    except OverflowError:  # a whole number beyond all floats
-        return False
-
-
 def _check_parameters(given: object, kind: type[SteppingParameters] | type[BalanceParameters]) -> None:
     if not isinstance(given, kind):
         raise ConfigurationError(f"parameters must be {kind.__name__}, not {given!r:.100}")
-    if not all(map(_is_finite, astuple(given))):
+    if not all(map(is_finite, vars(given).values())):
         raise ConfigurationError(f"parameters must be finite numbers, not {given!r:.100}")
 
 
 def _checked_limits(limits: Sequence[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
     with contextlib.suppress(TypeError, ValueError):
-        ranges = tuple((low, high) for low, high in limits)
+        ranges = tuple((plain(low), plain(high)) for low, high in limits)
         if len(ranges) == len(ACTUATED_JOINTS) and all(low <= 0.0 <= high for low, high in ranges):
             return ranges
     raise ConfigurationError(f"limits must be {len(ACTUATED_JOINTS)} ranges around zero, not {shortened(limits)}")
@@ -91,6 +83,10 @@ class SteppingParameters:
     P3: float
     P4: float
     P5: float
+
+    def __post_init__(self) -> None:
+        """Make floats of all of them."""
+        to_floats(self, *self.__dataclass_fields__)
 
 
 @dataclass(frozen=True)
@@ -143,7 +139,7 @@ class PatternGenerator:
         limits: Sequence[tuple[float, float]] = NO_LIMITS,
         constants: ControllerConstants = STANDARD_CONSTANTS,
     ) -> None:
-        check_range("dt", dt, SHORTEST_PERIOD, LONGEST_PERIOD, "s")
+        dt = float(check_range("dt", dt, SHORTEST_PERIOD, LONGEST_PERIOD, "s"))
         _check_parameters(parameters, SteppingParameters)
         _check_parameters(balance, BalanceParameters)
         limits = _checked_limits(limits)

@@ -47,10 +47,9 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         operated: Operation | None = None,
         **settings: Any,
     ) -> None:
-        check_range("reach", reach, 0.0, 1.0)
         self.config = from_mapping(config or OperationConfig(), settings)
         self.first = checked_parameters(first)
-        self._reach = reach
+        self._reach = float(check_range("reach", reach, 0.0, 1.0))
         size = len(FELT) + len(PARAMETERS)
         self.observation_space = gymnasium.spaces.Box(-LARGEST, LARGEST, (size,), np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(PARAMETERS),), np.float32)

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-import re
 from collections.abc import Mapping
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from sarah.episode.tasks import Task, task_named
 from sarah.errors import LONGEST_NAME, ConfigurationError, shortened, unknown_name
+from sarah.number import is_number, plain
 
 ConfigType = TypeVar("ConfigType")
-EXPONENT = re.compile(r"[-+]?\d+[eE][-+]?\d+")
-"""Numbers such as 3e-4, which YAML 1.1 takes for texts as they have no decimal point."""
 RANGE = tuple[float, float]
 
 
@@ -73,8 +71,7 @@ def _unknown_key(default: Any, name: Any, key: str) -> str:
 
 def _converted(expected: Any, value: Any, key: str) -> Any:
     """Convert a value to the expected type, or raise an error that names the key."""
-    if hasattr(value, "tolist"):  # numpy's numbers and arrays
-        value = value.tolist()
+    value = plain(value)
     if type(None) in get_args(expected):
         (expected,) = (one for one in get_args(expected) if one is not type(None))
         return None if value is None else _converted(expected, value, key)
@@ -93,8 +90,6 @@ def _converted(expected: Any, value: Any, key: str) -> Any:
         if not isinstance(value, Mapping):
             raise ConfigurationError(f"{key} must hold names and values, not {shortened(value)}")
         return {name: _converted(get_args(expected)[1], item, f"{key}.{_short(name)}") for name, item in value.items()}
-    if expected is float and isinstance(value, str) and EXPONENT.fullmatch(value):
-        value = float(value)
     allowed = {float: (float, int), int: (int,), bool: (bool,)}.get(expected, (str,))
     if not isinstance(value, allowed) or (isinstance(value, bool) and expected is not bool):
         kind = {float: "a number", int: "a whole number", bool: "true or false"}.get(expected, "a text")
@@ -122,7 +117,7 @@ def _short(name: Any) -> str:
 
 def _converted_tuple(parts: tuple[Any, ...], value: Any, key: str) -> tuple[Any, ...]:
     """A tuple of the expected parts, of which an ellipsis stands for as many as there are of the one before it."""
-    if parts == get_args(RANGE) and isinstance(value, (int, float)) and not isinstance(value, bool):
+    if parts == get_args(RANGE) and is_number(value):
         value = (value, value)  # one number is both ends of a range
     is_list = isinstance(value, (list, tuple))
     if Ellipsis in parts:

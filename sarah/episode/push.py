@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.settings import LONGEST_EPISODE, EpisodeConfig
-from sarah.errors import ConfigurationError, check_fields, check_types, to_ranges
+from sarah.errors import ConfigurationError, check_fields, check_types, shortened, to_ranges
+from sarah.number import is_finite, plain, to_floats
 from sarah.robot.reading import Vector
 
 PLAUSIBLE = {
@@ -80,9 +81,12 @@ class DrawnPush:
     duration: float
 
     def __post_init__(self) -> None:
-        """Refuse a push that is no number."""
-        if not math.isfinite(math.hypot(*self.force, self.begin, self.duration)):
-            raise ConfigurationError(f"a push must consist of finite numbers, not {self!r}")
+        """Refuse a push that is no number, and make floats of numbers of any type."""
+        force = plain(self.force)
+        if not isinstance(force, (list, tuple)) or not all(map(is_finite, (*force, self.begin, self.duration))):
+            raise ConfigurationError(f"a push must consist of finite numbers, not {shortened(self)}")
+        object.__setattr__(self, "force", tuple(float(plain(newtons)) for newtons in force))
+        to_floats(self, "begin", "duration")
 
 
 def push_words(force: Vector) -> tuple[str, str]:

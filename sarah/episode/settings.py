@@ -10,16 +10,17 @@ from sarah.control.constants import ControllerConstants
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.reward import RewardForm
 from sarah.errors import ConfigurationError, check_range, check_types, unknown_name
+from sarah.number import plain
 from sarah.robot.description import check_dimensions
 from sarah.simulation.engines import Engine, default_engine
 from sarah.simulation.physics import PHYSICS, Physics, physics_for
 from sarah.simulation.randomisation import Randomisation
 from sarah.simulation.terrain import Terrain
 
-LARGEST_PAYLOAD = 100.0
-"""Largest payload, in kg."""
 LONGEST_EPISODE = 3600.0
 """Longest time limit of an episode, in s."""
+PLAUSIBLE = {"payload": (0.0, 100.0, "kg"), "time_limit": (STAND_SECONDS, LONGEST_EPISODE, "s")}
+"""Lowest value, highest value and unit of each setting that is a number."""
 
 
 @dataclass(frozen=True)
@@ -54,20 +55,20 @@ class EpisodeConfig:
         """Refuse settings that cannot be simulated."""
         check_types(self, physics=Physics, randomisation=Randomisation, terrain=Terrain)
         check_types(self, controller=ControllerConstants, dimensions=Mapping)
-        object.__setattr__(self, "dimensions", dict(self.dimensions))  # whatever becomes of the mapping that was given
-        if self.dimensions:
-            check_dimensions(self.dimensions)
-        if self.engine not in get_args(Engine):
-            raise ConfigurationError(unknown_name("engine", self.engine, get_args(Engine)))
+        dimensions = check_dimensions(self.dimensions) if self.dimensions else {}
+        object.__setattr__(self, "dimensions", dimensions)  # whatever becomes of the mapping that was given
+        for name, allowed in (("engine", get_args(Engine)), ("reward_form", get_args(RewardForm))):
+            given = plain(getattr(self, name))
+            if given not in allowed:
+                raise ConfigurationError(unknown_name(name, str(given), allowed))
+            object.__setattr__(self, name, given)
         object.__setattr__(self, "physics", physics_for(self.engine, self.physics))
-        check_range("payload", self.payload, 0.0, LARGEST_PAYLOAD, "kg")
-        check_range("time_limit", self.time_limit, STAND_SECONDS, LONGEST_EPISODE, "s")
+        for name, (low, high, unit) in PLAUSIBLE.items():
+            object.__setattr__(self, name, float(check_range(name, getattr(self, name), low, high, unit)))
         if self.time_limit < STAND_SECONDS + self.physics.control_dt:
             raise ConfigurationError(
                 f"time_limit must be above the {STAND_SECONDS:g} s of standing, not {self.time_limit!r}"
             )
-        if self.reward_form not in get_args(RewardForm):
-            raise ConfigurationError(unknown_name("reward_form", self.reward_form, get_args(RewardForm)))
 
     def check_for_training(self) -> None:
         """Refuse settings with which there is nothing to learn.

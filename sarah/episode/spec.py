@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from numbers import Integral
 from typing import Any
 
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import STEPPING, Task, task_named
-from sarah.errors import ConfigurationError
+from sarah.errors import ConfigurationError, shortened
+from sarah.number import plain
 from sarah.robot.description import RobotDescription, describe_robot
 from sarah.simulation.ground import Ground
 from sarah.simulation.terrain import draw_ground
@@ -44,10 +44,9 @@ class EpisodeSpec:
         object.__setattr__(
             self, "config", task.episode if self.config is None else task.checked_config(self.config, True)
         )
-        if isinstance(self.seed, Integral) and not isinstance(self.seed, bool):
-            object.__setattr__(self, "seed", int(self.seed))
+        object.__setattr__(self, "seed", plain(self.seed))
         if type(self.seed) is not int or self.seed < 0:
-            raise ConfigurationError(f"seed must be a whole number from 0, not {self.seed!r}")
+            raise ConfigurationError(f"seed must be a whole number from 0, not {shortened(self.seed)}")
 
     @property
     def robot(self) -> RobotDescription:

@@ -149,7 +149,7 @@ class Workers(Executor):
     """Client of Dask's scheduler, in the context; nothing if this process simulates."""
 
     def __init__(self, count: int = 0, scheduler: str | None = None) -> None:
-        check_range("workers", count, 0, MOST_WORKERS)
+        count = check_range("workers", count, 0, MOST_WORKERS)
         if count and scheduler is not None:
             raise ConfigurationError("workers start on this machine, but a scheduler has its own: give one of the two")
         self._count = count

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Sized
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,7 +13,8 @@ from sarah.control.pattern_generator import SteppingParameters
 from sarah.episode.from_mapping import convert_fields, from_mapping
 from sarah.episode.push import Push, PushedConfig
 from sarah.episode.shipped import shipped_parameters
-from sarah.errors import ConfigurationError, check_fields, check_types, shortened
+from sarah.errors import ConfigurationError, check_fields, check_range, check_types, shortened
+from sarah.number import plain
 from sarah.robot.description import describe_robot
 
 PARAMETERS = (*STEPPING_PARAMETERS, *BALANCE_PARAMETERS)
@@ -50,8 +51,9 @@ class Change:
     settings: Mapping[str, Any]
 
     def __post_init__(self) -> None:
-        """Refuse values of another type."""
+        """Refuse values of another type, and make numbers of any type Python's own."""
         convert_fields(self, "change.")
+        object.__setattr__(self, "settings", _plain(self.settings))
 
 
 @dataclass(frozen=True)
@@ -132,22 +134,26 @@ def _has(settings: Mapping[str, Any], name: str) -> bool:
     return _has(value, inner) if inner and isinstance(value, Mapping) else outer in settings and not inner
 
 
+def _plain(value: Any) -> Any:
+    """Settings by name as a file could give them, whatever type their numbers are of."""
+    value = plain(value)
+    if isinstance(value, Mapping):
+        return {plain(name): _plain(item) for name, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, (list, tuple)) else value
+
+
 def checked_parameters(values: Sequence[float]) -> Parameters:
     """Check the nine parameters, and convert them to floats.
 
     :param values: P1 to P5 and V1 to V4
     :raises ConfigurationError: naming the first that is missing, or not within its box
     """
-    if len(values) != len(PARAMETERS):
-        raise ConfigurationError(
-            f"parameters must be {len(PARAMETERS)} numbers (P1 to P5, V1 to V4), not {len(values)}"
-        )
-    for parameter, value in zip(PARAMETERS, values, strict=True):
-        if not parameter.low <= value <= parameter.high:
-            raise ConfigurationError(
-                f"parameter {parameter.name} must be between {parameter.low:g} and {parameter.high:g}, not {value!r}"
-            )
-    return tuple(map(float, values))
+    given: Any = plain(values)
+    found = len(given) if isinstance(given, Sized) else shortened(given)
+    if found != len(PARAMETERS):
+        raise ConfigurationError(f"parameters must be {len(PARAMETERS)} numbers (P1 to P5, V1 to V4), not {found}")
+    boxes = zip(PARAMETERS, given, strict=True)
+    return tuple(float(check_range(f"parameter {one.name}", value, one.low, one.high)) for one, value in boxes)
 
 
 def controller_parameters(parameters: Parameters) -> tuple[SteppingParameters, BalanceParameters]:

@@ -8,6 +8,8 @@ from typing import Any
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
 
+from sarah.files import check_name
+
 COLUMN_WIDTH = 3.5
 """Width of a column on a two-column page, in inches."""
 STYLE: dict[Any, Any] = {
@@ -29,6 +31,7 @@ def save(figure: Figure, path: Path) -> list[Path]:
     :param path: path of the picture, without suffix
     :return: the files
     """
+    check_name(path)
     files = [path.with_suffix(suffix) for suffix in (".png", ".pdf")]
     for file in files:
         figure.savefig(file, dpi=200)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import uuid
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -12,6 +13,7 @@ from PIL import Image, ImageColor
 
 from sarah.episode.trace import Trace
 from sarah.errors import ConfigurationError
+from sarah.files import check_file, check_name
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.pictures.overlay import Overlay
 from sarah.robot.description import ANKLE_JOINTS, RobotDescription
@@ -127,8 +129,7 @@ def check_path(path: Path) -> None:
     """
     if path.suffix not in SUFFIXES:
         raise ConfigurationError(f"a video must end in {' or '.join(SUFFIXES)}, not {path.name!r}")
-    if not path.parent.is_dir():
-        raise ConfigurationError(f"cannot write {path}: folder {path.parent} does not exist")
+    check_file(path)
     if path.suffix == ".mp4":
         try:
             import imageio_ffmpeg  # noqa: F401
@@ -145,7 +146,8 @@ def write_video(pictures: Iterable[Image.Image], path: Path) -> None:
     :param path: path of the file
     :raises ConfigurationError: if it cannot be written
     """
-    unfinished = path.with_name(f".{path.stem}.unfinished{path.suffix}")
+    check_name(path)
+    unfinished = path.with_name(f".{uuid.uuid4().hex}{path.suffix}")  # as long as it may be, whatever the other name
     try:
         (_write_mp4 if path.suffix == ".mp4" else _write_gif)(pictures, unfinished)
         os.replace(unfinished, path)
@@ -161,7 +163,10 @@ def _write_mp4(pictures: Iterable[Image.Image], path: Path) -> None:
 
     fps = FRAMES_PER_SECOND[".mp4"]
     options = ["-preset", "veryfast", "-tune", "animation", "-movflags", "+faststart", "-threads", "1"]
-    writer = write_frames(path, (WIDTH, HEIGHT), fps=fps, codec="libx264", quality=6, output_params=options)
+    # In a name of its own, ffmpeg takes what is before a colon for a protocol, and a dash for standard output.
+    writer = write_frames(
+        f"file:{path.absolute()}", (WIDTH, HEIGHT), fps=fps, codec="libx264", quality=6, output_params=options
+    )
     writer.send(None)
     try:
         for picture in pictures:

@@ -23,6 +23,7 @@ from sarah.episode.evaluation import evaluate
 from sarah.episode.workers import Workers
 from sarah.errors import RunFolderError
 from sarah.files import locked, read_lines, read_text, replace_text
+from sarah.number import finite_number, whole_number
 from sarah.runs.agent_settings import settings_of
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import first_difference
@@ -164,7 +165,7 @@ def _train(entry: Entry, run: RunFolder) -> None:
 def _seconds(path: Path) -> float:
     """Wall time of a training so far, in s."""
     try:
-        return float(read_text(path))
+        return finite_number(read_text(path).strip())
     except FileNotFoundError:
         return 0.0
     except (OSError, ValueError) as error:
@@ -176,7 +177,10 @@ def _evaluate_recommendations(entry: Entry, run: RunFolder) -> None:
     config, names = entry.config, entry.config.task.parameter_names
     seconds = read_curve(entry).seconds if is_run(entry) else _seconds(entry.folder / TIME_FILE)
     try:
-        along = [(int(row["episodes"]), tuple(float(row[name]) for name in names)) for row in run.recommendations()]
+        along = [
+            (whole_number(row["episodes"]), tuple(finite_number(row[name]) for name in names))
+            for row in run.recommendations()
+        ]
     except (KeyError, TypeError, ValueError) as error:
         raise _unreadable(entry.folder, error) from error
     known: dict[tuple[float, ...], float] = {}
@@ -201,9 +205,9 @@ def read_curve(entry: Entry) -> RaceCurve:
     try:
         return RaceCurve(
             entry.config.algo,
-            tuple(int(row["episodes"]) for row in rows),
-            tuple(float(row["score"]) for row in rows),
-            float(rows[0]["seconds"]),
+            tuple(whole_number(row["episodes"]) for row in rows),
+            tuple(finite_number(row["score"]) for row in rows),
+            finite_number(rows[0]["seconds"]),
         )
     except (KeyError, TypeError, ValueError) as error:
         raise _unreadable(entry.folder / RACE_FILE, error) from error

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 import tempfile
 from base64 import b64encode
 from dataclasses import dataclass
@@ -20,7 +19,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, Task
 from sarah.episode.workers import Executor
 from sarah.errors import ConfigurationError
-from sarah.files import replace_text
+from sarah.files import check_file, quoted, replace_text
 from sarah.pictures.colours import algorithm_label
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
 from sarah.reports.all_figures import draw_all_figures
@@ -67,14 +66,16 @@ def write_report(
     :param episodes: number of episodes on unseen seeds for the table
     :param seconds: simulated times at which the video begins and ends, in s
     :raises RunFolderError: if a file in the run folder is missing or damaged
+    :raises ConfigurationError: if the page cannot be written
     """
+    check_file(path)
     config, learned, versions = run.config(), run.parameters(), run.versions()  # before the long simulation
     task = config.task
     compared = dict.fromkeys((learned, task.baseline, task.neutral or task.baseline))
-    of = {parameters: evaluate(task, parameters, config.episode, range(episodes), executor) for parameters in compared}
-    ours, theirs = of[learned], of[task.baseline]
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
+        of = {values: evaluate(task, values, config.episode, range(episodes), executor) for values in compared}
+        ours, theirs = of[learned], of[task.baseline]
         drawn = {file.stem: file for file in draw_all_figures([run], folder) if file.suffix == ".png"}
         figures = [
             (text, _address(drawn[stem].read_bytes(), "image/png"))
@@ -166,10 +167,10 @@ def _film(spec: EpisodeSpec, folder: Path, seconds: tuple[float, float]) -> tupl
 
 def _commands(run: RunFolder, config: TrainingConfig) -> list[str]:
     again = f"{config.algo}-s{config.seed}-again"
-    task = "" if config.task.file is None else f" --task {shlex.quote(config.task.reference)}"
+    task = "" if config.task.file is None else f" --task {quoted(config.task.reference)}"
     extra = ["sarah-eval RUN --robustness tables"] if config.task is BALANCE else ["sarah-video RUN out.mp4"]
     commands = [f"sarah-train --config config.yaml --run-dir {again}", "sarah-eval RUN", "sarah-figures RUN", *extra]
-    return [command.replace("RUN", shlex.quote(again)) + task for command in [*commands, "sarah-report RUN"]]
+    return [command.replace("RUN", again) + task for command in [*commands, "sarah-report RUN"]]
 
 
 def _address(content: bytes, kind: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
@@ -11,6 +10,7 @@ import numpy as np
 
 from sarah.episode.tasks import Task
 from sarah.errors import RunFolderError
+from sarah.number import finite_number
 from sarah.runs.run_episodes import LONGEST_REASON
 from sarah.runs.run_folder import RunFolder
 from sarah.training.warm_up import warm_up
@@ -84,12 +84,5 @@ def _numbers(rows: Iterable[dict[str, str]], names: Sequence[str]) -> Rows:
     columns: Rows = {name: [] for name in names}
     for row in rows:
         for name in names:
-            columns[name].append(_number(row[name]))
+            columns[name].append(finite_number(row[name]))
     return columns
-
-
-def _number(text: str) -> float:
-    number = float(text)
-    if not math.isfinite(number):
-        raise ValueError(f"{text} where a number must be")
-    return number

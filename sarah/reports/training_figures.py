@@ -24,6 +24,7 @@ from matplotlib.patheffects import withStroke
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.tasks import BALANCE, STEPPING, Task
+from sarah.files import make_folder
 from sarah.pictures.colours import algorithm_colours, algorithm_label
 from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
 from sarah.reports.robustness import PushedEpisode, finest_sectors, survival_by_direction
@@ -84,7 +85,7 @@ def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
         task: read_curves([run for run, its in zip(runs, tasks, strict=True) if its.identity == identity], task)
         for identity, task in of_task.items()
     }
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     files = []
     with plt.rc_context(STYLE):
         for task, drawn in curves.items():

@@ -13,6 +13,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
 from sarah.episode.workers import Workers
+from sarah.reports.markdown import plain_text
 from sarah.simulation.engines import Engine
 
 ENGINES: tuple[Engine, ...] = get_args(Engine)
@@ -84,8 +85,8 @@ def as_markdown(transfers: Sequence[Transfer]) -> str:
             f"{e.median('vibration'):.1f}"
             for e in one.evaluations.values()
         ]
-        learned = one.learned
+        learned, name = one.learned, plain_text(one.learned.name)
         lines.append(
-            f"| {learned.name} | {learned.task.name} | {learned.config.engine} | {' | '.join(cells)} | {one.kept:.0%} |"
+            f"| {name} | {learned.task.name} | {learned.config.engine} | {' | '.join(cells)} | {one.kept:.0%} |"
         )
     return "\n".join(lines)

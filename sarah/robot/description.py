@@ -17,6 +17,7 @@ from importlib import resources
 from typing import Any, NamedTuple
 
 from sarah.errors import DescriptionError, shortened, unknown_name
+from sarah.number import is_number, plain
 from sarah.robot.reading import ACTUATED_JOINTS, Side
 
 PLATES = ("forefoot", "hindfoot")
@@ -111,27 +112,30 @@ def describe_robot(dimensions: Mapping[str, float] | None = None) -> RobotDescri
     :return: the checked robot; equal dimensions give the same object
     :raises DescriptionError: if a dimension is unknown or not a number near its default, or if the robot is invalid
     """
-    given = dict(dimensions or {})
-    check_dimensions(given)
-    return _describe_cached(tuple(sorted((name, float(value)) for name, value in given.items())))
+    return _describe_cached(tuple(sorted(check_dimensions(dimensions or {}).items())))
 
 
-def check_dimensions(dimensions: Mapping[str, Any]) -> None:
+def check_dimensions(dimensions: Mapping[str, Any]) -> dict[str, float]:
     """Refuse dimensions that the robot does not have.
 
     :param dimensions: values by name, in SI units, as a user gave them
+    :return: the same, in floats
     :raises DescriptionError: for an unknown name, or a value that is not a number near the default
     """
     allowed = default_dimensions()
-    for name, value in dimensions.items():
+    checked = {}
+    for name, given in dimensions.items():
+        value = plain(given)
         if name not in allowed:
             raise DescriptionError(unknown_name("robot dimension", str(name), allowed))
         low, high = allowed[name] / DIMENSION_FACTOR, allowed[name] * DIMENSION_FACTOR
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not low <= value <= high:
+        if not is_number(value) or not low <= value <= high:
             raise DescriptionError(
                 f"robot dimension {name!r} must be a number between {low:g} and {high:g}, not {shortened(value)} "
                 f"(default: {allowed[name]:g}; metres, kilograms, seconds and radians)"
             )
+        checked[str(name)] = float(value)
+    return checked
 
 
 @lru_cache(maxsize=16)

@@ -61,17 +61,17 @@ class SensorReading(NamedTuple):
             return False
 
     def repaired(self, before: SensorReading) -> SensorReading:
-        """Replace each signal that no sensor can return by that of an earlier reading.
+        """Replace each signal that no sensor can return by that of an earlier reading, and make floats of all.
 
         :param before: earlier reading, of finite signals
         """
-        if self.is_finite:
-            return self
-        held: list[Any] = [
-            tuple([value if abs(value) < LARGEST_SIGNAL else last for value, last in zip(values, old, strict=True)])
-            for values, old in zip(self, before, strict=True)
-        ]
-        return SensorReading(*held)
+        held: Any = self
+        if not self.is_finite:
+            held = (
+                [value if abs(value) < LARGEST_SIGNAL else last for value, last in zip(values, old, strict=True)]
+                for values, old in zip(self, before, strict=True)
+            )
+        return SensorReading(*[tuple(map(float, values)) for values in held])  # type: ignore[arg-type]  # as long
 
 
 STANDING = SensorReading((0.0, 0.0, GRAVITY), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))

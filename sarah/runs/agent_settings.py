@@ -115,7 +115,7 @@ class LearnerSettings(AgentSettings):
     def __post_init__(self) -> None:
         """Refuse values out of their range, and devices that torch has not."""
         super().__post_init__()
-        if not re.fullmatch(r"cpu|cuda(:\d{1,3})?|auto", self.device):
+        if not re.fullmatch(r"cpu|cuda(:[0-9]{1,3})?|auto", self.device):
             raise ConfigurationError(
                 f"agent.device must be 'cpu', 'cuda', 'cuda:' and a number, or 'auto', not {shortened(self.device)}"
             )

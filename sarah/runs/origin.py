@@ -6,12 +6,11 @@ All other rows depend on it, so a training in which one of these differs would n
 from __future__ import annotations
 
 import os
-import shlex
 from pathlib import Path
 from typing import Any
 
 from sarah.errors import ResumeError
-from sarah.files import open_regular
+from sarah.files import open_regular, quoted
 from sarah.runs import rows
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import settings_by_key
@@ -57,7 +56,7 @@ def check_first_row(path: Path, first: bytes, config: TrainingConfig) -> None:
             "begun, is damaged or missing"
         )
     if different := differences(_origin_of(config), there, "in this training"):
-        again = shlex.quote(str(path.with_name("config.yaml")))
+        again = quoted(path.with_name("config.yaml"))
         raise ResumeError(
             f"{path.parent} cannot be resumed: {different}: put that back, or train anew with --config {again}"
         )

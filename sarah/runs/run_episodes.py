@@ -12,6 +12,7 @@ from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
 from sarah.errors import ConfigurationError, RunFolderError
+from sarah.number import finite_number, whole_number
 from sarah.runs.run_folder import RunFolder
 
 LONGEST_REASON = 200
@@ -69,9 +70,9 @@ def episodes_of_run(run: RunFolder) -> list[RunEpisode]:
     simulated = []
     for row in run.episodes():
         try:
-            parameters = tuple(float(row[name]) for name in task.parameter_names)
-            spec = EpisodeSpec(parameters, int(row["seed"]), task, training.episode)
-            score, ending = float(row["score"]), ending_words(row["termination"])
+            parameters = tuple(finite_number(row[name]) for name in task.parameter_names)
+            spec = EpisodeSpec(parameters, whole_number(row["seed"]), task, training.episode)
+            score, ending = finite_number(row["score"]), ending_words(row["termination"])
             label = f"episode {row['index']} · score {score:.2f} · {ending}"
             simulated.append(RunEpisode(row["index"], label, spec, score))
         except (KeyError, TypeError, ValueError) as error:

@@ -19,8 +19,6 @@ from __future__ import annotations
 import csv
 import io
 import json
-import shlex
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -30,7 +28,8 @@ from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
 from sarah.errors import ConfigurationError, RunFolderError, shortened
-from sarah.files import read_lines, read_text, replace_text
+from sarah.files import check_name, quoted, read_lines, read_text, replace_text, write_command
+from sarah.formats import read_json
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import read_config, write_config
 from sarah.runs.recorded_task import SOURCE, record_task, recorded_task
@@ -88,14 +87,15 @@ class RunFolder:
             raise ConfigurationError(
                 f"a run folder records tasks of files: put {config.task.name!r} into one, and use sarah.load_task"
             )
+        check_name(path)
         try:
             path.mkdir(parents=True, exist_ok=True)
             run = cls(path, config.task if config.task.file is not None else None)
             if any(path.iterdir()) or not run._claim():
                 can_go_on = run._config_path.is_file() and run.journal_path.is_file() and not run.is_finished
-                go_on = f", or go on with sarah-train --resume {shlex.quote(str(path))}" if can_go_on else ""
+                go_on = f", or go on with sarah-train --resume {quoted(path)}" if can_go_on else ""
                 raise RunFolderError(f"run folder {path} is not empty: name another with --run-dir{go_on}")
-            replace_text(path / "command.txt", shlex.join(sys.argv) + "\n")
+            write_command(path / "command.txt")
             run.write_versions()
             record_task(config.task, path)
             write_config(config, run._config_path)  # last, because a folder that has it can be resumed
@@ -268,14 +268,14 @@ class RunFolder:
         task = self.config().task
         names = task.parameter_names
         try:
-            learned = json.loads(read_text(self._parameters_path))["parameters"]
+            learned = read_json(read_text(self._parameters_path))["parameters"]
             if set(learned) != set(names):
                 found = shortened(", ".join(map(str, learned)))
                 raise ValueError(f"it names {found} instead of {', '.join(names)}")
             return task.checked([learned[name] for name in names])
         except OSError as error:
             raise _unreadable(self._parameters_path, error) from error
-        except (ValueError, KeyError, TypeError, RecursionError) as error:
+        except (ValueError, KeyError, TypeError) as error:
             raise RunFolderError(f"{self._parameters_path} does not hold learned parameters: {error}") from error
 
     def _rows(self, path: Path) -> Iterator[dict[str, str]]:

@@ -13,13 +13,13 @@ from __future__ import annotations
 import csv
 import io
 import json
-import shlex
-import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from sarah.errors import RunFolderError
-from sarah.files import read_lines, read_text, replace_text
+from sarah.files import check_name, quoted, read_lines, read_text, replace_text, write_command
+from sarah.formats import read_json
+from sarah.number import finite_number, whole_number
 from sarah.operation.settings import PARAMETERS, Parameters, checked_parameters
 from sarah.operation.window import FELT, Window
 from sarah.runs.config_files import read_config, write_config
@@ -58,15 +58,16 @@ class SessionFolder:
         :param spec: specification of the session
         :raises RunFolderError: if the folder is not empty or cannot be written
         """
+        check_name(path)
         folder = cls(path)
         try:
             path.mkdir(parents=True, exist_ok=True)
             if any(path.iterdir()):
                 can_go_on = folder._spec_path.is_file() and not folder.is_finished
-                go_on = f", or go on with sarah-operate --resume {shlex.quote(str(path))}" if can_go_on else ""
+                go_on = f", or go on with sarah-operate --resume {quoted(path)}" if can_go_on else ""
                 raise RunFolderError(f"folder {path} is not empty: name another with --run-dir{go_on}")
             folder.journal_path.touch(exist_ok=False)
-            replace_text(path / "command.txt", shlex.join(sys.argv) + "\n")
+            write_command(path / "command.txt")
             replace_text(path / "versions.txt", "".join(f"{name} {version}\n" for name, version in versions().items()))
             write_config(spec, folder._spec_path)  # last, because a folder that has it can be resumed
         except RunFolderError:
@@ -156,16 +157,16 @@ class SessionFolder:
         """
         left = self._left()
         if left is None:
-            go_on = f"go on with sarah-operate --resume {shlex.quote(str(self.path))}"
+            go_on = f"go on with sarah-operate --resume {quoted(self.path)}"
             raise RunFolderError(f"{self.path} is not the folder of a finished session: {go_on}")
         return left
 
     def _left(self) -> Parameters | None:
         """Parameters that the robot was left with; ``None`` if there are none, or if the file is damaged."""
         try:
-            values = json.loads(read_text(self._parameters_path))["parameters"]
+            values = read_json(read_text(self._parameters_path))["parameters"]
             return checked_parameters([values[name] for name in NAMES])
-        except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        except (OSError, ValueError, KeyError, TypeError):
             return None
 
 
@@ -180,13 +181,13 @@ def _row(window: Window) -> tuple[object, ...]:
 
 def _window(row: Mapping[str, str]) -> Window:
     return Window(
-        index=int(row["index"]),
-        begin=float(row["begin"]),
-        seconds=float(row["seconds"]),
-        changes=int(row["changes"]),
-        parameters=checked_parameters([float(row[name]) for name in NAMES]),
-        score=float(row["score"]),
-        observed_reward=float(row["observed_reward"]),
+        index=whole_number(row["index"]),
+        begin=finite_number(row["begin"]),
+        seconds=finite_number(row["seconds"]),
+        changes=whole_number(row["changes"]),
+        parameters=checked_parameters([finite_number(row[name]) for name in NAMES]),
+        score=finite_number(row["score"]),
+        observed_reward=finite_number(row["observed_reward"]),
         fell=row["fell"] == "1",
-        felt=tuple(float(row[name]) for name in FELT),
+        felt=tuple(finite_number(row[name]) for name in FELT),
     )

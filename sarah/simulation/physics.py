@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from numbers import Integral
 
-from sarah.errors import ConfigurationError, check_range, shortened
+from sarah.errors import ConfigurationError, check_fields, check_range, shortened
+from sarah.number import is_number, plain
 
 SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE = 50, 1000
 FASTEST_PHYSICS_RATE = 20_000
@@ -29,8 +29,10 @@ class Physics:
     def __post_init__(self) -> None:
         """Refuse rates that do not divide into each other."""
         for name in ("control_rate", "rate", "solver_iterations"):
-            if not isinstance(value := getattr(self, name), Integral):
+            value = plain(getattr(self, name))
+            if not is_number(value) or not isinstance(value, int):
                 raise ConfigurationError(f"physics.{name} must be a whole number, not {shortened(value)}")
+            object.__setattr__(self, name, value)
         check_range("physics.control_rate", self.control_rate, SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE, "Hz")
         check_range("physics.rate", self.rate, self.control_rate, FASTEST_PHYSICS_RATE, "Hz")
         if self.rate % self.control_rate:
@@ -67,7 +69,7 @@ class PyBulletPhysics(Physics):
     def __post_init__(self) -> None:
         """Refuse values that cannot be simulated."""
         super().__post_init__()
-        check_range("physics.added_plate_inertia", self.added_plate_inertia, 0.0, LARGEST_ADDED_INERTIA, "kg m^2")
+        check_fields("physics", self, {"added_plate_inertia": (0.0, LARGEST_ADDED_INERTIA, "kg m^2")})
 
 
 PHYSICS = {"standard": PyBulletPhysics(), "reference": PyBulletPhysics(1000, 100, added_plate_inertia=0.0)}

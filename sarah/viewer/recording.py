@@ -12,6 +12,7 @@ from sarah.episode.episode import simulate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError
+from sarah.files import replace_text
 from sarah.runs.episode_words import told_settings
 from sarah.viewer.playback import FRAMES_PER_SECOND
 from sarah.viewer.scene import RobotScene
@@ -45,6 +46,6 @@ def record(
         progress((time - trace.time[0]) / (trace.time[-1] - trace.time[0]))
     try:
         page = recorder.as_html().replace("<title>Viser</title>", "<title>SARAH</title>")
-        path.write_text(page, encoding="utf-8")
+        replace_text(path, page)
     except OSError as error:
         raise ConfigurationError(f"cannot write {path}: {error.strerror or error}") from error

@@ -45,7 +45,7 @@ PROTECTIONS = (
     Protection(
         "files are replaced as a whole",
         "files.py",
-        'path.with_name(f"{path.name}.{uuid.uuid4().hex}.new")',
+        'path.with_name(f".{uuid.uuid4().hex}.new")',
         "path",
         "test_a_file_keeps_its_content_until_the_new_one_is_complete",
     ),

@@ -17,7 +17,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BalanceConfig
 from sarah.episode.trace import Trace
 from sarah.errors import ConfigurationError
-from sarah.pictures.video import GIF_SIZE, HEIGHT, WIDTH, check_path, frame_times, frames
+from sarah.pictures.video import GIF_SIZE, HEIGHT, WIDTH, check_path, frame_times, frames, write_video
 from sarah.robot.description import describe_robot
 
 PUSHED = BalanceConfig(time_limit=2.5, push=Push((100.0, 100.0), (180.0, 180.0), (1.5, 1.5)))
@@ -78,6 +78,19 @@ def test_mp4_without_the_extra_is_refused_by_its_name(monkeypatch: pytest.Monkey
     with pytest.raises(ConfigurationError, match=r"pip install 'sarah\[video\]'"):
         check_path(Path("a.mp4"))
     check_path(Path("a.gif"))
+
+
+@pytest.mark.parametrize("name", ["2026-11-28T07:30", "-x", "a:b/%d é", "[x]", "a" * 251])
+@pytest.mark.parametrize("suffix", [".mp4", ".gif"])
+def test_any_name_of_a_film_is_that_of_its_file(
+    name: str, suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    path = Path(name + suffix)
+    path.parent.mkdir(exist_ok=True)
+    check_path(path)
+    write_video([Image.new("RGB", (WIDTH, HEIGHT))] * 2, path)
+    assert [found.relative_to(tmp_path) for found in tmp_path.rglob("*") if found.is_file()] == [path]
 
 
 def filmed(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:

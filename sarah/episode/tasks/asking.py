@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
-from numbers import Real
 from typing import Any
 
 from sarah.control.hip_law import BalanceParameters
@@ -16,6 +14,7 @@ from sarah.episode.tasks.task import ControllerParameters, Task
 from sarah.episode.tasks.task_file import mistake
 from sarah.episode.tick import Tick
 from sarah.errors import SarahError, TaskError, shortened
+from sarah.number import is_finite, plain
 
 ENDINGS_OF_EPISODES = ("time_limit", "diverged")
 """Endings that no task can claim: the episode itself finds them."""
@@ -46,7 +45,7 @@ def controller_of(task: Task, parameters: tuple[float, ...], config: EpisodeConf
     if isinstance(made, tuple) and len(made) == 2:
         stepping, balance = made
         kinds = isinstance(stepping, SteppingParameters) and isinstance(balance, BalanceParameters | None)
-        if kinds and all(map(_is_finite, (*vars(stepping).values(), *vars(balance or stepping).values()))):
+        if kinds and all(map(is_finite, (*vars(stepping).values(), *vars(balance or stepping).values()))):
             return stepping, balance
     raise _wrong(
         task, "controller_parameters must return finite SteppingParameters, and BalanceParameters or None", made
@@ -61,9 +60,9 @@ def reward_of(task: Task, tick: Tick, config: EpisodeConfig) -> float:
     :param config: settings of the episode
     """
     reward = _asked(task, task.reward, tick, config)
-    if not _is_finite(reward):
+    if not is_finite(reward):
         raise _wrong(task, "its reward must be a finite number", reward)
-    return float(reward)
+    return float(plain(reward))
 
 
 def ending_of(task: Task, tick: Tick, config: EpisodeConfig) -> str | None:
@@ -89,13 +88,6 @@ def _asked(task: Task, function: Callable[..., Any], *arguments: Any) -> Any:
         if task.file is None:
             raise
         raise TaskError(mistake(task.file.name, error)) from error
-
-
-def _is_finite(value: object) -> bool:
-    try:
-        return isinstance(value, Real) and math.isfinite(value)
-    except OverflowError:  # an integer that no float can hold
-        return False
 
 
 def _wrong(task: Task, rule: str, returned: object) -> TaskError:

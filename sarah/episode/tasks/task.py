@@ -6,7 +6,6 @@ import hashlib
 import re
 from collections.abc import Callable, Sequence, Sized
 from dataclasses import dataclass, fields
-from numbers import Real
 from typing import Any, Generic, TypeVar
 
 from sarah.control.hip_law import BalanceParameters
@@ -18,7 +17,8 @@ from sarah.episode.result import EpisodeResult
 from sarah.episode.reward import equation_2
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tick import Tick
-from sarah.errors import ConfigurationError, shortened
+from sarah.errors import ConfigurationError, check_range, shortened
+from sarah.number import is_number, plain
 
 ConfigType = TypeVar("ConfigType", bound=EpisodeConfig)
 ControllerParameters = tuple[SteppingParameters, BalanceParameters | None]
@@ -116,6 +116,7 @@ class Task(Generic[ConfigType]):
             raise ConfigurationError(f"a task's name must be letters, digits, - and _, not {shortened(self.name)}")
         if not isinstance(self.episode, EpisodeConfig):
             raise ConfigurationError(f"episode of task {self.name!r} must be settings of episodes")
+        object.__setattr__(self, "must_step", plain(self.must_step))
         if not _is_plain(self.title) or not _is_plain(self.baseline_label) or not isinstance(self.must_step, bool):
             raise ConfigurationError(f"title and baseline_label of task {self.name!r} must be plain texts")
         names = self.parameter_names
@@ -127,7 +128,9 @@ class Task(Generic[ConfigType]):
                 )
             if not all(map(_is_plain, (parameter.unit, parameter.meaning, parameter.paper))):
                 raise ConfigurationError(f"unit and meaning of parameter {name} must be plain texts, without $")
-            if not -LARGEST <= parameter.low < parameter.high <= LARGEST:
+            if not all(map(is_number, (parameter.low, parameter.high))) or (
+                not -LARGEST <= parameter.low < parameter.high <= LARGEST
+            ):
                 ends = f"{shortened(parameter.low)} and {shortened(parameter.high)}"
                 raise ConfigurationError(f"ends of parameter {name} must be in rising order, not {ends}")
         if not names:
@@ -135,7 +138,8 @@ class Task(Generic[ConfigType]):
         object.__setattr__(self, "baseline", self.checked(self.baseline, "baseline"))
         if self.neutral is not None:
             object.__setattr__(self, "neutral", self.checked(self.neutral, "neutral"))
-        if self.best_reward is not None and not 0.0 < self.best_reward <= LARGEST:
+        object.__setattr__(self, "best_reward", plain(self.best_reward))
+        if self.best_reward is not None and not (is_number(self.best_reward) and 0.0 < self.best_reward <= LARGEST):
             raise ConfigurationError(f"best_reward must be above 0, not {shortened(self.best_reward)}")
 
     def __repr__(self) -> str:
@@ -186,17 +190,12 @@ class Task(Generic[ConfigType]):
         :param name: name of the values in messages
         :raises ConfigurationError: naming the first value that is not a number within its range
         """
-        names = self.parameter_names
+        names, values = self.parameter_names, plain(values)
         if not isinstance(values, Sized) or len(values) != len(names):
             found = len(values) if isinstance(values, Sized) else shortened(values)
             raise ConfigurationError(f"{name} must be {len(names)} numbers ({names[0]} to {names[-1]}), not {found}")
-        for parameter, value in zip(self.parameters, values, strict=True):
-            low, high = parameter.low, parameter.high
-            if not isinstance(value, Real) or isinstance(value, bool) or not low <= value <= high:
-                raise ConfigurationError(
-                    f"parameter {parameter.name} must be between {low:g} and {high:g}, not {shortened(value)}"
-                )
-        return tuple(map(float, values))
+        boxes = zip(self.parameters, values, strict=True)
+        return tuple(float(check_range(f"parameter {one.name}", value, one.low, one.high)) for one, value in boxes)
 
     def checked_config(self, config: EpisodeConfig, may_be_pushed: bool = False) -> EpisodeConfig:
         """Check that settings are of this task's type, and return them.

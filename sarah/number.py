@@ -1,0 +1,110 @@
+"""Numbers from outside: a text spells them in one way, and Python has one type of them, whatever they come as.
+
+What the command line accepts or refuses, so do settings files, tables and Python.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from decimal import Decimal
+from numbers import Integral, Real
+from typing import Any
+
+_DIGITS = "(?:0|[1-9][0-9]{0,999})"
+WHOLE = re.compile(rf"[-+]?{_DIGITS}\Z")
+"""A whole number: decimal, without leading zeros, which YAML 1.1 takes for octal, and without underscores."""
+_DECIMAL = rf"(?:{_DIGITS}(?:\.[0-9]{{0,999}})?|\.[0-9]{{1,999}})(?:e[-+]?[0-9]{{1,9}})?"
+NUMBER = re.compile(rf"[-+]?(?:{_DECIMAL}|\.?inf|\.?nan)\Z", re.IGNORECASE)
+"""A number, such as ``3``, ``.5`` or ``1e-4``; infinities and NaN are left for ranges to refuse."""
+
+
+def whole_number(text: str) -> int:
+    """Read a whole number.
+
+    :param text: text that a user gave
+    :raises ValueError: if it is none, with the rest of a sentence that begins with the name
+    """
+    if not WHOLE.match(text):
+        raise ValueError(f"must be a whole number, not {_short(text)}")
+    return int(text)
+
+
+def number(text: str) -> float:
+    """Read a number.
+
+    :param text: text that a user gave
+    :raises ValueError: if it is none, with the rest of a sentence that begins with the name
+    """
+    if not NUMBER.match(text):
+        raise ValueError(f"must be a number, not {_short(text)}")
+    return float(text.lower().replace(".i", "i").replace(".n", "n"))
+
+
+def finite_number(text: str) -> float:
+    """Read a number of a table, which is finite.
+
+    :param text: text of a file
+    :raises ValueError: if it is none, as in :func:`number`
+    """
+    value = number(text)
+    if not math.isfinite(value):
+        raise ValueError(f"must be a finite number, not {_short(text)}")
+    return value
+
+
+def plain(value: Any) -> Any:
+    """Python's own value for one of numpy's, for an array or a fraction. What is none of these stays as it is.
+
+    A setting of numpy's single precision would make a whole episode one of single precision.
+
+    :param value: value of any type
+    :return: ``int``, ``float``, ``bool`` or ``str``; a list for an array, unless it has no dimensions
+    """
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, bool):
+        return value
+    if isinstance(value, Integral):
+        return int(value)
+    if isinstance(value, (Real, Decimal)):
+        try:
+            return float(value)
+        except (OverflowError, ValueError):  # a fraction beyond all floats, a signalling NaN
+            return value
+    return str.__str__(value) if isinstance(value, str) else value
+
+
+def is_number(value: object) -> bool:
+    """Whether a value is a number of Python's own; truth values are none.
+
+    :param value: value as :func:`plain` returns it
+    """
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def is_finite(value: object) -> bool:
+    """Whether a value is a number of any type that a float can hold; truth values are 0 and 1.
+
+    :param value: value of any type
+    """
+    value = plain(value)
+    try:
+        return isinstance(value, (int, float)) and math.isfinite(value)
+    except OverflowError:  # a whole number beyond all floats
+        return False
+
+
+def to_floats(config: object, *names: str) -> None:
+    """Make floats of the numbers among the fields of a frozen dataclass, while it is made. Other values stay.
+
+    :param config: object to change
+    :param names: names of the fields
+    """
+    for name in names:
+        value = getattr(config, name)
+        object.__setattr__(config, name, float(plain(value)) if is_finite(value) else plain(value))
+
+
+def _short(text: str) -> str:
+    return repr(text if len(text) <= 100 else f"{text[:50]}...{text[-50:]}")
