@@ -8,7 +8,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 
-from sarah.envs.sarah_env import draw_seed
+from sarah.envs.sarah_env import checked_action, checked_render_mode, draw_seed
 from sarah.episode.from_mapping import from_mapping
 from sarah.errors import ConfigurationError, check_range
 from sarah.operation.operation import Operation
@@ -31,11 +31,12 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
     :param first: parameters to begin with; by default those that the package ships
     :param reach: half-width of the action's box, as a share of each range; what lies outside the range comes to its end
     :param operated: robot to operate, instead of one that the settings describe
+    :param render_mode: ``None``: there are no pictures
     :param settings: settings to change, by name: ``minutes=5``, ``robot={"engine": "mujoco"}``
     :raises ConfigurationError: naming the setting and its nearest valid name, if one is not allowed
     """
 
-    metadata = {"render_modes": []}
+    metadata: dict[str, Any] = {"render_modes": []}
 
     def __init__(
         self,
@@ -43,11 +44,13 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         first: Sequence[float] = SHIPPED,
         reach: float = 0.25,
         operated: Operation | None = None,
+        render_mode: str | None = None,
         **settings: Any,
     ) -> None:
         check_range("reach", reach, 0.0, 1.0)
         self.config = from_mapping(config or OperationConfig(), settings)
         self.first = checked_parameters(first)
+        self.render_mode = checked_render_mode(render_mode, self.metadata["render_modes"])
         self._reach = reach
         size = len(FELT) + len(PARAMETERS)
         self.observation_space = gymnasium.spaces.Box(-LARGEST, LARGEST, (size,), np.float32)
@@ -101,10 +104,7 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         :param action: one number in [-1, 1] for each parameter
         :raises ConfigurationError: if the action is not finite or out of its box
         """
-        values = np.asarray(action, dtype=float)
-        if values.shape != (len(PARAMETERS),) or not (np.abs(values) <= 1.0).all():
-            raise ConfigurationError(f"an action must be {len(PARAMETERS)} numbers within -1 and 1, not {action!r}")
-        return from_shares(to_shares(self.first) + self._reach * values)
+        return from_shares(to_shares(self.first) + self._reach * checked_action(action, len(PARAMETERS)))
 
     def close(self) -> None:
         """Give the physics engine's resources back."""

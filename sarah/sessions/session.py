@@ -10,6 +10,7 @@ from sarah.errors import ConfigurationError, check_range, unknown_name
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import SHIPPED, OperationConfig, Parameters, checked_parameters
 from sarah.operation.window import Window
+from sarah.process import apart
 from sarah.sessions.learners import LEARNERS
 from sarah.sessions.watched import WatchedRobot
 
@@ -80,9 +81,16 @@ def run_session(
     :return: the result
     :raises ResumeError: if the learner asks for other parameters than a known window has
     """
-    robot = WatchedRobot(RobotInOperation(spec.config, spec.seed), known, watch)
-    try:
-        parameters = LEARNERS[spec.learner](spec.parameters, spec.seed).operate(robot)
-    finally:
-        robot.close()
+    learner = LEARNERS[spec.learner](spec.parameters, spec.seed)
+    with apart() as outside:
+
+        def watch_outside(window: Window) -> None:
+            with outside():
+                watch(window)
+
+        robot = WatchedRobot(RobotInOperation(spec.config, spec.seed), known, watch_outside)
+        try:
+            parameters = learner.operate(robot)
+        finally:
+            robot.close()
     return SessionResult(tuple(robot.windows), parameters)

@@ -122,7 +122,8 @@ class EpisodeRecorder(BaseCallback):
         else:
             from sarah.pictures.gait_snapshot import draw_gait  # slow to import because of matplotlib
 
-            summary = summary_of(draw_gait(recommended, self._config.task, self._config.episode))
+            with self._journal.outside():
+                summary = summary_of(draw_gait(recommended, self._config.task, self._config.episode))
         self._open_curves().show(summary, episodes)
 
     def write_curves(self, values: dict[str, Any], excluded: dict[str, tuple[str, ...]], step: int) -> None:
