@@ -14,6 +14,9 @@ import numpy as np
 
 from sarah.runs.agent_settings import WARM_UP, AgentSettings, EvolutionSettings
 
+LARGEST_RETURN = 1e100
+"""Largest return by amount that a sampler of Optuna is told: squares of larger ones would overflow."""
+
 
 class Optimiser(Protocol):
     """An optimiser that is asked and told, in the same order, with several episodes in between."""
@@ -169,7 +172,8 @@ class OptunaSearch:
 
     def tell(self, action: np.ndarray, episode_return: float) -> None:
         """Tell the oldest episode's return."""
-        self._study.tell(self._asked.popleft(), episode_return)
+        bounded = min(LARGEST_RETURN, max(-LARGEST_RETURN, episode_return))
+        self._study.tell(self._asked.popleft(), bounded)
 
     def choice(self) -> np.ndarray:
         """The best single episode's."""

@@ -93,6 +93,17 @@ def test_a_fall_terminates_and_the_same_robot_goes_on() -> None:
     env.close()
 
 
+def test_unknown_render_mode_is_refused() -> None:
+    with pytest.raises(ConfigurationError, match=r"^unknown render_mode 'rgb_array' \(allowed: None\)$"):
+        SarahOperationEnv(render_mode="rgb_array")
+
+
+def test_actions_that_rounding_puts_outside_are_the_ends() -> None:
+    env = SarahOperationEnv(quick())
+    end = np.ones(9, np.float32)
+    assert env.parameters_from(np.nextafter(end, np.float32(2.0))) == env.parameters_from(end)
+
+
 @pytest.mark.parametrize("action", [np.zeros(4), np.full(9, 1.5), np.full(9, np.nan)])
 def test_actions_out_of_their_box_are_refused(action: np.ndarray) -> None:
     env = SarahOperationEnv(quick())
