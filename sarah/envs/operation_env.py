@@ -10,7 +10,7 @@ import numpy as np
 
 from sarah.envs.sarah_env import checked_action, checked_render_mode, draw_seed
 from sarah.episode.from_mapping import from_mapping
-from sarah.errors import ConfigurationError, check_range
+from sarah.errors import ConfigurationError, check_range, shortened
 from sarah.operation.operation import Operation
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import PARAMETERS, SHIPPED, OperationConfig, Parameters, checked_parameters
@@ -48,7 +48,10 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         **settings: Any,
     ) -> None:
         check_range("reach", reach, 0.0, 1.0)
-        self.config = from_mapping(config or OperationConfig(), settings)
+        config = OperationConfig() if config is None else config
+        if not isinstance(config, OperationConfig):
+            raise ConfigurationError(f"config must be an OperationConfig, not {shortened(config)}")
+        self.config = from_mapping(config, settings)
         self.first = checked_parameters(first)
         self.render_mode = checked_render_mode(render_mode, self.metadata["render_modes"])
         self._reach = reach

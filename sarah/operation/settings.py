@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Sized
 from dataclasses import dataclass, field
+from numbers import Real
 from typing import Any
 
 from sarah.control.hip_law import BalanceParameters
@@ -138,14 +139,14 @@ def checked_parameters(values: Sequence[float]) -> Parameters:
     :param values: P1 to P5 and V1 to V4
     :raises ConfigurationError: naming the first that is missing, or not within its box
     """
-    if len(values) != len(PARAMETERS):
-        raise ConfigurationError(
-            f"parameters must be {len(PARAMETERS)} numbers (P1 to P5, V1 to V4), not {len(values)}"
-        )
+    if not isinstance(values, Sized) or len(values) != len(PARAMETERS):
+        found = len(values) if isinstance(values, Sized) else shortened(values)
+        raise ConfigurationError(f"parameters must be {len(PARAMETERS)} numbers (P1 to P5, V1 to V4), not {found}")
     for parameter, value in zip(PARAMETERS, values, strict=True):
-        if not parameter.low <= value <= parameter.high:
+        low, high = parameter.low, parameter.high
+        if not isinstance(value, Real) or isinstance(value, bool) or not low <= value <= high:
             raise ConfigurationError(
-                f"parameter {parameter.name} must be between {parameter.low:g} and {parameter.high:g}, not {value!r}"
+                f"parameter {parameter.name} must be between {low:g} and {high:g}, not {shortened(value)}"
             )
     return tuple(map(float, values))
 

@@ -13,7 +13,7 @@ from sarah.envs.sarah_env import draw_seed
 from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.workers import Executor, Workers
+from sarah.episode.workers import Executor, executor_of
 from sarah.errors import LearningError, SarahError
 from sarah.process import apart
 from sarah.runs.config import TrainingConfig
@@ -64,7 +64,8 @@ def train(
     :raises LearningError: if the learning algorithm fails, or does not return finite numbers
     :raises TrainingInterruptedError: if ``interrupted`` asks to stop
     """
-    with apart() as outside, Journal(run.journal_path, config, workers or Workers(), interrupted, outside) as journal:
+    executor = executor_of(workers)
+    with apart() as outside, Journal(run.journal_path, config, executor, interrupted, outside) as journal:
         if journal.is_new:
             run.write_versions()  # they may not be those that the folder was made with
         return _train(config, run, journal, progress_bar)

@@ -13,6 +13,7 @@ from stable_baselines3.common.env_checker import check_env as sb3_check_env
 
 from sarah.agents import NAF
 from sarah.envs.operation_env import SarahOperationEnv
+from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError
 from sarah.operation.settings import PARAMETERS, SHIPPED, Change
 from sarah.operation.shares import to_shares
@@ -96,6 +97,12 @@ def test_a_fall_terminates_and_the_same_robot_goes_on() -> None:
 def test_unknown_render_mode_is_refused() -> None:
     with pytest.raises(ConfigurationError, match=r"^unknown render_mode 'rgb_array' \(allowed: None\)$"):
         SarahOperationEnv(render_mode="rgb_array")
+
+
+@pytest.mark.parametrize("config", [EpisodeConfig(), "mujoco", False])
+def test_settings_of_another_kind_are_refused(config: Any) -> None:
+    with pytest.raises(ConfigurationError, match=r"^config must be an OperationConfig, not .*$"):
+        SarahOperationEnv(config)
 
 
 def test_actions_that_rounding_puts_outside_are_the_ends() -> None:

@@ -29,6 +29,8 @@ LONGEST_TEXT = 200
 """Length of the longest text about a task or a parameter, in characters."""
 LARGEST = 1e6
 """Largest end of a parameter's range."""
+ROUNDING = 2.0**-22
+"""Distance beyond an end of a range that comes from a 32-bit number, as a share of the larger end."""
 
 
 def _is_plain(text: object) -> bool:
@@ -180,7 +182,7 @@ class Task(Generic[ConfigType]):
         return isinstance(self.episode, PushedConfig) or self.draw_push is not push_of_settings
 
     def checked(self, values: Sequence[float], name: str = "parameters") -> tuple[float, ...]:
-        """Check one value for every parameter, and convert them to floats.
+        """Check one value for every parameter, and convert them to floats within the parameters' ranges.
 
         :param values: values in the order of :attr:`parameters`
         :param name: name of the values in messages
@@ -192,11 +194,14 @@ class Task(Generic[ConfigType]):
             raise ConfigurationError(f"{name} must be {len(names)} numbers ({names[0]} to {names[-1]}), not {found}")
         for parameter, value in zip(self.parameters, values, strict=True):
             low, high = parameter.low, parameter.high
-            if not isinstance(value, Real) or isinstance(value, bool) or not low <= value <= high:
+            slack = ROUNDING * max(abs(low), abs(high))
+            is_number = isinstance(value, Real) and not isinstance(value, bool)
+            if not is_number or not low - slack <= value <= high + slack:
                 raise ConfigurationError(
-                    f"parameter {parameter.name} must be between {low:g} and {high:g}, not {shortened(value)}"
+                    f"parameter {parameter.name} must be between {low:.15g} and {high:.15g}, not {shortened(value)}"
                 )
-        return tuple(map(float, values))
+        pairs = zip(self.parameters, map(float, values), strict=True)
+        return tuple(min(max(value, parameter.low), parameter.high) for parameter, value in pairs)
 
     def checked_config(self, config: EpisodeConfig, may_be_pushed: bool = False) -> EpisodeConfig:
         """Check that settings are of this task's type, and return them.
