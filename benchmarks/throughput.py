@@ -32,8 +32,8 @@ from sarah.robot.reading import ACTUATED_JOINTS, Side
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import PHYSICS, PyBulletPhysics
-from sarah.simulation.pybullet_client import pybullet
 from sarah.simulation.pybullet_simulator import PyBulletSimulator
+from sarah.simulation.pybullet_world import pybullet
 from sarah.training.train import train
 
 STANDARD, REFERENCE = PyBulletPhysics(), PHYSICS["reference"]

@@ -29,8 +29,8 @@ from sarah.episode.workers import Workers
 from sarah.reports.robustness import wilson_interval
 from sarah.robot.description import PLATES
 from sarah.robot.reading import GRAVITY, Side, Vector
-from sarah.simulation.pybullet_client import pybullet
 from sarah.simulation.pybullet_simulator import PyBulletSimulator
+from sarah.simulation.pybullet_world import pybullet
 from sarah.simulation.simulator import rotate_to_body, rotate_to_world
 
 ENERGIES = (-math.inf, -2.0, -1.0, 0.0, 1.0, math.inf)

@@ -127,14 +127,15 @@ def _constants(engine: Engine) -> list[float]:
         from sarah.simulation import pybullet_simulator as pybullet
 
         return [pybullet.CONTACT_SECONDS, pybullet.CONTACT_MARGIN]
-    from sarah.simulation import mujoco_simulator as mujoco
+    from sarah.simulation import mujoco_model as model
+    from sarah.simulation import mujoco_simulator as simulator
 
     return [
-        mujoco.CONTACT_STEPS,
-        mujoco.CONTACT_SECONDS,
-        mujoco.CONTACT_IMPEDANCE,
-        mujoco.HIP_DAMPING,
-        mujoco.LEG_DAMPING,
-        mujoco.JOINT_DAMPING,
-        mujoco.LOWEST_RATE,
+        model.CONTACT_STEPS,
+        model.CONTACT_SECONDS,
+        model.CONTACT_IMPEDANCE,
+        simulator.HIP_DAMPING,
+        simulator.LEG_DAMPING,
+        model.JOINT_DAMPING,
+        simulator.LOWEST_RATE,
     ]

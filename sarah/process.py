@@ -9,6 +9,7 @@ from contextlib import AbstractContextManager, ExitStack, contextmanager
 from typing import Any
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 DEFAULT_ERRORS: dict[str, Any] = {"divide": "warn", "over": "warn", "under": "ignore", "invalid": "warn"}
 """What numpy does by default with numbers that cannot be. Libraries of learning rely on silent underflow."""
@@ -19,12 +20,15 @@ def apart() -> Iterator[Callable[[], AbstractContextManager[None]]]:
     """Let a learner compute apart from everybody else in the process.
 
     Such libraries seed and draw from the generators of Python, numpy and torch, which afterwards are as they were.
-    Torch computes in 32-bit numbers on one thread: small networks are fastest so, and no bit depends on the caller's
-    settings, or on the number of cores. Import the library before: what is imported later is not known here.
+    Torch computes in 32-bit numbers, and torch, numpy and scipy on one thread: small networks are fastest so, and several
+    threads add the parts of a sum in another order. So no bit depends on the caller's settings, or on the number of
+    cores. Import the library before: what is imported later is not known here.
 
     :return: function that makes a context in which generators and numpy's errors are the caller's again, for episodes
         and all else that is not the learner's
     """
+    import scipy.linalg  # noqa: F401  # brings a library of its own, which has to be there before it is limited
+
     errors = np.geterr()
     callers = _generators()
 
@@ -41,7 +45,7 @@ def apart() -> Iterator[Callable[[], AbstractContextManager[None]]]:
             _set_generators(learners)
 
     try:
-        with np.errstate(**DEFAULT_ERRORS), _torch_by_default():
+        with np.errstate(**DEFAULT_ERRORS), _torch_by_default(), threadpool_limits(1):
             yield outside
     finally:
         _set_generators(callers)

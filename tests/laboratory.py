@@ -16,7 +16,7 @@ from sarah.robot.description import PLATES
 from sarah.robot.reading import SensorReading, Side, Vector
 from sarah.simulation.engines import is_installed
 from sarah.simulation.physics import PHYSICS, Physics
-from sarah.simulation.pybullet_client import pybullet
+from sarah.simulation.pybullet_world import pybullet
 from sarah.simulation.simulator import Simulator, TorsoState
 
 CONTROL_DT = PHYSICS["standard"].control_dt

@@ -26,6 +26,7 @@ from sarah.episode.tasks import Task
 from sarah.episode.workers import Executor, Job, begin_episode, finish_episode
 from sarah.errors import ConfigurationError, LearningError, check_range, shortened
 from sarah.robot.reading import SensorReading
+from sarah.simulation.world import HoldsWorld
 
 LARGEST_RETURN = float(np.finfo(np.float32).max)
 """Largest return by amount that an agent can learn from."""
@@ -41,7 +42,7 @@ class _Running(NamedTuple):
     job: Job
 
 
-class EpisodeVecEnv(VecEnv):
+class EpisodeVecEnv(HoldsWorld, VecEnv):
     """Episodes of one :class:`~sarah.envs.sarah_env.SarahEnv`, several of them in flight.
 
     Step k submits the episode of its action and returns the outcome of step ``k - slots + 1``: the reward is that

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
 from typing import Any
 
@@ -108,6 +109,10 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         :raises ConfigurationError: if the action is not finite or out of its box
         """
         return from_shares(to_shares(self.first) + self._reach * checked_action(action, len(PARAMETERS)))
+
+    def __copy__(self) -> SarahOperationEnv:
+        """Copy with a robot of its own, as one that both had would run the windows of both."""
+        return copy.deepcopy(self)
 
     def close(self) -> None:
         """Give the physics engine's resources back."""

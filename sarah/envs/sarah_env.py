@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
@@ -63,6 +64,7 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         self._is_over = True
         self._renderer: Renderer | None = None
         self._seed = 0
+        self._parameters: tuple[float, ...] | None = None
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -75,7 +77,7 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         """
         super().reset(seed=seed)
         self._close_episode()
-        self._seed = draw_seed(self.np_random)
+        self._seed, self._parameters = draw_seed(self.np_random), None
         self._episode = Episode(self.config, self._seed, self.task)
         self._is_over = False
         return observation_from(self._episode.stand()), {"seed": self._seed}
@@ -88,7 +90,7 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         """
         if self._episode is None or self._is_over:
             raise ConfigurationError("the episode is over: call reset before step")
-        parameters = parameters_from(action, self.task)
+        self._parameters = parameters = parameters_from(action, self.task)
         self._is_over = True
         result = self._episode.run(parameters)
         info = {"seed": self._seed, "parameters": parameters, "result": result}
@@ -107,6 +109,27 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
 
             self._renderer = Renderer(self._episode.robot)
         return self._renderer.draw_simulator(self._episode.simulation)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """State of a copy, without the engine's worlds."""
+        return {**vars(self), "_episode": None, "_renderer": None, "_has_episode": self._episode is not None}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Let a robot of the copy's own do what that of the other has done: its seed and parameters determine that.
+
+        :param state: state of the other environment
+        """
+        has_episode = state.pop("_has_episode")
+        vars(self).update(state)
+        if has_episode:
+            self._episode = Episode(self.config, self._seed, self.task)
+            self._episode.stand()
+            if self._parameters is not None:
+                self._episode.run(self._parameters)
+
+    def __copy__(self) -> SarahEnv:
+        """Copy with a world and generator of its own."""
+        return copy.deepcopy(self)
 
     def close(self) -> None:
         """Give the resources of the physics engine and the renderer back."""

@@ -15,9 +15,10 @@ from sarah.simulation.build import BuildSimulator, simulator_of
 from sarah.simulation.randomisation import Conditions, draw_conditions
 from sarah.simulation.sensors import ImperfectSensors
 from sarah.simulation.terrain import draw_ground
+from sarah.simulation.world import HoldsWorld
 
 
-class RunningRobot:
+class RunningRobot(HoldsWorld):
     """A robot that stands in a new world, and then does what its pattern generator says.
 
     :param config: settings of robot, world and controller

@@ -6,6 +6,7 @@ import dataclasses
 import random
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.ending import LEAST_UPRIGHT
@@ -43,6 +44,10 @@ class RobotInOperation:
         self._changes = 0
         self._stands = 0
         self._since_standing: list[Window] = []
+
+    def __getstate__(self) -> dict[str, Any]:
+        """State of a copy, whose robot runs the windows since it stood up again before its next one."""
+        return {**vars(self), "_robot": None, "_since_standing": list(self._since_standing)}
 
     @property
     def is_over(self) -> bool:

@@ -70,6 +70,7 @@ class RobotDescription:
 
     :param urdf: text of the URDF
     :param standing_height: height of the torso's centre over the floor with all joints at zero, in m
+    :param masses: mass of each link, in kg
     :param limits: lowest and highest position of each joint, in rad or m
     :param efforts: largest force or torque of each joint, in N or Nm
     :param soles: centres of the sole contacts of each foot plate, in the plate's frame, in m
@@ -80,6 +81,7 @@ class RobotDescription:
 
     urdf: str
     standing_height: float
+    masses: Mapping[str, float]
     limits: Mapping[str, tuple[float, float]]
     efforts: Mapping[str, float]
     soles: Mapping[str, tuple[tuple[float, float, float], ...]]
@@ -282,11 +284,13 @@ def _read_off(urdf: str, model: Any) -> RobotDescription:
         raise DescriptionError(
             "the foot plates must lie above the soles: raise hinge_height or make the plates thinner"
         )
+    masses = {name: float(link.inertial.mass) for name, link in model.link_map.items()}
     limits = {name: (joint.limit.lower, joint.limit.upper) for name, joint in model.joint_map.items()}
     efforts = {name: joint.limit.effort for name, joint in model.joint_map.items()}
     return RobotDescription(
         urdf,
         height,
+        masses,
         limits,
         efforts,
         soles,

@@ -8,9 +8,10 @@ from sarah.errors import ResumeError
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import OperationConfig, Parameters
 from sarah.operation.window import Window
+from sarah.simulation.world import HoldsWorld
 
 
-class WatchedRobot:
+class WatchedRobot(HoldsWorld):
     """A robot in operation that remembers its windows.
 
     :param robot: robot, at the beginning of its operation

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from sarah.errors import SimulationError
 from sarah.robot.description import RobotDescription
 from sarah.simulation.engines import check_engine
 from sarah.simulation.physics import Physics
@@ -18,12 +19,17 @@ def simulator_of(engine: str) -> BuildSimulator:
 
     :param engine: name of the engine, ``"pybullet"`` or ``"mujoco"``
     :raises ConfigurationError: if the engine is not installed
+    :raises SimulationError: if its package cannot be imported
     """
     check_engine(engine)
-    if engine == "mujoco":
-        from sarah.simulation.mujoco_simulator import MujocoSimulator
+    try:
+        if engine == "mujoco":
+            from sarah.simulation.mujoco_simulator import MujocoSimulator
 
-        return MujocoSimulator
-    from sarah.simulation.pybullet_simulator import PyBulletSimulator
+            return MujocoSimulator
+        from sarah.simulation.pybullet_simulator import PyBulletSimulator
 
-    return PyBulletSimulator
+        return PyBulletSimulator
+    except Exception as error:  # MuJoCo raises anything, if it cannot draw as the environment asks
+        hint = "; unset MUJOCO_GL, as nothing is drawn with it" if engine == "mujoco" else ""
+        raise SimulationError(f"the package {engine} cannot be imported: {error}{hint}") from error

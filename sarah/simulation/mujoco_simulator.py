@@ -1,53 +1,43 @@
 """One robot in one MuJoCo world: build, act, sense, push.
 
-A process compiles the model of a robot once. Every episode changes its own copy of it: friction, masses, servos,
-gravity.
+Every episode changes its own copy of the robot's model: friction, masses, servos, gravity.
 """
 
 from __future__ import annotations
 
-import copy
 import math
-from functools import lru_cache
 
 import mujoco
 import numpy as np
 
+from sarah.errors import SimulationError
 from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Side, Vector
+from sarah.simulation.mujoco_model import WITHOUT_WARNINGS, check_callbacks, model_of, sole_name
 from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.randomisation import NOMINAL, Conditions
 from sarah.simulation.simulator import TorsoState, rotate_to_world, specific_force
-from sarah.simulation.terrain import LARGEST_ROUGHNESS, REACH
+from sarah.simulation.terrain import LARGEST_ROUGHNESS
+from sarah.simulation.world import HoldsWorld, check_loaded
 
-CONTACT_STEPS = 0.5
-"""Time constant with which a contact stops what moves towards it, in physics steps."""
-CONTACT_SECONDS = 0.015
-"""Time constant with which contacts correct errors of position, in s. MuJoCo finds a contact only when the bodies
-overlap, and a faster correction would throw the foot up again."""
-CONTACT_IMPEDANCE = 0.99
-"""Impedance of contacts, from 0 to 1: share of the full constraint force that a contact applies."""
 HIP_DAMPING, LEG_DAMPING = 10_000.0, 20_000.0
 """Effort per deviation from the speed that a servo demands, in Nms/rad and Ns/m."""
-JOINT_DAMPING = 2.0
-"""Factor on the URDF's joint damping, which PyBullet, the reference, applies twice."""
 LOWEST_RATE = 500
 """Lowest number of physics steps per second: contacts are softer at lower rates."""
-QUARTER_TURN = (math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))
-"""Rotation by 90 degrees about z, as MuJoCo's quaternion (w, x, y, z)."""
+FREE = mujoco.mjtJoint.mjJNT_FREE
+"""Type of the joint between the world and the torso."""
 STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS | mujoco.mjtState.mjSTATE_WARMSTART
 """State that a physics step begins with."""
 
-# A state that is not finite ends the episode. MuJoCo's own warning would also write a file where the process runs.
-mujoco.set_mju_user_warning(lambda message: None)
 
-
-class MujocoSimulator:
+class MujocoSimulator(HoldsWorld):
     """A :class:`~sarah.simulation.simulator.Simulator` in MuJoCo.
 
     :param robot: checked robot
     :param physics: resolution in time, at least 500 Hz; the solver may converge, and stop, before its last iteration
     :param conditions: friction, masses, servo bandwidth and gravity of this episode
+    :raises SimulationError: if what MuJoCo has loaded is not the robot, or if other code in the process acts on it; and
+        later on, if other code resets it
     """
 
     model: mujoco.MjModel
@@ -68,17 +58,18 @@ class MujocoSimulator:
         self._substeps = math.ceil(max(physics.rate, LOWEST_RATE) / physics.control_rate)
         rate = self._substeps * physics.control_rate
         nodes = len(self._ground.heights)
-        self.model = copy.copy(_compiled(robot.urdf, rate, physics.solver_iterations, nodes))
+        self.model = model_of(robot.urdf, rate, physics.solver_iterations, nodes)
         self.data = mujoco.MjData(self.model)
         self._feet = {
             side: [
-                self.model.geom(_sole(side, plate, index)).id
+                self.model.geom(sole_name(side, plate, index)).id
                 for plate in PLATES
                 for index in range(len(robot.soles[f"{side}_{plate}"]))
             ]
             for side in Side
         }
         self._apply_conditions(rate, conditions)
+        self._check_loaded(conditions)
         self._addresses = {name: int(self.model.joint(name).qposadr[0]) for name in (*ACTUATED_JOINTS, *ANKLE_JOINTS)}
         self._positions = [self._addresses[name] for name in ACTUATED_JOINTS]
         self._speeds = [int(self.model.joint(name).dofadr[0]) for name in ACTUATED_JOINTS]
@@ -118,6 +109,14 @@ class MujocoSimulator:
         self._damping = [LEG_DAMPING if name.endswith("leg_length") else HIP_DAMPING for name in ACTUATED_JOINTS]
         for actuator in range(len(ACTUATED_JOINTS)):
             self._let_follow(actuator)
+
+    def _check_loaded(self, conditions: Conditions) -> None:
+        model = self.model
+        masses = {link: float(model.body(link).mass[0]) for link in self.robot.masses}
+        joints = [model.joint(index) for index in range(model.njnt) if model.jnt_type[index] != FREE]
+        limits = {joint.name: (float(joint.range[0]), float(joint.range[1])) for joint in joints}
+        x, y, z = model.opt.gravity.tolist()
+        check_loaded("MuJoCo", self.robot, conditions, masses, limits, (x, y, z))
 
     def _shape_ground(self) -> None:
         """Give the compiled height field this episode's bumps.
@@ -160,12 +159,13 @@ class MujocoSimulator:
         """Simulate one control tick."""
         model, data, before = self.model, self.data, self._before
         self._velocity_before = self._torso.velocity
-        for _ in range(self._substeps):
-            mujoco.mj_getState(model, data, before, STATE)
-            mujoco.mj_step(model, data)
-            shares = self._effort_shares()
-            if max(shares) > 1.0 or min(shares) < -1.0:
-                shares = self._step_again(shares)
+        with WITHOUT_WARNINGS:
+            for _ in range(self._substeps):
+                mujoco.mj_getState(model, data, before, STATE)
+                mujoco.mj_step(model, data)
+                shares = self._effort_shares()
+                if max(shares) > 1.0 or min(shares) < -1.0:
+                    shares = self._step_again(shares)
         self._shares = shares
         if self._is_pushed:  # MuJoCo keeps the force until it is reset
             self._pushed[:] = 0.0
@@ -217,7 +217,13 @@ class MujocoSimulator:
         self._torso: TorsoState = TorsoState((x, y, z), orientation, velocity, angular_velocity)
 
     def read(self) -> SensorReading:
-        """True sensor signals of the last control tick, without noise or delay."""
+        """True sensor signals of the last control tick, without noise or delay.
+
+        :raises SimulationError: if other code in the process has reset the robot's world, or acts on it
+        """
+        check_callbacks()
+        if abs(self.data.time - self.time) > self._dt / 2:
+            raise SimulationError("other code in this process has reset the robot's world in MuJoCo, or advanced it")
         positions = self._qpos.tolist()
         return SensorReading(
             specific_force(self._torso, self._velocity_before, self._dt, self._ground.gravity),
@@ -254,75 +260,3 @@ class MujocoSimulator:
 
     def close(self) -> None:
         """Do nothing: MuJoCo's memory is freed with the object."""
-
-
-def _sole(side: Side, plate: str, index: int) -> str:
-    return f"{side}_{plate}_sole_{index}"
-
-
-@lru_cache(maxsize=32)
-def _compiled(urdf: str, rate: int, solver_iterations: int, nodes: int) -> mujoco.MjModel:
-    """Model of a robot, as designed, on a plane or a field of nodes x nodes heights.
-
-    Only soles touch the floor, and only pads touch their plates.
-    """
-    spec = mujoco.MjSpec.from_string(urdf)
-    spec.compiler.fusestatic = False  # otherwise the torso becomes part of the world
-    spec.body("torso").add_freejoint()
-    spec.option.timestep = 1.0 / rate
-    spec.option.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
-    spec.option.iterations = solver_iterations
-    spec.option.disableflags |= (
-        mujoco.mjtDisableBit.mjDSBL_REFSAFE  # contacts stay as hard as asked
-        | mujoco.mjtDisableBit.mjDSBL_AUTORESET  # a diverging simulation ends the episode instead of starting anew
-        | mujoco.mjtDisableBit.mjDSBL_ISLAND  # there is only one robot
-    )
-    damping = rate / CONTACT_STEPS
-    hardness = {"solref": (-damping / CONTACT_SECONDS, -damping), "solimp": (*[CONTACT_IMPEDANCE] * 2, 0.001, 0.5, 2.0)}
-    for geom in spec.geoms:
-        geom.contype = geom.conaffinity = 0
-    if nodes:
-        size = (2 * REACH, 2 * REACH, 2 * LARGEST_ROUGHNESS, LARGEST_ROUGHNESS)  # half of both sides; over and under 0
-        spec.add_hfield(name="floor", nrow=nodes, ncol=nodes, size=size, userdata=[0.0] * nodes**2)
-        floor = spec.worldbody.add_geom(name="floor", type=mujoco.mjtGeom.mjGEOM_HFIELD, hfieldname="floor")
-        floor.pos = (0.0, 0.0, -LARGEST_ROUGHNESS)
-        floor.quat = QUARTER_TURN
-    else:
-        floor = spec.worldbody.add_geom(name="floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0, 0, 1))
-    floor.contype = floor.conaffinity = 0
-    for side in Side:
-        # The pads are in the order of the URDF: the forefoot's first.
-        for plate, pad in zip(PLATES, spec.body(f"{side}_shank").geoms, strict=True):
-            pad.name = f"{side}_{plate}_pad"
-            soles = 0
-            for geom in spec.body(f"{side}_{plate}").geoms:
-                if geom.type == mujoco.mjtGeom.mjGEOM_BOX:
-                    geom.name = f"{side}_{plate}"
-                    # This contact needs no friction: the hinge leaves nothing to slide.
-                    spec.add_pair(geomname1=pad.name, geomname2=geom.name, condim=1, **hardness)
-                    if nodes:  # plates are too high over a plane to touch it
-                        spec.add_pair(geomname1="floor", geomname2=geom.name, condim=3, **hardness)
-                    spec.add_sensor(
-                        name=pad.name,
-                        type=mujoco.mjtSensor.mjSENS_CONTACT,
-                        objtype=mujoco.mjtObj.mjOBJ_GEOM,
-                        objname=pad.name,
-                        intprm=(1 << mujoco.mjtConDataField.mjCONDATA_FORCE.value, 2, 1),
-                    )
-                else:
-                    geom.name = _sole(side, plate, soles)
-                    soles += 1
-                    spec.add_pair(geomname1="floor", geomname2=geom.name, condim=3, **hardness)
-    for name in (*ACTUATED_JOINTS, *ANKLE_JOINTS):
-        joint = spec.joint(name)
-        joint.actfrclimited = mujoco.mjtLimited.mjLIMITED_FALSE  # would clip what MuJoCo computes before a step
-        joint.damping *= JOINT_DAMPING
-        joint.solref_limit, joint.solimp_limit = hardness["solref"], hardness["solimp"]
-    for name in ACTUATED_JOINTS:
-        spec.add_actuator(
-            name=name,
-            target=name,
-            trntype=mujoco.mjtTrn.mjTRN_JOINT,
-            biastype=mujoco.mjtBias.mjBIAS_AFFINE,
-        )
-    return spec.compile()

@@ -15,9 +15,10 @@ from sarah.errors import SimulationError
 from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Side, Vector
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
-from sarah.simulation.pybullet_client import give_back_client, load_robot, pybullet, take_client
+from sarah.simulation.pybullet_world import PyBulletWorld, pybullet
 from sarah.simulation.randomisation import NOMINAL, Conditions
 from sarah.simulation.simulator import TorsoState, rotate_to_body, rotate_to_world, specific_force
+from sarah.simulation.world import HoldsWorld, check_loaded
 
 CONTACT_SECONDS = 0.0015
 """Time in which contacts reduce errors of position to 1/e, in s. PyBullet takes a share per physics step instead; with
@@ -27,12 +28,14 @@ CONTACT_MARGIN = 0.0003
 PyBullet's 0.02 also costs time for feet in the air."""
 
 
-class PyBulletSimulator:
+class PyBulletSimulator(HoldsWorld):
     """A :class:`~sarah.simulation.simulator.Simulator` in PyBullet.
 
     :param robot: checked robot
     :param physics: resolution in time
     :param conditions: friction, masses and servo bandwidth of this episode
+    :raises SimulationError: if what PyBullet has loaded is not the robot; and later on, if other code in the process
+        changes its world
     """
 
     client: int
@@ -53,9 +56,11 @@ class PyBulletSimulator:
         self._dt = physics.control_dt
         self._ground = conditions.ground
         self._substeps = physics.rate // physics.control_rate
-        self.client = take_client()
+        self._world = PyBulletWorld()
+        self.client = self._world.client
         try:
             self._build(physics, conditions)
+            self._check_loaded(conditions)
         except BaseException:
             self.close()
             raise
@@ -67,7 +72,6 @@ class PyBulletSimulator:
             numSubSteps=self._substeps,
             numSolverIterations=physics.solver_iterations,
             contactERP=corrected,
-            contactBreakingThreshold=CONTACT_MARGIN,
             numNonContactInnerIterations=2,  # motors settle before contacts do; otherwise standing soles creep
             enableConeFriction=conditions.is_slippery,  # otherwise pyramids are as good, and cheaper
             enableFileCaching=0,
@@ -75,8 +79,7 @@ class PyBulletSimulator:
         )
         pybullet.setGravity(*self._ground.gravity, physicsClientId=self.client)
         self._build_floor()
-        self.body, self.links = load_robot(
-            self.client,
+        self.body, self.links = self._world.load_robot(
             self._urdf(conditions),
             self.robot.standing_height + self._ground.lift(self.robot),
             flags=pybullet.URDF_USE_INERTIA_FROM_FILE
@@ -141,6 +144,7 @@ class PyBulletSimulator:
             shape, middle = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self.client), 0.0
         floor = pybullet.createMultiBody(0.0, shape, basePosition=(0.0, 0.0, middle), physicsClientId=self.client)
         pybullet.changeDynamics(floor, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=self.client)
+        self._world.own(floor)
 
     def _keep_only_pad_contacts(self) -> None:
         links = sorted(set(self.links.values()))
@@ -174,6 +178,15 @@ class PyBulletSimulator:
             pybullet.setJointMotorControl2(
                 self.body, self.links[name], pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client
             )
+
+    def _check_loaded(self, conditions: Conditions) -> None:
+        body, client = self.body, self.client
+        joints = [pybullet.getJointInfo(body, joint, client) for joint in range(pybullet.getNumJoints(body, client))]
+        limits = {info[1].decode(): info[8:10] for info in joints}
+        masses = {name: pybullet.getDynamicsInfo(body, self.links[name], client)[0] for name in self.robot.masses}
+        world = pybullet.getPhysicsEngineParameters(client)
+        gravity = (world["gravityAccelerationX"], world["gravityAccelerationY"], world["gravityAccelerationZ"])
+        check_loaded("PyBullet", self.robot, conditions, masses, limits, gravity)
 
     def set_targets(self, targets: tuple[float, ...]) -> None:
         """Set where the servos move the joints from now on.
@@ -219,6 +232,8 @@ class PyBulletSimulator:
     def advance(self) -> None:
         """Simulate one control tick."""
         self._velocity_before = self._torso.velocity
+        # Any code may have changed it since the last tick, because Bullet has one for all worlds of a process.
+        pybullet.setPhysicsEngineParameter(contactBreakingThreshold=CONTACT_MARGIN, physicsClientId=self.client)
         pybullet.stepSimulation(physicsClientId=self.client)
         self.time += self._dt
         self.look()
@@ -230,7 +245,11 @@ class PyBulletSimulator:
         return self._torso
 
     def read(self) -> SensorReading:
-        """True sensor signals of the last control tick, without noise or delay."""
+        """True sensor signals of the last control tick, without noise or delay.
+
+        :raises SimulationError: if other code in the process has changed the world
+        """
+        self._world.check()
         torso = self._torso
         return SensorReading(
             specific_force(torso, self._velocity_before, self._dt, self._ground.gravity),
@@ -244,7 +263,9 @@ class PyBulletSimulator:
 
         :param names: names of the joints
         :return: positions in the same order
+        :raises SimulationError: if other code in the process has changed the world
         """
+        self._world.check()
         indices = [self.links[name] for name in names]
         return tuple(state[0] for state in pybullet.getJointStates(self.body, indices, self.client))
 
@@ -309,6 +330,4 @@ class PyBulletSimulator:
 
     def close(self) -> None:
         """Give PyBullet's client back; the simulator cannot be used after that."""
-        if self.client >= 0:
-            give_back_client(self.client)
-            self.client = -1
+        self._world.close()

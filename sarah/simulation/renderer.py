@@ -14,9 +14,10 @@ from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, Side, Vector
 from sarah.simulation.bumps import LIGHT
 from sarah.simulation.engines import INSTALLATION, is_installed
-from sarah.simulation.pybullet_client import give_back_client, load_robot, pybullet, take_client
+from sarah.simulation.pybullet_world import PyBulletWorld, pybullet
 from sarah.simulation.scenery import STANDARD_CAMERA, Camera, View, floor, shaded, size_of
 from sarah.simulation.simulator import Simulator
+from sarah.simulation.world import HoldsWorld
 
 MARGIN = 0.01
 """Margin around the robot's corners, as a share of its height; nothing else is drawn."""
@@ -36,7 +37,7 @@ def check_renderer() -> None:
         raise ConfigurationError(f"pictures of the robot need the package pybullet: {INSTALLATION['pybullet']}")
 
 
-class Renderer:
+class Renderer(HoldsWorld):
     """Draws a robot in any pose with PyBullet's software renderer.
 
     :param robot: checked robot
@@ -51,9 +52,10 @@ class Renderer:
         self._samples = samples
         self.camera = STANDARD_CAMERA.scaled(size_of(robot))
         """Camera for the standing robot, whatever its dimensions."""
-        self._client = take_client()
+        self._world = PyBulletWorld()
+        self._client = self._world.client
         try:
-            self._body, self._indices = load_robot(self._client, robot.urdf, robot.standing_height, flags=0)
+            self._body, self._indices = self._world.load_robot(robot.urdf, robot.standing_height, flags=0)
             self._boxes = self._boxes_around_links()
         except BaseException:
             self.close()
@@ -103,7 +105,9 @@ class Renderer:
         :param orientation: orientation of the torso, as a unit quaternion (x, y, z, w)
         :param joints: positions by joint, in rad and m; other joints stay where they were, at first at zero
         :return: points in the world's frame, in m, of shape (8 times the links, 3)
+        :raises SimulationError: if other code in the process has changed the renderer's world
         """
+        self._world.check()
         client = self._client
         pybullet.resetBasePositionAndOrientation(self._body, position, orientation, physicsClientId=client)
         for name, value in joints.items():
@@ -210,9 +214,7 @@ class Renderer:
 
     def close(self) -> None:
         """Give PyBullet's client back; the renderer cannot draw after that."""
-        if self._client >= 0:
-            give_back_client(self._client)
-            self._client = -1
+        self._world.close()
 
 
 def _moved(points: np.ndarray, place: Any, turn: Any) -> np.ndarray:

@@ -32,7 +32,7 @@ from sarah.errors import ConfigurationError, DescriptionError, WorkersError
 from sarah.robot.reading import SensorReading
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
-from sarah.simulation.pybullet_client import pybullet
+from sarah.simulation.pybullet_world import pybullet
 from sarah.training.train import train
 from sarah.versions import source_hash
 

@@ -1,0 +1,252 @@
+"""Worlds of the engines are ours alone, whatever other code in the process does with the engines."""
+
+import contextlib
+import copy
+import ctypes
+import gc
+import locale
+import pickle
+import subprocess
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from laboratory import COARSE_PHYSICS, NEEDS_PYBULLET, need
+
+from sarah.episode.episode import Episode, simulate
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import STEPPING
+from sarah.errors import SimulationError
+from sarah.robot.description import describe_robot
+from sarah.simulation.build import simulator_of
+from sarah.simulation.pybullet_world import pybullet
+from sarah.simulation.randomisation import NOMINAL
+from sarah.simulation.renderer import Renderer
+from sarah.simulation.world import check_loaded
+
+UPWARD = 0x800
+"""Number of C's rounding mode FE_UPWARD on x86; other processors refuse it."""
+
+
+def short(engine: Any) -> EpisodeConfig:
+    return EpisodeConfig(engine=engine, physics=COARSE_PHYSICS, time_limit=1.5)
+
+
+def spec(engine: str) -> EpisodeSpec:
+    return EpisodeSpec(STEPPING.baseline, 3, STEPPING, short(engine))
+
+
+@pytest.fixture(params=["pybullet", "mujoco"])
+def engine(request: pytest.FixtureRequest) -> str:
+    need(request.param)
+    return str(request.param)
+
+
+@contextlib.contextmanager
+def no_spare_clients() -> Iterator[list[int]]:
+    """Hold PyBullet's first clients, so that none of ours is left over from other tests."""
+    held = [pybullet.connect(pybullet.DIRECT) for _ in range(3)]
+    yield held
+    for client in held:
+        with contextlib.suppress(pybullet.error):
+            pybullet.disconnect(client)
+
+
+def occupy(client: int) -> None:
+    """Do what code does that has this client for itself."""
+    pybullet.disconnect(client)
+    taken = []
+    while client not in taken:
+        taken.append(pybullet.connect(pybullet.DIRECT))
+    for other in taken:
+        if other != client:
+            pybullet.disconnect(other)
+    for _ in range(2):
+        pybullet.createMultiBody(1.0, physicsClientId=client)
+
+
+DISTURBANCES: dict[str, Callable[[int], object]] = {
+    "add a body": lambda client: pybullet.createMultiBody(1.0, physicsClientId=client),
+    "remove the floor": lambda client: pybullet.removeBody(0, physicsClientId=client),
+    "reset": lambda client: pybullet.resetSimulation(physicsClientId=client),
+    "disconnect": pybullet.disconnect if pybullet else print,
+    "occupy": occupy,
+}
+
+
+@NEEDS_PYBULLET
+@pytest.mark.parametrize("disturbance", DISTURBANCES)
+def test_what_others_do_to_a_pybullet_world_raises(disturbance: str) -> None:
+    def disturbing(tick: Any, config: EpisodeConfig) -> float:
+        if tick.time < 1.015:
+            DISTURBANCES[disturbance](tick.simulator.client)
+        return 1.0
+
+    with pytest.raises(SimulationError, match=r"other code in this process has added .*: it must leave client \d+"):
+        simulate(replace(spec("pybullet"), task=replace(STEPPING, reward=disturbing)))
+
+
+@NEEDS_PYBULLET
+@pytest.mark.parametrize("disturbance", DISTURBANCES)
+def test_episodes_repeat_whatever_others_did_to_a_kept_client(disturbance: str) -> None:
+    episode = Episode(short("pybullet"), 3)
+    client = episode.simulation.client  # type: ignore[attr-defined]
+    episode.stand()
+    alone = episode.run(STEPPING.baseline)
+    episode.close()
+    DISTURBANCES[disturbance](client)
+    assert simulate(spec("pybullet")) == alone
+    if disturbance == "occupy":
+        assert pybullet.getNumBodies(physicsClientId=client) == 2  # it is theirs
+        pybullet.disconnect(client)
+
+
+@NEEDS_PYBULLET
+def test_no_robot_is_where_code_works_that_names_no_client() -> None:
+    with no_spare_clients() as held:
+        for client in held:
+            pybullet.disconnect(client)
+        simulators = [simulator_of("pybullet")(describe_robot(), COARSE_PHYSICS, NOMINAL) for _ in range(4)]
+        assert 0 not in [simulator.client for simulator in simulators]  # type: ignore[attr-defined]
+        for simulator in simulators:
+            simulator.close()
+
+
+@NEEDS_PYBULLET
+def test_bullets_contact_margin_is_ours_in_ours_and_its_own_in_others() -> None:
+    """All worlds of a process share it."""
+    other = pybullet.connect(pybullet.DIRECT)
+
+    def disturbing(tick: Any, config: EpisodeConfig) -> float:
+        pybullet.setPhysicsEngineParameter(contactBreakingThreshold=0.05, physicsClientId=other)
+        return 1.0
+
+    alone = simulate(spec("pybullet"))
+    disturbed = simulate(replace(spec("pybullet"), task=replace(STEPPING, reward=disturbing)))
+    assert disturbed.final_position == alone.final_position
+    plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=other)
+    box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=(0.1,) * 3, physicsClientId=other)
+    pybullet.createMultiBody(0.0, plane, physicsClientId=other)
+    pybullet.createMultiBody(1.0, box, basePosition=(0.0, 0.0, 0.101), physicsClientId=other)
+    pybullet.stepSimulation(physicsClientId=other)
+    assert pybullet.getContactPoints(physicsClientId=other), "1 mm is near for Bullet, and far for our robot"
+    pybullet.disconnect(other)
+
+
+@NEEDS_PYBULLET
+def test_a_simulator_that_is_forgotten_gives_its_client_back() -> None:
+    clients = set()
+    for _ in range(5):
+        simulator: Any = simulator_of("pybullet")(describe_robot(), COARSE_PHYSICS, NOMINAL)
+        clients.add(simulator.client)
+        del simulator
+        gc.collect()
+    assert len(clients) == 1
+
+
+@NEEDS_PYBULLET
+def test_a_locale_with_decimal_commas_changes_no_episode(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    try:
+        subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", tmp_path / "de_DE.UTF-8"], capture_output=True)
+        monkeypatch.setenv("LOCPATH", str(tmp_path))
+        alone = simulate(spec("pybullet"))
+        locale.setlocale(locale.LC_NUMERIC, "de_DE.UTF-8")
+    except (OSError, locale.Error):
+        pytest.skip("this machine cannot make the locale")
+    try:
+        assert simulate(spec("pybullet")) == alone
+        assert locale.localeconv()["decimal_point"] == ","
+    finally:
+        locale.setlocale(locale.LC_NUMERIC, "C")
+
+
+def test_a_robot_is_compared_with_its_description(engine: str) -> None:
+    robot = describe_robot()
+    heavier = {**robot.masses, "left_shank": 1.001 * robot.masses["left_shank"]}
+    narrower = {**robot.limits, "right_hip_flexion": (-0.1, 0.1)}
+    with pytest.raises(SimulationError, match=r"loaded another robot .*: mass of left_shank is"):
+        simulator_of(engine)(replace(robot, masses=heavier), COARSE_PHYSICS, NOMINAL)
+    with pytest.raises(SimulationError, match="lower limit of right_hip_flexion is"):
+        simulator_of(engine)(replace(robot, limits=narrower), COARSE_PHYSICS, NOMINAL)
+    with pytest.raises(SimulationError, match="number of joints is 9 there, and should be 10"):
+        check_loaded(engine, robot, NOMINAL, robot.masses, dict(list(robot.limits.items())[1:]), (0.0, 0.0, -9.81))
+    with pytest.raises(SimulationError, match=r"gravity along z is 0\.0"):
+        check_loaded(engine, robot, NOMINAL, robot.masses, robot.limits, (0.0, 0.0, 0.0))
+
+
+def test_a_process_that_rounds_upward_is_refused(engine: str) -> None:
+    alone = simulate(spec(engine))
+    libm = ctypes.CDLL(None)
+    if libm.fesetround(UPWARD):
+        pytest.skip("this processor has other numbers for its rounding modes")
+    try:
+        with pytest.raises(SimulationError, match="this process rounds sums up, down or towards 0"):
+            simulate(spec(engine))
+    finally:
+        libm.fesetround(0)
+    assert simulate(spec(engine)) == alone
+
+
+@pytest.mark.parametrize("when", ["before", "during"])
+def test_others_callbacks_of_mujoco_are_refused(when: str) -> None:
+    mujoco = pytest.importorskip("mujoco")
+
+    def setting(tick: Any, config: EpisodeConfig) -> float:
+        mujoco.set_mjcb_passive(lambda model, data: None)
+        return 1.0
+
+    if when == "before":
+        setting(None, short("mujoco"))
+    try:
+        with pytest.raises(SimulationError, match=r"mjcb_passive, .*: remove it with mujoco.set_mjcb_passive\(None\)"):
+            simulate(replace(spec("mujoco"), task=replace(STEPPING, reward=setting)))
+    finally:
+        mujoco.set_mjcb_passive(None)
+
+
+def test_a_mujoco_world_that_others_reset_raises() -> None:
+    mujoco = pytest.importorskip("mujoco")
+
+    def resetting(tick: Any, config: EpisodeConfig) -> float:
+        mujoco.mj_resetData(tick.simulator.model, tick.simulator.data)
+        return 1.0
+
+    with pytest.raises(SimulationError, match="other code in this process has reset the robot's world in MuJoCo"):
+        simulate(replace(spec("mujoco"), task=replace(STEPPING, reward=resetting)))
+
+
+def test_mujocos_warnings_of_other_models_still_come() -> None:
+    mujoco = pytest.importorskip("mujoco")
+    heard: list[str] = []
+    mujoco.set_mju_user_warning(heard.append)
+    try:
+        simulate(spec("mujoco"))
+        model = mujoco.MjModel.from_xml_string(
+            "<mujoco><worldbody><body><freejoint/><geom size='1'/></body></worldbody></mujoco>"
+        )
+        data = mujoco.MjData(model)
+        data.qpos[0] = float("nan")
+        mujoco.mj_step(model, data)
+    finally:
+        mujoco.set_mju_user_warning(None)
+    assert heard
+
+
+WAYS: dict[str, Callable[[Any], Any]] = {
+    "copy": copy.copy,
+    "deepcopy": copy.deepcopy,
+    "pickle": lambda value: pickle.loads(pickle.dumps(value)),
+}
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_what_holds_a_world_cannot_be_copied(engine: str, way: str) -> None:
+    episode = Episode(short(engine), 0)
+    renderer = [Renderer(describe_robot())] if engine == "pybullet" else []
+    for holder in (episode, episode.simulation, *renderer):
+        with pytest.raises(SimulationError, match=f"^{type(holder).__name__} holds simulated worlds"):
+            WAYS[way](holder)
+        holder.close()  # type: ignore[attr-defined]
