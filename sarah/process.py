@@ -20,9 +20,9 @@ def apart() -> Iterator[Callable[[], AbstractContextManager[None]]]:
     """Let a learner compute apart from everybody else in the process.
 
     Such libraries seed and draw from the generators of Python, numpy and torch, which afterwards are as they were.
-    Torch computes in 32-bit numbers, and torch, numpy and scipy on one thread: small networks are fastest so, and several
-    threads add the parts of a sum in another order. So no bit depends on the caller's settings, or on the number of
-    cores. Import the library before: what is imported later is not known here.
+    Torch computes in 32-bit numbers, and torch, numpy and scipy on one thread: small networks are fastest so, and
+    several threads add the parts of a sum in another order. So no bit depends on the caller's settings, or on the
+    number of cores. Import the library before: what is imported later is not known here.
 
     :return: function that makes a context in which generators and numpy's errors are the caller's again, for episodes
         and all else that is not the learner's
