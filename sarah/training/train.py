@@ -73,8 +73,10 @@ def train(
 
 def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_bar: bool) -> Learned:
     comparison = np.random.default_rng(seeds_of(config.seed).comparison)
-    with tqdm(total=config.episodes, unit=" episodes", disable=not progress_bar) as progress:
-        recorder = EpisodeRecorder(run, config, journal, progress)
+    with (
+        tqdm(total=config.episodes, unit=" episodes", disable=not progress_bar) as progress,
+        EpisodeRecorder(run, config, journal, progress) as recorder,
+    ):
         learner = make_learner(config, run, recorder, journal)
         for stage in config.by_stage():
             if stage.extended_from:
@@ -84,7 +86,7 @@ def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_ba
             best = recorder.tried.best(choice, stage.candidate_count)
             parameters = _compare(best, stage, recorder, comparison, journal)
             learned = _evaluated(parameters, stage, recorder, journal)
-    recorder.close(learned.evaluation)
+        recorder.finish(learned.evaluation)
     _write_parameters(learned, config, run)
     return learned
 
@@ -95,7 +97,7 @@ def _choice(learner: Learner, stage: TrainingConfig) -> Parameters:
         return learner.learn(stage.stage_episodes - stage.compared_episodes)
     except SarahError:
         raise
-    except (ValueError, RuntimeError, ArithmeticError, AssertionError, LookupError) as error:
+    except (ValueError, RuntimeError, ArithmeticError, AssertionError, LookupError, Warning) as error:
         words = " ".join(str(error).split()) or type(error).__name__
         raise LearningError(f"{stage.algo} cannot go on: {words}") from error
 
