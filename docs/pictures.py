@@ -20,7 +20,7 @@ from sarah.pictures.state_machine_figure import draw_state_machine
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
 from sarah.robot.description import describe_robot
 from sarah.simulation.randomisation import Randomisation
-from sarah.simulation.terrain import Terrain, draw_ground
+from sarah.simulation.terrain import Terrain
 
 HERE = Path(__file__).parent
 CYCLES = 4
@@ -44,10 +44,10 @@ def draw_ground_picture(terrain: Terrain, path: Path) -> None:
     """
     shipped = PARAMETER_SETS["balance"].spec
     config = BALANCE.config_of(shipped.config, terrain=terrain, time_limit=GROUND_SECONDS + 1.0, push=Push((0.0, 0.0)))
-    trace = simulate(EpisodeSpec(shipped.parameters, 0, BALANCE, config), record_trace=True).trace
+    spec = EpisodeSpec(shipped.parameters, 0, BALANCE, config)
+    trace = simulate(spec, record_trace=True).trace
     assert trace is not None
-    ground = draw_ground(terrain, 0)
-    (picture,) = frames(trace, describe_robot(), [GROUND_SECONDS], ground=ground)
+    (picture,) = frames(trace, spec.robot, [GROUND_SECONDS], ground=spec.ground)
     picture.save(path)
 
 

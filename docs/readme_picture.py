@@ -15,14 +15,15 @@ from PIL import Image, ImageColor, ImageDraw, ImageFont
 from sarah.episode.ending import TERMINATIONS
 from sarah.episode.episode import simulate
 from sarah.episode.parameter_sets import PARAMETER_SETS
-from sarah.episode.push import Push
+from sarah.episode.push import PUSH_SHOWN_SECONDS, Push
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.trace import Trace
 from sarah.pictures.colours import PUSH
-from sarah.pictures.overlay import INK, METRES_PER_NEWTON, PUSH_SHOWN_SECONDS
+from sarah.pictures.overlay import INK
 from sarah.robot.description import ANKLE_JOINTS, describe_robot
 from sarah.robot.reading import ACTUATED_JOINTS
+from sarah.simulation.push_arrow import METRES_PER_NEWTON
 from sarah.simulation.renderer import Renderer
 from sarah.simulation.scenery import Camera, View
 

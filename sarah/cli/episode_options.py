@@ -18,7 +18,7 @@ import tyro
 
 from sarah.cli.options import named_task, parse_options
 from sarah.cli.subjects import episode_of, is_shipped, is_there
-from sarah.episode.push import Push, PushedConfig
+from sarah.episode.push import NOBODY, PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
@@ -26,8 +26,6 @@ from sarah.errors import ConfigurationError, unknown_name
 from sarah.simulation.engines import Engine
 from sarah.simulation.physics import PHYSICS
 
-NOBODY = Push(newtons=(0.0, 0.0))
-"""Push of nobody, where a task has none."""
 SET_TWICE = (
     ("--engine", "--episode.engine"),
     ("--physics", "--episode.physics.rate"),

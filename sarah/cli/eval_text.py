@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import Any
 
-from sarah.cli.episode_options import NOBODY
 from sarah.cli.subjects import is_shipped
 from sarah.episode.accuracy import physics_warning
 from sarah.episode.ending import ending_words
@@ -17,12 +16,10 @@ from sarah.episode.result import METRICS
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, Task, controller_of
-from sarah.runs.config_files import settings_by_key
+from sarah.runs.episode_words import changed_settings
 
 MOST_ENDINGS = 5
 """Largest number of episodes of which a row says how each has ended."""
-ROWS_OF_THEIR_OWN = {"engine", "push.newtons", "stepping"}
-"""Settings that a row names in any case."""
 
 Row = tuple[str, str]
 
@@ -57,28 +54,6 @@ def rows_of(
     warning = physics_warning(spec.task, spec.parameters, spec.config)
     if warning is not None:
         yield "physics", warning
-
-
-def changed_settings(task: Task[Any], config: EpisodeConfig) -> Iterator[str]:
-    """Settings that are not those of the task in the same engine, with their values.
-
-    :param task: task of the episodes
-    :param config: settings of the episodes
-    """
-    usual: EpisodeConfig = replace(task.episode, engine=config.engine)
-    if isinstance(config, PushedConfig) and not isinstance(usual, PushedConfig):
-        usual = PushedConfig(**vars(usual), push=NOBODY)
-    before = settings_by_key(usual)
-    for name, value in settings_by_key(config).items():
-        if name not in ROWS_OF_THEIR_OWN and value != before.get(name):
-            yield f"{name} {_text(value)}"
-
-
-def _text(value: Any) -> str:
-    """Text of a setting; of a range both ends, unless they are equal."""
-    if isinstance(value, list):
-        return " to ".join(f"{end:g}" for end in dict.fromkeys(value))
-    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def _subject_rows(subject: str, spec: EpisodeSpec) -> Iterator[Row]:

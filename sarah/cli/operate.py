@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
-from sarah.cli.episode_options import NOBODY, EpisodeOptions, given_options, parse_episode_options
+from sarah.cli.episode_options import EpisodeOptions, given_options, parse_episode_options
 from sarah.cli.interruption import Interruption
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episode_of
-from sarah.episode.push import PushedConfig
+from sarah.episode.push import NOBODY, PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, controller_of

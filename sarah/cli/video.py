@@ -70,13 +70,11 @@ def _film(arguments: Sequence[str]) -> None:
     from sarah.simulation.renderer import check_renderer
 
     check_path(options.out)
-    spec = _spec(options, options.subject)
+    spec, is_alone = _spec(options, options.subject)
     from tqdm import tqdm
 
     from sarah.episode.ending import ending_words
     from sarah.episode.episode import simulate
-    from sarah.robot.description import describe_robot
-    from sarah.simulation.terrain import draw_ground
 
     result = simulate(spec, record_trace=True)
     assert result.trace is not None
@@ -91,26 +89,29 @@ def _film(arguments: Sequence[str]) -> None:
         print(f"the episode ends at {result.duration:g} s: {ending_words(result.termination)}", file=sys.stderr)
     check_renderer()
     times = frame_times(begin, end, FRAMES_PER_SECOND[options.out.suffix], options.speed)
-    robot = describe_robot(spec.config.dimensions)
     progress = tqdm(times, desc="filming", unit=" frames")
-    ground = draw_ground(spec.config.terrain, spec.seed)
-    pictures = frames(result.trace, robot, progress, _caption(spec, result), ground)
+    pictures = frames(result.trace, spec.robot, progress, _caption(spec, result, is_alone), spec.ground)
     write_video(pictures, options.out)
     print(options.out)
 
 
-def _spec(options: VideoOptions, subject: str) -> EpisodeSpec:
-    """Specification of the episode to film."""
+def _spec(options: VideoOptions, subject: str) -> tuple[EpisodeSpec, bool]:
+    """Specification of the episode to film, and whether it is that of a whole episode and not of a window."""
     task = named_task(options.task)
-    spec = episode_of(subject, options.which, task).spec
-    return dataclasses.replace(options.applied_to(spec), seed=spec.seed if options.seed is None else options.seed)
+    chosen = episode_of(subject, options.which, task)
+    seed = chosen.spec.seed if options.seed is None else options.seed
+    return dataclasses.replace(options.applied_to(chosen.spec), seed=seed), chosen.recorded is None
 
 
-def _caption(spec: EpisodeSpec, result: EpisodeResult) -> str:
-    """Line about the filmed episode."""
+def _caption(spec: EpisodeSpec, result: EpisodeResult, is_alone: bool) -> str:
+    """Lines about the filmed episode: its parameters and result, and what its pictures leave out."""
     from sarah.episode.ending import ending_words
+    from sarah.runs.episode_words import told_of
 
     names = spec.task.parameter_names
     learned = ", ".join(f"{name} {value:.2f}" for name, value in zip(names, spec.parameters, strict=True))
     ending = ending_words(result.termination)
-    return f"{spec.task.name}: {learned}   ·   seed {spec.seed}   ·   score {result.score:.2f}, {ending}"
+    about = f"{spec.task.name}: {learned}   ·   seed {spec.seed}   ·   score {result.score:.2f}, {ending}"
+    assert result.trace is not None
+    told = [*([] if is_alone else ["from standing, not as the window was"]), *told_of(spec, result.trace)]
+    return "\n".join([about, ", ".join(told)] if told else [about])

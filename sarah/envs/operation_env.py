@@ -26,7 +26,8 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
     order 1 and clipped to [-5, 5], and its present parameters, scaled to [-1, 1]. The action is the next parameters:
     P1 to P5 and V1 to V4, with ``reach`` of each range on either side of ``first`` scaled to [-1, 1]. The reward is
     what the robot's own sensors say, :attr:`~sarah.operation.window.Window.observed_reward`. A fall terminates; the end
-    of the operation's time truncates. ``info`` contains the ``window``.
+    of the operation's time truncates. ``info`` contains the ``window``. There are no pictures: ``sarah-view`` plays
+    sessions.
 
     :param config: settings of the operation
     :param first: parameters to begin with; by default those that the package ships

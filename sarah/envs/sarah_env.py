@@ -97,10 +97,13 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         return observation_from(self._episode.last_reading), result.episode_return, True, False, info
 
     def render(self) -> np.ndarray | None:
-        """Draw the robot as it stands now.
+        """Draw the robot as it stands now, on the ground of its episode.
 
-        :return: uint8 array of shape (480, 640, 3), the picture of :mod:`sarah.pictures.video` without its text;
-            ``None`` without a render mode
+        A push is drawn as an arrow while it acts, and for 0.6 s from its beginning: only an episode that ended in that
+        time shows it. Nothing tells friction, masses, payload and delays, or a slope towards the camera.
+
+        :return: uint8 array of shape (480, 640, 3), the picture of :mod:`sarah.pictures.video` without its text; the
+            ground alone if the simulation has diverged; ``None`` without a render mode
         """
         if self.render_mode is None or self._episode is None:
             return None
@@ -108,7 +111,7 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
             from sarah.simulation.renderer import Renderer
 
             self._renderer = Renderer(self._episode.robot)
-        return self._renderer.draw_simulator(self._episode.simulation)
+        return self._renderer.draw_simulator(self._episode.simulation, force=self._episode.shown_push())
 
     def __getstate__(self) -> dict[str, Any]:
         """State of a copy, without the engine's worlds."""

@@ -8,6 +8,7 @@ from sarah.control.hip_law import LOCKED_HIPS
 from sarah.control.pattern_generator import STAND_SECONDS, Phase
 from sarah.episode.gait import GaitRecord
 from sarah.episode.motion import MotionRecord
+from sarah.episode.push import PUSH_SHOWN_SECONDS
 from sarah.episode.result import EpisodeResult
 from sarah.episode.reward import highest_return
 from sarah.episode.running_robot import RunningRobot
@@ -128,6 +129,14 @@ class Episode(RunningRobot):
         since_begin = STAND_SECONDS + self._ticks * self._dt - self.push.begin
         is_now = -self._dt / 2 <= since_begin < self.push.duration - self._dt / 2
         return self.push.force if is_now else None
+
+    def shown_push(self) -> Vector | None:
+        """Force of the push that a picture shows now, in N, as :class:`~sarah.episode.trace.Trace` has it."""
+        if self.push is None or not any(self.push.force):
+            return None
+        since_begin = STAND_SECONDS + self._ticks * self._dt - self.push.begin
+        is_shown = -self._dt / 2 <= since_begin < max(self.push.duration, PUSH_SHOWN_SECONDS) - self._dt / 2
+        return self.push.force if is_shown else None
 
     def _judge(self) -> None:
         """Add this tick's reward, and check whether the episode ends."""

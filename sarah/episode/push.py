@@ -19,6 +19,18 @@ PLAUSIBLE = {
     "sagittal_share": (0.0, 1.0, ""),
 }
 """Lowest value, highest value and unit of each setting. Beyond them, somebody has mistaken the unit."""
+PUSH_SHOWN_SECONDS = 0.6
+"""Shortest time for which pictures show a push, in s: most are over before a viewer has noticed them."""
+DIRECTIONS = (
+    "to its right",
+    "right and forward",
+    "forward",
+    "left and forward",
+    "to its left",
+    "left and backward",
+    "backward",
+    "right and backward",
+)
 SAGITTAL_DEGREES = 30.0
 """Largest angle between a sagittal push and the robot's forward or backward direction, in degrees."""
 
@@ -50,6 +62,10 @@ class Push:
         check_fields("push", self, PLAUSIBLE)
 
 
+NOBODY = Push(newtons=(0.0, 0.0))
+"""Push of nobody, where a task has none."""
+
+
 @dataclass(frozen=True)
 class DrawnPush:
     """One episode's push.
@@ -67,6 +83,19 @@ class DrawnPush:
         """Refuse a push that is no number."""
         if not math.isfinite(math.hypot(*self.force, self.begin, self.duration)):
             raise ConfigurationError(f"a push must consist of finite numbers, not {self!r}")
+
+
+def push_words(force: Vector) -> tuple[str, str]:
+    """A push in words: its force, and its direction as the robot has it.
+
+    :param force: force of the push, in N
+    """
+    x, y, z = force
+    newtons = math.hypot(x, y, z)
+    direction = DIRECTIONS[round(math.atan2(y, x) / (math.tau / len(DIRECTIONS))) % len(DIRECTIONS)]
+    if abs(z) > math.hypot(x, y):
+        direction = "upward" if z > 0.0 else "downward"
+    return f"push of {newtons:.{0 if newtons >= 10.0 else 2}{'f' if newtons >= 10.0 else 'g'}} N", direction
 
 
 def draw_push(ranges: Push, seed: int) -> DrawnPush:

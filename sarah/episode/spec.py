@@ -9,6 +9,9 @@ from typing import Any
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import STEPPING, Task, task_named
 from sarah.errors import ConfigurationError
+from sarah.robot.description import RobotDescription, describe_robot
+from sarah.simulation.ground import Ground
+from sarah.simulation.terrain import draw_ground
 
 FIRST_TRAINING_SEED = 2**31
 """First seed that trainings draw for their episodes; no training uses a smaller one."""
@@ -45,3 +48,13 @@ class EpisodeSpec:
             object.__setattr__(self, "seed", int(self.seed))
         if type(self.seed) is not int or self.seed < 0:
             raise ConfigurationError(f"seed must be a whole number from 0, not {self.seed!r}")
+
+    @property
+    def robot(self) -> RobotDescription:
+        """Robot of the episode, as designed: what its pictures show."""
+        return describe_robot(self.config.dimensions)
+
+    @property
+    def ground(self) -> Ground:
+        """Ground that the episode's seed draws."""
+        return draw_ground(self.config.terrain, self.seed)

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
 
+from sarah.episode.push import PUSH_SHOWN_SECONDS
 from sarah.errors import SimulationError
+from sarah.robot.reading import Vector
 
 
 @dataclass(frozen=True)
@@ -79,3 +82,18 @@ class Trace:
         :param time: simulated time, in s; the first and the last tick stand for times outside the trace
         """
         return max(0, int(np.searchsorted(self.time, time + 1e-9, side="right")) - 1)
+
+    def pushes(self) -> list[tuple[int, int]]:
+        """First tick of each push, and the one after its last; a new force or a pause begins another push."""
+        before = np.concatenate((np.zeros((1, 3)), self.push[:-1]))
+        changes = [*np.flatnonzero((self.push != before).any(axis=1)).tolist(), len(self)]
+        return [(begin, end) for begin, end in itertools.pairwise(changes) if self.push[begin].any()]
+
+    def shown_pushes(self) -> list[Vector | None]:
+        """Force of the push that a picture of each tick shows, in N: while it acts, and for a moment after it began."""
+        shown: list[Vector | None] = [None] * len(self)
+        for begin, end in self.pushes():
+            last = max(end, int(np.searchsorted(self.time, self.time[begin] + PUSH_SHOWN_SECONDS)))
+            x, y, z = self.push[begin].tolist()
+            shown[begin:last] = [(x, y, z)] * (min(last, len(self)) - begin)
+        return shown

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from zlib import crc32
 
+from sarah.simulation.push_arrow import PUSH as PUSH
+
 LEFT, RIGHT = "#0072B2", "#D55E00"
 """Colours of the legs, as in the robot's visual shapes."""
 PHASE_COLOURS = {"shift": "#AEB6C2", "lift": "#F2C14E", "land": "#7CC6A4"}
 """Colours of the pattern generator's phases."""
-PUSH = "#8C2B8F"
-"""Colour of a push."""
 ALGORITHM_COLOURS = {
     "naf": "#0072B2",
     "td3": "#D55E00",

@@ -17,8 +17,6 @@ from sarah.episode.tasks import Task, controller_of
 from sarah.errors import ConfigurationError, SimulationError
 from sarah.pictures.gait_figure import draw_gait_cycle
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
-from sarah.robot.description import describe_robot
-from sarah.simulation.terrain import draw_ground
 
 EPISODE_SECONDS = 10.0
 """Longest duration of the simulated episode, in s."""
@@ -51,8 +49,9 @@ def draw_gait(parameters: tuple[float, ...], task: Task[Any], config: EpisodeCon
     :return: a video, and a gait cycle if the robot completes one; nothing if the robot cannot even stand
     """
     short = dataclasses.replace(config, time_limit=min(EPISODE_SECONDS, config.time_limit))
+    spec = EpisodeSpec(parameters, 0, task, short)
     try:
-        trace = simulate(EpisodeSpec(parameters, 0, task, short), record_trace=True).trace
+        trace = simulate(spec, record_trace=True).trace
     except SimulationError:  # the simulation diverges, which the learning curves show
         return []
     assert trace is not None
@@ -61,8 +60,7 @@ def draw_gait(parameters: tuple[float, ...], task: Task[Any], config: EpisodeCon
     times = frame_times(max(trace.time[0], end - VIDEO_SECONDS), end, FRAMES_PER_SECOND[".gif"])
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        ground = draw_ground(config.terrain, 0)
-        write_video(frames(trace, describe_robot(config.dimensions), times, ground=ground), folder / "video.gif")
+        write_video(frames(trace, spec.robot, times, ground=spec.ground), folder / "video.gif")
         pictures = [_picture("gait/video", folder / "video.gif")]
         try:
             draw_gait_cycle(trace, stepping, folder / "cycle", config.controller)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 import re
 from collections.abc import Iterator
 from functools import lru_cache
@@ -13,23 +12,18 @@ from typing import Any
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from sarah.episode.push import push_words
 from sarah.episode.trace import Trace
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
-from sarah.robot.reading import Side
+from sarah.robot.reading import Side, Vector
+from sarah.simulation.push_arrow import LINES_OF_TEXT, arrow, draw_arrow
 from sarah.simulation.scenery import View
 
 INK, PALE_INK = "#1B1F24", "#5A6470"
 OUTLINE: dict[str, Any] = {"stroke_width": 2, "stroke_fill": "white"}
 """Outline of words that may stand before the robot."""
-METRES_PER_NEWTON = 0.005
-"""Length of a push's arrow per force, in m/N, beside the standard robot; in proportion for other sizes."""
-LONGEST_ARROW = 1.0
-"""Length of the longest arrow, in m, beside the standard robot: a force above 200 N is told by its label alone."""
-PUSH_SHOWN_SECONDS = 0.6
-"""Time for which the arrow is shown, in s: the push itself is over before a viewer has noticed it."""
 LABEL_OFFSET = np.array((0.26, 0.20, 0.0))
 """Position of the arrow's label from the torso's centre: to the right, upward and ahead in the picture, in m."""
-DIRECTIONS = ("to its right", "forward", "to its left", "backward")
 MOST_LINES = 6
 """Largest number of a caption's lines, above which it would reach the strip of phases."""
 STRIP_SECONDS = 2.0
@@ -48,12 +42,11 @@ class Overlay:
 
     def __init__(self, trace: Trace, view: View, caption: str, caption_end: float, size: float = 1.0) -> None:
         self._trace = trace
+        self._pushes = trace.shown_pushes()
         self._view = view
-        self._unit = view.height / 40
+        self._unit = view.height / LINES_OF_TEXT
         self._size = size
         self._caption = wrapped(caption, _font(0.85 * self._unit), caption_end - 1.5 * self._unit)
-        forces = np.linalg.norm(trace.push, axis=1)
-        self._push_tick = int(np.argmax(forces > 0.0)) if forces.any() else None
 
     def draw(self, picture: Image.Image, tick: int) -> None:
         """Draw over a frame.
@@ -64,10 +57,9 @@ class Overlay:
         pen = ImageDraw.Draw(picture)
         self._write(pen, tick)
         self._draw_phases(pen, tick)
-        if self._push_tick is not None:
-            since_push = self._trace.time[tick] - self._trace.time[self._push_tick]
-            if 0.0 <= since_push < PUSH_SHOWN_SECONDS:
-                self._draw_push(pen, tick)
+        force = self._pushes[tick]
+        if force is not None:
+            self._draw_push(pen, tick, force)
 
     def _write(self, pen: ImageDraw.ImageDraw, tick: int) -> None:
         trace, unit = self._trace, self._unit
@@ -99,7 +91,7 @@ class Overlay:
             pen.text((1.5 * unit, y + 0.8 * unit), side.name[0], font=_font(unit, bold=True), fill=colour, anchor="lm")
             pen.rectangle((begin, y, end, y + 1.6 * unit), fill="#F1F3F5")
             for ages, phase, swing in self._past_phases(tick):
-                if swing is side:
+                if swing is side and phase in PHASE_COLOURS:  # a robot that fell while it stood never stepped
                     left, right = (end - age / STRIP_SECONDS * (end - begin) for age in ages)
                     pen.rectangle((left, y, right, y + 1.6 * unit), fill=PHASE_COLOURS[phase])
         x, y = begin, top + 4.8 * unit
@@ -121,39 +113,18 @@ class Overlay:
             began = min(STRIP_SECONDS, ages[begin])
             yield (began, ages[end]), str(phase[begin]), Side(int(stance[begin])).other
 
-    def _draw_push(self, pen: ImageDraw.ImageDraw, tick: int) -> None:
+    def _draw_push(self, pen: ImageDraw.ImageDraw, tick: int, force: Vector) -> None:
         """Draw the push's arrow, and the force in newtons."""
         unit = self._unit
-        force = self._trace.push[self._push_tick]
-        ends = arrow(self._trace.position[tick], force, self._size)
-        tip, end = self._view.pixels(ends)
-        along = tip - end
-        length = max(1.0, float(np.hypot(*along)))
-        along = along / length
-        across = np.array((-along[1], along[0]))
-        neck = tip - min(1.6 * unit, 0.7 * length) * along
-        pen.line((*end, *neck), fill=PUSH, width=round(0.6 * unit))
-        pen.polygon([tuple(tip), tuple(neck + 0.9 * unit * across), tuple(neck - 0.9 * unit * across)], fill=PUSH)
+        ends = arrow(self._trace.position[tick], np.array(force), self._size)
+        draw_arrow(pen, self._view, ends)
         label = self._view.pixels(ends[:1] + self._size * LABEL_OFFSET @ self._view.axes)[0]
-        where = DIRECTIONS[round(math.atan2(force[1], force[0]) / (math.pi / 2)) % 4]
-        text = f"push of {math.hypot(*force):.0f} N\n{where}"
+        text = "\n".join(push_words(force))
         style: dict[str, Any] = {"font": _font(1.2 * unit, bold=True), "spacing": 0.3 * unit}
         left, top, right, bottom = pen.multiline_textbbox(tuple(label), text, **style)
         for low, high, axis, end in ((left, right, 0, self._view.width), (top, bottom, 1, self._view.height)):
             label[axis] += max(0.0, unit - low) - max(0.0, high + unit - end)  # it stays in the picture
         pen.multiline_text(tuple(label), text, fill=PUSH, **style, **OUTLINE)
-
-
-def arrow(head: np.ndarray, force: np.ndarray, size: float = 1.0) -> np.ndarray:
-    """Head and tail of a push's arrow, as rows.
-
-    :param head: position of the torso's centre, where the arrow ends, in m; shape (3,)
-    :param force: force of the push, in N; shape (3,)
-    :param size: size of the robot, as a multiple of the standard robot's
-    """
-    newtons = max(float(np.linalg.norm(force)), 1e-9)
-    length = size * min(METRES_PER_NEWTON * newtons, LONGEST_ARROW)
-    return np.array((head, head - length / newtons * force))
 
 
 def wrapped(text: str, font: ImageFont.FreeTypeFont, width: float) -> list[str]:

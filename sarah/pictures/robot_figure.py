@@ -69,7 +69,7 @@ def labels_of(robot: RobotDescription) -> list[Label]:
         for link in ElementTree.fromstring(robot.urdf).findall("link")
         if (mass := link.find("inertial/mass")) is not None
     }
-    kilograms = {group: f"{sum(masses[link] for link in links):.0f} kg" for group, links in GROUPS.items()}
+    kilograms = {group: f"{sum(masses[link] for link in links):.3g} kg" for group, links in GROUPS.items()}
     (_, sole_y, sole_z), (outer, _, _) = robot.soles["right_forefoot"][0], max(robot.soles["right_forefoot"])
     thigh = model.get_transform("left_shank", "left_thigh")[UP_AXIS, 3]
     return [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -13,12 +14,14 @@ from sarah.pictures.style import COLUMN_WIDTH, own_style, save
 
 SCORE, OBSERVED, FALL = "#0072B2", "#E69F00", "#D55E00"
 """Colours (Okabe and Ito)."""
+WIDEST_LINE, MOST_LINES = 130, 12
+"""Largest numbers of characters of a line, and of lines, that tell the changes."""
 SMOOTHED = 5
 """Number of windows whose mean the line shows."""
 
 
 def draw_session(windows: Sequence[Window], changes: Sequence[Change], path: Path) -> list[Path]:
-    """Draw every window as a point, their running mean as a line, falls as crosses and changes as vertical lines.
+    """Draw every window as a point, their running mean as a line, falls as crosses and changes as numbered lines.
 
     :param windows: windows of the session, at least one
     :param changes: what was to change in its course; what no window began after is not drawn
@@ -37,9 +40,16 @@ def draw_session(windows: Sequence[Window], changes: Sequence[Change], path: Pat
         )
         axis.plot(minutes, _running_mean(scores), color=SCORE, linewidth=1.5, label=f"mean of {SMOOTHED} windows")
         axis.plot([minutes[i] for i in falls], [scores[i] for i in falls], "x", color=FALL, label="fall")
-        for change in changes[: windows[-1].changes]:
+        made = changes[: windows[-1].changes]
+        for number, change in enumerate(made, 1):
             axis.axvline(change.minute, color="black", linestyle="--", linewidth=0.8)
-            axis.text(change.minute, 0.02, f" {words_of(change)}", fontsize=6, va="bottom")
+            axis.annotate(
+                f"{number}", (change.minute, 1.02), (0, 1), textcoords="offset points", fontsize=6, ha="center"
+            )
+        lines = [line for number, change in enumerate(made, 1) for line in _lines(number, change)]
+        lines = lines[:MOST_LINES] + ["…"] * (len(lines) > MOST_LINES)
+        if lines:
+            axis.set_title("\n".join(lines), loc="left", fontsize=6, pad=9)
         axis.set(xlabel="time of operation (min)", ylabel="score", ylim=(0.0, 1.02))
         axis.legend(loc="lower right", ncols=2)
         return save(figure, path)
@@ -51,6 +61,10 @@ def words_of(change: Change) -> str:
     :param change: change of robot or world
     """
     return ", ".join(_words(change.settings))
+
+
+def _lines(number: int, change: Change) -> list[str]:
+    return textwrap.wrap(f"{number}: {words_of(change)}", WIDEST_LINE, subsequent_indent="    ")
 
 
 def _words(settings: object, key: str = "") -> list[str]:

@@ -13,10 +13,11 @@ from PIL import Image, ImageColor
 from sarah.episode.trace import Trace
 from sarah.errors import ConfigurationError
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
-from sarah.pictures.overlay import PUSH_SHOWN_SECONDS, Overlay, arrow
+from sarah.pictures.overlay import Overlay
 from sarah.robot.description import ANKLE_JOINTS, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, Vector
 from sarah.simulation.ground import LEVEL, Ground
+from sarah.simulation.push_arrow import arrow
 from sarah.simulation.renderer import Renderer
 from sarah.simulation.scenery import Camera, View, size_of
 
@@ -104,11 +105,9 @@ def cameras(trace: Trace, robot: RobotDescription, renderer: Renderer, ground: G
         seen.append(renderer.corners(*_pose(trace, tick)))
         feet.append(renderer.soles())
     camera = renderer.camera._replace(ground=ground).seeing(np.concatenate(seen), WIDTH - 2 * TEXT_WIDTH, HEIGHT)
-    forces = np.linalg.norm(trace.push, axis=1)
-    if forces.any():
-        begin = int(np.argmax(forces > 0.0))
-        shown = (trace.time >= trace.time[begin]) & (trace.time < trace.time[begin] + PUSH_SHOWN_SECONDS)
-        arrows = [arrow(position, trace.push[begin], size) for position in trace.position[shown]]
+    shown = [(tick, force) for tick, force in enumerate(trace.shown_pushes()) if force is not None]
+    if shown:
+        arrows = [arrow(trace.position[tick], np.array(force), size) for tick, force in shown]
         camera = camera.seeing(np.concatenate(arrows), WIDTH, HEIGHT)
     feet_camera = FEET_CAMERA.scaled(size)._replace(ground=ground)
     return camera, feet_camera.seeing(np.concatenate(feet), FEET_WIDTH, FEET_HEIGHT)

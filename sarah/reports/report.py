@@ -25,11 +25,10 @@ from sarah.pictures.colours import algorithm_label
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
 from sarah.reports.all_figures import draw_all_figures
 from sarah.reports.training_figures import figures_of
-from sarah.robot.description import describe_robot
 from sarah.runs.config import TrainingConfig
+from sarah.runs.episode_words import told_of
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.renderer import check_renderer
-from sarah.simulation.terrain import draw_ground
 from sarah.training.recommendation import Parameters
 
 PAPER_CAPTIONS = {
@@ -159,9 +158,9 @@ def _film(spec: EpisodeSpec, folder: Path, seconds: tuple[float, float]) -> tupl
     begin = min(max(seconds[0], trace.time[0]), end)
     times = frame_times(begin, end, FRAMES_PER_SECOND[path.suffix])
     progress = tqdm(times, desc="filming", unit=" frames")
-    ground = draw_ground(spec.config.terrain, spec.seed)
-    write_video(frames(trace, describe_robot(spec.config.dimensions), progress, ground=ground), path)
-    caption = f"The learned parameters on seed {spec.seed}, from {begin:.1f} to {end:.1f} s of {result.duration:.1f} s."
+    write_video(frames(trace, spec.robot, progress, ground=spec.ground), path)
+    caption = f"The learned parameters on seed {spec.seed}, from {begin:.1f} to {end:.1f} s of {result.duration:.1f} s"
+    caption = f"{': '.join(filter(None, (caption, ', '.join(told_of(spec, trace)))))}."
     return _address(path.read_bytes(), kind), caption
 
 

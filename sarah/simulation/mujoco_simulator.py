@@ -13,6 +13,7 @@ import numpy as np
 from sarah.errors import SimulationError
 from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Side, Vector
+from sarah.simulation.ground import Ground
 from sarah.simulation.mujoco_model import WITHOUT_WARNINGS, check_callbacks, model_of, sole_name
 from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.randomisation import NOMINAL, Conditions
@@ -245,6 +246,11 @@ class MujocoSimulator(HoldsWorld):
         speeds = self._qvel.tolist()
         efforts = [share * limit for share, limit in zip(self._shares, self._limits, strict=True)]
         return tuple([speeds[index] for index in self._speeds]), tuple(efforts)
+
+    @property
+    def ground(self) -> Ground:
+        """Ground under the robot."""
+        return self._ground
 
     def sole_height(self, side: Side) -> float:
         """Height of a foot's lowest sole contact over the ground, in m.

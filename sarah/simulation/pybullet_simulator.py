@@ -14,6 +14,7 @@ from itertools import product
 from sarah.errors import SimulationError
 from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Side, Vector
+from sarah.simulation.ground import Ground
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
 from sarah.simulation.pybullet_world import PyBulletWorld, pybullet
 from sarah.simulation.randomisation import NOMINAL, Conditions
@@ -298,6 +299,11 @@ class PyBulletSimulator(HoldsWorld):
             # PyBullet divides the impulse of the last substep by the whole tick.
             loads[self._pads[contact[3], contact[4]]] += contact[9] * self._substeps
         return (loads[0], loads[1], loads[2], loads[3])
+
+    @property
+    def ground(self) -> Ground:
+        """Ground under the robot."""
+        return self._ground
 
     def sole_height(self, side: Side) -> float:
         """Height of a foot's lowest sole contact over the ground, in m.

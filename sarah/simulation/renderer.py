@@ -7,13 +7,14 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageDraw
 
 from sarah.errors import ConfigurationError
 from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, Side, Vector
 from sarah.simulation.bumps import LIGHT
 from sarah.simulation.engines import INSTALLATION, is_installed
+from sarah.simulation.push_arrow import arrow, draw_arrow
 from sarah.simulation.pybullet_world import PyBulletWorld, pybullet
 from sarah.simulation.scenery import STANDARD_CAMERA, Camera, View, floor, shaded, size_of
 from sarah.simulation.simulator import Simulator
@@ -197,20 +198,39 @@ class Renderer(HoldsWorld):
         return np.asarray(picture)
 
     def draw_simulator(
-        self, simulator: Simulator, width: int = 640, height: int = 480, camera: Camera | None = None
+        self,
+        simulator: Simulator,
+        width: int = 640,
+        height: int = 480,
+        camera: Camera | None = None,
+        force: Vector | None = None,
     ) -> np.ndarray:
-        """Draw a simulator's robot as it stands.
+        """Draw a simulator's robot as it stands, on the simulator's ground.
 
         :param simulator: simulator of any engine
         :param width: width of the picture, in pixels
         :param height: height of the picture, in pixels
         :param camera: place and direction of the camera; by default the renderer's, stepped back if the pose needs it
-        :return: uint8 array of shape (height, width, 3)
+        :param force: force of a push, which is drawn as an arrow, in N
+        :return: uint8 array of shape (height, width, 3); the ground alone if the simulation has diverged
         """
+        torso = simulator.torso_state()
+        if not torso.is_finite:
+            return floor(width, height, (camera or self.camera)._replace(ground=simulator.ground)).copy()
         names = ACTUATED_JOINTS + ANKLE_JOINTS
         joints = dict(zip(names, simulator.joint_positions(names), strict=True))
-        torso = simulator.torso_state()
-        return self.draw(torso.position, torso.orientation, joints, width, height, camera)
+        ends = None if force is None else arrow(np.array(torso.position), np.array(force), size_of(self._robot))
+        if camera is None:
+            seen = self.corners(torso.position, torso.orientation, joints)
+            view = self.camera._replace(ground=simulator.ground)
+            camera = view.seeing(seen if ends is None else np.concatenate((seen, ends)), width, height)
+        camera = camera._replace(ground=simulator.ground)
+        picture = self.draw(torso.position, torso.orientation, joints, width, height, camera)
+        if ends is None:
+            return picture
+        with_arrow = Image.fromarray(picture)
+        draw_arrow(ImageDraw.Draw(with_arrow), View(width, height, camera), ends)
+        return np.asarray(with_arrow)
 
     def close(self) -> None:
         """Give PyBullet's client back; the renderer cannot draw after that."""

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from sarah.robot.reading import GRAVITY, SensorReading, Side, Vector
+
+if TYPE_CHECKING:
+    from sarah.simulation.ground import Ground
 
 LEVEL_GRAVITY = (0.0, 0.0, -GRAVITY)
 """Acceleration of gravity on level ground, in the world's frame, in m/s^2."""
@@ -49,6 +52,10 @@ class Simulator(Protocol):
     @property
     def time(self) -> float:
         """Simulated time so far, in s."""
+
+    @property
+    def ground(self) -> Ground:
+        """Ground under the robot."""
 
     def set_targets(self, targets: tuple[float, ...]) -> None:
         """Set where the servos move the joints from now on.

@@ -14,10 +14,9 @@ from sarah.episode.result import EpisodeResult
 from sarah.episode.running_robot import conditions_of
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, Task
-from sarah.robot.description import describe_robot
 from sarah.robot.reading import Side
+from sarah.runs.episode_words import told_settings
 from sarah.runs.run_episodes import RunEpisode
-from sarah.simulation.terrain import draw_ground
 from sarah.viewer.background import BackgroundSimulation, Wish
 from sarah.viewer.playback import Playback
 from sarah.viewer.plots import Plots
@@ -29,9 +28,9 @@ SPEEDS = {"1/10": 0.1, "1/4": 0.25, "1/2": 0.5, "1": 1.0, "2": 2.0, "4": 4.0}
 SECONDS_BEFORE_PUSH = 0.5
 """Time before a push from which the page plays on when the push is added, in s."""
 LARGEST_SLOPE, HIGHEST_BUMPS, LARGEST_FRICTION = 15.0, 30.0, 1.5
-"""Upper ends of the ground's sliders: degrees, mm, and a coefficient."""
+"""Usual upper ends of the ground's sliders: degrees, mm, and a coefficient."""
 LARGEST_PUSH = 200.0
-"""Upper end of the force's slider, in N."""
+"""Usual upper end of the force's slider, in N."""
 
 
 class Page:
@@ -40,7 +39,7 @@ class Page:
     :attr:`frames` counts the frames since the beginning.
 
     :param server: server of the page
-    :param choices: episodes to choose from, all of the same robot
+    :param choices: episodes to choose from
     :param chosen: episode that is shown first
     """
 
@@ -54,7 +53,7 @@ class Page:
         self._is_seen = False
         self.frames = 0
         self._playback = Playback(self._show, self._play_on)
-        self._scene = RobotScene(server, describe_robot(chosen.spec.config.dimensions))
+        self._scene = RobotScene(server, chosen.spec.robot)
         self._plots = Plots(server.gui)
         self._gui = server.gui
         self._gui.main_panel.dock_right()
@@ -188,7 +187,7 @@ class Page:
 
     def _push_now(self) -> None:
         begin = round(min(self._playback.time, self._wanted.config.time_limit), 2)
-        push = KnownPush(self._newtons.value, self._degrees.value, begin)
+        push = KnownPush(self._newtons.value, self._degrees.value, begin, self._wanted.config.push.duration)
         self._change({"push": push}, begin - SECONDS_BEFORE_PUSH)
 
     def _change(self, changes: Mapping[str, Any], play_from: float | None = None) -> None:
@@ -204,7 +203,7 @@ class Page:
         recorded: Callable[[], EpisodeResult] | None = None,
     ) -> None:
         self._show_progress(0.0)
-        self._simulation.request(Wish(spec, lambda result: self._take(scenario, result, play_from), recorded))
+        self._simulation.request(Wish(spec, lambda result: self._take(spec, scenario, result, play_from), recorded))
 
     def _set_sliders(self, scenario: Scenario) -> None:
         for sliders, values in ((self._stepping, scenario.stepping), (self._balance, scenario.balance)):
@@ -212,17 +211,17 @@ class Page:
                 _set(slider, value)
         _set(self._seed, scenario.seed)
         if scenario.push.newtons > 0.0:
-            _set(self._newtons, min(scenario.push.newtons, LARGEST_PUSH))
+            _set_up_to(self._newtons, scenario.push.newtons, LARGEST_PUSH)
             _set(self._degrees, scenario.push.degrees)
         conditions = conditions_of(scenario.spec().config, scenario.seed)
-        _set(self._slope, min(scenario.terrain.slope_degrees[0], LARGEST_SLOPE))
+        _set_up_to(self._slope, scenario.terrain.slope_degrees[0], LARGEST_SLOPE)
         _set(self._uphill, scenario.terrain.direction_degrees[0] % 360.0)
-        _set(self._roughness, min(1000.0 * scenario.terrain.roughness[0], HIGHEST_BUMPS))
-        _set(self._friction, min(conditions.friction_under(Side.LEFT), LARGEST_FRICTION))
+        _set_up_to(self._roughness, 1000.0 * scenario.terrain.roughness[0], HIGHEST_BUMPS)
+        _set_up_to(self._friction, conditions.friction_under(Side.LEFT), LARGEST_FRICTION)
 
     # -- the content of the page
 
-    def _take(self, scenario: Scenario, result: EpisodeResult, play_from: float | None) -> None:
+    def _take(self, spec: EpisodeSpec, scenario: Scenario, result: EpisodeResult, play_from: float | None) -> None:
         """Play an episode that has just been simulated."""
         assert result.trace is not None
         with self._lock:
@@ -230,10 +229,11 @@ class Page:
             begin, end = float(result.trace.time[0]), float(result.trace.time[-1])
             self._time.min, self._time.max = 0.0, end  # in between, an older minimum would lie above a new maximum
             self._time.min = begin
-            self._scene.load(result.trace, draw_ground(scenario.terrain, scenario.seed))
+            self._scene.load(result.trace, spec)
             self._plots.load(result.trace, scenario)
             self._news.content = paragraph("")
-            self._table.content = comparison(self._shown, self._before, self._noted_score(scenario))
+            table = comparison(self._shown, self._before, self._noted_score(scenario))
+            self._table.content = table + paragraph(", ".join(told_settings(spec)))
         self._playback.load(begin, end, begin if play_from is None else play_from)
         if self._is_seen:
             self._playback.play()
@@ -268,6 +268,13 @@ class Page:
 def _set(handle: Any, value: Any) -> None:
     """Change the value of an input, which viser's types declare read-only."""
     handle.value = value
+
+
+def _set_up_to(slider: Any, value: float, largest: float) -> None:
+    """Change the value of a slider, which reaches farther than usual where an episode does."""
+    slider.max = max(largest, value, slider.value)  # in between, an older value would lie above a new maximum
+    _set(slider, value)
+    slider.max = max(largest, value)
 
 
 def _on_user(handle: Any, do: Callable[[Any], None]) -> None:

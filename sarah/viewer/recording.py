@@ -12,8 +12,7 @@ from sarah.episode.episode import simulate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError
-from sarah.robot.description import describe_robot
-from sarah.simulation.terrain import draw_ground
+from sarah.runs.episode_words import told_settings
 from sarah.viewer.playback import FRAMES_PER_SECOND
 from sarah.viewer.scene import RobotScene
 
@@ -36,8 +35,9 @@ def record(
     """
     trace = (simulate(spec, record_trace=True) if recorded is None else recorded()).trace
     assert trace is not None
-    scene = RobotScene(server, describe_robot(spec.config.dimensions))
-    scene.load(trace, draw_ground(spec.config.terrain, spec.seed))
+    scene = RobotScene(server, spec.robot)
+    scene.load(trace, spec)
+    scene.tell(told_settings(spec))
     recorder = server.get_scene_serializer()
     for time in np.arange(trace.time[0], trace.time[-1], 1.0 / FRAMES_PER_SECOND):
         scene.show(trace.tick_at(time))

@@ -18,11 +18,13 @@ class KnownPush:
     :param newtons: force, in N; 0 for no push
     :param degrees: direction, in degrees: 0 pushes to the robot's right, 90 forward
     :param begin: simulated time at which it begins, in s
+    :param duration: duration, in s
     """
 
     newtons: float
     degrees: float
     begin: float
+    duration: float = Push().duration
 
 
 NO_PUSH = KnownPush(0.0, 0.0, 1.0)
@@ -58,7 +60,8 @@ class Scenario:
         drawn, push = push_of(task, spec.config, spec.seed), NO_PUSH
         if drawn is not None:
             x, y, _ = drawn.force
-            push = KnownPush(math.hypot(x, y), math.degrees(math.atan2(y, x)) % 360.0, drawn.begin)
+            duration = max(drawn.duration, spec.config.physics.control_dt)
+            push = KnownPush(math.hypot(x, y), math.degrees(math.atan2(y, x)) % 360.0, drawn.begin, duration)
         hips = BALANCE.baseline if balance is None else astuple(balance)
         terrain = draw_terrain(spec.config.terrain, spec.seed)
         return cls(astuple(stepping), hips, push, terrain, spec.seed, BALANCE.config_of(spec.config))
@@ -69,7 +72,7 @@ class Scenario:
             newtons=(self.push.newtons, self.push.newtons),
             degrees=(self.push.degrees, self.push.degrees),
             at_seconds=(self.push.begin, self.push.begin),
-            duration=self.config.push.duration,
+            duration=self.push.duration,
         )
         config = BALANCE.config_of(self.config, stepping=self.stepping, push=given, terrain=self.terrain)
         return EpisodeSpec(self.balance, self.seed, BALANCE, config)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 import itertools
 import math
+import textwrap
+from collections.abc import Sequence
 
 import numpy as np
 import trimesh
@@ -12,13 +14,15 @@ import viser
 import yourdfpy
 from viser.extras import ViserUrdf
 
+from sarah.episode.push import push_words
+from sarah.episode.spec import EpisodeSpec
 from sarah.episode.trace import Trace
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
-from sarah.pictures.overlay import LONGEST_ARROW, METRES_PER_NEWTON, PUSH_SHOWN_SECONDS
 from sarah.robot.description import ANKLE_JOINTS, RobotDescription
-from sarah.robot.reading import ACTUATED_JOINTS
+from sarah.robot.reading import ACTUATED_JOINTS, Vector
 from sarah.simulation.bumps import mesh
 from sarah.simulation.ground import LEVEL, Ground
+from sarah.simulation.push_arrow import LONGEST_ARROW, METRES_PER_NEWTON
 from sarah.simulation.scenery import Camera, View, size_of
 
 Colour = tuple[int, int, int]
@@ -42,6 +46,8 @@ ARROW_GAP = 0.2
 """Distance from the torso's centre at which an arrow ends, in m, beside the standard robot: not inside the torso."""
 STATUS_GAP = 0.15
 """Distance of the words above the robot, in m, beside the standard robot."""
+TOLD_WIDTH = 80
+"""Length of the lines of what the scene cannot show, in characters."""
 FIRST_CAMERA = Camera(height=0.6, distance=2.1, yaw=150.9, pitch=-11.0, field_of_view=45.8)
 """Camera that a page begins with, for the standard robot."""
 WINDOW = (400, 300)
@@ -60,47 +66,64 @@ class RobotScene:
     def __init__(self, server: viser.ViserServer, robot: RobotDescription) -> None:
         self._server = server
         self._scene = server.scene
-        self._model = yourdfpy.URDF.load(io.StringIO(robot.urdf), load_meshes=False)
-        self._order = [(*ACTUATED_JOINTS, *ANKLE_JOINTS).index(name) for name in self._model.actuated_joint_names]
-        self._size = size_of(robot)
-        self._torso = self._scene.add_frame("/robot", show_axes=False, position=(0.0, 0.0, robot.standing_height))
-        self._robot = ViserUrdf(server, self._model, root_node_name="/robot")
-        self._loads = [self._add_load(robot, *pad) for pad in zip(ANKLE_JOINTS, PAD_COLOURS, strict=True)]
-        self._support = self._scene.add_cylinder(
+        self.stance = self._scene.add_cylinder(
             "/stance", radius=0.17, height=0.004, color=channels(PHASE_COLOURS["shift"]), opacity=0.7, visible=False
         )
-        self._status = self._scene.add_label(
-            "/status", "", position=status_place(robot, self._model), anchor="bottom-center"
-        )
-        self._arrow: viser.ArrowsHandle | None = None
+        """Disc under the stance leg, in the colour of the phase."""
+        self.status = self._scene.add_label("/status", "", anchor="bottom-center")
+        """Words above the robot."""
+        self._add_robot(robot)
+        self.arrows: dict[Vector, viser.ArrowsHandle] = {}
+        """Arrows of the episode's pushes, by their force in N."""
         self._ground = LEVEL
         self._bumps: viser.MeshHandle | None = None
         self._add_surroundings(first_camera(robot, self._model))
         self._trace: Trace | None = None
+        self._told = ""
 
-    def load(self, trace: Trace, ground: Ground = LEVEL) -> None:
+    def tell(self, words: Sequence[str]) -> None:
+        """Write above the robot what the scene cannot show.
+
+        :param words: words about the episode
+        """
+        self._told = "".join(f"{line}\n" for line in textwrap.wrap(", ".join(words), TOLD_WIDTH))
+
+    def load(self, trace: Trace, spec: EpisodeSpec) -> None:
         """Show another episode.
 
         :param trace: trace of the episode
-        :param ground: ground of the episode
+        :param spec: specification of the episode, which has its robot and its ground
         """
         self._trace = trace
-        self._show_ground(ground)
-        if self._arrow is not None:
-            self._arrow.remove()
-            self._arrow = None
-        self._pushed = np.flatnonzero(trace.push.any(axis=1))
-        if len(self._pushed):
-            force = trace.push[self._pushed[0]]
-            self._arrow = self._scene.add_arrows(
-                "/push",
-                arrow(force, self._size)[None],
-                channels(PUSH),
-                shaft_radius=0.015 * self._size,
-                head_radius=0.04 * self._size,
-                visible=False,
-            )
-        self._support.visible = True
+        if spec.robot != self.robot:
+            self._torso.remove()  # and with it what hangs on it
+            self._add_robot(spec.robot)
+        self._show_ground(spec.ground)
+        for handle in self.arrows.values():
+            handle.remove()
+        self._pushes = trace.shown_pushes()
+        forces = [force for force in dict.fromkeys(self._pushes) if force is not None]
+        self.arrows = {force: self._add_arrow(index, force) for index, force in enumerate(forces)}
+
+    def _add_robot(self, robot: RobotDescription) -> None:
+        self.robot = robot
+        self._model = yourdfpy.URDF.load(io.StringIO(robot.urdf), load_meshes=False)
+        self._order = [(*ACTUATED_JOINTS, *ANKLE_JOINTS).index(name) for name in self._model.actuated_joint_names]
+        self._size = size_of(robot)
+        self._torso = self._scene.add_frame("/robot", show_axes=False, position=(0.0, 0.0, robot.standing_height))
+        self._robot = ViserUrdf(self._server, self._model, root_node_name="/robot")
+        self._loads = [self._add_load(robot, *pad) for pad in zip(ANKLE_JOINTS, PAD_COLOURS, strict=True)]
+        self.status.position = status_place(robot, self._model)
+
+    def _add_arrow(self, index: int, force: Vector) -> viser.ArrowsHandle:
+        return self._scene.add_arrows(
+            f"/push/{index}",
+            arrow(np.array(force), self._size)[None],
+            channels(PUSH),
+            shaft_radius=0.015 * self._size,
+            head_radius=0.04 * self._size,
+            visible=False,
+        )
 
     def show(self, tick: int) -> None:
         """Show the loaded episode in its state at the beginning of a tick.
@@ -115,17 +138,19 @@ class RobotScene:
             self._robot.update_cfg(np.concatenate([trace.joints[tick], trace.ankles[tick]])[self._order])
             for bar, load in zip(self._loads, trace.pressures[tick], strict=True):
                 bar.scale = (1.0, 1.0, max(METRES_PER_NEWTON_OF_LOAD * float(load), 0.001))
-            self._show_support(trace, tick)
+            self._show_stance(trace, tick)
             self._show_push(trace, tick)
-            self._status.text = " · ".join(describe_tick(trace, tick))
 
-    def _show_support(self, trace: Trace, tick: int) -> None:
+    def _show_stance(self, trace: Trace, tick: int) -> None:
+        self.stance.visible = trace.phase[tick] in PHASE_COLOURS  # a robot that fell while it stood has none
+        if not self.stance.visible:
+            return
         side = "right" if trace.stance[tick] > 0 else "left"
         hinge = self._model.get_transform(f"{side}_forefoot", "torso")[:3, 3]
         rotation = viser.transforms.SO3(self._torso.wxyz).as_matrix()
         x, y, _ = self._torso.position + rotation @ hinge
-        self._support.position = np.array([x, y, self._ground.height(x, y) + 0.002])
-        self._support.color = channels(PHASE_COLOURS[trace.phase[tick]])
+        self.stance.position = np.array([x, y, self._ground.height(x, y) + 0.002])
+        self.stance.color = channels(PHASE_COLOURS[trace.phase[tick]])
 
     def _show_ground(self, ground: Ground) -> None:
         """Show bumps over a sunken floor, and turn the whole scene until gravity points down."""
@@ -146,11 +171,13 @@ class RobotScene:
         self._floor.position = np.array([0.0, 0.0, lowest])
 
     def _show_push(self, trace: Trace, tick: int) -> None:
-        if self._arrow is None:
-            return
-        since_begin = trace.time[tick] - trace.time[self._pushed[0]]
-        self._arrow.visible = bool(0.0 <= since_begin < PUSH_SHOWN_SECONDS)
-        self._arrow.position = trace.position[tick]
+        """Show the push that acts, or has just acted, and all words."""
+        shown = self._pushes[tick]
+        for force, handle in self.arrows.items():
+            handle.visible = force == shown
+            handle.position = trace.position[tick]
+        push = f"{' '.join(push_words(shown))}\n" if shown is not None else ""
+        self.status.text = self._told + push + " · ".join(describe_tick(trace, tick))
 
     def _add_load(self, robot: RobotDescription, plate: str, colour: str) -> viser.MeshHandle:
         """Add a bar over a plate's soles, whose height shows the load on its pad."""

@@ -11,7 +11,8 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
-from laboratory import NEEDS_PYBULLET, need
+from laboratory import COARSE_PHYSICS, NEEDS_PYBULLET, need
+from PIL import ImageColor
 from stable_baselines3.common.env_checker import check_env as sb3_check_env
 
 import sarah
@@ -25,7 +26,11 @@ from sarah.errors import ConfigurationError, SimulationError
 from sarah.robot.reading import SensorReading
 from sarah.simulation.engines import is_installed
 from sarah.simulation.mujoco_simulator import MujocoSimulator
+from sarah.simulation.push_arrow import PUSH
 from sarah.simulation.randomisation import Randomisation
+from sarah.simulation.scenery import STANDARD_CAMERA, floor
+from sarah.simulation.simulator import TorsoState
+from sarah.simulation.terrain import Terrain, draw_ground
 
 SHORT, SHORT_BALANCE = EpisodeConfig(time_limit=4.0), BalanceConfig(time_limit=4.0)
 PAPER_ACTION = np.array(PAPER_STEPPING, dtype=np.float32) - 1.0
@@ -253,6 +258,45 @@ def test_render_gives_a_picture() -> None:
     picture = env.render()
     assert picture is not None and picture.shape == (480, 640, 3) and picture.std() > 10
     env.close()
+
+
+@NEEDS_PYBULLET
+@pytest.mark.parametrize("terrain", [Terrain(slope_degrees=9.0), Terrain(roughness=0.02)], ids=["slope", "bumps"])
+def test_render_shows_the_ground_of_the_episode(terrain: Terrain) -> None:
+    env = SarahEnv(terrain=terrain, render_mode="rgb_array")
+    _, info = env.reset(seed=3)
+    picture = env.render()
+    env.close()
+    assert picture is not None
+    camera = STANDARD_CAMERA._replace(ground=draw_ground(terrain, info["seed"]))
+    beside = (slice(380, 480), slice(0, 150))  # no robot and no shadow
+    assert (picture[beside] == floor(640, 480, camera)[beside]).all()
+
+
+@NEEDS_PYBULLET
+@pytest.mark.parametrize(("end", "is_shown"), [(2.2, True), (3.0, False)])
+def test_render_shows_the_push_while_a_film_does(end: float, is_shown: bool) -> None:
+    config = BalanceConfig(time_limit=end, physics=COARSE_PHYSICS, push=Push(60.0, 0.0, 2.0))
+    env = SarahEnv("balance", config, render_mode="rgb_array")
+    env.reset(seed=0)
+    before = env.render()
+    env.step(np.zeros(4, np.float32))
+    after = env.render()
+    env.close()
+    purple = [(picture == ImageColor.getrgb(PUSH)).all(axis=2).any() for picture in (before, after)]
+    assert purple == [False, is_shown]
+
+
+@NEEDS_PYBULLET
+def test_render_shows_the_floor_alone_if_the_state_is_nan(monkeypatch: pytest.MonkeyPatch) -> None:
+    env = SarahEnv(config=SHORT, engine="mujoco", render_mode="rgb_array")
+    env.reset(seed=0)
+    state = TorsoState((math.nan,) * 3, (math.nan,) * 4, (0.0,) * 3, (0.0,) * 3)  # type: ignore[arg-type]
+    monkeypatch.setattr(MujocoSimulator, "torso_state", lambda _: state)
+    with np.errstate(all="raise"):
+        picture = env.render()
+    env.close()
+    assert picture is not None and (picture == floor(640, 480, STANDARD_CAMERA)).all()
 
 
 def test_observations_that_cannot_be_are_named() -> None:

@@ -10,7 +10,7 @@ from laboratory import NoPhysics
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import Episode, simulate
-from sarah.episode.push import SAGITTAL_DEGREES, DrawnPush, Push, draw_push
+from sarah.episode.push import SAGITTAL_DEGREES, DrawnPush, Push, draw_push, push_words
 from sarah.episode.result import EpisodeResult
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
@@ -113,3 +113,16 @@ def test_balance_without_v_and_without_a_push_steps_as_in_the_first_training() -
     config = BalanceConfig(push=Push(newtons=(0.0, 0.0)), time_limit=4.0, stepping=PAPER_STEPPING)
     balance = simulate(EpisodeSpec((0.0,) * 4, 1, "balance", config))
     assert balance == simulate(EpisodeSpec(PAPER_STEPPING, 1, config=EpisodeConfig(time_limit=4.0)))
+
+
+@pytest.mark.parametrize(
+    ("force", "words"),
+    [
+        ((100.0, 0.0, 0.0), ("push of 100 N", "to its right")),
+        ((0.0, 0.4, 0.0), ("push of 0.4 N", "forward")),
+        ((-50.0, -50.0, 0.0), ("push of 71 N", "left and backward")),
+        ((1.0, 0.0, 8.0), ("push of 8.1 N", "upward")),
+    ],
+)
+def test_a_push_in_words(force: Vector, words: tuple[str, str]) -> None:
+    assert push_words(force) == words

@@ -1,5 +1,7 @@
 """What a trace shows of an episode, tick by tick."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from laboratory import CONTROL_DT
@@ -68,3 +70,15 @@ def test_steps_of_the_trace_alternate_between_the_feet(paper_episode: EpisodeRes
     swaps = np.flatnonzero(np.diff(trace.stance))
     assert len(swaps) >= paper_episode.steps
     assert np.median(np.diff(swaps)) * CONTROL_DT == pytest.approx(1 / paper_episode.steps_per_second, rel=0.1)
+
+
+def test_every_push_is_shown_while_it_acts_and_a_moment(paper_episode: EpisodeResult) -> None:
+    trace = paper_episode.trace
+    assert trace is not None
+    forces = np.zeros((len(trace), 3))
+    forces[100:110], forces[300:450], forces[450:455] = (5.0, 0.0, 0.0), (0.0, 7.0, 0.0), (0.0, -7.0, 0.0)
+    pushed = dataclasses.replace(trace, push=forces)
+    assert pushed.pushes() == [(100, 110), (300, 450), (450, 455)]
+    shown = pushed.shown_pushes()
+    assert [shown.count(force) for force in ((5.0, 0.0, 0.0), (0.0, 7.0, 0.0), (0.0, -7.0, 0.0))] == [60, 150, 60]
+    assert len(shown) == len(trace) and shown[99] is None and shown[100] == shown[159] and shown[160] is None

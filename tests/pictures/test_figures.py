@@ -1,11 +1,14 @@
 """Figures of the robot, of the controller as it runs, and of a gait cycle."""
 
+import dataclasses
+import itertools
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from laboratory import NEEDS_PYBULLET
+from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from sarah.control.constants import STANDARD_CONSTANTS as CONSTANTS
@@ -16,8 +19,12 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.errors import ConfigurationError
+from sarah.operation.settings import SHIPPED, Change
+from sarah.operation.window import Window
+from sarah.pictures import gait_figure, session_figure
 from sarah.pictures.gait_figure import draw_gait_cycle, gait_cycle
 from sarah.pictures.robot_figure import draw_robot, labels_of
+from sarah.pictures.session_figure import draw_session
 from sarah.pictures.state_machine_figure import draw_state_machine, hip_law, phases
 from sarah.robot.description import RobotDescription, describe_robot
 from sarah.robot.reading import SensorReading, Side
@@ -96,3 +103,39 @@ def test_robot_that_makes_no_cycle_has_none_to_draw() -> None:
     assert trace is not None
     with pytest.raises(ConfigurationError, match="completes no cycle"):
         gait_cycle(trace)
+
+
+@pytest.fixture
+def figures(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
+    """Figures that are drawn, in place of their files."""
+    drawn: list[Figure] = []
+    for module in (gait_figure, session_figure):
+        monkeypatch.setattr(module, "save", lambda figure, path: drawn.append(figure) or [])
+    return drawn
+
+
+def test_loads_of_a_heavy_robot_stay_in_their_axis(figures: list[Figure]) -> None:
+    config = EpisodeConfig(time_limit=6.0)
+    trace = simulate(EpisodeSpec(TRAINED_STEPPING, 0, config=config), record_trace=True).trace
+    assert trace is not None
+    heavy = dataclasses.replace(trace, pressures=4.0 * trace.pressures)
+    for loads in (trace, heavy):
+        draw_gait_cycle(loads, SteppingParameters(*TRAINED_STEPPING), Path("cycle"))
+    light_top, heavy_top = (figure.axes[2].get_ylim()[1] for figure in figures)
+    assert light_top == 700.0
+    assert heavy_top > 1.5 * np.median(heavy.pressures.sum(axis=1))
+
+
+def test_words_of_changes_do_not_overlap(figures: list[Figure]) -> None:
+    window = Window(0, 0.0, 60.0, 3, SHIPPED, 0.8, 0.8, False, ())
+    windows = [dataclasses.replace(window, index=index, begin=60.0 * index) for index in range(3)]
+    settings = {"terrain": {"slope_degrees": 4.0, "direction_degrees": 90.0}}
+    draw_session(windows, [Change(minute, settings) for minute in (1.0, 1.1, 2.9)], Path("session"))
+    (figure,) = figures
+    figure.canvas.draw()
+    axis = figure.axes[0]
+    boxes = [words.get_window_extent() for words in (*axis.texts, axis.get_legend())]
+    assert len(boxes) == 4
+    for one, other in itertools.combinations(boxes, 2):
+        assert not one.overlaps(other)
+    assert all(figure.bbox.x0 <= box.x0 and box.x1 <= figure.bbox.x1 for box in boxes)

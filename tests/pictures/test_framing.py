@@ -1,5 +1,6 @@
 """The robot, its push and the words are within the picture, whatever the robot's dimensions."""
 
+import dataclasses
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -178,3 +179,10 @@ def test_the_labelled_figure_shows_all_groups(dimensions: dict[str, float], tmp_
     assert picture.shape[:2] == (910, 700)
     for colour in ((0.0, 0.45, 0.7), (0.84, 0.3, 0.05), (0.95, 0.7, 0.1)):
         assert (np.abs(picture - colour).max(axis=-1) < 0.2).sum() > 100
+
+
+def test_a_robot_that_fell_while_it_stood_is_drawn() -> None:
+    robot = describe_robot()
+    trace = dataclasses.replace(still(robot, np.zeros(3)), phase=np.full(4, "stand"))
+    (picture,) = frames(trace, robot, (0.2,))
+    assert picture.size == (WIDTH, HEIGHT)

@@ -62,6 +62,7 @@ def test_report_is_a_page_that_needs_nothing_else(task: str, runs: dict[str, Run
     noted = json.loads((run.path / "parameters.json").read_text())["evaluation"]  # of the same seeds
     assert f"<td>{noted['score_median']:.3f}</td>" in text and f"<td>{noted['vibration_median']:.1f} m²/s⁴</td>" in text
     assert ("about 0.4" in text) == ("P1" in TASKS[task].parameter_names)
+    assert re.search(r"from 1\.0 to 1\.2 s of [\d.]+ s: .*time_limit 1\.5\.</figcaption>", text)  # what is not as usual
 
 
 def test_report_says_what_it_cannot_do(tmp_path: Path) -> None:

@@ -8,10 +8,10 @@ import pytest
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import simulate
-from sarah.episode.push import Push
+from sarah.episode.push import DrawnPush, Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BalanceConfig
+from sarah.episode.tasks import BALANCE, BalanceConfig, push_of
 from sarah.errors import ConfigurationError, RunFolderError
 from sarah.runs.run_episodes import choose_episode, episodes_of_run
 from sarah.runs.run_folder import RunFolder
@@ -80,6 +80,13 @@ def test_ground_that_the_seed_drew_stays_when_the_sliders_stand_still() -> None:
     scenario = Scenario.of(spec)
     assert draw_ground(scenario.terrain, 3) == draw_ground(terrain, 3)
     assert simulate(scenario.spec()) == simulate(spec)
+
+
+def test_a_push_of_a_task_keeps_its_duration() -> None:
+    lasting = dataclasses.replace(BALANCE, draw_push=lambda config, seed: DrawnPush((40.0, 0.0, 0.0), 2.0, 0.6))
+    scenario = Scenario.of(EpisodeSpec(LEARNED, 0, lasting, PUSHED))
+    drawn = push_of(BALANCE, scenario.spec().config, 0)
+    assert drawn == DrawnPush((40.0, 0.0, 0.0), 2.0, 0.6)
 
 
 def test_a_given_push_is_the_push_that_is_simulated() -> None:

@@ -1,0 +1,84 @@
+"""What is special about an episode in words: for tables, and for what a picture of it cannot show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+from sarah.episode.push import NOBODY, PushedConfig, push_words
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import Task
+from sarah.episode.trace import Trace
+from sarah.runs.config_files import settings_by_key
+from sarah.simulation.terrain import Terrain, draw_terrain
+
+SAID_BY_THEMSELVES = {"engine", "push.newtons", "stepping"}
+"""Settings that are named in any case, or in other words."""
+MOST_PUSHES = 3
+"""Largest number of pushes that are named."""
+
+
+def changed_settings(task: Task[Any], config: EpisodeConfig) -> Iterator[str]:
+    """Settings that are not those of the task in the same engine, with their values.
+
+    :param task: task of the episodes
+    :param config: settings of the episodes
+    """
+    usual: EpisodeConfig = replace(task.episode, engine=config.engine)
+    if isinstance(config, PushedConfig) and not isinstance(usual, PushedConfig):
+        usual = PushedConfig(**vars(usual), push=NOBODY)
+    before = settings_by_key(usual)
+    for name, value in settings_by_key(config).items():
+        if name not in SAID_BY_THEMSELVES and value != before.get(name):
+            yield f"{name} {_text(value)}"
+
+
+def told_of(spec: EpisodeSpec, trace: Trace) -> list[str]:
+    """What a picture of an episode leaves out or shows for a moment: its pushes, and settings that are not usual.
+
+    :param spec: specification of the episode
+    :param trace: trace of the episode
+    """
+    pushes = [f"{' '.join(push_words(trace.push[begin]))} at {trace.time[begin]:.2f} s" for begin, _ in trace.pushes()]
+    more = [f"and {len(pushes) - MOST_PUSHES} more"] if len(pushes) > MOST_PUSHES else []
+    return [*pushes[:MOST_PUSHES], *more, *told_settings(spec)]
+
+
+def told_settings(spec: EpisodeSpec) -> list[str]:
+    """Settings of an episode that are not the task's own, except its push; the ground as the seed draws it.
+
+    :param spec: specification of the episode
+    """
+    usual, config = spec.task.episode, spec.config
+    engine = [] if config.engine == usual.engine else [f"engine {config.engine}"]
+    stepping = getattr(config, "stepping", None)
+    is_usual = stepping == getattr(usual, "stepping", None)
+    legs = [] if stepping is None or is_usual else [f"P1 to P5 {', '.join(f'{value:.2f}' for value in stepping)}"]
+    drawn = replace(config, terrain=_drawn(config.terrain, usual.terrain, spec.seed))
+    changed = [words for words in changed_settings(spec.task, drawn) if not words.startswith("push.")]
+    return [*engine, *legs, *changed]
+
+
+def _drawn(ranges: Terrain, usual: Terrain, seed: int) -> Terrain:
+    """Ground as an episode's seed draws it, to three digits, where its ranges are not the usual ones."""
+    drawn = draw_terrain(ranges, seed)
+    names = {name for name in vars(ranges) if getattr(ranges, name) != getattr(usual, name)}
+    if drawn.slope_degrees == (0.0, 0.0):
+        names.discard("direction_degrees")
+    elif "slope_degrees" in names:
+        names.add("direction_degrees")
+    if drawn.roughness == (0.0, 0.0):
+        names.discard("cell")
+    values = {name: getattr(drawn, name) for name in names}
+    return replace(usual, **{name: value and (float(f"{value[0]:.3g}"),) * 2 for name, value in values.items()})
+
+
+def _text(value: Any) -> str:
+    """Text of a setting; of a range both ends, unless they are equal."""
+    if isinstance(value, list):
+        return " to ".join(f"{end:g}" for end in dict.fromkeys(value))
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name} {_text(inner)}" for name, inner in value.items())
+    return f"{value:g}" if isinstance(value, float) else str(value)
