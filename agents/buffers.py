@@ -26,6 +26,7 @@ MOST_JUDGED = 10_000
 """Newest transitions that the best action is judged by: in larger buffers a decision takes no longer."""
 
 
+@np.errstate(under="ignore")  # What is far away weighs nothing
 def neighbourhood_means(
     at: np.ndarray, places: np.ndarray, values: np.ndarray, distance: float, doubt: float = DOUBT
 ) -> np.ndarray:
@@ -146,7 +147,8 @@ class RankReplayBuffer(ReplayBuffer):
         :return: The transitions
         """
         if self._cumulative_probabilities is None:
-            weights = np.exp(self.temperature * (average_ranks(self.rewards[: self.size(), 0]) - 1))
+            with np.errstate(under="ignore"):  # Ranks that are hardly ever drawn
+                weights = np.exp(self.temperature * (average_ranks(self.rewards[: self.size(), 0]) - 1))
             cumulative = np.cumsum(weights)
             self._cumulative_probabilities = cumulative / cumulative[-1]
         # As np.random.choice does with probabilities, which it would add up again for every batch

@@ -66,6 +66,8 @@ class LocalNAF(NAF):
 
     def _setup_model(self) -> None:
         super()._setup_model()
+        if not isinstance(self.first_action_centre, bool):
+            raise ValueError(f"first_action_centre must be True or False, not {self.first_action_centre!r}")
         self.elite_draws = checked_number("elite_draws", self.elite_draws, 1, whole=True)
         self.elite_share_schedule = checked_schedule("elite_share", self.elite_share, 0.0, 1.0)
         self.elite_std_schedule = checked_schedule("elite_std", self.elite_std, 0.0)

@@ -165,6 +165,9 @@ class NAF(OffPolicyAlgorithm):
         with np.errstate(over="ignore"):
             if not np.isfinite(high - low).all():
                 raise ValueError(f"the range of every action must be finite, not {low.tolist()} to {high.tolist()}")
+        self.buffer_size = checked_number("buffer_size", self.buffer_size, 1, whole=True)
+        self.learning_starts = checked_number("learning_starts", self.learning_starts, 0)
+        self.gradient_steps = checked_number("gradient_steps", self.gradient_steps, -1, whole=True)
         super()._setup_model()
         self._create_aliases()
         # Running mean and running var, which the target network copies

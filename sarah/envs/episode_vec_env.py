@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
+from numbers import Integral
 from typing import Any, NamedTuple
 
 import gymnasium
@@ -23,9 +24,14 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
 from sarah.episode.workers import Executor, Job, begin_episode, finish_episode
-from sarah.errors import ConfigurationError
+from sarah.errors import ConfigurationError, LearningError, check_range, shortened
 from sarah.robot.reading import SensorReading
 from sarah.simulation.world import HoldsWorld
+
+LARGEST_RETURN = float(np.finfo(np.float32).max)
+"""Largest return by amount that an agent can learn from."""
+MOST = 2**31
+"""Largest number of episodes, and of episodes in flight."""
 
 
 class _Running(NamedTuple):
@@ -50,6 +56,7 @@ class EpisodeVecEnv(HoldsWorld, VecEnv):
     :param episodes: number of episodes
     :param slots: number of episodes in flight
     :param workers: executor that simulates the episodes
+    :raises ConfigurationError: naming the argument that is not allowed
     """
 
     episodes: int
@@ -58,6 +65,10 @@ class EpisodeVecEnv(HoldsWorld, VecEnv):
     def __init__(
         self, task: str | Task[Any], config: EpisodeConfig, episodes: int, slots: int, workers: Executor
     ) -> None:
+        for name, value, least in (("episodes", episodes, 0), ("slots", slots, 1)):
+            check_range(name, value, least, MOST)
+            if not isinstance(value, Integral):
+                raise ConfigurationError(f"{name} must be a whole number, not {shortened(value)}")
         self._env = SarahEnv(task, config)
         super().__init__(1, self._env.observation_space, self._env.action_space)
         self._task = self._env.task
@@ -106,7 +117,10 @@ class EpisodeVecEnv(HoldsWorld, VecEnv):
         self._running.append(_Running(spec, following, self._observation, actions[0].copy(), job))
 
     def step_wait(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
-        """Wait for the oldest episode if all slots are in flight, and for the next episode to stand."""
+        """Wait for the oldest episode if all slots are in flight, and for the next episode to stand.
+
+        :raises LearningError: if the return is too large for an agent's 32-bit numbers
+        """
         reward, info = 0.0, dict[str, Any](transition=None)
         if self._steps >= self._slots:
             reward, info = self._oldest_outcome()
@@ -131,6 +145,11 @@ class EpisodeVecEnv(HoldsWorld, VecEnv):
         if following is not None:
             self._waiting.append((following, lambda: following_reading))
         transition = (observation, action, observation_from(reading))
+        if abs(result.episode_return) > LARGEST_RETURN:
+            raise LearningError(
+                f"a return of {result.episode_return:g} is too large for an agent, which computes in 32-bit numbers: "
+                "scale the task's reward"
+            )
         info = {"spec": spec, "result": result, "transition": transition}
         return result.episode_return, info
 

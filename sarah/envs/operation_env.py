@@ -9,9 +9,9 @@ from typing import Any
 import gymnasium
 import numpy as np
 
-from sarah.envs.sarah_env import draw_seed
+from sarah.envs.sarah_env import checked_action, checked_render_mode, draw_seed
 from sarah.episode.from_mapping import from_mapping
-from sarah.errors import ConfigurationError, check_range
+from sarah.errors import ConfigurationError, check_range, shortened
 from sarah.operation.operation import Operation
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import PARAMETERS, SHIPPED, OperationConfig, Parameters, checked_parameters
@@ -33,11 +33,12 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
     :param first: parameters to begin with; by default those that the package ships
     :param reach: half-width of the action's box, as a share of each range; what lies outside the range comes to its end
     :param operated: robot to operate, instead of one that the settings describe
+    :param render_mode: ``None``: there are no pictures
     :param settings: settings to change, by name: ``minutes=5``, ``robot={"engine": "mujoco"}``
     :raises ConfigurationError: naming the setting and its nearest valid name, if one is not allowed
     """
 
-    metadata = {"render_modes": []}
+    metadata: dict[str, Any] = {"render_modes": []}
 
     def __init__(
         self,
@@ -45,10 +46,15 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         first: Sequence[float] = SHIPPED,
         reach: float = 0.25,
         operated: Operation | None = None,
+        render_mode: str | None = None,
         **settings: Any,
     ) -> None:
-        self.config = from_mapping(config or OperationConfig(), settings)
+        config = OperationConfig() if config is None else config
+        if not isinstance(config, OperationConfig):
+            raise ConfigurationError(f"config must be an OperationConfig, not {shortened(config)}")
+        self.config = from_mapping(config, settings)
         self.first = checked_parameters(first)
+        self.render_mode = checked_render_mode(render_mode, self.metadata["render_modes"])
         self._reach = float(check_range("reach", reach, 0.0, 1.0))
         size = len(FELT) + len(PARAMETERS)
         self.observation_space = gymnasium.spaces.Box(-LARGEST, LARGEST, (size,), np.float32)
@@ -102,10 +108,7 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         :param action: one number in [-1, 1] for each parameter
         :raises ConfigurationError: if the action is not finite or out of its box
         """
-        values = np.asarray(action, dtype=float)
-        if values.shape != (len(PARAMETERS),) or not (np.abs(values) <= 1.0).all():
-            raise ConfigurationError(f"an action must be {len(PARAMETERS)} numbers within -1 and 1, not {action!r}")
-        return from_shares(to_shares(self.first) + self._reach * values)
+        return from_shares(to_shares(self.first) + self._reach * checked_action(action, len(PARAMETERS)))
 
     def __copy__(self) -> SarahOperationEnv:
         """Copy with a robot of its own, as one that both had would run the windows of both."""

@@ -13,7 +13,7 @@ from sarah.episode.from_mapping import from_mapping
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED
 from sarah.episode.tasks import Task, task_named
-from sarah.errors import ConfigurationError, SimulationError
+from sarah.errors import ConfigurationError, SimulationError, shortened, unknown_name
 from sarah.robot.reading import SensorReading
 from sarah.simulation.simulator import GRAVITY
 
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 OBSERVATION_BOUND = 5.0
 OBSERVATION_SCALES = (*(GRAVITY,) * 3, *(1.0,) * 3, *(100.0,) * 4, *(1.0,) * 4, *(0.1,) * 2)
 """Divisor of each of the 16 signals, in its SI unit, which makes it of order 1."""
+ROUNDING = 2.0**-15
+"""Distance beyond an end of [-1, 1] that roundings of 32-bit numbers explain: a wrapper that scales a narrow range far
+from 0 adds some hundred units in the last place."""
 
 
 class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
@@ -56,7 +59,7 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(self.task.parameters),), np.float32)
         config = self.task.episode if config is None else self.task.checked_config(config, True)
         self.config = from_mapping(config, settings)
-        self.render_mode = render_mode
+        self.render_mode = checked_render_mode(render_mode, self.metadata["render_modes"])
         self._episode: Episode | None = None
         self._is_over = True
         self._renderer: Renderer | None = None
@@ -165,6 +168,38 @@ def observation_from(reading: SensorReading) -> np.ndarray:
     return np.clip(scaled, -OBSERVATION_BOUND, OBSERVATION_BOUND).astype(np.float32)
 
 
+def checked_render_mode(render_mode: str | None, allowed: list[str]) -> str | None:
+    """Check a render mode.
+
+    :param render_mode: name of the mode; ``None`` draws nothing
+    :param allowed: names that the environment knows
+    :raises ConfigurationError: naming the mode and what is allowed
+    """
+    if render_mode is not None and render_mode not in allowed:
+        raise ConfigurationError(unknown_name("render_mode", str(render_mode), [*allowed, "None"]))
+    return render_mode
+
+
+def checked_action(action: np.ndarray, count: int) -> np.ndarray:
+    """Check an action. What lies beyond an end of [-1, 1] by rounding only comes to that end.
+
+    :param action: numbers in [-1, 1]
+    :param count: number of them
+    :return: the numbers, as an array of floats
+    :raises ConfigurationError: if the action is not finite or out of its box
+    """
+    try:
+        values = np.asarray(action)
+    except (TypeError, ValueError, RuntimeError):  # rows of several lengths, tensors with gradients
+        values = np.empty(0)
+    is_real = values.shape == (count,) and values.dtype.kind in "fiu"
+    if not is_real or not (np.abs(values) <= 1.0 + ROUNDING).all():
+        given = action.tolist() if hasattr(action, "tolist") else action
+        raise ConfigurationError(f"an action must be {count} numbers within -1 and 1, not {shortened(given)}")
+    clipped: np.ndarray = np.clip(values.astype(float), -1.0, 1.0)
+    return clipped
+
+
 def parameters_from(action: np.ndarray, task: Task) -> tuple[float, ...]:
     """Turn an action into a task's parameters.
 
@@ -172,11 +207,7 @@ def parameters_from(action: np.ndarray, task: Task) -> tuple[float, ...]:
     :param task: task that owns the parameters
     :raises ConfigurationError: if the action is not finite or out of its box
     """
-    values = np.asarray(action, dtype=float)
-    count = len(task.parameters)
-    if values.shape != (count,) or not (np.abs(values) <= 1.0).all():
-        raise ConfigurationError(f"an action must be {count} numbers within -1 and 1, not {action!r}")
-    boxes = zip(task.parameters, values, strict=True)
+    boxes = zip(task.parameters, checked_action(action, len(task.parameters)), strict=True)
     # Rounding may lead beyond an end of a range.
     return tuple(
         min(max(float(parameter.low + parameter.width * (value + 1.0) / 2.0), parameter.low), parameter.high)

@@ -11,8 +11,8 @@ from sarah.episode.result import METRICS, EpisodeResult
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task, task_named
-from sarah.episode.workers import Executor, Workers
-from sarah.errors import ConfigurationError, unknown_name
+from sarah.episode.workers import Executor, executor_of
+from sarah.errors import ConfigurationError, shortened, unknown_name
 
 STATISTICS: dict[str, Callable[[Sequence[float]], float]] = {
     "mean": mean,
@@ -44,10 +44,12 @@ class Evaluation:
 
         :param metric: name of the metric, one of :data:`~sarah.episode.result.METRICS`
         :param name: name of the statistic, one of :data:`STATISTICS`
-        :raises ConfigurationError: if there is no such metric
+        :raises ConfigurationError: if there is no such metric or statistic
         """
         if metric not in METRICS:
             raise ConfigurationError(unknown_name("metric", metric, METRICS))
+        if name not in STATISTICS:
+            raise ConfigurationError(unknown_name("statistic", name, STATISTICS))
         return STATISTICS[name]([getattr(result, metric) for result in self.results])
 
     def mean(self, metric: str) -> float:
@@ -132,7 +134,10 @@ def evaluate(
     :param progress: function that passes the results on, and may show how many there are so far
     :raises ConfigurationError: for an unknown task, parameters out of their box, or no seeds
     """
+    executor = executor_of(workers)
+    if not isinstance(seeds, Iterable):
+        raise ConfigurationError(f"seeds must be several whole numbers, such as range(10), not {shortened(seeds)}")
     specs = [EpisodeSpec(parameters, seed, task_named(task), config) for seed in seeds]
     if not specs:
         raise ConfigurationError("seeds must not be empty: an evaluation needs an episode")
-    return Evaluation(tuple(progress((workers or Workers()).simulate_all(specs))))
+    return Evaluation(tuple(progress(executor.simulate_all(specs))))

@@ -18,7 +18,7 @@ from sarah.episode.cluster import RemoteJob, connect, start
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.errors import ConfigurationError, check_range
+from sarah.errors import ConfigurationError, check_range, shortened
 from sarah.robot.reading import SensorReading
 from sarah.versions import LEARNING, SIMULATING
 
@@ -150,9 +150,11 @@ class Workers(Executor):
 
     def __init__(self, count: int = 0, scheduler: str | None = None) -> None:
         count = check_range("workers", count, 0, MOST_WORKERS)
+        if count != int(count):
+            raise ConfigurationError(f"workers must be a whole number, not {shortened(count)}")
         if count and scheduler is not None:
             raise ConfigurationError("workers start on this machine, but a scheduler has its own: give one of the two")
-        self._count = count
+        self._count = int(count)
         self._scheduler = scheduler
         self.client = None
         self._cluster: LocalCluster | None = None
@@ -211,3 +213,16 @@ class Workers(Executor):
 class _LocalJob:
     def __init__(self, function: Callable[..., Any], *subjects: Any) -> None:
         self.result = functools.partial(function, *subjects)
+
+
+def executor_of(workers: Executor | None) -> Executor:
+    """Check who is to simulate.
+
+    :param workers: executor; with ``None``, this process simulates
+    :raises ConfigurationError: for anything else, such as a number of workers
+    """
+    if workers is not None and not isinstance(workers, Executor):
+        raise ConfigurationError(
+            f"workers must be an executor, as in with Workers(4) as workers, not {shortened(workers)}"
+        )
+    return workers or Workers()

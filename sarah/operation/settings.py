@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping, Sequence, Sized
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,7 +13,8 @@ from sarah.control.pattern_generator import SteppingParameters
 from sarah.episode.from_mapping import convert_fields, from_mapping
 from sarah.episode.push import Push, PushedConfig
 from sarah.episode.shipped import shipped_parameters
-from sarah.errors import ConfigurationError, check_fields, check_range, check_types, shortened
+from sarah.episode.tasks.task import checked_values
+from sarah.errors import ConfigurationError, check_fields, check_types, shortened
 from sarah.number import plain
 from sarah.robot.description import describe_robot
 
@@ -148,12 +149,7 @@ def checked_parameters(values: Sequence[float]) -> Parameters:
     :param values: P1 to P5 and V1 to V4
     :raises ConfigurationError: naming the first that is missing, or not within its box
     """
-    given: Any = plain(values)
-    found = len(given) if isinstance(given, Sized) else shortened(given)
-    if found != len(PARAMETERS):
-        raise ConfigurationError(f"parameters must be {len(PARAMETERS)} numbers (P1 to P5, V1 to V4), not {found}")
-    boxes = zip(PARAMETERS, given, strict=True)
-    return tuple(float(check_range(f"parameter {one.name}", value, one.low, one.high)) for one, value in boxes)
+    return checked_values(PARAMETERS, values, "parameters", "P1 to P5, V1 to V4")
 
 
 def controller_parameters(parameters: Parameters) -> tuple[SteppingParameters, BalanceParameters]:

@@ -15,7 +15,7 @@ from sarah.control.pattern_generator import Phase, SteppingParameters
 from sarah.episode.trace import Trace
 from sarah.errors import ConfigurationError
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, RIGHT
-from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
+from sarah.pictures.style import COLUMN_WIDTH, own_style, save
 
 THRESHOLD = "#A51417"
 PADS_SHOWN, WEIGHTS_SHOWN = 700.0, 1.8
@@ -55,7 +55,7 @@ def draw_gait_cycle(
     rows = gait_cycle(trace)
     time, stance = trace.time[rows], trace.stance[rows]
     has_hips = bool(np.any(trace.targets[:, :4]))
-    with plt.rc_context({**STYLE, "axes.grid": False, "legend.fontsize": 6.5}):
+    with own_style({"axes.grid": False, "legend.fontsize": 6.5}):
         count = 5 if has_hips else 4
         figure, axes = plt.subplots(
             count, 1, sharex=True, figsize=(COLUMN_WIDTH, 0.7 + 1.05 * count), layout="constrained"

@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 
 from sarah.pictures.colours import LEFT, RIGHT
-from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
+from sarah.pictures.style import COLUMN_WIDTH, own_style, save
 from sarah.robot.description import ANKLE_JOINTS, GROUPS, JOINT_AXES, JOINT_TYPES, RobotDescription
 from sarah.simulation.renderer import Renderer
 from sarah.simulation.scenery import Camera, View, size_of
@@ -135,7 +135,7 @@ def draw_robot(robot: RobotDescription, path: Path) -> list[Path]:
     finally:
         renderer.close()
     view = View(width, height, camera)
-    with plt.rc_context({**STYLE, "axes.grid": False}):
+    with own_style({"axes.grid": False}):
         figure = plt.figure(figsize=(COLUMN_WIDTH, HEIGHT))
         axis = figure.add_axes((0.0, 0.0, 1.0, 1.0))
         axis.axis("off")

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 
 from sarah.operation.settings import Change
 from sarah.operation.window import Window
-from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
+from sarah.pictures.style import COLUMN_WIDTH, own_style, save
 
 SCORE, OBSERVED, FALL = "#0072B2", "#E69F00", "#D55E00"
 """Colours (Okabe and Ito)."""
@@ -31,7 +31,7 @@ def draw_session(windows: Sequence[Window], changes: Sequence[Change], path: Pat
     minutes = [window.end / 60.0 for window in windows]
     scores = [window.score for window in windows]
     falls = [index for index, window in enumerate(windows) if window.fell]
-    with plt.rc_context(STYLE):
+    with own_style():
         figure, axis = plt.subplots(figsize=(2 * COLUMN_WIDTH, COLUMN_WIDTH), layout="constrained")
         axis.plot(minutes, scores, ".", color=SCORE, markersize=3, alpha=0.5, label="window")
         observed = [window.observed_reward for window in windows]

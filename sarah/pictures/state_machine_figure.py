@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.pattern_generator import STAND_SECONDS, Phase
 from sarah.pictures.colours import PHASE_COLOURS
-from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
+from sarah.pictures.style import COLUMN_WIDTH, own_style, save
 
 NOTE = """tilt (m/s²), rate (rad/s): low-passed lateral acceleration and angular rate
 about y, towards the stance leg, plus {tilt:g} and {rate:g} times the abduction
@@ -71,7 +71,7 @@ def draw_state_machine(path: Path, constants: ControllerConstants = STANDARD_CON
     :param constants: constants of the controller
     :return: the files, PNG and PDF
     """
-    with plt.rc_context(STYLE):
+    with own_style():
         figure = plt.figure(figsize=(COLUMN_WIDTH, 5.4))
         axis = figure.add_axes((0.0, 0.0, 1.0, 1.0))
         axis.axis("off")

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import matplotlib
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
 
@@ -22,6 +25,18 @@ STYLE: dict[Any, Any] = {
     "legend.frameon": False,
     "pdf.fonttype": 42,  # text stays text, and is not drawn as curves
 }
+
+
+@contextmanager
+def own_style(changes: Mapping[Any, Any] = {}) -> Iterator[None]:
+    """Draw in the style of the package for a while, whatever style the caller or a file of his has set.
+
+    :param changes: changes of :data:`STYLE`, by name
+    """
+    with plt.rc_context():
+        matplotlib.rcdefaults()
+        plt.rcParams.update(STYLE | dict(changes))
+        yield
 
 
 def save(figure: Figure, path: Path) -> list[Path]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 
-from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
+from sarah.pictures.style import COLUMN_WIDTH, own_style, save
 from sarah.reports.terrain import UPHILL, OnTerrain, Situation
 
 KINDS = {"slope": ("slope (°)", 1.0), "roughness": ("bumps (mm)", 1000.0), "friction": ("friction", 1.0)}
@@ -34,7 +34,7 @@ def draw_terrain(rows: Sequence[OnTerrain], path: Path) -> list[Path]:
     :param path: path of the picture, without suffix
     :return: the files, PNG and PDF
     """
-    with plt.rc_context(STYLE):
+    with own_style():
         size = (2 * COLUMN_WIDTH, 2.4 * COLUMN_WIDTH)
         figure, axes = plt.subplots(
             len(ROWS), len(KINDS), sharex="col", sharey="row", figsize=size, layout="constrained"

@@ -26,7 +26,7 @@ from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.tasks import BALANCE, STEPPING, Task
 from sarah.files import make_folder
 from sarah.pictures.colours import algorithm_colours, algorithm_label
-from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
+from sarah.pictures.style import COLUMN_WIDTH, own_style, save
 from sarah.reports.robustness import PushedEpisode, finest_sectors, survival_by_direction
 from sarah.reports.training_curves import RunCurves, read_curves
 from sarah.runs.run_folder import RunFolder
@@ -87,7 +87,7 @@ def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
     }
     make_folder(folder)
     files = []
-    with plt.rc_context(STYLE):
+    with own_style():
         for task, drawn in curves.items():
             for name, panels in figures_of(task).items():
                 files += _draw(drawn, panels, folder / name)
@@ -177,7 +177,7 @@ def draw_race(curves: Sequence[RaceCurve], path: Path) -> list[Path]:
     :param path: path of the picture, without suffix
     :return: the files, PNG and PDF
     """
-    with plt.rc_context(STYLE):
+    with own_style():
         figure, axis = plt.subplots(figsize=(COLUMN_WIDTH, 0.9 * COLUMN_WIDTH), layout="constrained")
         colours = algorithm_colours(curve.algo for curve in curves)
         for algo in dict.fromkeys(curve.algo for curve in curves):
@@ -201,7 +201,7 @@ def draw_survival(controllers: Mapping[str, Sequence[PushedEpisode]], path: Path
     :param path: path of the picture, without suffix
     :return: the files, PNG and PDF
     """
-    with plt.rc_context({**STYLE, "axes.grid": False}):
+    with own_style({"axes.grid": False}):
         figure, axes = plt.subplots(
             1,
             len(controllers),

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 
-from sarah.pictures.style import COLUMN_WIDTH, STYLE, save
+from sarah.pictures.style import COLUMN_WIDTH, own_style, save
 from sarah.reports.transfer import Transfer
 
 ENGINE_COLOURS = {"pybullet": "#0072B2", "mujoco": "#D55E00"}
@@ -27,7 +27,7 @@ def draw_transfer(transfers: Sequence[Transfer], path: Path) -> list[Path]:
     :return: the files, PNG and PDF
     """
     across, up = ENGINE_COLOURS
-    with plt.rc_context(STYLE):
+    with own_style():
         figure, axis = plt.subplots(figsize=(COLUMN_WIDTH, COLUMN_WIDTH), layout="constrained")
         axis.axline((0.0, 0.0), slope=1.0, color="grey", linewidth=0.8)
         for slope, label in ((0.9, "90 % kept"), (1.0 / 0.9, None)):

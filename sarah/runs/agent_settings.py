@@ -264,6 +264,6 @@ def settings_of(algo: str) -> type[AgentSettings]:
     :param algo: name of the algorithm
     :raises ConfigurationError: for an unknown one
     """
-    if algo not in AGENT_SETTINGS:
-        raise ConfigurationError(unknown_name("algo", algo, AGENT_SETTINGS))
+    if not isinstance(algo, str) or algo not in AGENT_SETTINGS:
+        raise ConfigurationError(unknown_name("algo", str(algo), AGENT_SETTINGS))
     return AGENT_SETTINGS[algo]

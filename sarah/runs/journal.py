@@ -16,6 +16,7 @@ from __future__ import annotations
 import logging
 import os
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -101,15 +102,22 @@ class Journal(JournalFile, Executor):
     :param config: settings of the training
     :param executor: executor that simulates episodes
     :param interrupted: function that says after every episode whether the training is to stop
+    :param outside: function that makes the context in which to simulate and to ask that, which is not the learner's
     """
 
     def __init__(
-        self, path: Path, config: TrainingConfig, executor: Executor, interrupted: Callable[[], bool] = lambda: False
+        self,
+        path: Path,
+        config: TrainingConfig,
+        executor: Executor,
+        interrupted: Callable[[], bool] = lambda: False,
+        outside: Callable[[], AbstractContextManager[None]] = nullcontext,
     ) -> None:
         super().__init__(path, "training")
         self._config = config
         self._executor = executor
         self._interrupted = interrupted
+        self.outside = outside
         self._submitted = 0
         self._known: dict[int, _Row] = {}
 
@@ -190,7 +198,9 @@ class Journal(JournalFile, Executor):
 
     def stop_if_interrupted(self) -> None:
         """Raise :class:`~sarah.errors.TrainingInterruptedError` if the training is to stop."""
-        if self._interrupted():
+        with self.outside():
+            is_to_stop = self._interrupted()
+        if is_to_stop:
             raise TrainingInterruptedError("the training was interrupted")
 
 
@@ -211,7 +221,8 @@ class _NewJob:
     job: Job
 
     def result(self) -> Any:
-        value = self.job.result()
+        with self.journal.outside():
+            value = self.job.result()
         self.journal.add(self.request, value)
         self.journal.stop_if_interrupted()
         return value

@@ -7,7 +7,6 @@ from typing import Any
 from stable_baselines3.common.callbacks import BaseCallback
 
 from sarah.agents import PRESETS, LocalNAF, RankReplayBuffer
-from sarah.agents.threads import one_thread
 from sarah.envs.operation_env import SarahOperationEnv
 from sarah.operation.operation import Operation
 from sarah.operation.settings import Parameters
@@ -32,8 +31,7 @@ class AgentLearner:
         env = SarahOperationEnv(robot.config, self._first, operated=robot)
         settings: dict[str, Any] = {**PRESETS["one-step"], "device": "cpu"}
         model = LocalNAF("MlpPolicy", env, seed=self._seed, first_action_centre=True, **settings)
-        with one_thread():
-            model.learn(LONGEST, callback=_UntilOver(robot), log_interval=None)  # type: ignore[arg-type]
+        model.learn(LONGEST, callback=_UntilOver(robot), log_interval=None)  # type: ignore[arg-type]
         assert isinstance(model.replay_buffer, RankReplayBuffer)
         if model.replay_buffer.size() == 0:  # the time was over before it could learn
             return self._first

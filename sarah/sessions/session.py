@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from threadpoolctl import threadpool_limits
-
 from sarah.episode.from_mapping import convert_fields
 from sarah.errors import ConfigurationError, check_range, unknown_name
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import SHIPPED, OperationConfig, Parameters, checked_parameters
 from sarah.operation.window import Window
+from sarah.process import apart
 from sarah.sessions.learners import LEARNERS
 from sarah.sessions.watched import WatchedRobot
 
@@ -82,11 +81,16 @@ def run_session(
     :return: the result
     :raises ResumeError: if the learner asks for other parameters than a known window has
     """
-    robot = WatchedRobot(RobotInOperation(spec.config, spec.seed), known, watch)
-    try:
-        learner = LEARNERS[spec.learner](spec.parameters, spec.seed)
-        with threadpool_limits(1):  # several threads of numpy's and scipy's add the parts of a sum in another order
+    learner = LEARNERS[spec.learner](spec.parameters, spec.seed)
+    with apart() as outside:
+
+        def watch_outside(window: Window) -> None:
+            with outside():
+                watch(window)
+
+        robot = WatchedRobot(RobotInOperation(spec.config, spec.seed), known, watch_outside)
+        try:
             parameters = learner.operate(robot)
-    finally:
-        robot.close()
+        finally:
+            robot.close()
     return SessionResult(tuple(robot.windows), parameters)

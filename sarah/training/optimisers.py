@@ -14,6 +14,9 @@ import numpy as np
 
 from sarah.runs.agent_settings import WARM_UP, AgentSettings, EvolutionSettings
 
+LARGEST_RETURN = 1e100
+"""Largest return by amount that a sampler of Optuna is told: squares of larger ones would overflow."""
+
 
 class Optimiser(Protocol):
     """An optimiser that is asked and told, in the same order, with several episodes in between."""
@@ -100,6 +103,8 @@ class EvolutionStrategy:
 
         # The package takes a seed of 0 for the time of day.
         options = {"bounds": [-1.0, 1.0], "popsize": settings.population, "seed": seed % 2**31 + 1, "verbose": -9}
+        if dimensions == 1:
+            options["maxstd"] = np.inf  # of a single deviation the package cannot bound any
         self._strategy = cma.CMAEvolutionStrategy(np.zeros(dimensions), settings.deviation, options)
         if at_centre:
             self._strategy.inject([np.zeros(dimensions)], force=True)
@@ -142,8 +147,12 @@ class OptunaSearch:
     def __init__(self, dimensions: int, sampler: Any, warm_up: np.ndarray) -> None:
         import optuna
 
+        verbosity = optuna.logging.get_verbosity()
         optuna.logging.set_verbosity(optuna.logging.ERROR)
-        self._study = optuna.create_study(direction="maximize", sampler=sampler)
+        try:
+            self._study = optuna.create_study(direction="maximize", sampler=sampler)
+        finally:
+            optuna.logging.set_verbosity(verbosity)
         self._box: dict[str, Any] = {
             str(index): optuna.distributions.FloatDistribution(-1.0, 1.0) for index in range(dimensions)
         }
@@ -163,7 +172,8 @@ class OptunaSearch:
 
     def tell(self, action: np.ndarray, episode_return: float) -> None:
         """Tell the oldest episode's return."""
-        self._study.tell(self._asked.popleft(), episode_return)
+        bounded = min(LARGEST_RETURN, max(-LARGEST_RETURN, episode_return))
+        self._study.tell(self._asked.popleft(), bounded)
 
     def choice(self) -> np.ndarray:
         """The best single episode's."""

@@ -122,7 +122,8 @@ class EpisodeRecorder(BaseCallback):
         else:
             from sarah.pictures.gait_snapshot import draw_gait  # slow to import because of matplotlib
 
-            summary = summary_of(draw_gait(recommended, self._config.task, self._config.episode))
+            with self._journal.outside():
+                summary = summary_of(draw_gait(recommended, self._config.task, self._config.episode))
         self._open_curves().show(summary, episodes)
 
     def write_curves(self, values: dict[str, Any], excluded: dict[str, tuple[str, ...]], step: int) -> None:
@@ -134,8 +135,17 @@ class EpisodeRecorder(BaseCallback):
         """
         self._write(lambda: self._open_curves().write(values, excluded, step))
 
-    def close(self, learned: Evaluation) -> None:
-        """Write the final values of the training and all records that are held back, and close the learning curves.
+    def __enter__(self) -> EpisodeRecorder:
+        """Do nothing: the files are opened when there is something to write."""
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        """Close the learning curves, also of a training that failed."""
+        if self._curves is not None:
+            self._curves.close()
+
+    def finish(self, learned: Evaluation) -> None:
+        """Write the final values of the training and all records that are held back.
 
         :param learned: evaluation of the learned parameters on unseen seeds
         """
@@ -147,7 +157,6 @@ class EpisodeRecorder(BaseCallback):
         )
         self.write_curves(dict(zip(LEARNED, values, strict=True)), dict.fromkeys(LEARNED, ("csv",)), len(self.tried))
         self._write_held()
-        self._open_curves().close()
 
     def _write(self, action: Callable[[], None]) -> None:
         self._held.append(action)

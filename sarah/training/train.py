@@ -9,16 +9,17 @@ from math import ceil
 import numpy as np
 from tqdm import tqdm
 
-from sarah.agents.threads import one_thread
 from sarah.envs.sarah_env import draw_seed
 from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.workers import Executor, Workers
+from sarah.episode.workers import Executor, executor_of
+from sarah.errors import LearningError, SarahError
+from sarah.process import apart
 from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
-from sarah.training.learners import make_learner
+from sarah.training.learners import Learner, make_learner
 from sarah.training.recommendation import Parameters, best_compared
 from sarah.training.recorder import EpisodeRecorder
 from sarah.training.seeds import seeds_of
@@ -60,10 +61,11 @@ def train(
     :return: the learned parameters and their evaluation
     :raises RunFolderError: if another training uses the run folder
     :raises ResumeError: if the run folder was begun with other settings, code or versions, or does not repeat
-    :raises LearningError: if the learning algorithm does not return finite numbers
+    :raises LearningError: if the learning algorithm fails, or does not return finite numbers
     :raises TrainingInterruptedError: if ``interrupted`` asks to stop
     """
-    with Journal(run.journal_path, config, workers or Workers(), interrupted) as journal, one_thread():
+    executor = executor_of(workers)
+    with apart() as outside, Journal(run.journal_path, config, executor, interrupted, outside) as journal:
         if journal.is_new:
             run.write_versions()  # they may not be those that the folder was made with
         return _train(config, run, journal, progress_bar)
@@ -71,20 +73,33 @@ def train(
 
 def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_bar: bool) -> Learned:
     comparison = np.random.default_rng(seeds_of(config.seed).comparison)
-    with tqdm(total=config.episodes, unit=" episodes", disable=not progress_bar) as progress:
-        recorder = EpisodeRecorder(run, config, journal, progress)
+    with (
+        tqdm(total=config.episodes, unit=" episodes", disable=not progress_bar) as progress,
+        EpisodeRecorder(run, config, journal, progress) as recorder,
+    ):
         learner = make_learner(config, run, recorder, journal)
         for stage in config.by_stage():
             if stage.extended_from:
                 journal.extend(stage.episodes)
-            choice = learner.learn(stage.stage_episodes - stage.compared_episodes)
+            choice = _choice(learner, stage)
             recorder.choose = None
             best = recorder.tried.best(choice, stage.candidate_count)
             parameters = _compare(best, stage, recorder, comparison, journal)
             learned = _evaluated(parameters, stage, recorder, journal)
-    recorder.close(learned.evaluation)
+        recorder.finish(learned.evaluation)
     _write_parameters(learned, config, run)
     return learned
+
+
+def _choice(learner: Learner, stage: TrainingConfig) -> Parameters:
+    """Learn, and return what the algorithm would choose. Many a library fails at numbers that it was not made for."""
+    try:
+        return learner.learn(stage.stage_episodes - stage.compared_episodes)
+    except SarahError:
+        raise
+    except (ValueError, RuntimeError, ArithmeticError, AssertionError, LookupError, Warning) as error:
+        words = " ".join(str(error).split()) or type(error).__name__
+        raise LearningError(f"{stage.algo} cannot go on: {words}") from error
 
 
 def _evaluated(parameters: Parameters, config: TrainingConfig, recorder: EpisodeRecorder, workers: Executor) -> Learned:

@@ -20,6 +20,9 @@ BAD = [
     (NAF, "max_grad_norm", [0.0, -1.0, math.nan, "1", None]),
     (NAF, "batch_size", [0, -1, 2.5, None]),
     (NAF, "exploration_std", [-0.1, math.inf, math.nan, "0.1", None]),
+    (NAF, "buffer_size", [0, 1.5]),
+    (NAF, "learning_starts", [-1, "a"]),
+    (NAF, "gradient_steps", [-2, 1.5]),
     (LocalNAF, "elite_share", [-0.1, 1.5, math.nan, None]),
     (LocalNAF, "elite_std", [-0.1, math.inf, None]),
     (LocalNAF, "elite_draws", [0, -3, 2.5, math.nan, True, None]),
@@ -28,7 +31,7 @@ BAD = [
 
 def refusal(name: str, value: object) -> str:
     said = re.escape(repr(value))
-    return rf"^{re.escape(name)} must be a (whole )?number (from|above) [01]( to (1|0\.9))?, not {said}$"
+    return rf"^{re.escape(name)} must be a (whole )?number (from|above) -?[01]( to (1|0\.9))?, not {said}$"
 
 
 @pytest.mark.parametrize(

@@ -229,3 +229,11 @@ def test_neighbourhood_means_by_hand():
     weight = np.exp(-0.5)
     assert means[0] == pytest.approx((1.0 + 3.0 * weight) / (1.25 + weight))
     assert means[1] == pytest.approx(0.0, abs=1e-9)  # far from all
+
+
+def test_what_is_far_away_is_no_error_of_numpy():
+    buffer = fill([1.0, 2.0, 3.0], temperature=1000.0)  # with actions far from each other
+    with np.errstate(all="raise"):
+        buffer.best_action()
+        buffer.draw_near_best(0.01, 16)
+        buffer.sample(4)

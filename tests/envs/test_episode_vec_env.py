@@ -1,10 +1,12 @@
 """Episodes in flight: outcomes in order, each stored with the action that it came from."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from laboratory import RESULT, NoPhysics
 
 from sarah.envs.episode_vec_env import EpisodeVecEnv
 from sarah.envs.sarah_env import parameters_from
@@ -12,8 +14,8 @@ from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
 from sarah.episode.tasks import STEPPING
-from sarah.episode.workers import Job, Workers
-from sarah.errors import ConfigurationError
+from sarah.episode.workers import Job, Outcome, Workers, begin_episode
+from sarah.errors import ConfigurationError, LearningError
 from sarah.training.replay import LateRankReplayBuffer, LateReplayBuffer
 
 SHORT = EpisodeConfig(time_limit=1.5)
@@ -123,3 +125,30 @@ def test_episodes_cannot_be_reached_into() -> None:
         env.set_attr("config", SHORT)
     with pytest.raises(NotImplementedError):
         env.env_method("render")
+
+
+def test_returns_beyond_32_bits_are_named() -> None:
+    class Excited(Workers):
+        def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
+            if function is begin_episode:
+                return super().submit(function, *subjects)
+            return super().submit(lambda: Outcome(replace(RESULT, episode_return=-1e39), NoPhysics().read()))
+
+    env = EpisodeVecEnv("stepping", SHORT, 2, 2, Excited())
+    env.reset()
+    env.step(ACTIONS[:1])
+    with pytest.raises(LearningError, match=r"^a return of -1e\+39 is too large for an agent, .*reward$"):
+        env.step(ACTIONS[:1])
+
+
+@pytest.mark.parametrize(
+    ("episodes", "slots", "words"),
+    [
+        (1, 0, "slots must be between 1 and 2147483648, not 0"),
+        (1, 1.5, "slots must be a whole number, not 1.5"),
+        ("3", 1, "episodes must be between 0 and 2147483648, not '3'"),
+    ],
+)
+def test_impossible_numbers_of_episodes_are_refused(episodes: Any, slots: Any, words: str) -> None:
+    with pytest.raises(ConfigurationError, match=f"^{words}$"):
+        EpisodeVecEnv("stepping", SHORT, episodes, slots, Workers())

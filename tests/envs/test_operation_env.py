@@ -13,6 +13,7 @@ from stable_baselines3.common.env_checker import check_env as sb3_check_env
 
 from sarah.agents import NAF
 from sarah.envs.operation_env import SarahOperationEnv
+from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError
 from sarah.operation.settings import PARAMETERS, SHIPPED, Change
 from sarah.operation.shares import to_shares
@@ -91,6 +92,23 @@ def test_a_fall_terminates_and_the_same_robot_goes_on() -> None:
     _, info = env.reset(seed=1)
     assert info["window"].index == 0
     env.close()
+
+
+def test_unknown_render_mode_is_refused() -> None:
+    with pytest.raises(ConfigurationError, match=r"^unknown render_mode 'rgb_array' \(allowed: None\)$"):
+        SarahOperationEnv(render_mode="rgb_array")
+
+
+@pytest.mark.parametrize("config", [EpisodeConfig(), "mujoco", False])
+def test_settings_of_another_kind_are_refused(config: Any) -> None:
+    with pytest.raises(ConfigurationError, match=r"^config must be an OperationConfig, not .*$"):
+        SarahOperationEnv(config)
+
+
+def test_actions_that_rounding_puts_outside_are_the_ends() -> None:
+    env = SarahOperationEnv(quick())
+    end = np.ones(9, np.float32)
+    assert env.parameters_from(np.nextafter(end, np.float32(2.0))) == env.parameters_from(end)
 
 
 @pytest.mark.parametrize("action", [np.zeros(4), np.full(9, 1.5), np.full(9, np.nan)])

@@ -166,6 +166,11 @@ def test_unknown_task_is_refused() -> None:
         SarahEnv("balanse")
 
 
+def test_unknown_render_mode_is_refused() -> None:
+    with pytest.raises(ConfigurationError, match=r"^unknown render_mode 'rgb', did you mean 'rgb_array'\?"):
+        SarahEnv(render_mode="rgb")
+
+
 def test_action_is_the_scaled_box() -> None:
     assert parameters_from(np.zeros(4), BALANCE) == (0.0,) * 4
     assert parameters_from(np.ones(4), BALANCE) == (2.0,) * 4
@@ -174,7 +179,29 @@ def test_action_is_the_scaled_box() -> None:
     assert parameters_from(np.ones(5), STEPPING) == (2.0,) * 5
 
 
-@pytest.mark.parametrize("action", [np.full(5, np.nan), np.full(5, 1.5), np.zeros(4)])
+def test_actions_that_rounding_puts_outside_are_the_ends() -> None:
+    beyond = np.nextafter(np.ones(5, np.float32), np.float32(2.0))
+    assert parameters_from(beyond, STEPPING) == (2.0,) * 5 and parameters_from(-beyond, STEPPING) == (0.0,) * 5
+    seen = gymnasium.Env[np.ndarray, np.ndarray]()
+    seen.action_space = seen.observation_space = gymnasium.spaces.Box(-1.0, 1.0, (5,), np.float32)
+    for low in np.random.default_rng(0).uniform(-10.0, 10.0, 100).astype(np.float32):  # as wrappers scale
+        scaled = gymnasium.wrappers.RescaleAction(seen, low, low + np.float32(0.1))
+        assert parameters_from(scaled.action(scaled.action_space.high), STEPPING) == pytest.approx((2.0,) * 5, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    "action",
+    [
+        np.full(5, np.nan),
+        np.full(5, 1.5),
+        np.full(5, -1.0001),
+        np.zeros(4),
+        np.zeros((1, 5)),
+        ["0"] * 5,
+        [0j] * 5,
+        None,
+    ],
+)
 def test_impossible_actions_are_refused(action: np.ndarray) -> None:
     env = SarahEnv(config=SHORT)
     env.reset(seed=0)
@@ -183,13 +210,18 @@ def test_impossible_actions_are_refused(action: np.ndarray) -> None:
     env.close()
 
 
-@pytest.mark.parametrize(("low", "high"), [(-0.1, 0.2), (-1.0, -0.45), (-1.0, 0.1), (0.0, 2.0)])
+@pytest.mark.parametrize(("low", "high"), [(-0.1, 0.2), (0.1, 0.3), (-1.0, -0.45), (-1.0, 0.1), (0.0, 2.0)])
 def test_the_ends_of_an_action_are_the_ends_of_the_range(low: float, high: float) -> None:
     """Rounded, -0.1 + 0.3 is more than 0.2, which the task would refuse."""
     task = dataclasses.replace(STEPPING, parameters=(Parameter("odd", low, high, "", "a range", ""),), baseline=(low,))
     assert parameters_from(np.array([-1.0]), task) == (low,)
     assert parameters_from(np.array([1.0]), task)[0] <= high
     assert task.checked(parameters_from(np.array([1.0]), task))[0] == pytest.approx(high)
+    for end in (low, high):  # a 32-bit number is the end that it stands for
+        for value in (np.float32(end), float(np.float32(end))):
+            assert low <= task.checked((value,))[0] <= high
+    with pytest.raises(ConfigurationError, match="parameter odd must be between"):
+        task.checked((high + 1e-5,))
 
 
 def test_a_robot_that_diverges_while_it_stands_ends_its_episode(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,5 +1,7 @@
 """What many episodes have in common."""
 
+from collections.abc import Callable
+
 import pytest
 from laboratory import CONTROL_DT
 
@@ -40,3 +42,25 @@ def test_chattering_hips_show_as_vibration() -> None:
 def test_an_evaluation_needs_an_episode() -> None:
     with pytest.raises(ConfigurationError, match="seeds must not be empty"):
         evaluate("stepping", PAPER_STEPPING, SHORT, [])
+
+
+def test_arguments_of_another_kind_are_named() -> None:
+    calls: dict[str, Callable[[], object]] = {
+        r"seeds must be several whole numbers, such as range\(10\), not 3": lambda: evaluate(
+            "stepping",
+            PAPER_STEPPING,
+            SHORT,
+            3,  # type: ignore[arg-type]
+        ),
+        r"workers must be an executor, as in .*, not 4": lambda: evaluate(
+            "stepping",
+            PAPER_STEPPING,
+            SHORT,
+            [1],
+            4,  # type: ignore[arg-type]
+        ),
+        r"unknown statistic 'medain', did you mean 'median'\? .*": lambda: shaken_by(0.0).statistic("score", "medain"),
+    }
+    for words, call in calls.items():
+        with pytest.raises(ConfigurationError, match=f"^{words}$"):
+            call()

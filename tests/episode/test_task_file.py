@@ -116,6 +116,7 @@ def test_mistakes_of_a_file_are_one_line(tmp_path: Path, text: str, words: str) 
         ("return [1.0]", r"its reward must be a finite number, not \[1.0\]"),
         ("return 10**400", "its reward must be a finite number, not 1000000"),
         ("return 1 / 0", "my_task.py, line 3: ZeroDivisionError"),
+        ("raise ValueError('one\\ntwo')", "^my_task.py, line 3: ValueError: one two$"),
         ("raise SystemExit(0)", "my_task.py, line 3: SystemExit: 0"),
         ("raise type('Odd', (Exception,), {'__str__': lambda e: 1 / 0})", "an exception without a message"),
     ],

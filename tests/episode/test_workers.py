@@ -312,6 +312,8 @@ def test_workers_listen_to_this_machine_only() -> None:
 def test_bad_workers_are_refused() -> None:
     with pytest.raises(ConfigurationError, match="workers must be between 0 and 256, not -1"):
         Workers(-1)
+    with pytest.raises(ConfigurationError, match=r"^workers must be a whole number, not 1\.5$"):
+        Workers(1.5)  # type: ignore[arg-type]
     with pytest.raises(ConfigurationError, match="give one of the two"):
         Workers(2, "tcp://127.0.0.1:1")
 

@@ -149,7 +149,10 @@ def test_a_change_of_one_dimension_leaves_the_others() -> None:
     assert config.robot_after(2).dimensions == {"hinge_height": 0.04, "torso_width": 0.3, "thigh_length": 0.34}
 
 
-@pytest.mark.parametrize("parameters", [(), SHIPPED[:5], (*SHIPPED[:8], 2.5), (math.nan, *SHIPPED[1:])])
+@pytest.mark.parametrize(
+    "parameters",
+    [(), SHIPPED[:5], (*SHIPPED[:8], 2.5), (math.nan, *SHIPPED[1:]), (True, *SHIPPED[1:]), "abcdefghi", None],
+)
 def test_parameters_out_of_their_box_are_refused(parameters: tuple[float, ...]) -> None:
     robot = RobotInOperation(quick(), 0)
     with pytest.raises(ConfigurationError, match=r"parameter"):

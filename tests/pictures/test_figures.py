@@ -4,6 +4,7 @@ import dataclasses
 import itertools
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from laboratory import NEEDS_PYBULLET
@@ -62,6 +63,14 @@ def test_robot_and_state_machine_are_drawn(tmp_path: Path) -> None:
     for file in files[::2]:
         picture = imread(file)
         assert picture.shape[1] == 700 and picture[..., :3].std() > 0.02
+
+
+def test_figures_do_not_follow_the_style_of_the_caller(tmp_path: Path) -> None:
+    picture, _ = draw_state_machine(tmp_path / "plain")
+    with plt.style.context(["dark_background", {"savefig.dpi": 30}]):
+        styled, _ = draw_state_machine(tmp_path / "styled")
+        assert plt.rcParams["savefig.dpi"] == 30
+    assert styled.read_bytes() == picture.read_bytes()
 
 
 def test_labels_point_at_the_robot_as_it_is() -> None:

@@ -2,11 +2,14 @@
 
 import dataclasses
 import json
+import random
 import shutil
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
+import torch
 from operated import quick
 
 from sarah.episode.reward import highest_return
@@ -44,10 +47,19 @@ def interrupted_after(windows: int) -> Callable[[], bool]:
     return lambda: next(countdown, None) is None
 
 
+def _generators() -> tuple[object, ...]:
+    """States of the generators that libraries share."""
+    return random.getstate(), str(np.random.get_state()), torch.get_rng_state().tolist()
+
+
 @pytest.mark.parametrize("learner", LEARNERS)
 def test_the_same_session_again(learner: str) -> None:
+    """And the generators of the process are afterwards as before."""
     spec = dataclasses.replace(SPEC, learner=learner)
-    first = run_session(spec)
+    before = _generators()
+    with np.errstate(all="raise"):
+        first = run_session(spec)
+    assert _generators() == before
     assert run_session(spec) == first
     half = first.windows[: len(first.windows) // 2]
     told: list[Window] = []

@@ -1,6 +1,10 @@
 """Black-box optimisers: asked and told in turn, with episodes in flight."""
 
+import warnings
+from collections.abc import Callable
+
 import numpy as np
+import optuna
 import pytest
 
 from sarah.runs.agent_settings import AgentSettings, EvolutionSettings, settings_of
@@ -97,3 +101,23 @@ def test_a_model_chooses_from_the_end_of_the_warm_up_on(algo: str, slots: int) -
 
     good, bad = asked(1.0), asked(-1.0)
     assert good[:warm_up] == bad[:warm_up] and good[warm_up] != bad[warm_up]
+
+
+@pytest.mark.parametrize("dimensions", [1, 20])
+@pytest.mark.parametrize("algo", OPTIMISERS)
+def test_any_returns_are_learned_from(algo: str, dimensions: int) -> None:
+    """Two values, all equal, and as large as a float can be."""
+    returns: list[Callable[[np.ndarray], float]] = [lambda x: float(x[0] > 0.0), lambda x: 0.0, lambda x: 1e300 * x[0]]
+    for episode_return in returns:
+        optimiser = make_optimiser(algo, settings_of(algo)(), dimensions, 0)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            for _ in range(17):
+                optimiser.tell(action := optimiser.ask(), episode_return(action))
+        assert (np.abs(optimiser.choice()) <= 1.0).all()
+
+
+def test_optuna_says_as_much_as_before() -> None:
+    before = optuna.logging.get_verbosity()
+    make_optimiser("tpe", settings_of("tpe")(), 2, 0)
+    assert optuna.logging.get_verbosity() == before

@@ -1,12 +1,17 @@
 """A short training in this process: the run folder it leaves, and that it repeats."""
 
 import csv
+import gc
 import json
 import math
+import random
+import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import torch
 from laboratory import COARSE_PHYSICS
 from stable_baselines3 import DDPG, SAC, TD3
 from stable_baselines3.common.base_class import BaseAlgorithm
@@ -19,10 +24,11 @@ from sarah.episode.result import METRICS, EpisodeResult
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
-from sarah.errors import RunFolderError
+from sarah.errors import LearningError, RunFolderError
 from sarah.runs.agent_settings import settings_of
 from sarah.runs.config import OPTIMISERS, TrainingConfig
 from sarah.runs.run_folder import RunFolder, new_run_path
+from sarah.training.optimisers import RandomSearch
 from sarah.training.recommendation import Tried, merit
 from sarah.training.train import SUMMARY_EPISODES, train
 
@@ -116,9 +122,21 @@ def test_model_loads_and_predicts(run: RunFolder) -> None:
     assert action.shape == (5,)
 
 
-def test_training_repeats_from_its_seed(run: RunFolder, tmp_path: Path) -> None:
+def test_training_repeats_from_its_seed_whatever_is_set(run: RunFolder, tmp_path: Path) -> None:
+    """And what is set in the process, and its generators, are afterwards as before."""
     again = RunFolder.create(tmp_path / "again", SHORT)
-    train(SHORT, again)
+    random.seed(7), np.random.seed(7), torch.manual_seed(7)
+    expected = [random.random(), np.random.random(), torch.rand(()).item()]
+    random.seed(7), np.random.seed(7), torch.manual_seed(7)
+    torch.set_default_dtype(torch.float64)
+    try:
+        with np.errstate(all="raise"), torch.no_grad():
+            train(SHORT, again, interrupted=lambda: np.random.seed(7) or False)  # what others do meanwhile
+            assert np.geterr()["under"] == "raise" and not torch.is_grad_enabled()
+        assert torch.get_default_dtype() == torch.float64
+    finally:
+        torch.set_default_dtype(torch.float32)
+    assert [random.random(), np.random.random(), torch.rand(()).item()] == expected
     assert (again.path / "episodes.csv").read_bytes() == (run.path / "episodes.csv").read_bytes()
     assert again.parameters() == run.parameters()
 
@@ -235,3 +253,27 @@ def test_parameters_are_read_by_name_whatever_their_order(tmp_path: Path) -> Non
     run = RunFolder.create(tmp_path / "run", SHORT)
     run.write_parameters({"parameters": {"P5": 0.5, "P2": 0.2, "P1": 0.1, "P4": 0.4, "P3": 0.3}})
     assert run.parameters() == (0.1, 0.2, 0.3, 0.4, 0.5)
+
+
+@pytest.mark.parametrize(
+    "error", [ValueError("the loss is nan,\nalas"), np.linalg.LinAlgError("singular"), AssertionError()]
+)
+def test_what_an_algorithm_fails_at_is_one_line(
+    error: Exception, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise error
+
+    config = replace(SHORT, algo="random", agent=settings_of("random")())
+    monkeypatch.setattr(RandomSearch, "tell", fail)
+    run = RunFolder.create(tmp_path / "run", config)
+    words = {ValueError: "the loss is nan, alas", AssertionError: "AssertionError"}.get(type(error), "singular")
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        with pytest.raises(LearningError, match=f"^random cannot go on: {words}$"):
+            train(config, run)
+        gc.collect()
+    assert not said and not run.is_finished  # not even of files that are left open
+    monkeypatch.undo()
+    train(config, run)
+    assert run.is_finished

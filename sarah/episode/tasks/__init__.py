@@ -26,7 +26,7 @@ def task_named(task: str | Task[Any]) -> Task[Any]:
     """
     if isinstance(task, Task):
         return task
-    if task not in TASKS:
+    if not isinstance(task, str) or task not in TASKS:
         file = str(task) if ".py:" in str(task) else "my_task.py:JUMP"
         hint = f"; that of a file is loaded by --task {file} or sarah.load_task" if ":" in str(task) else ""
         raise ConfigurationError(unknown_name("task", str(task), TASKS) + hint)

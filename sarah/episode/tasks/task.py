@@ -17,7 +17,7 @@ from sarah.episode.result import EpisodeResult
 from sarah.episode.reward import equation_2
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tick import Tick
-from sarah.errors import ConfigurationError, check_range, shortened
+from sarah.errors import ConfigurationError, shortened
 from sarah.number import is_number, plain
 
 ConfigType = TypeVar("ConfigType", bound=EpisodeConfig)
@@ -29,6 +29,8 @@ LONGEST_TEXT = 200
 """Length of the longest text about a task or a parameter, in characters."""
 LARGEST = 1e6
 """Largest end of a parameter's range."""
+ROUNDING = 2.0**-22
+"""Distance beyond an end of a range that comes from a 32-bit number, as a share of the larger end."""
 
 
 def _is_plain(text: object) -> bool:
@@ -184,18 +186,14 @@ class Task(Generic[ConfigType]):
         return isinstance(self.episode, PushedConfig) or self.draw_push is not push_of_settings
 
     def checked(self, values: Sequence[float], name: str = "parameters") -> tuple[float, ...]:
-        """Check one value for every parameter, and convert them to floats.
+        """Check one value for every parameter, and convert them to floats within the parameters' ranges.
 
         :param values: values in the order of :attr:`parameters`
         :param name: name of the values in messages
         :raises ConfigurationError: naming the first value that is not a number within its range
         """
-        names, values = self.parameter_names, plain(values)
-        if not isinstance(values, Sized) or len(values) != len(names):
-            found = len(values) if isinstance(values, Sized) else shortened(values)
-            raise ConfigurationError(f"{name} must be {len(names)} numbers ({names[0]} to {names[-1]}), not {found}")
-        boxes = zip(self.parameters, values, strict=True)
-        return tuple(float(check_range(f"parameter {one.name}", value, one.low, one.high)) for one, value in boxes)
+        names = self.parameter_names
+        return checked_values(self.parameters, values, name, f"{names[0]} to {names[-1]}")
 
     def checked_config(self, config: EpisodeConfig, may_be_pushed: bool = False) -> EpisodeConfig:
         """Check that settings are of this task's type, and return them.
@@ -219,3 +217,28 @@ class Task(Generic[ConfigType]):
         """
         shared = {name: getattr(config, name) for name in vars(self.episode) if hasattr(config, name)}
         return type(self.episode)(**{**vars(self.episode), **shared, **changes})
+
+
+def checked_values(parameters: Sequence[Parameter], values: Any, name: str, span: str) -> tuple[float, ...]:
+    """Check one value for every parameter, and convert them to floats within the parameters' ranges.
+
+    A value that lies beyond an end by the rounding of a 32-bit number comes to that end.
+
+    :param parameters: parameters that the values are of
+    :param values: values in the same order
+    :param name: name of the values in messages
+    :param span: names of the parameters in messages
+    :raises ConfigurationError: naming the first value that is not a number within its range
+    """
+    values = plain(values)
+    if not isinstance(values, Sized) or len(values) != len(parameters):
+        found = len(values) if isinstance(values, Sized) else shortened(values)
+        raise ConfigurationError(f"{name} must be {len(parameters)} numbers ({span}), not {found}")
+    checked = []
+    for one, value in zip(parameters, values, strict=True):  # type: ignore[call-overload]  # what has a length
+        slack, given = ROUNDING * max(abs(one.low), abs(one.high)), plain(value)
+        if not is_number(given) or not one.low - slack <= given <= one.high + slack:
+            ends = f"{one.low:.15g} and {one.high:.15g}"
+            raise ConfigurationError(f"parameter {one.name} must be between {ends}, not {shortened(value)}")
+        checked.append(min(max(float(given), one.low), one.high))
+    return tuple(checked)

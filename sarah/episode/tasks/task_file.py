@@ -86,6 +86,6 @@ def mistake(name: str, error: BaseException) -> str:
 
 def _text_of(error: BaseException) -> str:
     try:
-        return str(error) or type(error).__name__
+        return " ".join(str(error).split()) or type(error).__name__
     except Exception:  # also this is the user's code
         return "an exception without a message"
