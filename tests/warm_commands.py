@@ -37,13 +37,28 @@ def requested() -> dict[str, Any]:
 
 
 def redirect(request: dict[str, Any]) -> None:
-    """Let this process read nothing, and print into the files."""
-    for descriptor, (path, mode) in enumerate(
-        [(os.devnull, os.O_RDONLY), (request["out"], os.O_WRONLY), (request["err"], os.O_WRONLY)]
-    ):
-        opened = os.open(path, mode)
-        os.dup2(opened, descriptor)
-        os.close(opened)
+    """Let this process read nothing, and print into the files, or into streams that take nothing."""
+    reading, writing = os.pipe()
+    opened = [
+        os.open(path, mode)
+        for path, mode in [
+            (os.devnull, os.O_RDONLY),
+            (request["out"], os.O_WRONLY),
+            (request["err"], os.O_WRONLY),
+            ("/dev/full", os.O_RDWR),
+        ]
+    ]
+    full = opened.pop()
+    for number, usual in enumerate(opened):
+        left = writing if number else reading
+        os.dup2({None: usual, "closed": usual, "full": full, "left": left}[request["streams"]], number)
+    for other in (reading, writing, full, *opened):
+        os.close(other)
+    if request["streams"] == "closed":  # Python has no streams then
+        for number, name in enumerate(("stdin", "stdout", "stderr")):
+            os.close(number)
+            setattr(sys, name, None)
+            setattr(sys, f"__{name}__", None)
 
 
 if __name__ == "__main__":
