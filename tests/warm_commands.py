@@ -38,21 +38,16 @@ def requested() -> dict[str, Any]:
 
 def redirect(request: dict[str, Any]) -> None:
     """Let this process read nothing, and print into the files, or into streams that take nothing."""
-    reading, writing = os.pipe()
-    opened = [
+    usual = [
         os.open(path, mode)
-        for path, mode in [
-            (os.devnull, os.O_RDONLY),
-            (request["out"], os.O_WRONLY),
-            (request["err"], os.O_WRONLY),
-            ("/dev/full", os.O_RDWR),
-        ]
+        for path, mode in [(os.devnull, os.O_RDONLY), (request["out"], os.O_WRONLY), (request["err"], os.O_WRONLY)]
     ]
-    full = opened.pop()
-    for number, usual in enumerate(opened):
-        left = writing if number else reading
-        os.dup2({None: usual, "closed": usual, "full": full, "left": left}[request["streams"]], number)
-    for other in (reading, writing, full, *opened):
+    full = os.open("/dev/full", os.O_RDWR)
+    (no_writer, writing), (reading, no_reader) = os.pipe(), os.pipe()
+    left = [no_writer, no_reader, no_reader]
+    for number in range(3):
+        os.dup2({"full": full, "left": left[number]}.get(request["streams"], usual[number]), number)
+    for other in (*usual, full, no_writer, writing, reading, no_reader):
         os.close(other)
     if request["streams"] == "closed":  # Python has no streams then
         for number, name in enumerate(("stdin", "stdout", "stderr")):
