@@ -46,6 +46,6 @@ def test_text_that_was_asked_for_and_lost_is_a_failure(
     assert run("sarah-eval", *arguments, cwd=tmp_path, streams=streams).returncode == status
 
 
-@pytest.mark.parametrize("streams", BROKEN)
+@pytest.mark.parametrize("streams", ["full", "left"])
 def test_a_mistake_is_a_failure_though_nobody_reads_it(streams: str, tmp_path: Path) -> None:
     assert run("sarah-eval", "nonsense", cwd=tmp_path, streams=streams).returncode == 2
