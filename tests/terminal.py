@@ -16,15 +16,19 @@ SHORT = ("--episode.time-limit", "1.5", *COARSE, "--slots", "1")
 PATIENCE_SECONDS = 300
 
 
-def run(command: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    """Run a command in a process of its own that has its imports already, and wait for its end."""
+def run(command: str, *arguments: str, cwd: Path, streams: str | None = None) -> subprocess.CompletedProcess[str]:
+    """Run a command in a process of its own that has its imports already, and wait for its end.
+
+    Its standard streams may all be ``closed``, ``full``, or ``left``: pipes whose other ends nobody holds any more.
+    """
     server = _warm_commands()
     assert server.stdin is not None and server.stdout is not None
     with tempfile.TemporaryDirectory() as folder:
         out, err = (Path(folder, name) for name in ("out", "err"))
         out.touch()
         err.touch()
-        request = {"command": command, "arguments": arguments, "folder": str(cwd), "out": str(out), "err": str(err)}
+        request = {"command": command, "arguments": arguments, "folder": str(cwd), "streams": streams}
+        request |= {"out": str(out), "err": str(err)}
         print(json.dumps(request, default=str), file=server.stdin, flush=True)
         if not select.select([server.stdout], [], [], PATIENCE_SECONDS)[0]:
             server.kill()

@@ -37,13 +37,23 @@ def requested() -> dict[str, Any]:
 
 
 def redirect(request: dict[str, Any]) -> None:
-    """Let this process read nothing, and print into the files."""
-    for descriptor, (path, mode) in enumerate(
-        [(os.devnull, os.O_RDONLY), (request["out"], os.O_WRONLY), (request["err"], os.O_WRONLY)]
-    ):
-        opened = os.open(path, mode)
-        os.dup2(opened, descriptor)
-        os.close(opened)
+    """Let this process read nothing, and print into the files, or into streams that take nothing."""
+    usual = [
+        os.open(path, mode)
+        for path, mode in [(os.devnull, os.O_RDONLY), (request["out"], os.O_WRONLY), (request["err"], os.O_WRONLY)]
+    ]
+    full = os.open("/dev/full", os.O_RDWR)
+    (no_writer, writing), (reading, no_reader) = os.pipe(), os.pipe()
+    left = [no_writer, no_reader, no_reader]
+    for number in range(3):
+        os.dup2({"full": full, "left": left[number]}.get(request["streams"], usual[number]), number)
+    for other in (*usual, full, no_writer, writing, reading, no_reader):
+        os.close(other)
+    if request["streams"] == "closed":  # Python has no streams then
+        for number, name in enumerate(("stdin", "stdout", "stderr")):
+            os.close(number)
+            setattr(sys, name, None)
+            setattr(sys, f"__{name}__", None)
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.errors import ConfigurationError, check_range
 from sarah.files import make_folder
+from sarah.streams import check_output
 
 if TYPE_CHECKING:
     from sarah.episode.workers import Workers
@@ -127,9 +128,10 @@ def _evaluate(arguments: Sequence[str]) -> None:
             content |= {"chatters": evaluation.chatters(baseline), "baseline": baseline.summary()}
         content["endings"] = [result.termination for result in evaluation.results]
         print(json_format.dumps(content))
-        return
-    for label, text in rows_of(options.subject, spec, options.seeds, evaluation, baseline):
-        print(f"{label:17}{text}")
+    else:
+        for label, text in rows_of(options.subject, spec, options.seeds, evaluation, baseline):
+            print(f"{label:17}{text}")
+    check_output()
 
 
 def _subject(options: EvalOptions) -> tuple[EpisodeSpec, str | None]:

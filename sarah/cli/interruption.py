@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 from types import FrameType, TracebackType
@@ -47,4 +48,5 @@ class Interruption:
     def _note(self, number: int, frame: FrameType | None) -> None:
         self.signal = number
         self.__exit__(None, None, None)
-        os.write(2, self._message)  # a handler must not use the buffers of print
+        with contextlib.suppress(OSError):  # nobody need read it
+            os.write(2, self._message)  # a handler must not use the buffers of print

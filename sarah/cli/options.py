@@ -22,6 +22,7 @@ from sarah.errors import ConfigurationError, SarahError, unknown_name
 from sarah.files import is_text
 from sarah.number import NUMBER, is_number, number, whole_number
 from sarah.simulation.engines import default_engine
+from sarah.streams import check_output, keep_streams, say_lost_output
 
 OptionsType = TypeVar("OptionsType")
 USAGE_ERROR = 2
@@ -181,6 +182,7 @@ def parse_options(
             return parse(args=_checked(_with_both_ends(arguments, default)))
     except SystemExit as exit_request:
         if not exit_request.code:
+            check_output()
             raise
     help_text = io.StringIO()
     with contextlib.redirect_stdout(help_text), contextlib.suppress(SystemExit):
@@ -230,15 +232,12 @@ def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
     :param main: function that runs it with its arguments
     """
     os.environ["MPLBACKEND"] = "Agg"  # figures are files, also where there is a display
+    keep_streams()
     try:
         main(sys.argv[1:])
-        sys.stdout.flush()
-    except SarahError as error:
-        fail(command, str(error))
-    except BrokenPipeError:  # the reader of the output has closed it, as in `| head`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except OSError as error:
+    except (SarahError, OSError) as error:
         fail(command, str(error))
     except KeyboardInterrupt:
         print(f"\n{command}: interrupted", file=sys.stderr)
         raise SystemExit(130) from None
+    say_lost_output(command)

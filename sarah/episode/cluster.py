@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
 import logging
 import os
 import signal
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent import futures
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sarah.errors import WorkersError
+from sarah.streams import keep_streams
 from sarah.versions import SIMULATING, differences, versions
 
 if TYPE_CHECKING:
@@ -20,6 +23,8 @@ SCHEDULER_SECONDS = 10
 """Time limit for connecting to a scheduler, in s."""
 NICENESS = 5
 """Niceness of local workers, so that the learner gets the processor first."""
+WATCH_SECONDS = 5
+"""Time after which it is looked whether somebody is still there to answer, in s."""
 UNWATCHED = {
     "distributed.worker.profile.enabled": False,
     "distributed.admin.tick.interval": "1s",
@@ -27,6 +32,12 @@ UNWATCHED = {
 }
 """Settings with which Dask's workers on this machine watch themselves less. By default they do so every 10 to 500 ms,
 which takes the processor from the episodes."""
+UNLIMITED = {
+    "distributed.worker.lifetime.duration": None,
+    "distributed.scheduler.idle-timeout": None,
+    "distributed.scheduler.no-workers-timeout": None,
+}
+"""Settings with which Dask's workers on this machine stay until the work is done, whatever somebody's clusters have."""
 ENVIRONMENT, FREES_MEMORY = "distributed.nanny.pre-spawn-environ", "MALLOC_TRIM_THRESHOLD_"
 """Dask's setting of the environment of workers, and the variable in it with which they take every array above 128 kB
 from the system and give it back. That slows trainings of large networks."""
@@ -80,7 +91,8 @@ class RemoteJob:
     def result(self) -> Any:
         """Wait for the call, and return what it returned.
 
-        :raises WorkersError: if the worker has other code or versions than this process, or if all workers die
+        :raises WorkersError: if the worker has other code or versions than this process, or if all workers die and no
+            other can start
         """
         answered = self._wait()
         _check_worker(answered.worker, answered.versions, self._packages)
@@ -91,15 +103,54 @@ class RemoteJob:
 
         from distributed.scheduler import KilledWorker
 
-        for _ in range(ATTEMPTS):
+        attempts = 1
+        while attempts <= ATTEMPTS:
             try:
-                answered: Answer = self._future.result()
+                answered: Answer = self._future.result(WATCH_SECONDS)
                 return answered
+            except (TimeoutError, asyncio.TimeoutError):  # which are two in Python 3.10
+                if self._future.status != "pending":
+                    raise  # of the call itself
+                _check_presence(self._client)
             except KilledWorker:  # the scheduler gave up after a few deaths, but a pure function can be repeated
                 self._future = self._submit()
+                attempts += 1
             except CancelledError as error:
                 raise WorkersError(f"the connection to the scheduler is lost: {error}") from error
         raise WorkersError(f"an episode was submitted {ATTEMPTS} times, and its workers died each time")
+
+
+def _check_presence(client: Client) -> None:
+    """Refuse to wait for workers of this machine if none is there, and none will come: their nannies have given up."""
+    from distributed.core import Status
+
+    if client.cluster is None:  # whoever has a scheduler can start workers at any time
+        return
+    if all(nanny.status in (Status.closed, Status.failed) for nanny in client.cluster.workers.values()):
+        raise WorkersError("all worker processes of this machine have ended, and no other could start")
+
+
+@contextlib.contextmanager
+def _in_one_line(what: str) -> Iterator[None]:
+    """Raise whatever goes wrong with Dask as one line, which says what was tried and why it failed.
+
+    :param what: what was tried
+    :raises WorkersError: with the first cause
+    """
+    try:
+        yield
+    except WorkersError:
+        raise
+    except Exception as error:
+        cause: BaseException | None = error
+        reason = type(error).__name__
+        while cause is not None:
+            reason = f"{type(cause).__name__}: {' '.join(str(cause).split())}" if str(cause) else reason
+            is_aftermath = isinstance(
+                cause, (AssertionError, AttributeError)
+            )  # of Dask, which stumbles over what has not begun
+            cause = cause.__cause__ or (cause.__context__ if is_aftermath else None)
+        raise WorkersError(f"{what}: {reason}") from error
 
 
 def _check_worker(worker: str, there: dict[str, str], packages: tuple[str, ...]) -> None:
@@ -114,19 +165,14 @@ def connect(address: str) -> Client:
     :param address: address of the scheduler, such as ``tcp://10.0.0.1:8786``
     :raises WorkersError: if no scheduler answers, or one of its workers has other code or versions
     """
-    try:
+    with _in_one_line(f"no Dask scheduler answers at {address!r}"):
         client = _client_in_time(address)
-    except futures.TimeoutError as error:
-        raise WorkersError(f"no Dask scheduler answers at {address!r}: the port is open, but silent") from error
-    except (OSError, ValueError, TypeError, RuntimeError) as error:
-        raise WorkersError(f"no Dask scheduler answers at {address!r}: {error}") from error
     try:
-        for worker, there in client.run(versions, SIMULATING).items():
-            _check_worker(worker, there, SIMULATING)
-    except BaseException as error:
+        with _in_one_line(f"a worker behind {address!r} tells no versions"):
+            for worker, there in client.run(versions, SIMULATING).items():
+                _check_worker(worker, there, SIMULATING)
+    except BaseException:
         client.close()
-        if isinstance(error, Exception) and not isinstance(error, WorkersError):
-            raise WorkersError(f"a worker behind {address!r} tells no versions: {error}") from error
         raise
     return client
 
@@ -144,14 +190,23 @@ def _client_in_time(address: str) -> Client:
             made.set_exception(error)
 
     threading.Thread(target=make, daemon=True).start()
-    return made.result(2 * SCHEDULER_SECONDS)
+    try:
+        return made.result(2 * SCHEDULER_SECONDS)
+    except futures.TimeoutError as error:
+        raise WorkersError(f"no Dask scheduler answers at {address!r}: the port is open, but silent") from error
 
 
 def start(count: int) -> tuple[LocalCluster, Client]:
     """Start workers on this machine.
 
     :param count: number of worker processes
+    :raises WorkersError: if they cannot start
     """
+    with _in_one_line("no workers can start on this machine"):
+        return _started(count)
+
+
+def _started(count: int) -> tuple[LocalCluster, Client]:
     import dask
     from distributed import Client, LocalCluster, WorkerPlugin
 
@@ -159,11 +214,12 @@ def start(count: int) -> tuple[LocalCluster, Client]:
         """Ignore Ctrl-C, which the training handles, and give the learner's process priority over the worker."""
 
         def setup(self, worker: Any) -> None:
+            keep_streams()  # a reward may print, and nobody need read it
             signal.signal(signal.SIGINT, signal.SIG_IGN)
             os.nice(NICENESS)
 
     environment = {name: value for name, value in dask.config.get(ENVIRONMENT).items() if name != FREES_MEMORY}
-    with dask.config.set({**UNWATCHED, ENVIRONMENT: environment}):
+    with dask.config.set({**UNWATCHED, **UNLIMITED, ENVIRONMENT: environment}):
         cluster = LocalCluster(
             n_workers=count,
             threads_per_worker=1,

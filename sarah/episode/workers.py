@@ -141,8 +141,8 @@ class Workers(Executor):
         its result is asked for
     :param scheduler: address of a Dask scheduler, such as ``tcp://10.0.0.1:8786``, whose workers are used instead
     :raises ConfigurationError: if the count is negative or too large, or if count and scheduler are both given
-    :raises WorkersError: on entering, if no scheduler answers, or a worker has other code or versions; an outcome from
-        such a worker, which may come later, is refused as well
+    :raises WorkersError: on entering, if workers cannot start here, no scheduler answers, or a worker has other code or
+        versions; an outcome from such a worker, which may come later, is refused as well
     """
 
     client: Client | None
@@ -158,7 +158,7 @@ class Workers(Executor):
         self._scheduler = scheduler
         self.client = None
         self._cluster: LocalCluster | None = None
-        self._safe_path = ""
+        self._before: dict[str, str | None] = {}
 
     def __enter__(self) -> Workers:
         """Start the workers, or connect to the scheduler."""
@@ -166,13 +166,15 @@ class Workers(Executor):
             self.client = connect(self._scheduler)
         elif self._count:
             # Otherwise a worker imports modules from the working folder, such as a pickle.py in somebody's run folder.
-            self._safe_path = os.environ.get(SAFE_PATH, "")
+            before = dict(os.environ)
             os.environ[SAFE_PATH] = "1"
             try:
                 self._cluster, self.client = start(self._count)
-            except BaseException:
-                os.environ[SAFE_PATH] = self._safe_path
-                raise
+            finally:  # Dask sets others, which workers need as long as they may be started again
+                changed = (name for name, value in os.environ.items() if value != before.get(name))
+                self._before = {name: before.get(name) for name in changed}
+                if self._cluster is None:
+                    self._restore_environment()
         return self
 
     def __exit__(
@@ -186,7 +188,14 @@ class Workers(Executor):
         if self._cluster is not None:
             self._cluster.close()
             self._cluster = None
-            os.environ[SAFE_PATH] = self._safe_path  # Python takes an empty value as unset
+            self._restore_environment()
+
+    def _restore_environment(self) -> None:
+        for name, value in self._before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
 
     def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
         """Submit a call, of an episode or of a whole training.

@@ -5,14 +5,14 @@ import subprocess
 from pathlib import Path
 
 from laboratory import NEEDS_PYBULLET, need
-from terminal import BIN, SHORT, run
+from terminal import SHORT, run
 
 import sarah
 from sarah.cli.episode_options import EpisodeOptions
 from sarah.episode.spec import FIRST_EVALUATION_SEED, FIRST_TRAINING_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.tasks.balance import TRAINED_STEPPING
-from sarah.simulation.engines import default_engine, is_installed
+from sarah.simulation.engines import is_installed
 from sarah.simulation.physics import PyBulletPhysics
 from sarah.training.train import SUMMARY_EPISODES
 
@@ -124,9 +124,3 @@ def test_figures_of_both_trainings(balanced: Path) -> None:
     assert sorted(path.name for path in (balanced / "figures").iterdir()) == sorted(
         Path(file).name for file in alone.stdout.split()
     )
-
-
-def test_a_reader_who_has_had_enough_is_no_error(tmp_path: Path) -> None:
-    command = f"{BIN / 'sarah-eval'} 1,1,1,1,1 --episodes 1 --engine {default_engine()} | true"
-    process = subprocess.run(["bash", "-c", command], capture_output=True, text=True, cwd=tmp_path)
-    assert process.stderr == ""

@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import multiprocessing
 import os
 import resource
 import shutil
@@ -307,6 +308,89 @@ def test_workers_listen_to_this_machine_only() -> None:
             if connection.status == psutil.CONN_LISTEN
         ]
     assert listening and set(listening) == {"127.0.0.1"}
+
+
+@pytest.mark.parametrize(
+    ("settings", "cause"),
+    [
+        ({"temporary-directory": "/dev/null"}, "NotADirectoryError: .*'/dev/null/dask-scratch-space'"),
+        ({"distributed.worker.preload": ["not_there"]}, "ModuleNotFoundError: No module named 'not_there'"),
+        ({"distributed.nanny.preload": ["not_there"]}, "ModuleNotFoundError: No module named 'not_there'"),
+        ({"distributed.worker.multiprocessing-method": "no"}, "ValueError: cannot find context for 'no'"),
+        ({"distributed.comm.tls.ciphers": "no"}, "SSLError: .*No cipher can be selected"),
+    ],
+)
+def test_workers_that_cannot_start_say_why(
+    settings: dict[str, object], cause: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    before = dict(os.environ)
+    with dask.config.set(settings), pytest.raises(WorkersError, match=f"^no workers can start .*: {cause}"):
+        Workers(1).__enter__()
+    assert dict(os.environ) == before and capfd.readouterr().err == ""
+
+
+def workers_of_a_daemon() -> None:
+    try:
+        Workers(1).__enter__()
+    except WorkersError as error:
+        print(error, flush=True)
+
+
+def test_a_daemonic_process_can_have_no_workers(capfd: pytest.CaptureFixture[str]) -> None:
+    daemon = multiprocessing.get_context("spawn").Process(target=workers_of_a_daemon, daemon=True)
+    daemon.start()
+    daemon.join(timeout=60)
+    said = "no workers can start on this machine: AssertionError: daemonic processes are not allowed to have children\n"
+    assert capfd.readouterr() == (said, "")
+
+
+def test_damaged_settings_of_dask_are_one_line(tmp_path: Path) -> None:
+    (tmp_path / "dask.yaml").write_text("a: [1,")
+    program = (
+        "from sarah.episode.workers import Workers\ntry:\n    Workers(1).__enter__()\nexcept Exception as e: print(e)"
+    )
+    environment = {**os.environ, "DASK_CONFIG": str(tmp_path / "dask.yaml")}
+    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env=environment)
+    assert (process.stderr, process.stdout.count("\n")) == ("", 1)
+    assert f"A dask config file at '{tmp_path / 'dask.yaml'}' is malformed" in process.stdout
+
+
+def test_somebodys_settings_do_not_let_workers_go() -> None:
+    gone = {"distributed.worker.lifetime.duration": "1s", "distributed.scheduler.idle-timeout": "1s"}
+    environment = dict(os.environ)
+    with dask.config.set(gone), Workers(1) as workers:
+        time.sleep(2.5)
+        assert workers.client is not None and workers.client.nthreads()
+        assert workers.submit(os.getppid).result() == os.getpid()
+    assert dict(os.environ) == environment
+
+
+def test_workers_that_cannot_start_again_are_not_waited_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster_module, "WATCH_SECONDS", 1)
+    with dask.config.set({"temporary-directory": str(tmp_path / "scratch")}), Workers(1) as workers:
+        shutil.rmtree(tmp_path / "scratch")
+        (tmp_path / "scratch").touch()
+        with pytest.raises(
+            WorkersError, match="all worker processes of this machine have ended, and no other could start"
+        ):
+            workers.submit(os._exit, 1).result()
+
+
+def print_much() -> None:
+    for _ in range(100):
+        print("much", flush=True)
+
+
+def test_a_worker_may_print_what_nobody_reads() -> None:
+    with open("/dev/full", "w") as full:
+        before = os.dup(1)
+        os.dup2(full.fileno(), 1)
+        try:
+            with Workers(1) as workers:
+                workers.submit(print_much).result()
+        finally:
+            os.dup2(before, 1)
+            os.close(before)
 
 
 def test_bad_workers_are_refused() -> None:

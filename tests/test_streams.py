@@ -1,0 +1,77 @@
+"""Standard streams that nobody reads, as a program has them that keeps them."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+
+def kept(program: str, shell: str, **environment: str) -> subprocess.CompletedProcess[bytes]:
+    """Run a program that keeps its streams, in a command line of the shell, where it is ``"$@"``."""
+    program = f"import os, sys\nfrom sarah.streams import *\nkeep_streams()\n{program}"
+    command = ["bash", "-c", shell, "bash", sys.executable, "-c", program]
+    return subprocess.run(command, capture_output=True, env={**os.environ, **environment}, timeout=60)
+
+
+def test_a_closed_stream_gets_no_file() -> None:
+    """Otherwise the first file that is opened would receive everything that is printed."""
+    program = """
+numbers = [os.open("/dev/zero", os.O_RDONLY)]
+print("text")
+print("text", file=sys.stderr)
+os.system("echo text; echo text >&2")  # another program has them too
+sys.exit(numbers[0] < 3 or sys.stdin.read() != "")
+"""
+    assert kept(program, '"$@" <&- >&- 2>&-').returncode == 0
+    only = kept(program, '"$@" 2>&-')
+    assert (only.returncode, only.stdout, only.stderr) == (0, b"text\ntext\n", b"")
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_what_cannot_be_written_goes_nowhere(unbuffered: str) -> None:
+    program = """
+print("text", flush=True)
+print("text", file=sys.stderr)
+os.write(1, b"of other code")
+os.write(2, b"of other code")
+"""
+    shell = '"$@" > /dev/full 2>&1 && ("$@" 2>&1; echo $? >&3) 3>&2 | true'
+    assert kept(program, shell, PYTHONUNBUFFERED=unbuffered).stderr == b"0\n"
+
+
+def test_it_is_said_that_standard_output_was_lost() -> None:
+    program = "print('text'); say_lost_output('sarah-train')"
+    said = b"sarah-train: done, but standard output was lost: No space left on device\n"
+    assert kept(program, '"$@" > /dev/full').stderr == said
+    assert kept(program, '"$@" | true').stderr == kept(program, '"$@" > /dev/null').stderr == b""
+
+
+def test_a_reader_in_no_hurry_gets_everything() -> None:
+    """Also if somebody else has made the pipe non-blocking, as many programs do that share one."""
+    program = "os.set_blocking(1, False); print('0123456789' * 100_000); check_output()"
+    process = kept(program, '"$@" | (sleep 0.3; cat)')
+    assert (process.stdout, process.stderr) == (b"0123456789" * 100_000 + b"\n", b"")
+
+
+@pytest.mark.parametrize(
+    ("encoding", "written"),
+    [
+        ("ascii", rb"\xfc \u221e " + b"\xe9"),
+        ("latin-1", b"\xfc " + rb"\u221e " + b"\xe9"),
+        ("utf-8", "ü ∞ ".encode() + b"\xe9"),
+    ],
+)
+def test_any_letter_and_any_name_can_be_written(encoding: str, written: bytes) -> None:
+    """A byte that is no letter, of a file's name, is written as it is: what is shown can be typed."""
+    program = r"print('ü ∞ \udce9'); print('ü ∞ \udce9', file=sys.stderr)"
+    process = kept(program, '"$@"', PYTHONIOENCODING=encoding)
+    assert process.stdout == process.stderr == written + b"\n"
+
+
+def test_other_streams_than_the_process_has_are_left_alone(capsys: pytest.CaptureFixture[str]) -> None:
+    from sarah.streams import keep_streams
+
+    before = sys.stdout, sys.stderr
+    keep_streams()
+    assert (sys.stdout, sys.stderr) == before
