@@ -137,6 +137,13 @@ class RankReplayBuffer(ReplayBuffer):
             super().add(obs[row], next_obs[row], action[row], reward[row], done[row], [info])
         self._cumulative_probabilities = None
 
+    def reset(self) -> None:
+        """
+        Reset the buffer.
+        """
+        super().reset()
+        self._cumulative_probabilities = None
+
     def sample(self, batch_size: int, env: VecNormalize | None = None) -> ReplayBufferSamples:
         """
         Sample transitions, with replacement.
@@ -145,7 +152,10 @@ class RankReplayBuffer(ReplayBuffer):
         :param env: associated gym VecEnv
             to normalize the observations/rewards when sampling
         :return: The transitions
+        :raises ValueError: if the buffer is empty
         """
+        if self.size() == 0:
+            raise ValueError("the replay buffer is empty, so there is nothing to sample")
         if self._cumulative_probabilities is None:
             with np.errstate(under="ignore"):  # Ranks that are hardly ever drawn
                 weights = np.exp(self.temperature * (average_ranks(self.rewards[: self.size(), 0]) - 1))

@@ -202,12 +202,25 @@ def locked(path: Path, wait: bool = True) -> Iterator[bool]:
     :return: context, with whether this process has the lock
     """
     with open_regular(path, os.O_RDWR | os.O_CREAT) as file:
-        is_ours = True
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
-        except BlockingIOError:
-            is_ours = False
-        yield is_ours
+        yield lock(file, path, wait)
+
+
+def lock(file: BinaryIO, path: Path, wait: bool) -> bool:
+    """Lock an open file, until it is closed.
+
+    :param file: file to lock
+    :param path: its path
+    :param wait: whether to wait while another process has locked it
+    :return: whether this process has the lock
+    :raises OSError: if its file system has no locks
+    """
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+    except BlockingIOError:
+        return False
+    except OSError as error:
+        raise OSError(error.errno, f"it cannot be locked ({error.strerror})", str(path)) from error
+    return True
 
 
 def _check_size(file: BinaryIO, path: Path, most_bytes: int) -> None:

@@ -84,7 +84,9 @@ class EpisodeVecEnv(HoldsWorld, VecEnv):
         """Begin anew, with the episodes that the seed of :meth:`seed` draws.
 
         :return: the observation of the first episode, of shape (1, 16)
+        :raises ConfigurationError: if there are no episodes
         """
+        check_range("episodes", self.episodes, 1, MOST)
         if self._seeds[0] is not None:  # without a new seed the generator goes on, as in SarahEnv
             self._env.np_random = np.random.default_rng(self._seeds[0])
         self._reset_seeds()

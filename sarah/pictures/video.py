@@ -159,20 +159,29 @@ def write_video(pictures: Iterable[Image.Image], path: Path) -> None:
 
 
 def _write_mp4(pictures: Iterable[Image.Image], path: Path) -> None:
-    from imageio_ffmpeg import write_frames
+    from imageio_ffmpeg import count_frames_and_secs, write_frames
 
     fps = FRAMES_PER_SECOND[".mp4"]
     options = ["-preset", "veryfast", "-tune", "animation", "-movflags", "+faststart", "-threads", "1"]
     # In a name of its own, ffmpeg takes what is before a colon for a protocol, and a dash for standard output.
-    writer = write_frames(
-        f"file:{path.absolute()}", (WIDTH, HEIGHT), fps=fps, codec="libx264", quality=6, output_params=options
-    )
+    name, written = f"file:{path.absolute()}", 0
+    writer = write_frames(name, (WIDTH, HEIGHT), fps=fps, codec="libx264", quality=6, output_params=options)
     writer.send(None)
     try:
         for picture in pictures:
-            writer.send(picture.tobytes())
+            written += 1
+            try:
+                writer.send(picture.tobytes())
+            except OSError:  # ffmpeg has stopped, and this frame will be missed
+                break
     finally:
         writer.close()
+    try:
+        found = count_frames_and_secs(name)[0]  # nobody else tells how ffmpeg has ended
+    except RuntimeError:
+        found = 0
+    if found != written:
+        raise OSError(f"ffmpeg wrote {found} of {written} frames; the disk may be full")
 
 
 def _write_gif(pictures: Iterable[Image.Image], path: Path) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import json
 import os
@@ -14,7 +13,7 @@ from types import TracebackType
 from typing import Any, BinaryIO, TypeVar
 
 from sarah.errors import ResumeError
-from sarah.files import open_regular
+from sarah.files import lock, open_regular
 
 SelfJournalFile = TypeVar("SelfJournalFile", bound="JournalFile")
 
@@ -98,16 +97,13 @@ def _opened(path: Path, kind: str) -> BinaryIO:
     """The file to append to, locked."""
     try:
         file = open_regular(path, os.O_RDWR | os.O_APPEND)
+        is_ours = lock(file, path, wait=False)
     except OSError as error:
         reason = f"it has no {path.name}" if isinstance(error, FileNotFoundError) else str(error)
         raise ResumeError(f"{path.parent} cannot be resumed: {reason}") from error
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BaseException as error:
+    if not is_ours:
         file.close()
-        if isinstance(error, BlockingIOError):
-            raise ResumeError(f"run folder {path.parent} is in use by another {kind}") from None
-        raise
+        raise ResumeError(f"run folder {path.parent} is in use by another {kind}")
     return file
 
 

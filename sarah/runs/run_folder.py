@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -40,16 +41,26 @@ EVENTS = "events.out.tfevents."
 
 
 def new_run_path(task: str, algo: str, seed: int) -> Path:
-    """Default path of a run folder, ``runs/<task>/<algo>-s<seed>``, with a number behind it if that one exists.
+    """Make a folder for a run, by default ``runs/<task>/<algo>-s<seed>``, with a number behind it if that one exists.
+
+    Whoever makes the folder has it, so that no other run takes it at the same time.
 
     :param task: name of the task, or of another kind of run
     :param algo: name of the algorithm
     :param seed: seed of the run
+    :return: path of the empty folder
+    :raises RunFolderError: if it cannot be made
     """
     base = Path("runs") / task / f"{algo}-s{seed}"
-    path, number = base, 2
-    while path.exists():
-        path, number = base.with_name(f"{base.name}-{number}"), number + 1
+    for number in itertools.count(1):
+        path = base if number == 1 else base.with_name(f"{base.name}-{number}")
+        try:
+            path.mkdir(parents=True)
+            break
+        except FileExistsError:
+            continue
+        except OSError as error:
+            raise RunFolderError(f"cannot write run folder {path}: {error.strerror or error}") from error
     return path
 
 

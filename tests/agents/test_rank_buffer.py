@@ -237,3 +237,11 @@ def test_what_is_far_away_is_no_error_of_numpy():
         buffer.best_action()
         buffer.draw_near_best(0.01, 16)
         buffer.sample(4)
+
+
+def test_a_buffer_that_was_reset_has_nothing_to_sample():
+    buffer = fill([1.0, 2.0, 3.0])
+    buffer.sample(4)
+    buffer.reset()
+    with pytest.raises(ValueError, match="the replay buffer is empty, so there is nothing to sample"):
+        buffer.sample(4)

@@ -143,8 +143,8 @@ PROTECTIONS = (
     ),
     Protection(
         "run folders are locked",
-        "runs/rows.py",
-        "fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)",
+        "files.py",
+        "fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))",
         "pass",
         "test_two_trainings_do_not_share_a_run_folder",
     ),

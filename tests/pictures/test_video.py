@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -91,6 +92,21 @@ def test_any_name_of_a_film_is_that_of_its_file(
     check_path(path)
     write_video([Image.new("RGB", (WIDTH, HEIGHT))] * 2, path)
     assert [found.relative_to(tmp_path) for found in tmp_path.rglob("*") if found.is_file()] == [path]
+
+
+def test_a_film_that_ffmpeg_has_not_written_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It would have replaced the one of before."""
+
+    def nowhere(*_: object, **__: object) -> Iterator[None]:
+        while True:
+            yield
+
+    path = tmp_path / "film.mp4"
+    path.write_bytes(b"of before")
+    monkeypatch.setattr("imageio_ffmpeg.write_frames", nowhere)
+    with pytest.raises(ConfigurationError, match=r"film\.mp4: ffmpeg wrote 0 of 2 frames; the disk may be full"):
+        write_video([Image.new("RGB", (WIDTH, HEIGHT))] * 2, path)
+    assert path.read_bytes() == b"of before" and list(tmp_path.iterdir()) == [path]
 
 
 def filmed(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:

@@ -226,7 +226,6 @@ def test_run_folder_that_is_not_empty_is_refused_and_left_alone(tmp_path: Path) 
 def test_run_folders_number_themselves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert new_run_path("stepping", "naf", 3) == Path("runs/stepping/naf-s3")
-    Path("runs/stepping/naf-s3").mkdir(parents=True)
     assert new_run_path("stepping", "naf", 3) == Path("runs/stepping/naf-s3-2")
 
 
