@@ -250,7 +250,7 @@ class PyBulletSimulator(HoldsWorld):
 
         :raises SimulationError: if other code in the process has changed the world
         """
-        self._world.check()
+        self._world.check(self._pose)
         torso = self._torso
         return SensorReading(
             specific_force(torso, self._velocity_before, self._dt, self._ground.gravity),
@@ -277,7 +277,8 @@ class PyBulletSimulator(HoldsWorld):
 
     def look(self) -> None:
         """Query motion of torso and actuators, and the pads' loads, from PyBullet, after whatever changed them."""
-        position, orientation = pybullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client)
+        self._pose = pybullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client)
+        position, orientation = self._pose
         velocity, rate = pybullet.getBaseVelocity(self.body, physicsClientId=self.client)
         if self._mass_offset != NOMINAL.mass_offset:  # PyBullet gives the motion of the centre of mass
             x, y, z = rotate_to_world(orientation, self._mass_offset)

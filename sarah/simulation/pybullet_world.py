@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import locale
+import math
 import os
 import tempfile
+import threading
 import uuid
 import weakref
 from collections.abc import Iterator
@@ -13,9 +15,11 @@ from importlib import import_module
 from typing import Any
 
 from sarah.errors import SimulationError
+from sarah.robot.reading import Vector
 from sarah.simulation.engines import is_installed
-from sarah.simulation.world import HoldsWorld, check_arithmetic
+from sarah.simulation.world import CHECKS, HoldsWorld, check_arithmetic
 
+Pose = tuple[Vector, tuple[float, float, float, float]]
 MARK = "sarah"
 """Key under which our worlds carry a name that nobody else's has."""
 BULLETS_CONTACT_MARGIN = 0.02
@@ -45,6 +49,8 @@ _spare: list[tuple[int, str]] = []
 """Clients whose worlds are empty, and the names that these worlds carry."""
 _open: set[str] = set()
 """Names of the worlds that are open."""
+_loading = threading.Lock()
+"""Lock of the thread that loads a robot, and has set the process's locale aside."""
 
 
 class PyBulletWorld(HoldsWorld):
@@ -64,7 +70,9 @@ class PyBulletWorld(HoldsWorld):
         check_arithmetic()
         self._name = uuid.uuid4().hex
         self._bodies: list[int] = []
-        self._count: int | None = None
+        self._counts: tuple[int, int] | None = None
+        self._settings: tuple[Any, ...] = ()
+        self._checks = 0
         self.client = _emptied_client()
         _open.add(self._name)
         self._give_back = weakref.finalize(self, _give_back, self.client, self._name, self._bodies)
@@ -107,24 +115,46 @@ class PyBulletWorld(HoldsWorld):
             indices[info[1].decode()] = indices[info[12].decode()] = joint
         return body, indices
 
-    def check(self) -> None:
+    def check(self, pose: Pose | None = None) -> None:
         """Refuse a world that other code has changed since the first check.
 
-        :raises SimulationError: if bodies were added or removed, or if it was reset or disconnected
+        :param pose: position and orientation of the robot when it was last looked at, if nothing else moves it
+        :raises SimulationError: if bodies or constraints were added or removed, if the robot was moved, if the world was
+            reset or disconnected, or, within ten checks, if the settings or the masses are others
         """
         client = self.client
         if not self._give_back.alive:
             raise SimulationError("the simulated world is closed: make another one")
-        if self._count is None:
-            self._count = pybullet.getNumBodies(physicsClientId=client)
-        if (
-            not _carries(client, self._name, self._bodies)
-            or pybullet.getNumBodies(physicsClientId=client) != self._count
-        ):
-            raise SimulationError(
-                "other code in this process has added bodies to the robot's world in PyBullet, removed some, reset it "
-                f"or disconnected it: it must leave client {client} alone"
+        try:
+            counts = (pybullet.getNumBodies(physicsClientId=client), pybullet.getNumConstraints(physicsClientId=client))
+            if self._counts is None:
+                self._counts, self._settings = counts, self._present_settings()
+            is_same = counts == self._counts and (
+                pose is None
+                or pybullet.getBasePositionAndOrientation(self._bodies[-1], physicsClientId=client) == pose
+                or not all(map(math.isfinite, (*pose[0], *pose[1])))
             )
+            self._checks += 1
+            if is_same and self._checks % CHECKS == 0:
+                check_arithmetic()
+                is_same = _carries(client, self._name, self._bodies) and self._present_settings() == self._settings
+        except pybullet.error:
+            is_same = False
+        if not is_same:
+            raise SimulationError(
+                "other code in this process has changed the robot's world in PyBullet, moved the robot, or reset or "
+                f"disconnected the world: it must leave client {client} alone"
+            )
+
+    def _present_settings(self) -> tuple[Any, ...]:
+        """Settings of the engine, and mass and friction of every link."""
+        links = [
+            (body, link)
+            for body in self._bodies
+            for link in range(-1, pybullet.getNumJoints(body, physicsClientId=self.client))
+        ]
+        properties = [pybullet.getDynamicsInfo(*link, physicsClientId=self.client)[:2] for link in links]
+        return pybullet.getPhysicsEngineParameters(self.client), properties
 
     def close(self) -> None:
         """Empty the world, and keep its client for the next one."""
@@ -174,9 +204,10 @@ def _carries(client: int, name: str, bodies: list[int]) -> bool:
 @contextmanager
 def _decimal_points() -> Iterator[None]:
     """Let this process read numbers with decimal points for a while, as Bullet reads a URDF in the process's locale."""
-    before = locale.setlocale(locale.LC_NUMERIC)
-    locale.setlocale(locale.LC_NUMERIC, "C")
-    try:
-        yield
-    finally:
-        locale.setlocale(locale.LC_NUMERIC, before)
+    with _loading:
+        before = locale.setlocale(locale.LC_NUMERIC)
+        locale.setlocale(locale.LC_NUMERIC, "C")
+        try:
+            yield
+        finally:
+            locale.setlocale(locale.LC_NUMERIC, before)

@@ -144,6 +144,7 @@ class Renderer(HoldsWorld):
 
     def soles(self) -> np.ndarray:
         """Corners of both soles in the last pose, in order around each, in m, of shape (8, 3)."""
+        self._world.check()
         outlines = []
         for side in Side:
             corners = []

@@ -10,6 +10,8 @@ from sarah.robot.description import RobotDescription
 from sarah.robot.reading import Vector
 from sarah.simulation.randomisation import Conditions
 
+CHECKS = 10
+"""Number of checks of a world, one of which looks at its settings too."""
 TOLERANCE = 1e-9
 """Largest difference of a loaded number from its description, as a share of it and of 1."""
 LITTLE = 2.0**-60

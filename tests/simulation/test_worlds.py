@@ -74,6 +74,12 @@ DISTURBANCES: dict[str, Callable[[int], object]] = {
     "reset": lambda client: pybullet.resetSimulation(physicsClientId=client),
     "disconnect": pybullet.disconnect if pybullet else print,
     "occupy": occupy,
+    "hold the robot": lambda client: pybullet.createConstraint(
+        1, -1, -1, -1, pybullet.JOINT_FIXED, (0, 0, 0), (0, 0, 0), (0, 0, 1), physicsClientId=client
+    ),
+    "advance": lambda client: pybullet.stepSimulation(physicsClientId=client),
+    "let it float": lambda client: pybullet.setGravity(0, 0, 0, physicsClientId=client),
+    "weigh it down": lambda client: pybullet.changeDynamics(1, -1, mass=50, physicsClientId=client),
 }
 
 
@@ -85,12 +91,12 @@ def test_what_others_do_to_a_pybullet_world_raises(disturbance: str) -> None:
             DISTURBANCES[disturbance](tick.simulator.client)
         return 1.0
 
-    with pytest.raises(SimulationError, match=r"other code in this process has added .*: it must leave client \d+"):
+    with pytest.raises(SimulationError, match=r"other code in this process has changed .*: it must leave client \d+"):
         simulate(replace(spec("pybullet"), task=replace(STEPPING, reward=disturbing)))
 
 
 @NEEDS_PYBULLET
-@pytest.mark.parametrize("disturbance", DISTURBANCES)
+@pytest.mark.parametrize("disturbance", ["add a body", "reset", "disconnect", "occupy", "let it float"])
 def test_episodes_repeat_whatever_others_did_to_a_kept_client(disturbance: str) -> None:
     episode = Episode(short("pybullet"), 3)
     client = episode.simulation.client  # type: ignore[attr-defined]
@@ -207,15 +213,34 @@ def test_others_callbacks_of_mujoco_are_refused(when: str) -> None:
         mujoco.set_mjcb_passive(None)
 
 
-def test_a_mujoco_world_that_others_reset_raises() -> None:
-    mujoco = pytest.importorskip("mujoco")
+def reset(model: Any, data: Any) -> None:
+    import mujoco
 
-    def resetting(tick: Any, config: EpisodeConfig) -> float:
-        mujoco.mj_resetData(tick.simulator.model, tick.simulator.data)
+    mujoco.mj_resetData(model, data)
+
+
+def move(model: Any, data: Any) -> None:
+    data.qpos[0] += 0.1
+
+
+def let_float(model: Any, data: Any) -> None:
+    model.opt.gravity[:] = 0.0
+
+
+def weigh_down(model: Any, data: Any) -> None:
+    model.body_mass[1] = 50.0
+
+
+@pytest.mark.parametrize("disturbance", [reset, move, let_float, weigh_down])
+def test_what_others_do_to_a_mujoco_world_raises(disturbance: Callable[[Any, Any], None]) -> None:
+    pytest.importorskip("mujoco")
+
+    def disturbing(tick: Any, config: EpisodeConfig) -> float:
+        disturbance(tick.simulator.model, tick.simulator.data)
         return 1.0
 
-    with pytest.raises(SimulationError, match="other code in this process has reset the robot's world in MuJoCo"):
-        simulate(replace(spec("mujoco"), task=replace(STEPPING, reward=resetting)))
+    with pytest.raises(SimulationError, match="other code in this process has changed the robot's model in MuJoCo"):
+        simulate(replace(spec("mujoco"), task=replace(STEPPING, reward=disturbing)))
 
 
 def test_mujocos_warnings_of_other_models_still_come() -> None:
