@@ -28,8 +28,8 @@ def checked_number(
     :param whole: Whether only whole numbers are allowed
     :return: The number
     """
-    if isinstance(value, np.ndarray):
-        value = value.item() if value.ndim == 0 else value.tolist()
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
     is_number = isinstance(value, Integral if whole else Real) and not isinstance(value, bool)
     if is_number and lowest <= value <= highest and not (above and value == lowest):
         return int(value) if isinstance(value, Integral) else float(value)

@@ -201,26 +201,36 @@ def locked(path: Path, wait: bool = True) -> Iterator[bool]:
     :param wait: whether to wait while another process has it
     :return: context, with whether this process has the lock
     """
-    with open_regular(path, os.O_RDWR | os.O_CREAT) as file:
-        yield lock(file, path, wait)
+    file = open_locked(path, os.O_RDWR | os.O_CREAT, wait)
+    try:
+        yield file is not None
+    finally:
+        if file is not None:
+            file.close()
 
 
-def lock(file: BinaryIO, path: Path, wait: bool) -> bool:
-    """Lock an open file, until it is closed.
+def open_locked(path: Path, flags: int, wait: bool) -> BinaryIO | None:
+    """Open a regular file, and lock it until it is closed.
 
-    :param file: file to lock
-    :param path: its path
+    :param path: path of the file
+    :param flags: flags of :func:`os.open`
     :param wait: whether to wait while another process has locked it
-    :return: whether this process has the lock
-    :raises OSError: if its file system has no locks
+    :return: the file; ``None`` if another process has it
+    :raises OSError: if it cannot be opened, or if its file system has no locks
     """
+    file = open_regular(path, flags)
     try:
         fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
     except BlockingIOError:
-        return False
+        file.close()
+        return None
     except OSError as error:
+        file.close()
         raise OSError(error.errno, f"it cannot be locked ({error.strerror})", str(path)) from error
-    return True
+    except BaseException:
+        file.close()
+        raise
+    return file
 
 
 def _check_size(file: BinaryIO, path: Path, most_bytes: int) -> None:

@@ -61,7 +61,7 @@ def plain(value: Any) -> Any:
     :param value: value of any type
     :return: ``int``, ``float``, ``bool`` or ``str``; a list for an array, unless it has no dimensions
     """
-    if hasattr(value, "tolist"):
+    if hasattr(value, "tolist") and getattr(getattr(value, "dtype", None), "kind", "") not in "mM":  # times are none
         value = value.tolist()
     if isinstance(value, bool):
         return value

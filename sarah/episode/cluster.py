@@ -103,21 +103,26 @@ class RemoteJob:
 
         from distributed.scheduler import KilledWorker
 
-        attempts = 1
-        while attempts <= ATTEMPTS:
+        for _ in range(ATTEMPTS):
             try:
-                answered: Answer = self._future.result(WATCH_SECONDS)
+                self._wait_for_its_end()
+                answered: Answer = self._future.result()
                 return answered
-            except (TimeoutError, asyncio.TimeoutError):  # which are two in Python 3.10
-                if self._future.status != "pending":
-                    raise  # of the call itself
-                _check_presence(self._client)
             except KilledWorker:  # the scheduler gave up after a few deaths, but a pure function can be repeated
                 self._future = self._submit()
-                attempts += 1
             except CancelledError as error:
                 raise WorkersError(f"the connection to the scheduler is lost: {error}") from error
         raise WorkersError(f"an episode was submitted {ATTEMPTS} times, and its workers died each time")
+
+    def _wait_for_its_end(self) -> None:
+        """Wait until the call has ended, somehow, or until nobody is left who could compute it."""
+        from distributed import wait
+
+        while not self._future.done():
+            try:
+                wait(self._future, timeout=WATCH_SECONDS)
+            except (TimeoutError, asyncio.TimeoutError):  # which are two in Python 3.10
+                _check_presence(self._client)
 
 
 def _check_presence(client: Client) -> None:
@@ -146,9 +151,8 @@ def _in_one_line(what: str) -> Iterator[None]:
         reason = type(error).__name__
         while cause is not None:
             reason = f"{type(cause).__name__}: {' '.join(str(cause).split())}" if str(cause) else reason
-            is_aftermath = isinstance(
-                cause, (AssertionError, AttributeError)
-            )  # of Dask, which stumbles over what has not begun
+            # Dask stumbles over what has not begun.
+            is_aftermath = isinstance(cause, (AssertionError, AttributeError))
             cause = cause.__cause__ or (cause.__context__ if is_aftermath else None)
         raise WorkersError(f"{what}: {reason}") from error
 

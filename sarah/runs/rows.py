@@ -13,7 +13,7 @@ from types import TracebackType
 from typing import Any, BinaryIO, TypeVar
 
 from sarah.errors import ResumeError
-from sarah.files import lock, open_regular
+from sarah.files import open_locked
 
 SelfJournalFile = TypeVar("SelfJournalFile", bound="JournalFile")
 
@@ -96,13 +96,11 @@ class JournalFile(ABC):
 def _opened(path: Path, kind: str) -> BinaryIO:
     """The file to append to, locked."""
     try:
-        file = open_regular(path, os.O_RDWR | os.O_APPEND)
-        is_ours = lock(file, path, wait=False)
+        file = open_locked(path, os.O_RDWR | os.O_APPEND, wait=False)
     except OSError as error:
         reason = f"it has no {path.name}" if isinstance(error, FileNotFoundError) else str(error)
         raise ResumeError(f"{path.parent} cannot be resumed: {reason}") from error
-    if not is_ours:
-        file.close()
+    if file is None:
         raise ResumeError(f"run folder {path.parent} is in use by another {kind}")
     return file
 

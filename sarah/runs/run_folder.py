@@ -41,26 +41,26 @@ EVENTS = "events.out.tfevents."
 
 
 def new_run_path(task: str, algo: str, seed: int) -> Path:
-    """Make a folder for a run, by default ``runs/<task>/<algo>-s<seed>``, with a number behind it if that one exists.
+    """Make an empty folder for a run: ``runs/<task>/<algo>-s<seed>``, with a number behind it if that one exists.
 
     Whoever makes the folder has it, so that no other run takes it at the same time.
 
     :param task: name of the task, or of another kind of run
     :param algo: name of the algorithm
     :param seed: seed of the run
-    :return: path of the empty folder
     :raises RunFolderError: if it cannot be made
     """
-    base = Path("runs") / task / f"{algo}-s{seed}"
-    for number in itertools.count(1):
-        path = base if number == 1 else base.with_name(f"{base.name}-{number}")
-        try:
-            path.mkdir(parents=True)
-            break
-        except FileExistsError:
-            continue
-        except OSError as error:
-            raise RunFolderError(f"cannot write run folder {path}: {error.strerror or error}") from error
+    path = base = Path("runs") / task / f"{algo}-s{seed}"
+    try:
+        base.parent.mkdir(parents=True, exist_ok=True)
+        for number in itertools.count(2):
+            try:
+                path.mkdir()
+                break
+            except FileExistsError:
+                path = base.with_name(f"{base.name}-{number}")
+    except OSError as error:
+        raise RunFolderError(f"cannot write run folder {path}: {error.strerror or error}") from error
     return path
 
 

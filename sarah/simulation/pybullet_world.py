@@ -119,8 +119,8 @@ class PyBulletWorld(HoldsWorld):
         """Refuse a world that other code has changed since the first check.
 
         :param pose: position and orientation of the robot when it was last looked at, if nothing else moves it
-        :raises SimulationError: if bodies or constraints were added or removed, if the robot was moved, if the world was
-            reset or disconnected, or, within ten checks, if the settings or the masses are others
+        :raises SimulationError: if bodies or constraints were added or removed, if the robot was moved, or if the world
+            was reset or disconnected; within ten checks also if settings or masses are others
         """
         client = self.client
         if not self._give_back.alive:

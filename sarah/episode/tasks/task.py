@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Callable, Sequence, Sized
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Generic, TypeVar
 
@@ -231,11 +231,12 @@ def checked_values(parameters: Sequence[Parameter], values: Any, name: str, span
     :raises ConfigurationError: naming the first value that is not a number within its range
     """
     values = plain(values)
-    if not isinstance(values, Sized) or len(values) != len(parameters):
-        found = len(values) if isinstance(values, Sized) else shortened(values)
+    is_list = isinstance(values, (list, tuple))  # a set has no order
+    if not is_list or len(values) != len(parameters):
+        found = len(values) if is_list else shortened(values)
         raise ConfigurationError(f"{name} must be {len(parameters)} numbers ({span}), not {found}")
     checked = []
-    for one, value in zip(parameters, values, strict=True):  # type: ignore[call-overload]  # what has a length
+    for one, value in zip(parameters, values, strict=True):
         slack, given = ROUNDING * max(abs(one.low), abs(one.high)), plain(value)
         if not is_number(given) or not one.low - slack <= given <= one.high + slack:
             ends = f"{one.low:.15g} and {one.high:.15g}"
