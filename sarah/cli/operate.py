@@ -20,7 +20,14 @@ from sarah.episode.push import NOBODY, PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, controller_of
-from sarah.errors import ConfigurationError, ResumeError, RunFolderError, TrainingInterruptedError, shortened
+from sarah.errors import (
+    ConfigurationError,
+    ResumeError,
+    RunFolderError,
+    SarahError,
+    TrainingInterruptedError,
+    shortened,
+)
 from sarah.files import quoted
 from sarah.formats import read_yaml
 from sarah.number import number
@@ -188,7 +195,7 @@ def _watched(folder: SessionFolder, spec: SessionSpec) -> SessionResult:
             raise SystemExit(128 + (interruption.signal or signal.SIGINT)) from None
         except ResumeError:
             raise
-        except OSError as error:
+        except (SarahError, OSError) as error:
             raise RunFolderError(f"{error}; finished windows are kept, {go_on}") from error
 
 

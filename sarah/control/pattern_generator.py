@@ -21,6 +21,7 @@ control tick, and on a robot.
 from __future__ import annotations
 
 import contextlib
+import copy
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass
 from enum import Enum
@@ -162,6 +163,10 @@ class PatternGenerator:
         self._upright = GRAVITY
         self._lengths = {Side.LEFT: 0.0, Side.RIGHT: 0.0}
         self._limited_legs: set[int] = set()
+
+    def __copy__(self) -> PatternGenerator:
+        """Copy with filters of its own, as one that both had would feel the readings of both."""
+        return copy.deepcopy(self)
 
     def set_parameters(
         self, parameters: SteppingParameters | None = None, balance: BalanceParameters | None = None

@@ -20,6 +20,7 @@ from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError, check_whole, shortened
 from sarah.robot.reading import SensorReading
+from sarah.simulation.world import HoldsWorld
 from sarah.versions import LEARNING, SIMULATING
 
 if TYPE_CHECKING:
@@ -132,7 +133,7 @@ class Executor(ABC):
         return (job.result() for job in jobs)
 
 
-class Workers(Executor):
+class Workers(HoldsWorld, Executor):
     """Workers that simulate episodes, as a context.
 
     Worker processes import the main module, so a script must start workers under ``if __name__ == "__main__":``.

@@ -29,7 +29,7 @@ class HoldsWorld:
         """
         raise SimulationError(
             f"{type(self).__name__} holds simulated worlds, which a copy would share, so it cannot be copied or "
-            "pickled: make another one with the same settings and seed"
+            "pickled: make another one with the same arguments"
         )
 
 

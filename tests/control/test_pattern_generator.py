@@ -1,9 +1,11 @@
 """The state machine against hand-made readings: what ends each phase, and what the legs are told."""
 
+import copy
 import math
+from collections.abc import Callable
 
 import pytest
-from hand_made import DT, LOADED, OVER_RIGHT, ROCKING_BACK, UNLOADED, reading, started, stood
+from hand_made import DT, LOADED, OVER_RIGHT, ROCKING_BACK, UNLOADED, reading, rocking, started, stood
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -331,3 +333,14 @@ def test_offsets_that_were_there_while_standing_change_no_step(offset: float) ->
         change = level.tick(reading(lateral, rate, left, right))
         assert askew.tick(reading(lateral + offset, rate + offset / 10, left, right)) == change
         assert askew.tilt == pytest.approx(level.tilt) and askew.rate == pytest.approx(level.rate)
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
+def test_a_copied_generator_has_filters_of_its_own(copied: Callable[[PatternGenerator], PatternGenerator]) -> None:
+    generator, alone = started(), started()
+    other = copied(generator)
+    for tick in range(100):
+        other.tick(rocking(7 * tick))
+    assert [(generator.tick(rocking(tick)), generator.targets) for tick in range(100)] == [
+        (alone.tick(rocking(tick)), alone.targets) for tick in range(100)
+    ]
