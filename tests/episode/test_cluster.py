@@ -9,7 +9,6 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -25,7 +24,11 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Workers
 from sarah.errors import DescriptionError, WorkersError
 
-SOMEBODYS = {"distributed.worker.lifetime.duration": "200ms", "distributed.scheduler.idle-timeout": "200ms"}
+SOMEBODYS = {
+    "distributed.worker.lifetime.duration": "1 hour",
+    "distributed.scheduler.idle-timeout": "1 hour",
+    "distributed.scheduler.no-workers-timeout": "1 hour",
+}
 """Settings of Dask that suit somebody's clusters."""
 
 
@@ -142,9 +145,13 @@ def workers() -> Iterator[Workers]:
 
 
 def test_somebodys_settings_do_not_let_workers_go(workers: Workers) -> None:
-    time.sleep(0.5)
-    assert workers.client is not None and workers.client.nthreads()
-    assert workers.submit(os.getppid).result() == os.getpid()
+    client = workers.client
+    assert client is not None
+    assert list(client.run(lambda dask_worker: dask_worker.lifetime).values()) == [None]
+    limits = client.run_on_scheduler(
+        lambda dask_scheduler: (dask_scheduler.idle_timeout, dask_scheduler.no_workers_timeout)
+    )
+    assert limits == (None, None)
 
 
 def print_much() -> None:
