@@ -271,7 +271,7 @@ def test_bad_workers_are_refused() -> None:
         Workers(2, "tcp://127.0.0.1:1")
 
 
-def test_workers_that_were_not_started_are_no_silent_single_process() -> None:
+def test_workers_that_were_not_started_are_refused() -> None:
     for workers in (Workers(2), Workers(scheduler="tcp://127.0.0.1:1")):
         with pytest.raises(ConfigurationError, match="workers start in a with statement"):
             workers.submit(simulate, EpisodeSpec(PAPER_STEPPING, 0))
