@@ -55,25 +55,62 @@ class TrainingInterruptedError(SarahError):
 
 
 def check_range(key: str, value: Any, low: float, high: float, unit: str = "") -> Any:
-    """Refuse a value outside its range.
+    """Refuse a number outside its range.
 
     :param key: name of the setting, as the user gives it
-    :param value: number, or both ends of a range, which must be in rising order
+    :param value: number of any type
     :param low: smallest allowed value
     :param high: largest allowed value
     :param unit: unit of the value and of its limits
-    :return: the value, in numbers of Python's own
+    :return: the value, as a number of Python's own
     :raises ConfigurationError: naming key, value and range
     """
-    value = tuple(map(plain, value)) if isinstance(value, tuple) else plain(value)
-    ends = value if isinstance(value, tuple) and len(value) == 2 else (value, value)
-    if not all(map(is_number, ends)) or not low <= ends[0] <= ends[1] <= high:
-        is_range = isinstance(value, tuple) and ends[0] != ends[1]
-        order, given = (" and in rising order", value) if is_range else ("", ends[0])
-        raise ConfigurationError(
-            f"{key} must be between {low:.10g} and {high:.10g}{unit and f' {unit}'}{order}, not {shortened(given)}"
-        )
+    value = plain(value)
+    if not is_number(value) or not low <= value <= high:
+        raise ConfigurationError(f"{key} must be {_span(low, high, unit)}, not {shortened(value)}")
     return value
+
+
+def check_whole(key: str, value: Any, low: int, high: int, unit: str = "") -> int:
+    """Refuse what is not a whole number within a range.
+
+    :param key: name of the setting, as the user gives it
+    :param value: number of any type
+    :param low: smallest allowed value
+    :param high: largest allowed value
+    :param unit: unit of the value and of its limits
+    :return: the value, as a number of Python's own
+    :raises ConfigurationError: naming key, value and range
+    """
+    value = plain(value)
+    if is_number(value) and not isinstance(value, int):
+        raise ConfigurationError(f"{key} must be a whole number, not {shortened(value)}")
+    return int(check_range(key, value, low, high, unit))
+
+
+def check_ends(key: str, ends: Any, low: float, high: float, unit: str = "") -> tuple[float, float]:
+    """Refuse a range that is not within another one.
+
+    :param key: name of the setting, as the user gives it
+    :param ends: lowest and highest value, which must be in rising order
+    :param low: smallest allowed value
+    :param high: largest allowed value
+    :param unit: unit of the values and of their limits
+    :return: both ends
+    :raises ConfigurationError: naming key, value and range
+    """
+    given = tuple(map(plain, ends)) if isinstance(ends, (list, tuple)) else plain(ends)
+    if not isinstance(given, tuple) or len(given) != 2 or given[0] == given[1]:
+        value = given[0] if isinstance(given, tuple) and len(given) == 2 else given
+        number = float(check_range(key, value, low, high, unit))
+        return number, number
+    if not all(map(is_number, given)) or not low <= given[0] <= given[1] <= high:
+        raise ConfigurationError(f"{key} must be {_span(low, high, unit)} and in rising order, not {shortened(given)}")
+    return float(given[0]), float(given[1])
+
+
+def _span(low: float, high: float, unit: str) -> str:
+    return f"between {low:.10g} and {high:.10g}{unit and f' {unit}'}"
 
 
 def to_ranges(config: object, *names: str) -> None:
@@ -98,9 +135,25 @@ def check_fields(key: str, config: object, plausible: Mapping[str, tuple[float, 
     :param plausible: lowest value, highest value and unit of each field, by name
     :raises ConfigurationError: naming key, value and range
     """
-    for name, (low, high, unit) in plausible.items():
-        value = check_range(f"{key}.{name}", getattr(config, name), low, high, unit)
-        object.__setattr__(config, name, tuple(map(float, value)) if isinstance(value, tuple) else float(value))
+    for name, limits in plausible.items():
+        key_of_field, value = f"{key}.{name}", getattr(config, name)
+        is_range = str(type(config).__dataclass_fields__[name].type).startswith("tuple[")  # type: ignore[attr-defined]
+        checked = (
+            check_ends(key_of_field, value, *limits) if is_range else float(check_range(key_of_field, value, *limits))
+        )
+        object.__setattr__(config, name, checked)
+
+
+def check_type(key: str, value: object, expected: type) -> None:
+    """Refuse a value of another type.
+
+    :param key: name of the argument
+    :param value: value that was given
+    :param expected: type that it must have
+    :raises ConfigurationError: naming argument, type and value
+    """
+    if not isinstance(value, expected):
+        raise ConfigurationError(f"{key} must be a {expected.__name__}, not {shortened(value)}")
 
 
 def check_types(config: object, **types: type) -> None:
@@ -112,9 +165,17 @@ def check_types(config: object, **types: type) -> None:
     """
     for name, expected in types.items():
         value = plain(getattr(config, name))
-        if not isinstance(value, expected):
-            raise ConfigurationError(f"{name} must be a {expected.__name__}, not {shortened(value)}")
+        check_type(name, value, expected)
         object.__setattr__(config, name, value)
+
+
+def one_line(error: BaseException) -> str:
+    """What an exception says, on one line that begins with its type.
+
+    :param error: exception of any type
+    """
+    words = " ".join(str(error).split())
+    return f"{type(error).__name__}: {words}" if words else type(error).__name__
 
 
 def shortened(value: object) -> str:

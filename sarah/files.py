@@ -60,8 +60,8 @@ def check_file(path: Path) -> None:
     """
     check_name(path)
     try:
-        if path.is_dir():
-            raise ConfigurationError(f"cannot write {path}: it is a folder")
+        if path.exists() and not path.is_file():  # a device would become a file
+            raise ConfigurationError(f"cannot write {path}: it is {'a folder' if path.is_dir() else 'no regular file'}")
         if not path.parent.is_dir():
             raise ConfigurationError(f"cannot write {path}: folder {path.parent} does not exist")
         with suppress(FileNotFoundError):

@@ -61,7 +61,9 @@ def plain(value: Any) -> Any:
     :param value: value of any type
     :return: ``int``, ``float``, ``bool`` or ``str``; a list for an array, unless it has no dimensions
     """
-    if hasattr(value, "tolist") and getattr(getattr(value, "dtype", None), "kind", "") not in "mM":  # times are none
+    if getattr(getattr(value, "dtype", None), "kind", None) in ("m", "M"):  # times, which numpy counts as whole numbers
+        return value
+    if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, bool):
         return value

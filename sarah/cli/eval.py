@@ -106,6 +106,8 @@ def _evaluate(arguments: Sequence[str]) -> None:
     from sarah.episode.workers import Workers
     from sarah.runs.config_files import settings_by_key
 
+    for folder in filter(None, (options.robustness, options.terrain)):
+        make_folder(folder)
     with Workers(options.workers, options.scheduler) as workers:
         if options.robustness is not None:
             _show_robustness(spec.parameters, spec.config, options, workers)
@@ -151,7 +153,6 @@ def _show_robustness(
 
     folder, neutral = options.robustness, BALANCE.neutral
     assert folder is not None and neutral is not None and isinstance(config, BalanceConfig)
-    make_folder(folder)
     say_engine(config, options.engine)
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
     pushed = push_many((neutral, parameters), config, workers, options.forces, options.episodes, options.first_seed)
@@ -190,7 +191,6 @@ def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers
     from sarah.reports.terrain import as_markdown, situations, try_terrain
     from sarah.reports.terrain_figure import draw_terrain
 
-    make_folder(folder)
     say_engine(spec.config, options.engine)
     tried = list(situations())
     progress = partial(tqdm, total=len(tried) * options.episodes, unit=" episodes")

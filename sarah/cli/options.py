@@ -40,6 +40,9 @@ PYTHON_WORDS = {
     r"^Error parsing (\S+): no type matching (\S+) could be instantiated from (.*?)\.\s+Got errors.*": (
         r"\1 must be \2, not \3"
     ),
+    r"^Error parsing (\S+): Failed to parse key-value pairs!": (
+        r"\1 must be names and numbers, such as torso_mass 9.5; no number begins with a 0 that says nothing"
+    ),
     r"^Error parsing [\w.]+: ": "",
 }
 """Python's messages about bad values, and the messages that a user gets instead."""

@@ -28,7 +28,7 @@ from enum import Enum
 from sarah.control.baselines import Baselines
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.hip_law import LOCKED_HIPS, NO_LIMITS, BalanceParameters, HipLaw
-from sarah.errors import ConfigurationError, check_range, shortened
+from sarah.errors import ConfigurationError, check_range, check_type, shortened
 from sarah.number import is_finite, plain, to_floats
 from sarah.robot.filters import LowPass, clipped, low_pass_gain, ramped
 from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, SensorReading, Side
@@ -144,6 +144,7 @@ class PatternGenerator:
         _check_parameters(balance, BalanceParameters)
         limits = _checked_limits(limits)
         self.parameters = parameters
+        check_type("constants", constants, ControllerConstants)
         self.constants = constants
         self.hips = HipLaw(balance, dt, constants, limits)
         self.phase = Phase.STAND

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
-from numbers import Integral
 from typing import Any, NamedTuple
 
 import gymnasium
@@ -23,8 +22,8 @@ from sarah.envs.sarah_env import SarahEnv, draw_seed, observation_from, paramete
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
-from sarah.episode.workers import Executor, Job, begin_episode, finish_episode
-from sarah.errors import ConfigurationError, LearningError, check_range, shortened
+from sarah.episode.workers import Executor, Job, begin_episode, executor_of, finish_episode
+from sarah.errors import ConfigurationError, LearningError, check_whole
 from sarah.robot.reading import SensorReading
 from sarah.simulation.world import HoldsWorld
 
@@ -65,17 +64,13 @@ class EpisodeVecEnv(HoldsWorld, VecEnv):
     def __init__(
         self, task: str | Task[Any], config: EpisodeConfig, episodes: int, slots: int, workers: Executor
     ) -> None:
-        for name, value, least in (("episodes", episodes, 0), ("slots", slots, 1)):
-            check_range(name, value, least, MOST)
-            if not isinstance(value, Integral):
-                raise ConfigurationError(f"{name} must be a whole number, not {shortened(value)}")
+        self.episodes = check_whole("episodes", episodes, 0, MOST)
+        self._slots = check_whole("slots", slots, 1, MOST)
+        self._workers = executor_of(workers)
         self._env = SarahEnv(task, config)
         super().__init__(1, self._env.observation_space, self._env.action_space)
         self._task = self._env.task
         self._config = config
-        self.episodes = episodes
-        self._slots = slots
-        self._workers = workers
         self._running: deque[_Running] = deque()
         self._waiting: deque[tuple[EpisodeSpec, Callable[[], SensorReading]]] = deque()
         self._steps = self._steps_left = 0
@@ -86,7 +81,7 @@ class EpisodeVecEnv(HoldsWorld, VecEnv):
         :return: the observation of the first episode, of shape (1, 16)
         :raises ConfigurationError: if there are no episodes
         """
-        check_range("episodes", self.episodes, 1, MOST)
+        check_whole("episodes", self.episodes, 1, MOST)
         if self._seeds[0] is not None:  # without a new seed the generator goes on, as in SarahEnv
             self._env.np_random = np.random.default_rng(self._seeds[0])
         self._reset_seeds()

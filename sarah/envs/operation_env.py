@@ -52,6 +52,8 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         config = OperationConfig() if config is None else config
         if not isinstance(config, OperationConfig):
             raise ConfigurationError(f"config must be an OperationConfig, not {shortened(config)}")
+        if operated is not None and not callable(getattr(operated, "run", None)):
+            raise ConfigurationError(f"operated must be a robot in operation, not {shortened(operated)}")
         self.config = from_mapping(config, settings)
         self.first = checked_parameters(first)
         self.render_mode = checked_render_mode(render_mode, self.metadata["render_modes"])

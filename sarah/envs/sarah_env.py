@@ -14,6 +14,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED
 from sarah.episode.tasks import Task, task_named
 from sarah.errors import ConfigurationError, SimulationError, shortened, unknown_name
+from sarah.number import is_number, plain
 from sarah.robot.reading import SensorReading
 from sarah.simulation.simulator import GRAVITY
 
@@ -188,16 +189,11 @@ def checked_action(action: np.ndarray, count: int) -> np.ndarray:
     :return: the numbers, as an array of floats
     :raises ConfigurationError: if the action is not finite or out of its box
     """
-    try:
-        values = np.asarray(action)
-    except (TypeError, ValueError, RuntimeError):  # rows of several lengths, tensors with gradients
-        values = np.empty(0)
-    is_real = values.shape == (count,) and values.dtype.kind in "fiu"
-    if not is_real or not (np.abs(values) <= 1.0 + ROUNDING).all():
-        given = action.tolist() if hasattr(action, "tolist") else action
-        raise ConfigurationError(f"an action must be {count} numbers within -1 and 1, not {shortened(given)}")
-    clipped: np.ndarray = np.clip(values.astype(float), -1.0, 1.0)
-    return clipped
+    values: Any = plain(action)
+    values = list(map(plain, values)) if isinstance(values, (list, tuple)) else []
+    if len(values) != count or not all(is_number(value) and abs(value) <= 1.0 + ROUNDING for value in values):
+        raise ConfigurationError(f"an action must be {count} numbers within -1 and 1, not {shortened(plain(action))}")
+    return np.clip(np.array(values, dtype=float), -1.0, 1.0)
 
 
 def parameters_from(action: np.ndarray, task: Task) -> tuple[float, ...]:
@@ -207,9 +203,6 @@ def parameters_from(action: np.ndarray, task: Task) -> tuple[float, ...]:
     :param task: task that owns the parameters
     :raises ConfigurationError: if the action is not finite or out of its box
     """
-    boxes = zip(task.parameters, checked_action(action, len(task.parameters)), strict=True)
-    # Rounding may lead beyond an end of a range.
-    return tuple(
-        min(max(float(parameter.low + parameter.width * (value + 1.0) / 2.0), parameter.low), parameter.high)
-        for parameter, value in boxes
-    )
+    boxes = zip(task.parameters, checked_action(action, len(task.parameters)).tolist(), strict=True)
+    # Rounding may lead beyond an end of a range, to which the task brings it.
+    return task.checked([one.low + one.width * (value + 1.0) / 2.0 for one, value in boxes])

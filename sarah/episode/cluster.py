@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from concurrent import futures
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from sarah.errors import WorkersError
+from sarah.errors import WorkersError, one_line
 from sarah.streams import keep_streams
 from sarah.versions import SIMULATING, differences, versions
 
@@ -139,7 +139,7 @@ def _check_presence(client: Client) -> None:
 def _in_one_line(what: str) -> Iterator[None]:
     """Raise whatever goes wrong with Dask as one line, which says what was tried and why it failed.
 
-    :param what: what was tried
+    :param what: words for what was tried
     :raises WorkersError: with the first cause
     """
     try:
@@ -148,9 +148,9 @@ def _in_one_line(what: str) -> Iterator[None]:
         raise
     except Exception as error:
         cause: BaseException | None = error
-        reason = type(error).__name__
+        reason = one_line(error)
         while cause is not None:
-            reason = f"{type(cause).__name__}: {' '.join(str(cause).split())}" if str(cause) else reason
+            reason = one_line(cause) if str(cause) else reason
             # Dask stumbles over what has not begun.
             is_aftermath = isinstance(cause, (AssertionError, AttributeError))
             cause = cause.__cause__ or (cause.__context__ if is_aftermath else None)

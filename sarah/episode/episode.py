@@ -17,6 +17,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING, Task, controller_of, ending_of, push_of, reward_of
 from sarah.episode.tick import Tick
 from sarah.episode.trace import Trace
+from sarah.errors import check_type
 from sarah.robot.reading import Vector
 from sarah.simulation.build import BuildSimulator
 from sarah.simulation.randomisation import Conditions
@@ -175,8 +176,10 @@ def simulate(spec: EpisodeSpec, record_trace: bool = False) -> EpisodeResult:
     :param spec: specification, which determines the result: the same one gives the same bytes in any process
     :param record_trace: whether to record a :class:`~sarah.episode.trace.Trace` in the result
     :return: the result
+    :raises ConfigurationError: if it is no specification
     :raises SimulationError: if there is nothing to trace, because the simulation diverged while the robot stood
     """
+    check_type("spec", spec, EpisodeSpec)
     episode = Episode(spec.config, spec.seed, spec.task, record_trace)
     try:
         episode.stand()

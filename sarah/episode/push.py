@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.settings import LONGEST_EPISODE, EpisodeConfig
-from sarah.errors import ConfigurationError, check_fields, check_types, shortened, to_ranges
+from sarah.errors import ConfigurationError, check_fields, check_types, to_ranges
 from sarah.number import is_finite, plain, to_floats
 from sarah.robot.reading import Vector
 
@@ -83,8 +83,11 @@ class DrawnPush:
     def __post_init__(self) -> None:
         """Refuse a push that is no number, and make floats of numbers of any type."""
         force = plain(self.force)
-        if not isinstance(force, (list, tuple)) or not all(map(is_finite, (*force, self.begin, self.duration))):
-            raise ConfigurationError(f"a push must consist of finite numbers, not {shortened(self)}")
+        is_vector = isinstance(force, (list, tuple)) and len(force) == 3
+        if not is_vector or not all(map(is_finite, (*force, self.begin, self.duration))):
+            raise ConfigurationError(
+                f"a push must consist of finite numbers, three of them its force, not {self!r:.300}"
+            )
         object.__setattr__(self, "force", tuple(float(plain(newtons)) for newtons in force))
         to_floats(self, "begin", "duration")
 
@@ -99,7 +102,8 @@ def push_words(force: Vector) -> tuple[str, str]:
     direction = DIRECTIONS[round(math.atan2(y, x) / (math.tau / len(DIRECTIONS))) % len(DIRECTIONS)]
     if abs(z) > math.hypot(x, y):
         direction = "upward" if z > 0.0 else "downward"
-    return f"push of {newtons:.{0 if newtons >= 10.0 else 2}{'f' if newtons >= 10.0 else 'g'}} N", direction
+    number = f"{newtons:.0f}" if newtons >= 10.0 else f"{newtons:.2g}"
+    return f"push of {number} N", direction
 
 
 def draw_push(ranges: Push, seed: int) -> DrawnPush:

@@ -18,7 +18,7 @@ from sarah.episode.cluster import RemoteJob, connect, start
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.errors import ConfigurationError, check_range, shortened
+from sarah.errors import ConfigurationError, check_whole, shortened
 from sarah.robot.reading import SensorReading
 from sarah.versions import LEARNING, SIMULATING
 
@@ -149,12 +149,14 @@ class Workers(Executor):
     """Client of Dask's scheduler, in the context; nothing if this process simulates."""
 
     def __init__(self, count: int = 0, scheduler: str | None = None) -> None:
-        count = check_range("workers", count, 0, MOST_WORKERS)
-        if count != int(count):
-            raise ConfigurationError(f"workers must be a whole number, not {shortened(count)}")
+        count = check_whole("workers", count, 0, MOST_WORKERS)
+        if scheduler is not None and not (isinstance(scheduler, str) and scheduler):
+            raise ConfigurationError(
+                f"scheduler must be an address, such as tcp://10.0.0.1:8786, not {scheduler!r:.100}"
+            )
         if count and scheduler is not None:
             raise ConfigurationError("workers start on this machine, but a scheduler has its own: give one of the two")
-        self._count = int(count)
+        self._count = count
         self._scheduler = scheduler
         self.client = None
         self._cluster: LocalCluster | None = None
@@ -234,4 +236,4 @@ def executor_of(workers: Executor | None) -> Executor:
         raise ConfigurationError(
             f"workers must be an executor, as in with Workers(4) as workers, not {shortened(workers)}"
         )
-    return workers or Workers()
+    return Workers() if workers is None else workers

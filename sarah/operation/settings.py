@@ -14,7 +14,7 @@ from sarah.episode.from_mapping import convert_fields, from_mapping
 from sarah.episode.push import Push, PushedConfig
 from sarah.episode.shipped import shipped_parameters
 from sarah.episode.tasks.task import checked_values
-from sarah.errors import ConfigurationError, check_fields, check_types, shortened
+from sarah.errors import ConfigurationError, check_fields, check_type, check_types, shortened
 from sarah.number import plain
 from sarah.robot.description import describe_robot
 
@@ -89,6 +89,8 @@ class OperationConfig:
         if type(self.robot) is not PushedConfig:  # the file of a session holds no settings of a task
             raise ConfigurationError(f"robot must be a PushedConfig, not a {type(self.robot).__name__}")
         check_fields("operation", self, PLAUSIBLE)
+        for change in self.changes:
+            check_type("a change", change, Change)
         minutes = [change.minute for change in self.changes]
         if not all(0.0 <= minute <= self.minutes for minute in minutes):
             raise ConfigurationError(f"changes must be between 0 and {self.minutes:g} min, not {shortened(minutes)}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import xml.etree.ElementTree as ElementTree
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -64,12 +63,7 @@ def labels_of(robot: RobotDescription) -> list[Label]:
         point = model.get_transform(link, "torso") @ (*nearest, 1.0)
         return np.asarray(torso + point[:3])
 
-    masses = {
-        link.get("name"): float(mass.get("value", "nan"))
-        for link in ElementTree.fromstring(robot.urdf).findall("link")
-        if (mass := link.find("inertial/mass")) is not None
-    }
-    kilograms = {group: f"{sum(masses[link] for link in links):.3g} kg" for group, links in GROUPS.items()}
+    kilograms = {group: f"{sum(robot.masses[link] for link in links):.3g} kg" for group, links in GROUPS.items()}
     (_, sole_y, sole_z), (outer, _, _) = robot.soles["right_forefoot"][0], max(robot.soles["right_forefoot"])
     thigh = model.get_transform("left_shank", "left_thigh")[UP_AXIS, 3]
     return [

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from sarah.episode.from_mapping import convert_fields
-from sarah.errors import ConfigurationError, check_range, unknown_name
+from sarah.errors import ConfigurationError, check_type, check_whole, unknown_name
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import SHIPPED, OperationConfig, Parameters, checked_parameters
 from sarah.operation.window import Window
@@ -39,7 +39,7 @@ class SessionSpec:
         checked_parameters(self.parameters)
         if self.learner not in LEARNERS:
             raise ConfigurationError(unknown_name("learner", str(self.learner), LEARNERS))
-        check_range("seed", self.seed, 0, LARGEST_SEED)
+        object.__setattr__(self, "seed", check_whole("seed", self.seed, 0, LARGEST_SEED))
 
 
 @dataclass(frozen=True)
@@ -81,6 +81,7 @@ def run_session(
     :return: the result
     :raises ResumeError: if the learner asks for other parameters than a known window has
     """
+    check_type("spec", spec, SessionSpec)
     learner = LEARNERS[spec.learner](spec.parameters, spec.seed)
     with apart() as outside:
 

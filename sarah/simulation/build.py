@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 
-from sarah.errors import SimulationError
+from sarah.errors import SimulationError, one_line
 from sarah.robot.description import RobotDescription
 from sarah.simulation.engines import check_engine
 from sarah.simulation.physics import Physics
@@ -31,5 +32,6 @@ def simulator_of(engine: str) -> BuildSimulator:
 
         return PyBulletSimulator
     except Exception as error:  # MuJoCo raises anything, if it cannot draw as the environment asks
-        hint = "; unset MUJOCO_GL, as nothing is drawn with it" if engine == "mujoco" else ""
-        raise SimulationError(f"the package {engine} cannot be imported: {error}{hint}") from error
+        is_asked_to_draw = engine == "mujoco" and "MUJOCO_GL" in os.environ
+        hint = "; unset MUJOCO_GL, as nothing is drawn with it" if is_asked_to_draw else ""
+        raise SimulationError(f"the package {engine} cannot be imported: {one_line(error)}{hint}") from error

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from sarah.errors import ConfigurationError, check_fields, check_range, shortened
-from sarah.number import is_number, plain
+from sarah.errors import ConfigurationError, check_fields, check_whole
 
 SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE = 50, 1000
 FASTEST_PHYSICS_RATE = 20_000
@@ -28,25 +27,24 @@ class Physics:
 
     def __post_init__(self) -> None:
         """Refuse rates that do not divide into each other."""
-        for name in ("control_rate", "rate", "solver_iterations"):
-            value = plain(getattr(self, name))
-            if not is_number(value) or not isinstance(value, int):
-                raise ConfigurationError(f"physics.{name} must be a whole number, not {shortened(value)}")
+        control_rate = check_whole(
+            "physics.control_rate", self.control_rate, SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE, "Hz"
+        )
+        rate = check_whole("physics.rate", self.rate, control_rate, FASTEST_PHYSICS_RATE, "Hz")
+        iterations = check_whole("physics.solver_iterations", self.solver_iterations, 1, MOST_SOLVER_ITERATIONS)
+        for name, value in (("control_rate", control_rate), ("rate", rate), ("solver_iterations", iterations)):
             object.__setattr__(self, name, value)
-        check_range("physics.control_rate", self.control_rate, SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE, "Hz")
-        check_range("physics.rate", self.rate, self.control_rate, FASTEST_PHYSICS_RATE, "Hz")
         if self.rate % self.control_rate:
             raise ConfigurationError(
                 f"physics.rate must be a multiple of the control rate, {self.control_rate} Hz, not {self.rate!r}"
             )
-        check_range("physics.solver_iterations", self.solver_iterations, 1, MOST_SOLVER_ITERATIONS)
 
     def at_control_rate(self, control_rate: int) -> Physics:
         """Physics for another control rate; the physics rate is raised to the next multiple of it.
 
         :param control_rate: control ticks per second
         """
-        check_range("physics.control_rate", control_rate, SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE, "Hz")
+        check_whole("physics.control_rate", control_rate, SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE, "Hz")
         multiple = -(-self.rate // control_rate)
         return replace(self, rate=multiple * control_rate, control_rate=control_rate)
 

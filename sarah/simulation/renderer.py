@@ -62,6 +62,7 @@ class Renderer(HoldsWorld):
             self.close()
             raise
 
+    @np.errstate(under="ignore")  # what is far away is not seen
     def draw(
         self,
         position: Vector,

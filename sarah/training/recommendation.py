@@ -122,7 +122,8 @@ def expected_merits(tried: np.ndarray, merits: np.ndarray, places: np.ndarray) -
 
 
 def _covariances(places: np.ndarray, others: np.ndarray) -> np.ndarray:
-    covariances: np.ndarray = np.exp(_squared_distances(places, others) / (-2.0 * LENGTH**2))
+    with np.errstate(under="ignore"):  # what is far away says nothing
+        covariances: np.ndarray = np.exp(_squared_distances(places, others) / (-2.0 * LENGTH**2))
     return covariances
 
 

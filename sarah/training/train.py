@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import ceil
@@ -14,7 +15,7 @@ from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Executor, executor_of
-from sarah.errors import LearningError, SarahError
+from sarah.errors import LearningError, SarahError, one_line
 from sarah.process import apart
 from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
@@ -74,7 +75,7 @@ def train(
 def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_bar: bool) -> Learned:
     comparison = np.random.default_rng(seeds_of(config.seed).comparison)
     with (
-        tqdm(total=config.episodes, unit=" episodes", disable=not progress_bar) as progress,
+        tqdm(total=config.episodes, unit=" episodes", disable=not progress_bar or sys.stderr is None) as progress,
         EpisodeRecorder(run, config, journal, progress) as recorder,
     ):
         learner = make_learner(config, run, recorder, journal)
@@ -98,8 +99,7 @@ def _choice(learner: Learner, stage: TrainingConfig) -> Parameters:
     except SarahError:
         raise
     except (ValueError, RuntimeError, ArithmeticError, AssertionError, LookupError, Warning) as error:
-        words = " ".join(str(error).split()) or type(error).__name__
-        raise LearningError(f"{stage.algo} cannot go on: {words}") from error
+        raise LearningError(f"{stage.algo} cannot go on: {one_line(error)}") from error
 
 
 def _evaluated(parameters: Parameters, config: TrainingConfig, recorder: EpisodeRecorder, workers: Executor) -> Learned:

@@ -12,7 +12,7 @@ from sarah.episode.tasks.balance import BALANCE, BalanceConfig
 from sarah.episode.tasks.stepping import STEPPING
 from sarah.episode.tasks.task import Task, TaskFile
 from sarah.episode.tasks.task_file import SETTINGS_TYPES, read_task, task_of_text
-from sarah.errors import ConfigurationError, unknown_name
+from sarah.errors import ConfigurationError, check_type, unknown_name
 
 TASKS: dict[str, Task[Any]] = {task.name: task for task in (STEPPING, BALANCE)}
 """Tasks of this package, by name."""
@@ -40,6 +40,7 @@ def load_task(reference: str) -> Task[Any]:
         ``"my_task.py:JUMP"``
     :raises ConfigurationError: if there is no such task, or if the file has a mistake
     """
+    check_type("task", reference, str)
     path, colon, attribute = reference.rpartition(":")
     if colon and path.endswith(".py"):
         task = read_task(Path(path), attribute)

@@ -29,6 +29,8 @@ LONGEST_TEXT = 200
 """Length of the longest text about a task or a parameter, in characters."""
 LARGEST = 1e6
 """Largest end of a parameter's range."""
+NARROW = 2.0**-20
+"""Width of a range in which 32-bit numbers tell hardly any values apart, as a share of the larger end."""
 ROUNDING = 2.0**-22
 """Distance beyond an end of a range that comes from a 32-bit number, as a share of the larger end."""
 
@@ -135,6 +137,9 @@ class Task(Generic[ConfigType]):
             ):
                 ends = f"{shortened(parameter.low)} and {shortened(parameter.high)}"
                 raise ConfigurationError(f"ends of parameter {name} must be in rising order, not {ends}")
+            if parameter.width <= NARROW * max(abs(parameter.low), abs(parameter.high)):
+                ends = f"{parameter.low!r} and {parameter.high!r}"
+                raise ConfigurationError(f"ends of parameter {name} are too near to each other to learn it: {ends}")
         if not names:
             raise ConfigurationError(f"task {self.name!r} needs at least one parameter")
         object.__setattr__(self, "baseline", self.checked(self.baseline, "baseline"))
