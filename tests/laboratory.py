@@ -3,7 +3,9 @@
 The laboratories do to a simulated robot what no episode does, in each physics engine: place it, turn it, weigh it.
 """
 
+import copy
 import math
+import pickle
 from collections.abc import Callable, Sequence
 from itertools import product
 from typing import Any
@@ -39,6 +41,12 @@ RESULT = EpisodeResult(
     peak_leg_speed=0.6,
 )
 """Result of an episode that nobody simulated."""
+WAYS: dict[str, Callable[[Any], Any]] = {
+    "copy": copy.copy,
+    "deepcopy": copy.deepcopy,
+    "pickle": lambda value: pickle.loads(pickle.dumps(value)),
+}
+"""Ways to copy an object."""
 NEEDS_PYBULLET = pytest.mark.skipif(not is_installed("pybullet"), reason="needs pybullet")
 
 

@@ -1,11 +1,9 @@
 """Worlds of the engines are ours alone, whatever other code in the process does with the engines."""
 
 import contextlib
-import copy
 import ctypes
 import gc
 import locale
-import pickle
 import subprocess
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -13,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from laboratory import COARSE_PHYSICS, NEEDS_PYBULLET, need
+from laboratory import COARSE_PHYSICS, NEEDS_PYBULLET, WAYS, need
 
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.settings import EpisodeConfig
@@ -122,7 +120,7 @@ def test_no_robot_is_where_code_works_that_names_no_client() -> None:
 
 
 @NEEDS_PYBULLET
-def test_bullets_contact_margin_is_ours_in_ours_and_its_own_in_others() -> None:
+def test_bullets_contact_margin_is_its_own_in_other_worlds() -> None:
     """All worlds of a process share it."""
     other = pybullet.connect(pybullet.DIRECT)
 
@@ -258,13 +256,6 @@ def test_mujocos_warnings_of_other_models_still_come() -> None:
     finally:
         mujoco.set_mju_user_warning(None)
     assert heard
-
-
-WAYS: dict[str, Callable[[Any], Any]] = {
-    "copy": copy.copy,
-    "deepcopy": copy.deepcopy,
-    "pickle": lambda value: pickle.loads(pickle.dumps(value)),
-}
 
 
 @pytest.mark.parametrize("way", WAYS)

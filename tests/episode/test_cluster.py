@@ -1,0 +1,191 @@
+"""Dask's workers on this machine: they stay and answer whatever surrounds them, or one line says why they cannot."""
+
+import itertools
+import os
+import resource
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import dask
+import distributed  # its settings are there before a test changes one, and stay when that ends
+import pytest
+
+from sarah.control.parameters import PAPER_STEPPING
+from sarah.episode import cluster as cluster_module
+from sarah.episode.episode import simulate
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.workers import Workers
+from sarah.errors import DescriptionError, WorkersError
+
+SOMEBODYS = {
+    "distributed.worker.lifetime.duration": "1 hour",
+    "distributed.scheduler.idle-timeout": "1 hour",
+    "distributed.scheduler.no-workers-timeout": "1 hour",
+}
+"""Settings of Dask that suit somebody's clusters."""
+
+
+@pytest.mark.parametrize(
+    ("settings", "cause"),
+    [
+        ({"temporary-directory": "/dev/null"}, "NotADirectoryError: .*'/dev/null/dask-scratch-space'"),
+        ({"distributed.worker.preload": ["not_there"]}, "ModuleNotFoundError: No module named 'not_there'"),
+    ],
+)
+def test_workers_that_cannot_start_say_why(
+    settings: dict[str, object], cause: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    before = dict(os.environ)
+    with dask.config.set(settings), pytest.raises(WorkersError, match=f"^no workers can start .*: {cause}"):
+        Workers(1).__enter__()
+    assert dict(os.environ) == before and capfd.readouterr().err == ""
+
+
+@pytest.mark.parametrize(
+    ("errors", "words"),
+    [
+        (
+            (RuntimeError("it failed"), AssertionError("init"), ValueError("a\n 'b'"), KeyError("b")),
+            "ValueError: a 'b'",
+        ),
+        ((RuntimeError("it failed"), AttributeError("init"), AssertionError("daemon")), "AssertionError: daemon"),
+    ],
+)
+def test_the_first_cause_is_said_and_not_its_aftermath(
+    errors: tuple[Exception, ...], words: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(**_: object) -> None:
+        for error, context in itertools.pairwise(errors):
+            error.__context__ = context
+        raise errors[0] from errors[1]
+
+    monkeypatch.setattr(distributed, "LocalCluster", fail)
+    with pytest.raises(WorkersError, match=f"^no workers can start on this machine: {words}$"):
+        Workers(1).__enter__()
+
+
+def test_damaged_settings_of_dask_are_one_line(tmp_path: Path) -> None:
+    (tmp_path / "dask.yaml").write_text("a: [1,")
+    program = (
+        "from sarah.episode.workers import Workers\ntry:\n    Workers(1).__enter__()\nexcept Exception as e: print(e)"
+    )
+    environment = {**os.environ, "DASK_CONFIG": str(tmp_path / "dask.yaml")}
+    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env=environment)
+    assert (process.stderr, process.stdout.count("\n")) == ("", 1)
+    assert f"A dask config file at '{tmp_path / 'dask.yaml'}' is malformed" in process.stdout
+
+
+def test_workers_that_cannot_start_again_are_not_waited_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    environment = dict(os.environ)
+    monkeypatch.setattr(cluster_module, "WATCH_SECONDS", 0.5)
+    with dask.config.set({"temporary-directory": str(tmp_path / "scratch")}), Workers(1) as workers:
+        shutil.rmtree(tmp_path / "scratch")
+        (tmp_path / "scratch").touch()
+        with pytest.raises(
+            WorkersError, match="all worker processes of this machine have ended, and no other could start"
+        ):
+            workers.submit(os._exit, 1).result()
+    assert dict(os.environ) == environment
+
+
+def die_twice(folder: str) -> str:
+    attempts = Path(folder) / "attempts"
+    with attempts.open("a") as file:
+        file.write("x")
+    if attempts.stat().st_size <= 2:
+        os._exit(1)
+    return attempts.read_text()
+
+
+def test_what_a_scheduler_gives_up_is_handed_in_again(tmp_path: Path) -> None:
+    with dask.config.set({"distributed.scheduler.allowed-failures": 0}), Workers(1) as workers:
+        assert workers.submit(die_twice, str(tmp_path)).result() == "xxx"
+
+
+@pytest.fixture(scope="module")
+def workers() -> Iterator[Workers]:
+    """One worker, which begins with somebody's settings, and with a standard output that is full."""
+    output = os.dup(1)
+    with open("/dev/full", "w") as full:
+        os.dup2(full.fileno(), 1)
+    try:
+        with dask.config.set(SOMEBODYS):
+            started = Workers(1).__enter__()
+    finally:
+        os.dup2(output, 1)
+        os.close(output)
+    yield started
+    started.__exit__(None, None, None)
+
+
+def test_somebodys_settings_do_not_let_workers_go(workers: Workers) -> None:
+    client = workers.client
+    assert client is not None
+    assert list(client.run(lambda dask_worker: dask_worker.lifetime).values()) == [None]
+    limits = client.run_on_scheduler(
+        lambda dask_scheduler: (dask_scheduler.idle_timeout, dask_scheduler.no_workers_timeout)
+    )
+    assert limits == (None, None)
+
+
+def print_much() -> None:
+    for _ in range(100):
+        print("much", flush=True)
+
+
+def test_a_worker_may_print_what_nobody_reads(workers: Workers) -> None:
+    workers.submit(print_much).result()
+
+
+def test_a_call_that_ends_while_somebody_looks_is_answered(workers: Workers, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster_module, "WATCH_SECONDS", 0.001)
+    assert [workers.submit(abs, -number).result() for number in range(200)] == list(range(200))
+
+
+def test_an_error_on_a_worker_is_raised_here(workers: Workers) -> None:
+    bad = EpisodeSpec(PAPER_STEPPING, 0, config=EpisodeConfig(dimensions={"thigh_mass": 9.0}))
+    with pytest.raises(DescriptionError, match="must weigh 10 kg"):
+        list(workers.simulate_all([bad]))
+
+
+def test_workers_are_left_alone_by_an_interrupt(workers: Workers) -> None:
+    assert workers.client is not None
+    (pid,) = workers.client.run(os.getpid).values()
+    os.kill(pid, signal.SIGINT)
+    spec = EpisodeSpec(PAPER_STEPPING, 1, config=EpisodeConfig(time_limit=2.0))
+    assert list(workers.simulate_all([spec])) == [simulate(spec)]
+    assert list(workers.client.run(os.getpid).values()) == [pid]
+
+
+def pages_taken(megabytes: int) -> int:
+    """Pages that a process takes from the system while it makes and forgets arrays of a megabyte."""
+    bytearray(2**20)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+    for _ in range(megabytes):
+        bytearray(2**20)
+    return resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="counts what Linux gives to a process")
+def test_workers_keep_the_memory_that_they_use_again(workers: Workers) -> None:
+    assert workers.submit(pages_taken, 100).result() < 1000  # and not the 256 of each megabyte
+
+
+def test_a_scheduler_that_does_not_answer_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster_module, "SCHEDULER_SECONDS", 1)
+    with pytest.raises(WorkersError, match=r"no Dask scheduler answers at 'tcp://127.0.0.1:9'"):
+        Workers(scheduler="tcp://127.0.0.1:9").__enter__()
+
+
+def test_a_port_that_says_nothing_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster_module, "SCHEDULER_SECONDS", 1)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        with pytest.raises(WorkersError, match=f"{address}': the port is open, but silent"):
+            Workers(scheduler=address).__enter__()
