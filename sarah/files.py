@@ -157,8 +157,7 @@ def read_text(path: Path, most_bytes: int = SMALL) -> str:
 
     :param path: path of the file
     :param most_bytes: largest size in bytes
-    :raises OSError: if it is no regular file, or larger
-    :raises UnicodeDecodeError: if it is no text
+    :raises OSError: if it is no regular file, larger, or no UTF-8 text
     """
     with open_regular(path) as file:
         _check_size(file, path, most_bytes)
@@ -167,7 +166,7 @@ def read_text(path: Path, most_bytes: int = SMALL) -> str:
             content += part
     if len(content) > most_bytes:
         raise _too_large(path, f"more than {most_bytes:,} bytes")
-    return content.decode()
+    return _decoded(content, path)
 
 
 def read_lines(path: Path, most_lines: int, most_bytes: int = LONGEST_LINE) -> Iterator[str]:
@@ -177,8 +176,7 @@ def read_lines(path: Path, most_lines: int, most_bytes: int = LONGEST_LINE) -> I
     :param most_lines: largest number of lines
     :param most_bytes: largest size of a line, in bytes
     :return: iterator over the lines, with their ends
-    :raises OSError: if it is no regular file, or has more or longer lines
-    :raises UnicodeDecodeError: if it is no text
+    :raises OSError: if it is no regular file, has more or longer lines, or is no UTF-8 text
     """
     with io.BufferedReader(open_regular(path)) as file:  # type: ignore[type-var]  # it is a raw file
         _check_size(file, path, min(most_lines * most_bytes, LARGEST))
@@ -190,7 +188,7 @@ def read_lines(path: Path, most_lines: int, most_bytes: int = LONGEST_LINE) -> I
                 raise _too_large(path, f"more than {most_bytes:,} bytes in line {number}")
             if number > most_lines:
                 raise _too_large(path, f"more than {most_lines:,} lines")
-            yield line.decode()
+            yield _decoded(line, path)
 
 
 @contextmanager
@@ -231,6 +229,13 @@ def open_locked(path: Path, flags: int, wait: bool) -> BinaryIO | None:
         file.close()
         raise
     return file
+
+
+def _decoded(content: bytes, path: Path) -> str:
+    try:
+        return content.decode()
+    except UnicodeDecodeError as error:
+        raise OSError(errno.EILSEQ, "it is not UTF-8 text", str(path)) from error
 
 
 def _check_size(file: BinaryIO, path: Path, most_bytes: int) -> None:

@@ -39,7 +39,7 @@ MISTAKES: dict[str, Callable[[], Any]] = {
     r"an action must be 5 numbers .*, not \[-128": lambda: checked_action(np.full(5, -128, np.int8), 5),
     r"an action must be 5 numbers .*, not \[True": lambda: checked_action(np.full(5, True), 5),
     r"workers must be an executor": lambda: EpisodeVecEnv("stepping", EpisodeConfig(), 1, 1, 4),  # type: ignore
-    r"a push must be a force of three numbers": lambda: DrawnPush((1, 2), 1, 1),  # type: ignore
+    r"a push must consist of finite numbers, three": lambda: DrawnPush((1, 2), 1, 1),  # type: ignore
 }
 
 

@@ -85,7 +85,9 @@ class DrawnPush:
         force = plain(self.force)
         is_vector = isinstance(force, (list, tuple)) and len(force) == 3
         if not is_vector or not all(map(is_finite, (*force, self.begin, self.duration))):
-            raise ConfigurationError(f"a push must be a force of three numbers, begin and duration, not {self!r:.300}")
+            raise ConfigurationError(
+                f"a push must consist of finite numbers, three of them its force, not {self!r:.200}"
+            )
         object.__setattr__(self, "force", tuple(float(plain(newtons)) for newtons in force))
         to_floats(self, "begin", "duration")
 

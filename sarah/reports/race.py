@@ -218,7 +218,7 @@ def _rows(entry: Entry) -> list[dict[str, str]]:
     path = entry.folder / RACE_FILE
     try:
         rows = list(csv.DictReader(read_lines(path, entry.config.episodes + 2)))
-    except (OSError, csv.Error, UnicodeDecodeError) as error:
+    except (OSError, csv.Error) as error:
         raise _unreadable(path, error) from error
     if not rows:
         raise _unreadable(path, ValueError("it has no rows"))

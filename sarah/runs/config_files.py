@@ -42,8 +42,8 @@ def read_config(config_type: type[ConfigType], path: Path, task: Task[Any] | Non
     """
     try:
         text = read_text(path)
-    except (OSError, UnicodeDecodeError) as error:
-        raise ConfigurationError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from error
+    except OSError as error:
+        raise ConfigurationError(f"cannot read {path}: {error.strerror or error}") from error
     try:
         content = read_yaml(text)
         content = {} if content is None else content

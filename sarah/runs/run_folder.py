@@ -182,7 +182,7 @@ class RunFolder:
         """Read the versions with which the training began, by name of the package."""
         try:
             lines = read_text(self._versions_path).splitlines()
-        except (OSError, UnicodeDecodeError) as error:
+        except OSError as error:
             raise _unreadable(self._versions_path, error) from error
         return {name: version for name, _, version in (line.partition(" ") for line in lines)}
 
@@ -204,7 +204,7 @@ class RunFolder:
         """Read the text of ``config.yaml``."""
         try:
             return read_text(self._config_path)
-        except (OSError, UnicodeDecodeError) as error:
+        except OSError as error:
             raise _unreadable(self._config_path, error) from error
 
     def append_episode(self, index: int, spec: EpisodeSpec, result: EpisodeResult) -> None:
@@ -295,7 +295,7 @@ class RunFolder:
             return
         try:
             yield from csv.DictReader(read_lines(path, self.config().episodes + 1))
-        except (OSError, csv.Error, UnicodeDecodeError) as error:
+        except (OSError, csv.Error) as error:
             raise _unreadable(path, error) from error
 
 

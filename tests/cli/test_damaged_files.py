@@ -64,7 +64,7 @@ def test_configuration_files(text: str, message: str, answer: Callable[[str], st
 
 def test_a_file_that_is_no_text(answer: Callable[[str], str], tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_bytes(b"\xff\xfe\x00\x80")
-    assert "cannot read mine.yaml" in answer("sarah-train --config mine.yaml")
+    assert "cannot read mine.yaml: it is not UTF-8 text" in answer("sarah-train --config mine.yaml")
 
 
 @pytest.mark.parametrize(

@@ -32,8 +32,8 @@ def read_task(path: Path, attribute: str) -> Task[Any]:
     """
     try:
         text = read_text(path)
-    except (OSError, UnicodeDecodeError) as error:
-        raise ConfigurationError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from error
+    except OSError as error:
+        raise ConfigurationError(f"cannot read {path}: {error.strerror or error}") from error
     return task_of_text(path.name, attribute, text.removeprefix("\ufeff"))
 
 
