@@ -255,10 +255,15 @@ def test_parameters_are_read_by_name_whatever_their_order(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize(
-    "error", [ValueError("the loss is nan,\nalas"), np.linalg.LinAlgError("singular"), AssertionError()]
+    ("error", "words"),
+    [
+        (ValueError("the loss is nan,\nalas"), "ValueError: the loss is nan, alas"),
+        (np.linalg.LinAlgError("singular"), "LinAlgError: singular"),
+        (AssertionError(), "AssertionError"),
+    ],
 )
 def test_what_an_algorithm_fails_at_is_one_line(
-    error: Exception, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    error: Exception, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def fail(*_: object) -> None:
         raise error
@@ -266,7 +271,6 @@ def test_what_an_algorithm_fails_at_is_one_line(
     config = replace(SHORT, algo="random", agent=settings_of("random")())
     monkeypatch.setattr(RandomSearch, "tell", fail)
     run = RunFolder.create(tmp_path / "run", config)
-    words = {ValueError: "the loss is nan, alas", AssertionError: "AssertionError"}.get(type(error), "singular")
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         with pytest.raises(LearningError, match=f"^random cannot go on: {words}$"):
