@@ -12,6 +12,7 @@ from numbers import Integral, Real
 from typing import Any
 
 _DIGITS = "(?:0|[1-9][0-9]{0,999})"
+_PLAIN = {float, int, bool, str}
 WHOLE = re.compile(rf"[-+]?{_DIGITS}\Z")
 """A whole number: decimal, without leading zeros, which YAML 1.1 takes for octal, and without underscores."""
 _DECIMAL = rf"(?:{_DIGITS}(?:\.[0-9]{{0,999}})?|\.[0-9]{{1,999}})(?:e[-+]?[0-9]{{1,9}})?"
@@ -61,6 +62,8 @@ def plain(value: Any) -> Any:
     :param value: value of any type
     :return: ``int``, ``float``, ``bool`` or ``str``; a list for an array, unless it has no dimensions
     """
+    if type(value) in _PLAIN:  # as nearly always
+        return value
     if getattr(getattr(value, "dtype", None), "kind", None) in ("m", "M"):  # times, which numpy counts as whole numbers
         return value
     if hasattr(value, "tolist"):

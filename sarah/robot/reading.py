@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from enum import Enum
 from typing import Any, NamedTuple
@@ -66,7 +67,10 @@ class SensorReading(NamedTuple):
         :param before: earlier reading, of finite signals
         """
         held: Any = self
-        if not self.is_finite:
+        if self.is_finite:
+            if set(map(type, itertools.chain(*self))) == {float}:  # as nearly always
+                return self
+        else:
             held = (
                 [value if abs(value) < LARGEST_SIGNAL else last for value, last in zip(values, old, strict=True)]
                 for values, old in zip(self, before, strict=True)

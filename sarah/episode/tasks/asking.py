@@ -60,9 +60,10 @@ def reward_of(task: Task, tick: Tick, config: EpisodeConfig) -> float:
     :param config: settings of the episode
     """
     reward = _asked(task, task.reward, tick, config)
-    if not is_finite(reward):
+    number = plain(reward)
+    if not is_finite(number):
         raise _wrong(task, "its reward must be a finite number", reward)
-    return float(plain(reward))
+    return float(number)
 
 
 def ending_of(task: Task, tick: Tick, config: EpisodeConfig) -> str | None:
