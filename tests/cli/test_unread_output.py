@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 from terminal import SHORT, run
 
-TRAIN = "sarah-train --task stepping --algo random --episodes 2 --run-dir made"
 WORK = {
-    TRAIN: "made/parameters.json",
+    "sarah-train --task stepping --algo random --episodes 2 --run-dir made": "made/parameters.json",
     "sarah-operate {run} --learner random --minutes 0.1 --run-dir made": "made/parameters.json",
     "sarah-compare made --algorithms random --seeds 1 --episodes 2 --evaluations 1": "made/race.pdf",
     "sarah-video {run} made.gif --seconds 1 1.1": "made.gif",
@@ -21,11 +20,8 @@ WORK = {
 """Short work of the commands, and the last file that it makes."""
 
 
-@pytest.mark.parametrize(
-    ("line", "streams"),
-    [*((line, "closed") for line in WORK), (TRAIN, "full"), (TRAIN, "left")],
-    ids=lambda text: text.split()[0],
-)
+@pytest.mark.parametrize("streams", ["closed", "full", "left"])
+@pytest.mark.parametrize("line", WORK, ids=lambda text: text.split()[0])
 def test_work_is_done_though_nobody_reads_what_is_said(
     line: str, streams: str, trained: tuple[Path, subprocess.CompletedProcess[str]], tmp_path: Path
 ) -> None:
