@@ -1,5 +1,6 @@
 """Checks of arguments, which refuse a bad value in one line that names the argument, the value and what is allowed."""
 
+import reprlib
 import sys
 from numbers import Integral, Real
 from typing import Any
@@ -35,6 +36,25 @@ def checked_number(
         return int(value) if isinstance(value, Integral) else float(value)
     ends = f"{'above' if above else 'from'} {lowest:g}" + (f" to {highest:g}" if highest < sys.float_info.max else "")
     raise ValueError(f"{name} must be a {'whole ' if whole else ''}number {ends}, not {value!r}")
+
+
+def checked_disturbances(values: Any, number: int | None) -> np.ndarray:
+    """
+    Refuse disturbances of an episode that are not finite, or more or fewer than those of others.
+
+    :param values: A list, tuple or array of numbers
+    :param number: Number of those of the episodes before; ``None`` for the first episode
+    :return: The numbers, of shape (number,)
+    """
+    try:
+        numbers = np.array(values, dtype=float)
+    except (ValueError, TypeError, OverflowError):
+        numbers = np.array(np.nan)
+    is_list = numbers.ndim == 1 and number in (None, len(numbers))
+    if not is_list or not np.isfinite(numbers).all():
+        allowed = "finite numbers" if number is None else f"{number} finite numbers, as in the episodes before"
+        raise ValueError(f"disturbances must be {allowed}, not {reprlib.repr(values)}")
+    return numbers
 
 
 def checked_schedule(

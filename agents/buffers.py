@@ -9,7 +9,8 @@ from stable_baselines3.common.buffers import ReplayBuffer
 from stable_baselines3.common.type_aliases import ReplayBufferSamples
 from stable_baselines3.common.vec_env import VecNormalize
 
-from sarah.agents.arguments import checked_number
+from sarah.agents.arguments import checked_disturbances, checked_number
+from sarah.agents.corrections import corrected
 
 DOUBT = 0.25
 """Worthless transitions that every neighbourhood is thought to hold, so that single lucky ones do not win."""
@@ -74,6 +75,10 @@ class RankReplayBuffer(ReplayBuffer):
     noise makes what is learned from it too high. The probabilities are computed at the first draw after an
     addition, in O(n log n). The best action is looked for among the newest 10,000 transitions.
 
+    An environment of one step can say what luck an episode had: ``info["disturbances"]`` holds the numbers that its
+    return depended on and its action did not choose, as many in every episode. Then ranks and sampled rewards are
+    without the part that these explain, see :func:`~sarah.agents.corrections.corrected`; ``rewards`` stay as they came.
+
     :param buffer_size: Max number of elements in the buffer
     :param observation_space: Observation space
     :param action_space: Action space
@@ -111,6 +116,8 @@ class RankReplayBuffer(ReplayBuffer):
             handle_timeout_termination=handle_timeout_termination,
         )
         self.temperature = checked_number("temperature", temperature, 0.0)
+        self.disturbances: np.ndarray | None = None
+        self._corrected_rewards: np.ndarray | None = None
         self._cumulative_probabilities: np.ndarray | None = None
 
     def add(
@@ -130,19 +137,31 @@ class RankReplayBuffer(ReplayBuffer):
         :param action: Actions
         :param reward: Rewards
         :param done: Whether the episodes ended
-        :param infos: Additional information, which says whether a time limit ended an episode
+        :param infos: Additional information, which says whether a time limit ended an episode, and what its
+            disturbances were
+        :raises ValueError: if disturbances are not finite, or not as many as those of the transitions before
         """
         for i, info in enumerate(infos):
             row = slice(i, i + 1)
+            self._add_disturbances(info.get("disturbances"))
             super().add(obs[row], next_obs[row], action[row], reward[row], done[row], [info])
-        self._cumulative_probabilities = None
+        self._corrected_rewards = self._cumulative_probabilities = None
+
+    def _add_disturbances(self, given: Any) -> None:
+        """Store the disturbances of the next transition. The first transition says how many all have."""
+        if self.size() == 0 and given is not None:
+            self.disturbances = np.zeros((self.buffer_size, len(checked_disturbances(given, None))))
+        if (given is None) != (self.disturbances is None):
+            raise ValueError('info["disturbances"] must be there in every episode or in none')
+        if self.disturbances is not None:
+            self.disturbances[self.pos] = checked_disturbances(given, self.disturbances.shape[1])
 
     def reset(self) -> None:
         """
         Reset the buffer.
         """
         super().reset()
-        self._cumulative_probabilities = None
+        self.disturbances = self._corrected_rewards = self._cumulative_probabilities = None
 
     def sample(self, batch_size: int, env: VecNormalize | None = None) -> ReplayBufferSamples:
         """
@@ -158,12 +177,16 @@ class RankReplayBuffer(ReplayBuffer):
             raise ValueError("the replay buffer is empty, so there is nothing to sample")
         if self._cumulative_probabilities is None:
             with np.errstate(under="ignore"):  # Ranks that are hardly ever drawn
-                weights = np.exp(self.temperature * (average_ranks(self.rewards[: self.size(), 0]) - 1))
+                weights = np.exp(self.temperature * (average_ranks(self._without_luck()) - 1))
             cumulative = np.cumsum(weights)
             self._cumulative_probabilities = cumulative / cumulative[-1]
         # As np.random.choice does with probabilities, which it would add up again for every batch
         batch_inds = self._cumulative_probabilities.searchsorted(np.random.random_sample(batch_size), side="right")
-        return self._get_samples(batch_inds, env=env)
+        samples = self._get_samples(batch_inds, env=env)
+        if self.disturbances is None:
+            return samples
+        rewards = self._without_luck()[batch_inds, None].astype(np.float32)
+        return samples._replace(rewards=self.to_torch(self._normalize_reward(rewards, env)))
 
     def best_action(self) -> np.ndarray:
         """
@@ -203,4 +226,15 @@ class RankReplayBuffer(ReplayBuffer):
         """Actions and ranks of the newest transitions."""
         count = min(self.size(), MOST_JUDGED)
         newest = np.arange(self.pos - count, self.pos)  # In a full buffer, negative ones count from its end
-        return self.actions[newest, 0], average_ranks(self.rewards[newest, 0])
+        return self.actions[newest, 0], average_ranks(self._without_luck()[newest])
+
+    def _without_luck(self) -> np.ndarray:
+        """Rewards as they are stored, without what disturbances explain of them."""
+        rewards = self.rewards[: self.size(), 0]
+        if self.disturbances is None:
+            return rewards
+        if self._corrected_rewards is None:
+            oldest_first = np.arange(self.pos - len(rewards), self.pos)  # Negative ones are at its end
+            self._corrected_rewards = np.empty(len(rewards))
+            self._corrected_rewards[oldest_first] = corrected(rewards[oldest_first], self.disturbances[oldest_first])
+        return self._corrected_rewards

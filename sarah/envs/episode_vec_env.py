@@ -2,7 +2,7 @@
 
 Stepping many environments side by side waits for the slowest of each round, and episodes last from 2 to 30 s. Here a
 fixed number of episodes is in flight instead: a step submits one more, and waits only for the oldest. So a step returns
-the outcome of an action some steps before, and the buffers of :mod:`sarah.training.replay` store it with that action.
+the outcome of an action some steps before, and the buffer of :mod:`sarah.training.replay` stores it with that action.
 The order of the outcomes, and with it the training, does not depend on the workers.
 """
 
@@ -21,7 +21,7 @@ from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices
 from sarah.envs.sarah_env import SarahEnv, draw_seed, observation_from, parameters_from
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import Task
+from sarah.episode.tasks import Task, disturbances_of
 from sarah.episode.workers import Executor, Job, begin_episode, executor_of, finish_episode
 from sarah.errors import ConfigurationError, LearningError, check_whole
 from sarah.robot.reading import SensorReading
@@ -45,10 +45,10 @@ class EpisodeVecEnv(HoldsWorld, VecEnv):
     """Episodes of one :class:`~sarah.envs.sarah_env.SarahEnv`, several of them in flight.
 
     Step k submits the episode of its action and returns the outcome of step ``k - slots + 1``: the reward is that
-    episode's return, and ``info`` contains its ``spec``, ``result`` and ``transition`` (observation, action, last
-    observation). The first ``slots - 1`` steps have no outcome: they end no episode, and have ``None`` as
-    ``info["transition"]``. The last ``slots - 1`` steps submit nothing. So :attr:`episodes` take
-    ``episodes + slots - 1`` steps.
+    episode's return, and ``info`` contains its ``spec``, ``result``, ``disturbances`` unless the task names none, and
+    ``transition`` (observation, action, last observation). The first ``slots - 1`` steps have no outcome: they end no
+    episode, and have ``None`` as ``info["transition"]``. The last ``slots - 1`` steps submit nothing. So
+    :attr:`episodes` take ``episodes + slots - 1`` steps.
 
     :param task: task, or the name of one of this package
     :param config: settings of the episodes
@@ -148,6 +148,8 @@ class EpisodeVecEnv(HoldsWorld, VecEnv):
                 "scale the task's reward"
             )
         info = {"spec": spec, "result": result, "transition": transition}
+        if (disturbances := disturbances_of(spec)) is not None:
+            info["disturbances"] = disturbances
         return result.episode_return, info
 
     def close(self) -> None:

@@ -11,8 +11,8 @@ import numpy as np
 from sarah.episode.episode import Episode
 from sarah.episode.from_mapping import from_mapping
 from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import FIRST_TRAINING_SEED
-from sarah.episode.tasks import Task, task_named
+from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
+from sarah.episode.tasks import Task, disturbances_of, task_named
 from sarah.errors import ConfigurationError, SimulationError, shortened, unknown_name
 from sarah.number import is_number, plain
 from sarah.robot.reading import SensorReading
@@ -35,8 +35,8 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
     ``reset`` lets the robot stand for one second. ``step`` runs the pattern generator to the episode's end and always
     terminates. The observation is the 16 sensor signals after standing, each divided by its ``OBSERVATION_SCALES`` and
     clipped to [-5, 5]. The action is P1 to P5, or V1 to V4, with the box of the parameters scaled to [-1, 1]. ``info``
-    contains the episode's ``seed``, and after the step the ``parameters`` and the ``result``, an
-    :class:`~sarah.episode.result.EpisodeResult`.
+    contains the episode's ``seed``, and after the step the ``parameters``, the ``result``, an
+    :class:`~sarah.episode.result.EpisodeResult`, and the ``disturbances``, unless the task names none.
 
     :param task: task, or the name of one of this package: ``"stepping"`` to choose P1 to P5, ``"balance"`` to choose
         V1 to V4 and be pushed
@@ -95,6 +95,9 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         self._is_over = True
         result = self._episode.run(parameters)
         info = {"seed": self._seed, "parameters": parameters, "result": result}
+        disturbances = disturbances_of(EpisodeSpec(parameters, self._seed, self.task, self.config))
+        if disturbances is not None:
+            info["disturbances"] = disturbances
         return observation_from(self._episode.last_reading), result.episode_return, True, False, info
 
     def render(self) -> np.ndarray | None:

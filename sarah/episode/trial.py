@@ -8,7 +8,7 @@ from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import Task
+from sarah.episode.tasks import Task, disturbances_of
 from sarah.errors import TaskError
 
 TRIAL_SECONDS = 0.5
@@ -30,4 +30,16 @@ def try_task(task: Task, config: EpisodeConfig) -> None:
         raise TaskError(
             f"{task.reference}: the same episode has given {first.episode_return:g} and then {again.episode_return:g}; "
             "its functions must depend on their arguments only"
+        )
+    _try_disturbances(task, config)
+
+
+def _try_disturbances(task: Task, config: EpisodeConfig) -> None:
+    first, other, again = (disturbances_of(EpisodeSpec(task.baseline, seed, task, config)) for seed in (0, 1, 0))
+    if first != again:
+        raise TaskError(f"{task.reference}: disturbances must depend on its argument only")
+    if first is not None and other is not None and len(first) != len(other):
+        raise TaskError(
+            f"{task.reference}: disturbances must return as many numbers for every episode, "
+            f"not {len(first)} and {len(other)}"
         )

@@ -94,6 +94,7 @@ def recorded_task(folder: Path) -> Task[Any] | None:
             reward=refuse,
             ending=refuse,
             draw_push=refuse,
+            disturbances=refuse,
             file=file,
             **content,
         )

@@ -16,11 +16,14 @@ from stable_baselines3.common.vec_env import VecEnv
 from torch import nn
 
 from sarah.agents import LocalNAF
+from sarah.agents.arguments import checked_disturbances
+from sarah.agents.corrections import corrected
 from sarah.envs.episode_vec_env import EpisodeVecEnv
 from sarah.envs.sarah_env import draw_seed, observation_from, parameters_from
 from sarah.episode.episode import Episode, simulate
+from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import Task
+from sarah.episode.tasks import Task, disturbances_of
 from sarah.episode.workers import Executor, Job
 from sarah.errors import ConfigurationError
 from sarah.files import replacing
@@ -39,12 +42,14 @@ from sarah.training.beginnings import BeginningDDPG, BeginningSAC, BeginningTD3
 from sarah.training.optimisers import OPTIMISERS, Start
 from sarah.training.recommendation import Parameters
 from sarah.training.recorder import EpisodeRecorder, check_weights
-from sarah.training.replay import LateRankReplayBuffer, LateReplayBuffer
+from sarah.training.replay import LateRankReplayBuffer
 from sarah.training.seeds import seeds_of
 from sarah.training.warm_up import begins_at_centre, warm_up
 
 SCHEDULED_SHARE = 0.8
 """Share of a training after which what NAF's settings change in its course has its last value."""
+ALL_ALIKE = {"temperature": 0.0}
+"""Arguments of the replay buffer with which it prefers no episode."""
 ACTIVATIONS = {"tanh": nn.Tanh, "relu": nn.ReLU, "sigmoid": nn.Sigmoid}
 
 
@@ -113,6 +118,7 @@ def make_agent(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
     # All algorithms of stable-baselines3's kind take these under the same names.
     common = {item.name: getattr(settings, item.name) for item in dataclasses.fields(LearnerSettings)}
     common["learning_starts"] = warm_up(config)
+    common["replay_buffer_class"] = LateRankReplayBuffer
     algorithm, own_arguments = LEARNERS[type(settings)]
     task = config.task
     own = own_arguments(settings, task) | {"first_action_centre": begins_at_centre(task)}
@@ -139,7 +145,6 @@ def check_device(settings: AgentSettings) -> None:
 def _naf_arguments(settings: NAFSettings, task: Task) -> dict[str, Any]:
     layers = dict(V=settings.v_layers, mu=settings.mu_layers, L=settings.l_layers, shared=settings.shared_layers)
     return dict(
-        replay_buffer_class=LateRankReplayBuffer,
         replay_buffer_kwargs=dict(temperature=settings.temperature),
         max_grad_norm=settings.max_grad_norm,
         exploration_std=LinearSchedule(*settings.exploration_std, end_fraction=SCHEDULED_SHARE),
@@ -158,7 +163,7 @@ def _naf_arguments(settings: NAFSettings, task: Task) -> dict[str, Any]:
 def _ddpg_arguments(settings: DDPGSettings, task: Task) -> dict[str, Any]:
     dimensions = len(task.parameter_names)
     return dict(
-        replay_buffer_class=LateReplayBuffer,
+        replay_buffer_kwargs=ALL_ALIKE,
         policy_kwargs=dict(net_arch=list(settings.layers)),
         action_noise=NormalActionNoise(np.zeros(dimensions), np.full(dimensions, settings.action_noise_std)),
     )
@@ -175,7 +180,7 @@ def _td3_arguments(settings: TD3Settings, task: Task) -> dict[str, Any]:
 
 def _sac_arguments(settings: SACSettings, task: Task) -> dict[str, Any]:
     return dict(
-        replay_buffer_class=LateReplayBuffer,
+        replay_buffer_kwargs=ALL_ALIKE,
         policy_kwargs=dict(net_arch=list(settings.layers)),
         ent_coef=settings.ent_coef,
     )
@@ -224,6 +229,8 @@ class _Search:
         self._optimiser = OPTIMISERS[config.algo](config.agent, dimensions, seeds.algorithm, start)
         self._generator = np.random.default_rng(seeds.episodes)
         self._running: deque[tuple[np.ndarray, EpisodeSpec, Job]] = deque()
+        self._returns: list[float] = []
+        self._disturbances: list[np.ndarray] = []
 
     def learn(self, episodes: int) -> Parameters:
         """Try parameters, and learn from the returns."""
@@ -243,5 +250,15 @@ class _Search:
     def _tell_oldest(self) -> None:
         action, spec, job = self._running.popleft()
         result = job.result()
-        self._optimiser.tell(action, result.episode_return)
+        self._optimiser.tell(action, self._corrected_return(spec, result))
         self._recorder.record(spec, result)
+
+    def _corrected_return(self, spec: EpisodeSpec, result: EpisodeResult) -> float:
+        """Return without what the episode's disturbances explain of it, by all episodes so far."""
+        disturbances = disturbances_of(spec)
+        if disturbances is None:
+            return result.episode_return
+        number = len(self._disturbances[0]) if self._disturbances else None
+        self._disturbances.append(checked_disturbances(disturbances, number))
+        self._returns.append(result.episode_return)
+        return float(corrected(np.array(self._returns), np.array(self._disturbances))[-1])

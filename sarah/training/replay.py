@@ -1,17 +1,19 @@
-"""Replay buffers that store what :class:`~sarah.envs.episode_vec_env.EpisodeVecEnv` returns with its own action."""
+"""The replay buffer that stores what :class:`~sarah.envs.episode_vec_env.EpisodeVecEnv` returns with its own action."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
-from stable_baselines3.common.buffers import ReplayBuffer
 
 from sarah.agents.buffers import RankReplayBuffer
 
 
-class _LateTransitions:
-    """Stores what :class:`EpisodeVecEnv` returns with the action that it came from, and what others return as it is."""
+class LateRankReplayBuffer(RankReplayBuffer):
+    """The replay buffer of all learners for :class:`EpisodeVecEnv`, and for any other environment.
+
+    It stores what :class:`EpisodeVecEnv` returns with the action that it came from, and what others return as it is.
+    """
 
     def add(
         self,
@@ -27,12 +29,4 @@ class _LateTransitions:
             if infos[0]["transition"] is None:
                 return
             obs, action, next_obs = (part[None] for part in infos[0]["transition"])
-        super().add(obs, next_obs, action, reward, done, infos)  # type: ignore[misc]  # of the replay buffer
-
-
-class LateReplayBuffer(_LateTransitions, ReplayBuffer):
-    """stable-baselines3's replay buffer for :class:`EpisodeVecEnv`, and for any other environment."""
-
-
-class LateRankReplayBuffer(_LateTransitions, RankReplayBuffer):
-    """The replay buffer of local NAF for :class:`EpisodeVecEnv`, and for any other environment."""
+        super().add(obs, next_obs, action, reward, done, infos)

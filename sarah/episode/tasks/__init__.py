@@ -1,13 +1,13 @@
 """The tasks: one file each, and an entry here. A task of your own needs no entry: it is a file of yours.
 
-A task may import errors, robot, control, and from the episode its settings, push, ending, reward, tick
-and shipped parameters.
+A task may import errors, robot, control, and from the episode its settings, push, disturbances,
+ending, reward, tick and shipped parameters.
 """
 
 from pathlib import Path
 from typing import Any
 
-from sarah.episode.tasks.asking import controller_of, ending_of, push_of, reward_of
+from sarah.episode.tasks.asking import controller_of, disturbances_of, ending_of, push_of, reward_of
 from sarah.episode.tasks.balance import BALANCE, BalanceConfig
 from sarah.episode.tasks.stepping import STEPPING
 from sarah.episode.tasks.task import Task, TaskFile
@@ -61,6 +61,7 @@ __all__ = [
     "Task",
     "TaskFile",
     "controller_of",
+    "disturbances_of",
     "ending_of",
     "load_task",
     "push_of",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from sarah.control.hip_law import BalanceParameters
 from sarah.control.pattern_generator import SteppingParameters
@@ -15,6 +15,9 @@ from sarah.episode.tasks.task_file import mistake
 from sarah.episode.tick import Tick
 from sarah.errors import SarahError, TaskError, shortened
 from sarah.number import is_finite, plain
+
+if TYPE_CHECKING:
+    from sarah.episode.spec import EpisodeSpec
 
 ENDINGS_OF_EPISODES = ("time_limit", "diverged")
 """Endings that no task can claim: the episode itself finds them."""
@@ -32,6 +35,21 @@ def push_of(task: Task, config: EpisodeConfig, seed: int) -> DrawnPush | None:
     if drawn is None or isinstance(drawn, DrawnPush):
         return drawn
     raise _wrong(task, "draw_push must return a DrawnPush or None", drawn)
+
+
+def disturbances_of(spec: EpisodeSpec) -> tuple[float, ...] | None:
+    """Disturbances of an episode; ``None`` if its task names none.
+
+    :param spec: specification of the episode
+    """
+    task = spec.task
+    if task.disturbances is None:
+        return None
+    given = _asked(task, task.disturbances, spec)
+    numbers = plain(given)
+    if isinstance(numbers, (list, tuple)) and all(map(is_finite, numbers)):
+        return tuple(float(plain(number)) for number in numbers)
+    raise _wrong(task, "disturbances must return a tuple of finite numbers", given)
 
 
 def controller_of(task: Task, parameters: tuple[float, ...], config: EpisodeConfig) -> ControllerParameters:

@@ -6,11 +6,12 @@ import hashlib
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from sarah.control.hip_law import BalanceParameters
 from sarah.control.parameters import Parameter
 from sarah.control.pattern_generator import SteppingParameters
+from sarah.episode.disturbances import drawn_disturbances
 from sarah.episode.ending import paper_ending
 from sarah.episode.push import DrawnPush, PushedConfig, push_of_settings
 from sarah.episode.result import EpisodeResult
@@ -19,6 +20,9 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tick import Tick
 from sarah.errors import ConfigurationError, shortened
 from sarah.number import is_number, plain
+
+if TYPE_CHECKING:
+    from sarah.episode.spec import EpisodeSpec
 
 ConfigType = TypeVar("ConfigType", bound=EpisodeConfig)
 ControllerParameters = tuple[SteppingParameters, BalanceParameters | None]
@@ -93,6 +97,9 @@ class Task(Generic[ConfigType]):
         by default the paper's box and oscillation, and a fall. The time limit always ends an episode
     :param must_step: whether a training recommends only robots that step by their sensors
     :param draw_push: function that draws an episode's push from its settings and its seed
+    :param disturbances: function that returns what an episode was subjected to and its parameters did not choose, from
+        its :class:`~sarah.episode.spec.EpisodeSpec`: finite numbers, as many for every episode. A training takes what
+        they explain out of the returns. By default push, friction, servos, slope and masses; ``None`` for none
     :param file: file that it was loaded from; nothing for a task of this package or of a script
     """
 
@@ -109,6 +116,7 @@ class Task(Generic[ConfigType]):
     ending: Callable[[Tick, Any], str | None] = paper_ending
     must_step: bool = True
     draw_push: Callable[[Any, int], DrawnPush | None] = push_of_settings
+    disturbances: Callable[[EpisodeSpec], Sequence[float]] | None = drawn_disturbances
     file: TaskFile | None = None
 
     def __post_init__(self) -> None:
