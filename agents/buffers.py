@@ -141,11 +141,11 @@ class RankReplayBuffer(ReplayBuffer):
             disturbances were
         :raises ValueError: if disturbances are not finite, or not as many as those of the transitions before
         """
+        self._corrected_rewards = self._cumulative_probabilities = None
         for i, info in enumerate(infos):
             row = slice(i, i + 1)
             self._add_disturbances(info.get("disturbances"))
             super().add(obs[row], next_obs[row], action[row], reward[row], done[row], [info])
-        self._corrected_rewards = self._cumulative_probabilities = None
 
     def _add_disturbances(self, given: Any) -> None:
         """Store the disturbances of the next transition. The first transition says how many all have."""
