@@ -13,7 +13,7 @@ from sarah.envs.sarah_env import parameters_from
 from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
-from sarah.episode.tasks import STEPPING
+from sarah.episode.tasks import STEPPING, disturbances_of
 from sarah.episode.workers import Job, Outcome, Workers, begin_episode
 from sarah.errors import ConfigurationError, LearningError
 from sarah.training.replay import LateRankReplayBuffer
@@ -47,8 +47,14 @@ def test_outcomes_come_in_order_after_the_slots_are_full(slots: int) -> None:
         spec = info["spec"]
         assert spec == EpisodeSpec(parameters_from(ACTIONS[index], STEPPING), spec.seed, config=SHORT)
         assert spec.seed >= FIRST_TRAINING_SEED
-        assert info["result"] == simulate(spec)
+        assert info["result"] == simulate(spec) and info["disturbances"] == disturbances_of(spec)
         assert reward == pytest.approx(info["result"].episode_return)
+
+
+def test_a_task_without_disturbances_gives_none() -> None:
+    env = EpisodeVecEnv(replace(STEPPING, name="other", disturbances=None), SHORT, 1, 1, Workers())
+    env.reset()
+    assert set(env.step(ACTIONS[:1])[3][0]) & {"spec", "disturbances"} == {"spec"}
 
 
 def test_steps_without_episodes_are_refused() -> None:

@@ -132,6 +132,12 @@ def arguments(model: LocalNAF) -> dict[str, Any]:
     }
 
 
+@pytest.mark.parametrize("algo", [algo for algo in AGENTS if algo != "naf"])
+def test_the_others_replay_all_episodes_alike_and_without_luck(algo: str) -> None:
+    buffer = built(algo).replay_buffer
+    assert isinstance(buffer, RankReplayBuffer) and buffer.temperature == 0.0
+
+
 def test_defaults_are_the_preset() -> None:
     env = EpisodeVecEnv("stepping", TrainingConfig().episode, 1, 1, Workers())
     preset = LocalNAF("MlpPolicy", env, **PRESETS["one-step"])

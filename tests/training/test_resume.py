@@ -13,6 +13,7 @@ import pytest
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 import sarah.runs.config
+from sarah.agents import corrections
 from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
@@ -35,7 +36,8 @@ EPISODE = EpisodeConfig(time_limit=1.2, physics=Physics(rate=50, solver_iteratio
 
 @pytest.fixture(autouse=True)
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A training that compares two candidates, and evaluates on two seeds."""
+    """A training that compares two candidates, corrects returns early, and evaluates on two seeds."""
+    monkeypatch.setattr(corrections, "FEWEST_EPISODES", 8)
     monkeypatch.setattr(TrainingConfig, "candidate_count", 2)
     monkeypatch.setattr(sarah.runs.config, "EPISODES_PER_CANDIDATE", 2)
     monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)

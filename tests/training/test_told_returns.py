@@ -1,0 +1,55 @@
+"""Optimisers are told returns without luck; the records keep the returns as they were."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sarah.agents.corrections import corrected
+from sarah.episode.episode import simulate
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BALANCE, disturbances_of
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.simulation.physics import Physics
+from sarah.training import train as training
+from sarah.training.optimisers import OPTIMISERS, RandomSearch
+from sarah.training.train import train
+
+EPISODE = BALANCE.config_of(
+    EpisodeConfig(time_limit=1.2, physics=Physics(rate=50, solver_iterations=5, control_rate=50))
+)
+
+
+class Listening(RandomSearch):
+    """Random search that notes what it is told."""
+
+    told: list[float]
+
+    def tell(self, action: np.ndarray, episode_return: float) -> None:
+        self.told.append(episode_return)
+        super().tell(action, episode_return)
+
+
+def test_each_return_is_corrected_by_what_is_known_when_it_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
+    monkeypatch.setattr(TrainingConfig, "candidate_count", 2)
+    monkeypatch.setattr(Listening, "told", [], raising=False)
+    monkeypatch.setitem(OPTIMISERS, "random", lambda settings, dimensions, seed, start: Listening(dimensions, seed))
+    run = RunFolder.create(tmp_path / "run", TrainingConfig("balance", "random", 40, slots=3, episode=EPISODE))
+    train(run.config(), run)
+    specs = [spec_of(row) for row in run.episodes()][: len(Listening.told)]
+    returns = np.array([simulate(spec).episode_return for spec in specs])
+    assert [float(row["return"]) for row in run.episodes()][: len(specs)] == returns.tolist()
+    disturbances = np.array([disturbances_of(spec) for spec in specs])
+    expected = [corrected(returns[:end], disturbances[:end])[-1] for end in range(1, len(specs) + 1)]
+    assert Listening.told == expected and (np.array(expected[19:]) != returns[19:]).all()
+
+
+def spec_of(row: Any) -> EpisodeSpec:
+    parameters = tuple(float(row[name]) for name in BALANCE.parameter_names)
+    return EpisodeSpec(parameters, int(row["seed"]), BALANCE, EPISODE)
