@@ -1,4 +1,7 @@
-"""How parameters are learned: by an agent of stable-baselines3's kind, or by a black-box optimiser."""
+"""How parameters are learned: by an agent of stable-baselines3's kind, or by a black-box optimiser.
+
+All learn from corrected returns, without what known disturbances explain of them.
+"""
 
 from __future__ import annotations
 

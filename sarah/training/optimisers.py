@@ -1,6 +1,7 @@
 """Black-box optimisers, which many would take for a few numbers and costly episodes, behind the same command.
 
-They see no observation: they are asked for an action, a task's parameters scaled to [-1, 1], and told its return.
+They see no observation: they are asked for an action, a task's parameters scaled to [-1, 1], and told its return,
+without what known disturbances explain of it.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ class Optimiser(Protocol):
         """Report the return of the oldest action that it was asked for.
 
         :param action: the action that was asked for
-        :param episode_return: return of its episode
+        :param episode_return: corrected return of its episode
         """
 
     def choice(self) -> np.ndarray:
