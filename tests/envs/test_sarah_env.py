@@ -20,8 +20,8 @@ from sarah.control.parameters import PAPER_STEPPING, Parameter
 from sarah.envs.sarah_env import SarahEnv, observation_from, parameters_from
 from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import FIRST_TRAINING_SEED
-from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, Task
+from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
+from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, Task, disturbances_of
 from sarah.errors import ConfigurationError, SimulationError
 from sarah.robot.reading import SensorReading
 from sarah.simulation.engines import is_installed
@@ -159,6 +159,16 @@ def test_balance_episode_repeats_with_its_push() -> None:
     repeated = sarah.simulate(sarah.EpisodeSpec(info["parameters"], info["seed"], "balance", SHORT_BALANCE))
     assert repeated == info["result"] and repeated.episode_return == reward
     env.close()
+
+
+def test_step_tells_the_disturbances_of_the_episode_unless_the_task_names_none() -> None:
+    for task in (BALANCE, dataclasses.replace(BALANCE, name="mine", disturbances=None)):
+        env = SarahEnv(task, BalanceConfig(time_limit=1.2, push=Push(newtons=(50, 80))))
+        env.reset(seed=0)
+        info = env.step(np.zeros(4, np.float32))[-1]
+        spec = EpisodeSpec(info["parameters"], info["seed"], task, env.config)
+        assert info.get("disturbances") == disturbances_of(spec)
+        env.close()
 
 
 def test_unknown_task_is_refused() -> None:
