@@ -50,7 +50,7 @@ class CompareOptions:
     :param task: task to learn: ``stepping``, ``balance``, or that of a file of yours, such as my_task.py:JUMP
     :param episodes: budget of each training, in episodes; by default that of ``sarah-train``
     :param slots: number of episodes in flight in each training
-    :param episode: settings of the episodes; by default those of ``sarah-train``
+    :param episode: settings of the episodes; by default those of ``sarah-train``, whose help also names the paper's
     :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
     :param evaluations: number of unseen seeds on which every recommendation is evaluated
     :param best_known: score whose shares are to be reached; by default the best final score of the race
