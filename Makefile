@@ -2,11 +2,9 @@
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV ?= $(if $(filter file,$(origin PYTHON)),.venv,.venv-$(notdir $(PYTHON)))
 BIN := $(VENV)/bin
-EPISODES ?= 100
-BALANCE_EPISODES ?= 300
-BALANCE_SECONDS ?= 10
-BALANCE_NEWTONS ?= 100 125
-SAGITTAL_SHARE ?= 0.5
+# Numbers of episodes of the First and the Second Training; by default those of sarah-train.
+EPISODES ?=
+BALANCE_EPISODES ?=
 PUSHES ?= 8
 WORKERS ?= $(shell nproc)
 SEED ?= 1
@@ -31,11 +29,9 @@ $(VENV)/installed: setup.cfg pyproject.toml constraints.txt
 
 train: RUN := $(RUN)
 train: install  ## both trainings with NAF, figures, reports and robustness table: a robot that steps in place and comes back from pushes
-	$(BIN)/sarah-train --task stepping --episodes $(EPISODES) --seed $(SEED) \
+	$(BIN)/sarah-train --task stepping $(EPISODES:%=--episodes %) --seed $(SEED) \
 		--workers $(WORKERS) --run-dir $(RUN)/stepping
-	$(BIN)/sarah-train --task balance --from $(RUN)/stepping --episodes $(BALANCE_EPISODES) --seed $(SEED) \
-		--episode.time-limit $(BALANCE_SECONDS) --episode.push.newtons $(BALANCE_NEWTONS) \
-		--episode.push.sagittal-share $(SAGITTAL_SHARE) \
+	$(BIN)/sarah-train --task balance --from $(RUN)/stepping $(BALANCE_EPISODES:%=--episodes %) --seed $(SEED) \
 		--workers $(WORKERS) --run-dir $(RUN)/balance
 	$(BIN)/sarah-figures $(RUN)/stepping $(RUN)/balance --out $(RUN)/figures
 	$(BIN)/sarah-report $(RUN)/stepping --workers $(WORKERS)

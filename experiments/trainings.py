@@ -12,9 +12,9 @@ from typing import Any
 import sarah
 from experiments.experiment import OnWorkers
 from experiments.made_with import short_hash
-from sarah.episode.push import Push
+from sarah.cli.training_defaults import default_training
 from sarah.episode.settings import EpisodeConfig
-from sarah.episode.tasks import BalanceConfig
+from sarah.episode.tasks import TASKS
 from sarah.episode.workers import Workers
 from sarah.files import replace_text
 from sarah.runs.config import TrainingConfig
@@ -24,12 +24,8 @@ from sarah.training.train import train
 from sarah.versions import source_hash, versions
 
 SARAH = Path(sarah.__file__).parent
-EPISODES: dict[str, EpisodeConfig] = {
-    "stepping": EpisodeConfig(),
-    # Softer pushes hardly tell controllers apart, V3 answers those from front and back, and who falls does so soon.
-    "balance": BalanceConfig(push=Push(newtons=(100.0, 125.0), sagittal_share=0.5), time_limit=10.0),
-}
-"""Settings of the trainings' episodes, by task."""
+EPISODES: dict[str, EpisodeConfig] = {name: default_training(task).episode for name, task in TASKS.items()}
+"""Settings of the trainings' episodes, by task: those of ``sarah-train``."""
 
 
 @dataclass(frozen=True, kw_only=True)

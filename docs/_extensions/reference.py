@@ -14,6 +14,7 @@ from typing import Any
 import docstring_parser
 from sphinx.application import Sphinx
 
+from sarah.cli.training_defaults import default_training
 from sarah.control.constants import STANDARD_CONSTANTS
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.result import METRICS
@@ -25,6 +26,7 @@ from sarah.robot.reading import ACTUATED_JOINTS
 from sarah.runs import agent_settings
 from sarah.runs.agent_settings import AGENT_SETTINGS, LearnerSettings, NAFSettings
 from sarah.runs.config import TrainingConfig
+from sarah.runs.config_files import settings_by_key
 from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.randomisation import Randomisation
 
@@ -48,6 +50,19 @@ def settings_page() -> Iterator[str]:
         yield from section(title, "episode.", names, {"default": task.episode})
         own = {name: getattr(task.episode, name) for name in vars(task.episode) if not hasattr(EpisodeConfig(), name)}
         yield from groups("episode.", own)
+    yield from command_defaults()
+
+
+def command_defaults() -> Iterator[str]:
+    """A table of the settings that ``sarah-train`` and ``sarah-compare`` begin with in place of a task's own."""
+    yield "## The commands' defaults\n"
+    yield "`sarah-train` without `--config` and `sarah-compare` begin with these settings:\n"
+    rows = []
+    for task in TASKS.values():
+        own, of_commands = settings_by_key(TrainingConfig(task)), settings_by_key(default_training(task))
+        changed = [name for name in own if own[name] != of_commands[name]]
+        rows += [[f"`{task.name}`", f"`{name}`", shown(own[name]), shown(of_commands[name])] for name in changed]
+    yield from table(["task", "setting", "the task's own", "the commands'"], rows)
 
 
 def agent_sections() -> Iterator[str]:

@@ -10,10 +10,18 @@ from typing import Annotated, Any
 
 import tyro
 
-from sarah.cli.episode_options import check_episode_options, given_options, with_engine, with_given_engine
+from sarah.cli.episode_options import (
+    DIRECTIONS,
+    check_episode_options,
+    given_options,
+    with_engine,
+    with_given_directions,
+    with_given_engine,
+)
 from sarah.cli.options import parse_options, run_command, say_engine
+from sarah.cli.training_defaults import default_training
 from sarah.episode.settings import EpisodeConfig
-from sarah.episode.tasks import STEPPING, Task, load_task
+from sarah.episode.tasks import BALANCE, STEPPING, Task, load_task
 from sarah.errors import ConfigurationError, check_range
 from sarah.files import make_folder
 from sarah.runs.config import ALGORITHMS, TrainingConfig
@@ -40,9 +48,9 @@ class CompareOptions:
     :param seeds: number of trainings of each algorithm
     :param first_seed: seed of the first training of each algorithm; the others follow
     :param task: task to learn: ``stepping``, ``balance``, or that of a file of yours, such as my_task.py:JUMP
-    :param episodes: budget of each training, in episodes
+    :param episodes: budget of each training, in episodes; by default that of ``sarah-train``
     :param slots: number of episodes in flight in each training
-    :param episode: settings of the episodes
+    :param episode: settings of the episodes; by default those of ``sarah-train``, whose help also names the paper's
     :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
     :param evaluations: number of unseen seeds on which every recommendation is evaluated
     :param best_known: score whose shares are to be reached; by default the best final score of the race
@@ -76,12 +84,14 @@ def main() -> None:
 
 
 def _defaults(arguments: Sequence[str]) -> CompareOptions:
-    """Default options, of the type that task and engine take."""
-    given = given_options(arguments, "task", "engine", "episode.engine")
-    task = load_task(given["task"]) if "task" in given else STEPPING
-    episode = with_given_engine(task.episode, given)
+    """Default options: those of ``sarah-train``, of the type that task and engine take."""
+    given = given_options(arguments, "task", "engine", "episode.engine", *DIRECTIONS)
+    training = default_training(load_task(given["task"]) if "task" in given else STEPPING)
+    episode = with_given_engine(training.episode, given)
     check_episode_options(arguments, episode)
-    return CompareOptions(task=task, episode=episode)
+    if training.task is BALANCE:
+        episode = with_given_directions(episode, given)
+    return CompareOptions(task=training.task, episodes=training.episodes, episode=episode)
 
 
 def _compare(arguments: Sequence[str]) -> None:

@@ -33,6 +33,8 @@ SET_TWICE = (
     ("--physics", "--episode.physics.added-plate-inertia"),
 )
 """Short options, each with an option of the episode's settings that it would overrule."""
+DIRECTIONS = ("episode.push.degrees", "episode.push.sagittal-share")
+"""Options that say where pushes point."""
 
 
 @dataclass(frozen=True)
@@ -106,18 +108,13 @@ def parse_episode_options(
     :param subject: what to look at, if the arguments name several
     :param adapted: function that makes the command's settings of those of what it looks at, and of its name
     """
-    given = given_options(
-        arguments, "task", "which", "engine", "episode.engine", "episode.push.degrees", "episode.push.sagittal-share"
-    )
+    given = given_options(arguments, "task", "which", "engine", "episode.engine", *DIRECTIONS)
     task = named_task(given.get("task"))
     subject = subject or _subject_among(arguments, default, given)
     own = adapted(_settings_of(subject, given.get("which"), task) if subject else (task or STEPPING).episode, subject)
     if type(own) is EpisodeConfig:  # any robot can be pushed, whether its task has a push or not
         own = PushedConfig(**vars(own), push=NOBODY)
-    if "episode.push.degrees" in given and "episode.push.sagittal-share" not in given:
-        assert isinstance(own, PushedConfig)
-        own = dataclasses.replace(own, push=dataclasses.replace(own.push, sagittal_share=0.0))  # all are as asked for
-    episode = with_given_engine(own, given)
+    episode = with_given_directions(with_given_engine(own, given), given)
     check_episode_options(arguments, episode)
     return parse_options(type(default), command, arguments, dataclasses.replace(default, episode=episode))
 
@@ -208,3 +205,15 @@ def with_given_engine(episode: EpisodeConfig, given: Mapping[str, str]) -> Episo
     """
     engine = given.get("engine", given.get("episode.engine"))
     return with_engine(episode, engine if engine in get_args(Engine) else None)  # the real parser reports others
+
+
+def with_given_directions(episode: EpisodeConfig, given: Mapping[str, str]) -> EpisodeConfig:
+    """Episode settings whose pushes all point where a command was asked to push.
+
+    :param episode: settings of episodes
+    :param given: values of the options that were given, by name; :data:`DIRECTIONS` are used
+    """
+    degrees, share = DIRECTIONS
+    if not isinstance(episode, PushedConfig) or degrees not in given or share in given:
+        return episode
+    return dataclasses.replace(episode, push=dataclasses.replace(episode.push, sagittal_share=0.0))

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import asdict
 from typing import Any
 
+from sarah.cli.options import pushed_words
 from sarah.cli.subjects import is_shipped
 from sarah.episode.accuracy import physics_warning
 from sarah.episode.ending import ending_words
@@ -59,10 +60,7 @@ def rows_of(
 def _subject_rows(subject: str, spec: EpisodeSpec) -> Iterator[Row]:
     """What is evaluated, where it runs, and how hard it is pushed."""
     config = spec.config
-    low, high = config.push.newtons if isinstance(config, PushedConfig) else (0.0, 0.0)
-    newtons = f"{low:g} N" if low == high else f"{low:g} to {high:g} N"
-    pushed = f"pushed by {newtons}" if high else "not pushed"
-    yield "subject", f"{subject}, task {spec.task.name}, in {config.engine}, {pushed}"
+    yield "subject", f"{subject}, task {spec.task.name}, in {config.engine}, {pushed_words(config)}"
     if is_shipped(subject):
         yield "origin", PARAMETER_SETS[subject].origin
     if spec.task is BALANCE:

@@ -16,6 +16,7 @@ from typing import Any, NoReturn, TypeVar, get_args, get_type_hints
 
 import tyro
 
+from sarah.episode.push import PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import Task, load_task
 from sarah.errors import ConfigurationError, SarahError, unknown_name
@@ -216,6 +217,16 @@ def _one_line(box: str, ungrouped: Sequence[str]) -> str:
         return message
     is_negative = re.match(r"Unrecognized options: --([\w.-]+\.)?no[-_]", message)
     return f"{message}, did you mean {meant[2] if meant[2] and is_negative else meant[1]}?"
+
+
+def pushed_words(config: EpisodeConfig) -> str:
+    """How hard a robot is pushed, in words.
+
+    :param config: settings of the episodes
+    """
+    low, high = config.push.newtons if isinstance(config, PushedConfig) else (0.0, 0.0)
+    newtons = f"{low:g} N" if low == high else f"{low:g} to {high:g} N"
+    return f"pushed by {newtons}" if high else "not pushed"
 
 
 def say_engine(config: EpisodeConfig, asked: str | None) -> None:

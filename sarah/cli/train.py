@@ -13,10 +13,19 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
-from sarah.cli.episode_options import check_episode_options, given_options, with_engine, with_given_engine
+from sarah.cli.episode_options import (
+    DIRECTIONS,
+    check_episode_options,
+    given_options,
+    with_engine,
+    with_given_directions,
+    with_given_engine,
+)
 from sarah.cli.interruption import Interruption
-from sarah.cli.options import named_task, parse_options, run_command, say_engine
+from sarah.cli.options import named_task, parse_options, pushed_words, run_command, say_engine
 from sarah.cli.subjects import check_of_training
+from sarah.cli.training_defaults import default_training
+from sarah.episode.push import PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, Task, load_task
 from sarah.errors import (
@@ -48,6 +57,10 @@ class TrainOptions:
     of --from, and the command line. --algo decides which settings the agent has, and --task those of the episodes:
     give both before --help. The training writes a run folder with the learned parameters (parameters.json), all
     episodes (episodes.csv), the agent (model.zip) and the curves that TensorBoard shows.
+
+    Most robots survive the paper's pushes without learning. So by default --task balance pushes harder, in shorter
+    episodes. The paper's settings are --episode.push.newtons 0 100 --episode.push.sagittal-share 0
+    --episode.time-limit 30, and those of a file of --config that names no others.
 
     :param training: settings of the training
     :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
@@ -117,7 +130,9 @@ def _train(arguments: Sequence[str]) -> None:
         else:
             run = RunFolder.create(options.run_dir or new_run_path(config.task.name, config.algo, config.seed), config)
         say_engine(config.episode, options.engine)
-        print(f"training {config.algo} on {config.task.name}: {config.episodes} episodes into {run.path}", flush=True)
+        pushed = f", {pushed_words(config.episode)}" if isinstance(config.episode, PushedConfig) else ""
+        what = f"{config.algo} on {config.task.name}{pushed}"
+        print(f"training {what}: {config.episodes} episodes into {run.path}", flush=True)
         named = given_options(arguments, "task") if config.task.file is not None else {}
         learned = _learned(config, run, workers, " ".join(f" --task {quoted(task)}" for task in named.values()))
     _summarise(config.task, learned, run.path)
@@ -194,20 +209,20 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
     The parser takes the names of further options from these defaults.
     """
     names = ("config", "resume", "from", "task", "algo", "agent.preset", "engine", "episode.engine")
-    given = given_options(arguments, *names)
+    given = given_options(arguments, *names, *DIRECTIONS)
     if "resume" in given:
         return _resumed_defaults(Path(given["resume"]), given)
     task = named_task(given.get("task"))
-    training = _of_file(Path(given["config"]), task) if "config" in given else TrainingConfig()
+    training = _of_file(Path(given["config"]), task) if "config" in given else default_training(task or STEPPING)
     training = _with_agent(training, given.get("algo"), given.get("agent.preset"))
     _check_agent_options(arguments, training)
-    task = task or training.task
-    episode = task.config_of(training.episode) if "config" in given else task.episode
-    episode = with_given_engine(episode, given)
+    episode = with_given_engine(training.episode, given)
     check_episode_options(arguments, episode)
-    if "from" in given and task is BALANCE:
+    if "config" not in given and training.task is BALANCE:
+        episode = with_given_directions(episode, given)
+    if "from" in given and training.task is BALANCE:
         episode = _on_learned_stepping(Path(given["from"]), episode)
-    return TrainOptions(dataclasses.replace(training, task=task, episode=episode))
+    return TrainOptions(dataclasses.replace(training, episode=episode))
 
 
 def _of_file(path: Path, task: Task[Any] | None) -> TrainingConfig:
