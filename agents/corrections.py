@@ -6,8 +6,10 @@ FEWEST_EPISODES = 20
 """Number of episodes below which nothing is corrected: so few explain too little."""
 MOST_FITTED = 2_000
 """Newest episodes that the explanation is fitted to: with more, a correction takes hardly longer."""
-PENALTY = 100.0
+PENALTY = 30.0
 """Penalty of the ridge regression, as a number of episodes whose returns speak against every weight."""
+CHANCE = 0.1
+"""Probability with which a disturbance that explains nothing is taken for one that does, and corrected for."""
 SMALLEST_DEVIATION = 1e-9
 """Standard deviation, as a share of the largest amount, below which a number counts as constant."""
 
@@ -16,7 +18,8 @@ def corrected(returns: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
     """
     Returns less what a ridge regression on the disturbances, their squares and their products explains of them.
 
-    The mean stays. A return that is not finite stays as it is, and explains nothing.
+    A disturbance that explains no more by itself than chance would is left out: many that matter little would hide the
+    few that matter. The mean stays. A return that is not finite stays as it is, and explains nothing.
 
     :param returns: Returns of the episodes, the newest last, of shape (n,)
     :param disturbances: Disturbances of the same episodes, of shape (n, number of disturbances)
@@ -26,12 +29,15 @@ def corrected(returns: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
     if len(known) < FEWEST_EPISODES:
         return returns
     fitted = known[-MOST_FITTED:]
-    features = _Features(disturbances[fitted])
     scale = np.abs(returns[fitted]).max()
-    if not features.number or np.ptp(returns[fitted]) == 0:
+    if np.ptp(returns[fitted]) == 0:
         return returns
     targets = returns[fitted] / scale
     targets -= targets.mean()
+    disturbances = disturbances[:, _telling(disturbances[fitted], targets)]
+    features = _Features(disturbances[fitted])
+    if not features.number:
+        return returns
     known_features = features.of(disturbances[fitted])
     products = known_features.T @ known_features + PENALTY * np.eye(features.number)
     weights = np.linalg.solve(products, known_features.T @ targets)
@@ -40,6 +46,24 @@ def corrected(returns: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
     explained -= explained[known].mean()  # not 0 where the fit leaves some out
     without: np.ndarray = returns - scale * explained
     return without
+
+
+def _telling(disturbances: np.ndarray, targets: np.ndarray) -> np.ndarray:
+    """
+    Indices of the disturbances that explain more than chance would, by a parabola (F test with 2 degrees of freedom).
+
+    :param disturbances: Disturbances, one row an episode
+    :param targets: Returns with mean 0
+    """
+    standard = _Standard(disturbances)
+    lines = standard.of(disturbances)
+    curves = lines**2 - 1
+    curves -= lines * (lines * curves).mean(axis=0)  # What a line would explain as well
+    curves /= np.sqrt((curves**2).mean(axis=0)) + SMALLEST_DEVIATION  # 0 if there are two values only
+    explained = sum((parts.T @ targets) ** 2 for parts in (lines, curves)) / (len(targets) * (targets @ targets))
+    probabilities = (1 - np.minimum(explained, 1)) ** ((len(targets) - 3) / 2)
+    telling: np.ndarray = standard.kept[probabilities < CHANCE]
+    return telling
 
 
 class _Features:
@@ -82,10 +106,10 @@ class _Standard:
         largest[largest == 0] = 1.0
         shares = columns / largest
         deviations = shares.std(axis=0)
-        self._kept = np.flatnonzero(deviations > SMALLEST_DEVIATION)
-        self._largest, self._means = largest[self._kept], shares.mean(axis=0)[self._kept]
-        self._deviations = deviations[self._kept]
-        self.number = len(self._kept)
+        self.kept = np.flatnonzero(deviations > SMALLEST_DEVIATION)
+        self._largest, self._means = largest[self.kept], shares.mean(axis=0)[self.kept]
+        self._deviations = deviations[self.kept]
+        self.number = len(self.kept)
 
     def of(self, columns: np.ndarray) -> np.ndarray:
         """
@@ -93,5 +117,5 @@ class _Standard:
 
         :param columns: As many columns as were given first
         """
-        standard: np.ndarray = (columns[:, self._kept] / self._largest - self._means) / self._deviations
+        standard: np.ndarray = (columns[:, self.kept] / self._largest - self._means) / self._deviations
         return standard

@@ -47,8 +47,8 @@ class Decisions:
             tried = Tried(STEPPING)
             for action, reward in zip(actions, rewards, strict=True):
                 remember(action, reward, buffer, tried)
-            note = milliseconds(partial(tried.append, (CENTRE, 0.5)), self.rounds)
-            recommend = milliseconds(partial(tried.best, CENTRE, 1), self.rounds)
+            note = milliseconds(partial(tried.append, CENTRE, 0.5), self.rounds)
+            recommend = milliseconds(partial(tried.best, CENTRE), self.rounds)
             yield {
                 "episodes": count,
                 "action_milliseconds": milliseconds(partial(decide, buffer), self.rounds),
@@ -65,7 +65,7 @@ def remember(action: np.ndarray, reward: float, buffer: RankReplayBuffer, tried:
     :param tried: episodes so far
     """
     buffer.add(OBSERVATION, OBSERVATION, action[None], np.array([reward]), np.ones(1), [{}])
-    tried.append((tuple(action + 1.0), reward))
+    tried.append(tuple(action + 1.0), reward)
 
 
 def decide(buffer: RankReplayBuffer) -> None:

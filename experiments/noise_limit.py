@@ -15,7 +15,7 @@ from experiments.trainings import EPISODES
 from sarah.episode.evaluation import evaluate
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
-from sarah.episode.tasks import BALANCE
+from sarah.episode.tasks import BALANCE, disturbances_of
 from sarah.episode.workers import Workers
 from sarah.training.recommendation import Parameters, Tried, merit
 
@@ -63,9 +63,10 @@ class NoiseLimit(OnWorkers):
             for v in drawn
         ]
         results = workers.simulate_all(specs)
-        tried = [(spec.parameters, merit(result)) for spec, result in zip(specs, results, strict=True)]
-        (choice,) = Tried(BALANCE, tried).best(specs[0].parameters, 1)
-        return choice
+        tried = Tried(BALANCE)
+        for spec, result in zip(specs, results, strict=True):
+            tried.append(spec.parameters, merit(result), disturbances_of(spec))
+        return tried.best(specs[0].parameters)
 
 
 def row(controller: str, scores: list[float]) -> Row:

@@ -28,7 +28,7 @@ class RunCurves:
     :param algorithm: name of the algorithm
     :param columns: columns of ``episodes.csv`` as numbers, each of shape (runs, episodes)
     :param warm_up: number of random episodes at first
-    :param learning: number of episodes before the comparison of candidates
+    :param learning: number of episodes before the trials of the recommendation
     :param recommended: columns of ``recommendations.csv``, if there is one run; otherwise empty
     """
 
@@ -61,7 +61,7 @@ def _curves(algorithm: str, runs: Sequence[RunFolder], task: Task) -> RunCurves:
     shortest = min(len(table["return"]) for table in tables)
     columns = {name: np.array([table[name][:shortest] for table in tables]) for name in names}
     configs = [run.config() for run in runs]
-    learning = min(shortest, *(config.episodes - config.compared_episodes for config in configs))
+    learning = min(shortest, *(config.episodes - config.trial_episodes for config in configs))
     first = min(learning, max(map(warm_up, configs)))
     recommended: dict[str, np.ndarray] = {}
     if len(runs) == 1:

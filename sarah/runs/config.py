@@ -20,10 +20,12 @@ from sarah.runs.agent_settings import AGENT_SETTINGS, AgentSettings, LearnerSett
 MOST_EPISODES = 1_000_000
 MOST_SLOTS = 10_000
 
-EPISODES_PER_CANDIDATE = 5
-"""Number of episodes per candidate in the comparison at the end of a training."""
-BUDGET_PER_CANDIDATE = 50
-"""Number of episodes of a training for each candidate: a tenth of them goes into the comparison."""
+EPISODES_PER_TRIAL = 5
+"""Number of episodes in which a training tries what it would recommend."""
+BUDGET_PER_TRIAL = 25
+"""Number of episodes of a training for each trial."""
+MOST_TRIALS = 2
+"""Largest number of trials: what comes after the first takes its place if that fails."""
 
 ALGORITHMS = tuple(AGENT_SETTINGS)
 AGENTS = tuple(algo for algo, settings in AGENT_SETTINGS.items() if issubclass(settings, LearnerSettings))
@@ -115,9 +117,9 @@ class TrainingConfig:
         return self.episodes - (self.extended_from[-1] if self.extended_from else 0)
 
     @property
-    def candidate_count(self) -> int:
-        """Number of candidates that the budget allows to compare at the end; with one there is no comparison."""
-        return max(1, self.stage_episodes // BUDGET_PER_CANDIDATE)
+    def trials(self) -> int:
+        """Number of times that the budget allows to try what is recommended, at its end."""
+        return min(MOST_TRIALS, self.stage_episodes // BUDGET_PER_TRIAL)
 
     def by_stage(self) -> tuple[TrainingConfig, ...]:
         """The training as it was begun, and then as every extension made it."""
@@ -132,9 +134,9 @@ class TrainingConfig:
         return replace(self, episodes=episodes, extended_from=self.stages)
 
     @property
-    def compared_episodes(self) -> int:
-        """Number of episodes in the comparison of candidates, which are the last of the budget."""
-        return self.candidate_count * EPISODES_PER_CANDIDATE if self.candidate_count > 1 else 0
+    def trial_episodes(self) -> int:
+        """Number of episodes that try what is recommended, which are the last of the budget."""
+        return self.trials * EPISODES_PER_TRIAL
 
 
 TrainingConfig.__doc__ = (  # the help of the commands and the page of settings read it

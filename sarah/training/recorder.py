@@ -15,6 +15,7 @@ from tqdm import tqdm
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.result import METRICS, EpisodeResult
 from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import disturbances_of
 from sarah.errors import LearningError
 from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
@@ -43,7 +44,7 @@ class EpisodeRecorder(BaseCallback):
     log: Logger
     """Logger of the learning curves, which the agent uses as well."""
     tried: Tried
-    """Parameters and merit of every episode so far."""
+    """Parameters, merit and disturbances of every episode so far."""
     diverged: int
     """Number of episodes so far that diverged."""
     choose: Callable[[], Parameters] | None
@@ -83,7 +84,7 @@ class EpisodeRecorder(BaseCallback):
         """
         index = len(self.tried)
         self._write(partial(self._run.append_episode, index, spec, result))
-        self.tried.append((spec.parameters, merit(result, self._task.must_step)))
+        self.tried.append(spec.parameters, merit(result, self._task.must_step), disturbances_of(spec))
         self.diverged += result.termination == "diverged"
         x, y, _ = result.final_position
         for name, value in {"return": result.episode_return, "x": x, "y": y}.items():
@@ -107,7 +108,7 @@ class EpisodeRecorder(BaseCallback):
         drawn = episodes in self._kept or (interval and episodes % interval == 0)
         if not noted and not drawn:
             return
-        (recommended,) = self.tried.best(choose(), 1)
+        recommended = self.tried.best(choose())
         if noted:
             named = dict(zip(self._task.parameter_names, recommended, strict=True))
             self._write(partial(self._run.append_recommendation, episodes, named))

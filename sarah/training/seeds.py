@@ -13,13 +13,13 @@ class Seeds(NamedTuple):
     :param algorithm: seed of an agent's weights and warm-up, or of all that an optimiser draws
     :param exploration: seed of an agent's exploration after the warm-up, and of its minibatches
     :param episodes: seed of the seeds of the episodes that are learned from
-    :param comparison: seed of the seeds of the episodes that compare the candidates at the end
+    :param trials: seed of the seeds of the episodes that try the recommendation at the end
     """
 
     algorithm: int
     exploration: int
     episodes: int
-    comparison: int
+    trials: int
 
 
 def seeds_of(seed: int) -> Seeds:

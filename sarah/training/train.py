@@ -5,14 +5,12 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import ceil
 
 import numpy as np
 from tqdm import tqdm
 
 from sarah.envs.sarah_env import draw_seed
 from sarah.episode.evaluation import Evaluation, evaluate
-from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Executor, executor_of
 from sarah.errors import LearningError, SarahError, one_line
@@ -21,7 +19,7 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 from sarah.training.learners import Learner, make_learner
-from sarah.training.recommendation import Parameters, best_compared
+from sarah.training.recommendation import Parameters, is_valid
 from sarah.training.recorder import EpisodeRecorder
 from sarah.training.seeds import seeds_of
 
@@ -73,7 +71,7 @@ def train(
 
 
 def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_bar: bool) -> Learned:
-    comparison = np.random.default_rng(seeds_of(config.seed).comparison)
+    generator = np.random.default_rng(seeds_of(config.seed).trials)
     with (
         tqdm(total=config.episodes, unit=" episodes", disable=not progress_bar or sys.stderr is None) as progress,
         EpisodeRecorder(run, config, journal, progress) as recorder,
@@ -84,8 +82,7 @@ def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_ba
                 journal.extend(stage.episodes)
             choice = _choice(learner, stage)
             recorder.choose = None
-            best = recorder.tried.best(choice, stage.candidate_count)
-            parameters = _compare(best, stage, recorder, comparison, journal)
+            parameters = _recommended(choice, stage, recorder, generator, journal)
             learned = _evaluated(parameters, stage, recorder, journal)
         recorder.finish(learned.evaluation)
     _write_parameters(learned, config, run)
@@ -95,7 +92,7 @@ def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_ba
 def _choice(learner: Learner, stage: TrainingConfig) -> Parameters:
     """Learn, and return what the algorithm would choose. Many a library fails at numbers that it was not made for."""
     try:
-        return learner.learn(stage.stage_episodes - stage.compared_episodes)
+        return learner.learn(stage.stage_episodes - stage.trial_episodes)
     except SarahError:
         raise
     except (ValueError, RuntimeError, ArithmeticError, AssertionError, LookupError, Warning) as error:
@@ -128,26 +125,29 @@ def _write_parameters(learned: Learned, config: TrainingConfig, run: RunFolder) 
     )
 
 
-def _compare(
-    best: list[Parameters],
+def _recommended(
+    choice: Parameters,
     config: TrainingConfig,
     recorder: EpisodeRecorder,
     generator: np.random.Generator,
     workers: Executor,
 ) -> Parameters:
-    """Simulate the candidates in turn, all on the same seed in each round, and return the best candidate.
+    """Try the parameters of which most is expected, and return those which are best of what was valid.
 
-    Whether one chatters is judged against the neutral parameters on the same seeds; the summary's stay unseen.
+    All trials meet the same seeds. Whether hips chatter is judged against the neutral parameters on these seeds too;
+    the summary's stay unseen. If all trials fail, the best of them is returned, and the summary says what it lacks.
     """
-    if not config.compared_episodes:
-        return best[0]
-    seeds = [draw_seed(generator) for _ in range(ceil(config.compared_episodes / len(best)))]
-    specs = [EpisodeSpec(candidate, seed, config.task, config.episode) for seed in seeds for candidate in best]
-    results: dict[Parameters, list[EpisodeResult]] = {candidate: [] for candidate in best}
-    specs = specs[: config.compared_episodes]
-    for spec, result in zip(specs, workers.simulate_all(specs), strict=True):
-        recorder.record(spec, result)
-        results[spec.parameters].append(result)
-    neutral, must_step = config.task.neutral, config.task.must_step
+    if not config.trials:
+        return recorder.tried.best(choice)
+    seeds = [draw_seed(generator) for _ in range(config.trial_episodes // config.trials)]
+    neutral = config.task.neutral
     baseline = None if neutral is None else evaluate(config.task, neutral, config.episode, seeds, workers)
-    return best_compared(results, baseline, must_step)
+    valid, failed = list[Parameters](), list[Parameters]()
+    for _ in range(config.trials):
+        candidate = recorder.tried.best(choice, failed)
+        specs = [EpisodeSpec(candidate, seed, config.task, config.episode) for seed in seeds]
+        results = tuple(workers.simulate_all(specs))
+        for spec, result in zip(specs, results, strict=True):
+            recorder.record(spec, result)
+        (valid if is_valid(results, baseline, config.task.must_step) else failed).append(candidate)
+    return recorder.tried.best_of(valid or failed)

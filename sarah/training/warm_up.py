@@ -38,11 +38,11 @@ def warm_up(config: TrainingConfig) -> int:
 
 
 def warm_up_episodes(config: TrainingConfig) -> int:
-    """Number of a training's episodes that its warm-up takes: no more than there are before candidates are compared.
+    """Number of a training's episodes that its warm-up takes: no more than come before the trials.
 
     :param config: settings of the training
     """
-    learned_from = sum(stage.stage_episodes - stage.compared_episodes for stage in config.by_stage())
+    learned_from = sum(stage.stage_episodes - stage.trial_episodes for stage in config.by_stage())
     return min(warm_up(config), learned_from)
 
 

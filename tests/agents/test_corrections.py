@@ -13,7 +13,8 @@ def drawn(seed: int, number: int = 60, width: int = 3) -> tuple[np.ndarray, np.n
     """Returns that disturbances decide in part, and the disturbances."""
     rng = np.random.default_rng(seed)
     disturbances = rng.uniform(-1.0, 3.0, (number, width))
-    returns = 2.0 + disturbances[:, 0] * disturbances[:, 1] - disturbances[:, 2] ** 2 + rng.normal(size=number)
+    first, second, third = disturbances.T[:3]
+    returns = 2.0 + (first + 1.0) * (second + 1.0) - third**2 + rng.normal(size=number)
     return returns, disturbances
 
 
@@ -31,6 +32,15 @@ def test_it_is_a_ridge_regression_on_squares_and_products(seed: int) -> None:
     explanation = make_pipeline(*features, Ridge(alpha=PENALTY)).fit(disturbances, returns)
     expected = returns - explanation.predict(disturbances) + returns.mean()
     np.testing.assert_allclose(corrected(returns, disturbances), expected, rtol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_many_that_explain_nothing_hide_none_that_do(seed: int) -> None:
+    returns, disturbances = drawn(seed)
+    chance = np.random.default_rng(9).normal(size=(60, 20))
+    among = corrected(returns, np.hstack([chance, disturbances]))
+    assert np.std(among - corrected(returns, disturbances)) < 0.4 * returns.std()
+    assert np.std(corrected(chance[:, 0], disturbances) - chance[:, 0]) < 0.3
 
 
 @pytest.mark.parametrize("seed", range(5))

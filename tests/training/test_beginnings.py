@@ -76,17 +76,15 @@ def test_a_training_has_a_seed_of_its_own_for_each_stream() -> None:
     assert len(set(seeds)) == len(seeds) == 4000 and max(seeds) < 2**31
 
 
-def test_candidates_are_chosen_before_any_seed_of_the_summary_is_seen(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(TrainingConfig, "candidate_count", 2)
+def test_trials_come_before_any_seed_of_the_summary_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(TrainingConfig, "trials", 2)
     assert BALANCE.neutral is not None
     config = TrainingConfig("balance", "random", episodes=16, slots=1, episode=BALANCE.config_of(EPISODE))
     _, seeds, specs = trained(tmp_path / "run", config)
-    compared = list(dict.fromkeys(seeds[6:]))
-    assert len(compared) == 5
+    met = list(dict.fromkeys(seeds[6:]))
+    assert len(met) == 5
     steering, summary = specs[:21], specs[21:]
-    assert [(spec.parameters, spec.seed) for spec in steering[16:]] == [(BALANCE.neutral, seed) for seed in compared]
+    assert [(spec.parameters, spec.seed) for spec in steering[6:11]] == [(BALANCE.neutral, seed) for seed in met]
     assert all(spec.seed >= FIRST_TRAINING_SEED for spec in steering)
     assert [spec.seed for spec in summary] == [0, 1, 0, 1]
 
@@ -94,7 +92,7 @@ def test_candidates_are_chosen_before_any_seed_of_the_summary_is_seen(
 def test_without_neutral_parameters_nothing_is_simulated_for_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(TrainingConfig, "candidate_count", 2)
+    monkeypatch.setattr(TrainingConfig, "trials", 2)
     assert STEPPING.neutral is None
     _, _, specs = trained(tmp_path / "run", TrainingConfig(algo="random", episodes=16, slots=1, episode=EPISODE))
     assert len(specs) == 16 + 2

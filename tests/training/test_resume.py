@@ -36,10 +36,10 @@ EPISODE = EpisodeConfig(time_limit=1.2, physics=Physics(rate=50, solver_iteratio
 
 @pytest.fixture(autouse=True)
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A training that compares two candidates, corrects returns early, and evaluates on two seeds."""
+    """A training with two trials, that corrects returns early, and evaluates on two seeds."""
     monkeypatch.setattr(corrections, "FEWEST_EPISODES", 8)
-    monkeypatch.setattr(TrainingConfig, "candidate_count", 2)
-    monkeypatch.setattr(sarah.runs.config, "EPISODES_PER_CANDIDATE", 2)
+    monkeypatch.setattr(TrainingConfig, "trials", 2)
+    monkeypatch.setattr(sarah.runs.config, "EPISODES_PER_TRIAL", 2)
     monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
 
 

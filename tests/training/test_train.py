@@ -65,11 +65,14 @@ def test_every_episode_has_its_row_and_can_be_repeated(run: RunFolder) -> None:
     assert [int(row["index"]) for row in rows] == list(range(16))
     assert all(int(row["seed"]) >= FIRST_TRAINING_SEED for row in rows)
     row = rows[7]
-    parameters = tuple(float(row[name]) for name in STEPPING.parameter_names)
-    result = simulate(EpisodeSpec(parameters, int(row["seed"]), config=SHORT.episode))
+    result = simulate(EpisodeSpec(parameters_of(row), int(row["seed"]), config=SHORT.episode))
     assert float(row["return"]) == result.episode_return
     assert (float(row["x"]), float(row["y"])) == result.final_position[:2]
     assert row["termination"] == result.termination
+
+
+def parameters_of(row: dict[str, str]) -> tuple[float, ...]:
+    return tuple(float(row[name]) for name in STEPPING.parameter_names)
 
 
 def result_of(row: dict[str, str]) -> EpisodeResult:
@@ -82,13 +85,10 @@ def result_of(row: dict[str, str]) -> EpisodeResult:
 def test_what_would_be_recommended_is_noted_every_five_episodes(run: RunFolder) -> None:
     recommendations = list(run.recommendations())
     assert [int(row["episodes"]) for row in recommendations] == list(range(5, 16, 5))
-    tried = [
-        (tuple(float(row[name]) for name in STEPPING.parameter_names), merit(result_of(row))) for row in run.episodes()
-    ]
-    for row in recommendations[:-1]:  # the last ones may be the agent's own
-        recommended = tuple(float(row[name]) for name in STEPPING.parameter_names)
-        centre = (1.0,) * 5  # the agent's own choice until it has learned
-        assert [recommended] == Tried(STEPPING, tried[: int(row["episodes"])]).best(centre, 1)
+    first, tried = recommendations[0], Tried(STEPPING)
+    for row in list(run.episodes())[: int(first["episodes"])]:
+        tried.append(parameters_of(row), merit(result_of(row)))
+    assert parameters_of(first) == tried.best((1.0,) * 5)  # the agent's own choice until it has learned
 
 
 def test_tensorboard_shows_the_episodes_the_parameters_and_the_learning(run: RunFolder) -> None:
@@ -200,20 +200,27 @@ def test_trainings_of_neighbouring_seeds_share_no_episode(tmp_path: Path) -> Non
     assert len(set(seeds)) == len(seeds) == 12
 
 
-def test_candidates_are_compared_on_the_same_seeds_within_the_budget(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(TrainingConfig, "candidate_count", 2)
+def test_what_is_recommended_has_been_tried_within_the_budget(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(TrainingConfig, "trials", 2)
     config = TrainingConfig(episodes=16, slots=1, episode=SHORT.episode)
     run = RunFolder.create(tmp_path / "run", config)
     parameters = train(config, run).parameters
     rows = list(run.episodes())
     assert len(rows) == 16
-    first, second = rows[6::2], rows[7::2]
-    assert [row["seed"] for row in first] == [row["seed"] for row in second]
-    assert len({row["seed"] for row in first}) == 5
-    best = max((first, second), key=lambda rows: sum(float(row["score"]) for row in rows))
-    assert all(tuple(float(row[name]) for name in STEPPING.parameter_names) == parameters for row in best)
+    trials = rows[6:11], rows[11:]
+    first, second = ([row["seed"] for row in trial] for trial in trials)
+    assert first == second and len(set(first)) == 5
+    assert [parameters] * 5 in [list(map(parameters_of, trial)) for trial in trials]
+
+
+def test_what_fails_its_trial_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(TrainingConfig, "trials", 2)
+    verdicts = iter((False, True))
+    monkeypatch.setattr("sarah.training.train.is_valid", lambda *judged: next(verdicts))
+    run = RunFolder.create(tmp_path / "run", TrainingConfig(episodes=16, slots=1, episode=SHORT.episode))
+    parameters = train(run.config(), run).parameters
+    first, second = (parameters_of(list(run.episodes())[index]) for index in (6, 11))
+    assert parameters == second and math.dist(first, second) >= 0.1 * 2.0
 
 
 def test_run_folder_that_is_not_empty_is_refused_and_left_alone(tmp_path: Path) -> None:
