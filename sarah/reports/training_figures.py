@@ -4,7 +4,7 @@ Figures 4 to 7 show parameters and results against training steps; a training st
 its episodes as dots, and their running median as a line. Several runs of an algorithm show the median of those lines
 over the runs, and the band between their quartiles. Dots and lines show what was tried, with exploration noise; a
 single run's parameters come with what was recommended. The random warm-up is shaded. Its episodes, and those that
-compare the candidates at the end, are no steps of learning: a single run shows them as hollow dots, and no line goes
+try the recommendation at the end, are no steps of learning: a single run shows them as hollow dots, and no line goes
 through them.
 """
 
