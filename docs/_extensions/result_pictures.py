@@ -59,7 +59,7 @@ def second_training(rows: Rows) -> Figure:
 
 
 def race(rows: Rows) -> Figure:
-    """Final scores with their standard errors, and how many trainings are at 95 % of the best, finally or on the way."""
+    """Final scores with their standard errors, and how many trainings are at 95 % of the best, finally or before."""
     labels = [row["algorithm"] for row in rows]
     figure, (left, right) = panels(2, 0.4, sharey=True)
     scores, errors = numbers(rows, "final_score"), numbers(rows, "final_score_error")

@@ -67,39 +67,45 @@ def test_a_race_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyP
         race(other, Workers())
 
 
-def test_what_is_recommended_again_is_judged_once_and_by_the_same_episodes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (entry,) = entries_of(("random",), range(1), TINY, Evaluations(3, 2), tmp_path)
-    run = RunFolder.create(entry.folder, entry.config)
-    for episodes, value in ((5, 0.3), (10, 0.4)):
-        run.append_recommendation(episodes, dict.fromkeys(STEPPING.parameter_names, value))
-    run.write_parameters({"parameters": dict.fromkeys(STEPPING.parameter_names, 0.4)})
-    met: list[tuple[float, int]] = []
+@pytest.fixture
+def met(monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, int]]:
+    """Judging episodes, as parameter and seed: no simulation, and a training that recommends 0.3, 0.4 and 0.4 again."""
+    episodes: list[tuple[float, int]] = []
 
-    def judge(task: Any, parameters: Any, config: Any, seeds: Iterable[int]) -> Any:
-        met.extend((parameters[0], seed) for seed in seeds)
+    def learn(config: TrainingConfig, run: RunFolder, **_: Any) -> None:
+        for count, value in ((5, 0.3), (10, 0.4)):
+            run.append_recommendation(count, dict.fromkeys(STEPPING.parameter_names, value))
+        run.write_parameters({"parameters": dict.fromkeys(STEPPING.parameter_names, 0.4)})
+
+    def judge(task: Any, parameters: tuple[float, ...], config: Any, seeds: Iterable[int]) -> Any:
+        episodes.extend((parameters[0], seed) for seed in seeds)
         return SimpleNamespace(results=[SimpleNamespace(score=parameters[0] + 0.1 * seed) for seed in seeds])
 
+    monkeypatch.setattr(race_module, "train", learn)
     monkeypatch.setattr(race_module, "evaluate", judge)
-    run_entry(entry)
+    monkeypatch.setattr(race_module, "check_origin", lambda *_: None)  # nothing has a journal
+    return episodes
+
+
+def test_what_is_recommended_again_is_judged_once_and_by_the_same_episodes(
+    tmp_path: Path, met: list[tuple[float, int]]
+) -> None:
+    (found,) = race(entries_of(("random",), range(1), TINY, Evaluations(3, 2), tmp_path), Workers())
     assert met == [(0.3, 0), (0.3, 1), (0.4, 0), (0.4, 1), (0.4, 2)]
-    found = read_curve(entry)
     assert found.final == pytest.approx((0.4, 0.5, 0.6)) and found.scores == pytest.approx((0.35, 0.45, 0.45))
 
 
-def test_a_folder_without_scores_of_single_episodes_is_judged_again(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.usefixtures("met")
+def test_a_folder_without_scores_of_single_episodes_is_judged_again(tmp_path: Path) -> None:
     (entry,) = entries_of(("random",), range(1), TINY, Evaluations(2, 1), tmp_path)
     (whole,) = race([entry], Workers())
-    monkeypatch.setattr(race_module, "train", lambda *_, **__: pytest.fail("it is trained already"))
     scores = entry.folder / "race_scores.csv"
     for cut in ("", "seed,score\n0,0.5\n"):
         scores.write_text(cut) if cut else scores.unlink()
         assert race([entry], Workers()) == [whole]
 
 
+@pytest.mark.usefixtures("met")
 def test_a_race_says_before_it_starts_what_there_is_to_do(tmp_path: Path) -> None:
     told: list[Any] = []
 
