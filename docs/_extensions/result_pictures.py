@@ -11,7 +11,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter
+from matplotlib.ticker import EngFormatter, MaxNLocator
 from result_columns import heading
 from result_rows import chosen
 from result_shapes import (
@@ -71,6 +71,7 @@ def race(rows: Rows) -> Figure:
     named = (("final_at_95", "o", COLOURS[0], "final score"), ("held_95", "s", COLOURS[1], "held along the way"))
     for column, marker, colour, label in named:
         right.plot(numbers(rows, column), heights, marker, color=colour, markersize=4, label=label)
+    right.xaxis.set_major_locator(MaxNLocator(integer=True))
     right.set(xlabel="trainings at 95 % of the best score", xlim=(-0.5, max(numbers(rows, "runs")) + 0.5))
     legend(figure, right)
     return figure

@@ -41,7 +41,7 @@ class CompareOptions:
     plot. The same command continues a race that was interrupted.
 
     Judging takes longer than learning. With a push, {pushed_along} episodes judge after every five of the training, and
-    {pushed_final} its end; without, {still_along} and {still_final}. What is recommended several times is judged once.
+    another {pushed_final} its end; without, {still_along} and {still_final}. What is recommended again is judged once.
     The command says before it starts how many episodes there are to simulate.
 
     :param out: folder of the race, which also holds its run folders
@@ -155,7 +155,7 @@ def _progress(work: Work) -> Iterator[Callable[[], object]]:
     from tqdm import tqdm
 
     print(
-        f"{work.trainings} trainings to go, of at most {work.training_episodes} episodes; "
+        f"{work.trainings} trainings to go, with at most {work.training_episodes} episodes together; "
         f"at most {work.judging_episodes} others judge what they recommend",
         file=sys.stderr,
     )

@@ -166,9 +166,9 @@ def as_markdown(table: Rankings) -> str:
 
     :param table: rankings from :func:`rankings`
     """
-    columns = ["algorithm", "runs", "final score", f"over {table.reference}", f"final score at {FINAL_SHARE:.0%}"]
+    columns = ["algorithm", "runs", "final score", f"over {table.reference}", f"final score at {_percent(FINAL_SHARE)}"]
     for share in SHARES:
-        columns += [f"{share:.0%} held after", "by"]
+        columns += [f"{_percent(share)} held after", "by"]
     rows = [_cells(row) for row in table.rows]
     lines = [f"| {' | '.join(cells)} |" for cells in ([*columns, "wall time"], *rows)]
     lines.insert(1, "|---" * (len(columns) + 1) + "|")
@@ -191,18 +191,22 @@ def _cells(row: Ranking) -> list[str]:
     return [*cells, f"{row.seconds:.0f} s"]
 
 
+def _percent(share: float) -> str:
+    return f"{100 * share:.0f} %"
+
+
 def _legend(table: Rankings) -> list[str]:
     """Lines that say how to read the table."""
     final, along = table.evaluations.final, table.evaluations.along
     return [
-        f"Unseen episodes judge: {final} a final recommendation, the first {along} of them one along the way. The best",
-        f"known score is {table.best:.3f} in all of them, and {table.best_along:.3f} in the first {along}.",
+        f"{final} unseen episodes judge every final recommendation, and the first {along} of them those along the way.",
+        f"The best known score is {table.best:.3f}, and {table.best_along:.3f} in the first {along}.",
         "",
-        "- final score: mean over trainings and episodes ± its standard error",
-        f"- over {table.reference}: mean difference of final scores (95 % interval over seeds and episodes)",
-        f"- final score at {FINAL_SHARE:.0%}: trainings that end with at least this share of the best known score",
-        "  (95 % interval over the episodes)",
-        f"- held: reached along the way in {HELD} evaluations in a row, by the median training and by how many",
+        "- final score: mean over trainings and judging episodes ± its standard error",
+        f"- over {table.reference}: mean difference of final scores (95 % interval over seeds and judging episodes)",
+        f"- final score at {_percent(FINAL_SHARE)}: trainings that end with this share of the best known score or more",
+        "  (95 % interval over the judging episodes)",
+        f"- held: reached along the way in {HELD} evaluations in a row, by the median training, and by how many",
     ]
 
 

@@ -77,10 +77,11 @@ def test_a_table_names_its_columns_and_what_judged(tmp_path: Path) -> None:
     curves = [curve("naf", 0.8, final=(0.8, 0.9)), curve("td3", 0.6, final=(0.6, 0.7))]
     table = rankings(curves)
     text = as_markdown(table)
-    assert "| algorithm | runs | final score | over naf | final score at 95% | 90% held after | by |" in text
+    assert "| algorithm | runs | final score | over naf | final score at 95 % | 90 % held after | by |" in text
     assert "| naf | 1 | 0.850 ± 0.050 |  | 1 (1 to 1) | not reached | 0 |" in text
     assert "| td3 | 1 | 0.650 ± 0.050 | -0.200 | 0 (0 to 0) |" in text
-    assert "2 a final recommendation, the first 1 of them" in text and "0.850 in all of them, and 0.800 in" in text
+    assert "\n2 unseen episodes judge every final recommendation, and the first 1 of them" in text
+    assert "The best known score is 0.850, and 0.800 in the first 1." in text
     assert "\n- naf: chosen on the tasks stepping and balance" in text
     write_csv(table, tmp_path / "race.csv")
     naf, td3 = csv.DictReader((tmp_path / "race.csv").open())
