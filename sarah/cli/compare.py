@@ -159,5 +159,5 @@ def _progress(work: Work) -> Iterator[Callable[[], object]]:
         f"at most {work.judging_episodes} others judge what they recommend",
         file=sys.stderr,
     )
-    with tqdm(total=work.trainings, unit=" trainings", disable=sys.stderr is None) as bar:
+    with tqdm(total=work.trainings, unit=" trainings") as bar:
         yield bar.update
