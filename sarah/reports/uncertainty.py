@@ -11,7 +11,7 @@ import math
 from typing import TypeVar
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit  # scipy.stats has it too, and takes a second to import
 
 Scores = TypeVar("Scores", float, np.ndarray)
 CONFIDENCE = 0.95
@@ -58,7 +58,7 @@ def difference(scores: np.ndarray, others: np.ndarray) -> tuple[float, float, fl
     if trainings == 1:
         return float(paired.mean()), math.nan, math.nan
     freedom = (min(trainings, episodes) if episodes > 1 else trainings) - 1
-    half = float(student.ppf((1 + CONFIDENCE) / 2, freedom)) * standard_error(paired)
+    half = float(stdtrit(freedom, (1 + CONFIDENCE) / 2)) * standard_error(paired)
     return float(paired.mean()), float(paired.mean() - half), float(paired.mean() + half)
 
 
