@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from statistics import mean, median
+from statistics import mean, stdev
 
 import tyro
 
 from experiments.record import Row
 from experiments.trainings import OfTrainings, identity
 from sarah.episode.workers import Workers
-from sarah.reports.race import Entry, entries_of, race
+from sarah.reports.judging import evaluations_of
+from sarah.reports.race import race
+from sarah.reports.race_entry import Entry, entries_of
 from sarah.reports.rankings import rankings
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
@@ -23,18 +26,18 @@ class Race(OfTrainings):
 
     :param task: name of the task
     :param budget: number of episodes of a training
-    :param evaluations: number of unseen seeds that a recommendation is evaluated on
     :param first_seed: seed of the first training of each algorithm; no setting was chosen on these
     :param seeds: number of trainings of each algorithm
     :param algorithms: names of the algorithms
+    :param evaluations: number of unseen episodes that judge a final recommendation; by default that of sarah-compare
     """
 
     task: tyro.conf.Suppress[str]
     budget: int
-    evaluations: int
     first_seed: int
     seeds: int = 20
     algorithms: tuple[str, ...] = ALGORITHMS
+    evaluations: int | None = None
 
     def rows(self) -> Iterator[Row]:
         """A row for each algorithm, the quickest first."""
@@ -43,20 +46,25 @@ class Race(OfTrainings):
         seeds = range(self.first_seed, self.first_seed + self.seeds)
         folder = self.runs / f"race-{self.task}-{identity(base)}"
         folder.mkdir(parents=True, exist_ok=True)
-        entries = entries_of(self.algorithms, seeds, base, self.evaluations, folder)
+        evaluations = evaluations_of(base.task, self.evaluations)
+        entries = entries_of(self.algorithms, seeds, base, evaluations, folder)
         with Workers(self.workers) as workers:
-            curves = race(entries, workers)
-        for ranking in rankings(curves):
-            row = {"algorithm": ranking.algo, "runs": ranking.runs}
-            for share, episodes in ranking.episodes.items():
-                row[f"episodes_to_{100 * share:.0f}"] = episodes
-                row[f"reached_{100 * share:.0f}"] = ranking.reached[share]
-            row |= zip(("final_score", "final_score_low", "final_score_high"), ranking.final, strict=True)
-            row["wall_time_s"] = round(ranking.seconds)
+            table = rankings(race(entries, workers), reference="naf")
+        for ranking in table.rows:
+            row = table.columns(ranking)
             if self.task == "balance":
                 own = [entry for entry in entries if entry.config.algo == ranking.algo]
-                row["score_while_learning"] = median(map(score_while_learning, own))
+                row |= while_learning([score_while_learning(entry) for entry in own])
             yield row
+
+
+def while_learning(scores: Sequence[float]) -> Row:
+    """Columns of the score that robots had while they learned, with its standard error over the trainings.
+
+    :param scores: mean score of the episodes that each training simulated
+    """
+    error = stdev(scores) / math.sqrt(len(scores)) if len(scores) > 1 else None
+    return {"score_while_learning": mean(scores), "score_while_learning_error": error}
 
 
 def score_while_learning(entry: Entry) -> float:

@@ -144,12 +144,12 @@ TABLE: dict[str, Maker] = {
     # Algorithms.
     "race_stepping": Maker(
         "Which algorithm learns to step in the fewest episodes?",
-        Race("stepping", budget=60, evaluations=4, first_seed=100),
+        Race("stepping", budget=60, first_seed=100),
         {**TRAINED, "seeds": 1, "evaluations": 1, "algorithms": ("cma-es",)},
     ),
     "race_balance": Maker(
         "Which algorithm learns to come back after a push in the fewest episodes?",
-        Race("balance", budget=150, evaluations=12, first_seed=300),
+        Race("balance", budget=150, first_seed=300),
         {**TRAINED, "seeds": 1, "evaluations": 1, "algorithms": ("cma-es",)},
     ),
     "noise_limit": Maker(

@@ -30,7 +30,9 @@ HEADINGS = {
     "episodes_to_95": "95 % after (episodes)",
     "reached_80": "80 % reached by",
     "reached_90": "90 % reached by",
-    "reached_95": "95 % reached by",
+    "held_90": "90 % held by",
+    "held_95": "95 % held by",
+    "final_at_95": "final score at 95 %",
     "sets_within_0_02": "sets within 0.02",
     "rms_distance": "root mean square distance",
     "naf_over_td3": "NAF over TD3",
@@ -47,6 +49,10 @@ WORDS = {"pybullet": "PyBullet:", "mujoco": "MuJoCo:", "naf": "NAF", "td3": "TD3
 """Words of column names that are written otherwise."""
 FORMATS = {
     "score": ".3f",
+    "score_error": ".3f",
+    "score_while_learning": ".3f",
+    "score_while_learning_error": ".3f",
+    "over_naf": "+.3f",
     "distance": ".3f",
     "survival": ".2f",
     "score_0_to_3_min": ".3f",

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter
+from matplotlib.ticker import EngFormatter, MaxNLocator
 from result_columns import heading
 from result_rows import chosen
 from result_shapes import (
@@ -59,17 +59,20 @@ def second_training(rows: Rows) -> Figure:
 
 
 def race(rows: Rows) -> Figure:
-    """Final scores with their intervals, and how many seeds reached 90 and 95 % of the best."""
+    """Final scores with their standard errors, and how many trainings are at 95 % of the best, finally or before."""
     labels = [row["algorithm"] for row in rows]
     figure, (left, right) = panels(2, 0.4, sharey=True)
-    draw_intervals(left, labels, *(numbers(rows, f"final_score{end}") for end in ("", "_low", "_high")))
-    left.set_xlabel("final score, interquartile mean and 95 % interval")
+    scores, errors = numbers(rows, "final_score"), numbers(rows, "final_score_error")
+    ends = [[score + sign * error for score, error in zip(scores, errors, strict=True)] for sign in (-1, 1)]
+    draw_intervals(left, labels, scores, *ends)
+    left.set_xlabel("final score, mean and standard error")
     heights = range(len(labels), 0, -1)
-    runs = numbers(rows, "runs")
-    for column, marker, colour in (("reached_90", "o", COLOURS[0]), ("reached_95", "s", COLOURS[1])):
-        shares = [reached / count for reached, count in zip(numbers(rows, column), runs, strict=True)]
-        right.plot(shares, heights, marker, color=colour, markersize=4, label=f"{column[-2:]} % of the best score")
-    right.set(xlabel="share of the seeds that reach it", xlim=(-0.05, 1.05))
+    right.hlines(heights, numbers(rows, "final_at_95_low"), numbers(rows, "final_at_95_high"), color=COLOURS[0])
+    named = (("final_at_95", "o", COLOURS[0], "final score"), ("held_95", "s", COLOURS[1], "held along the way"))
+    for column, marker, colour, label in named:
+        right.plot(numbers(rows, column), heights, marker, color=colour, markersize=4, label=label)
+    right.xaxis.set_major_locator(MaxNLocator(integer=True))
+    right.set(xlabel="trainings at 95 % of the best score", xlim=(-0.5, max(numbers(rows, "runs")) + 0.5))
     legend(figure, right)
     return figure
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
@@ -24,12 +25,15 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, Task, load_task
 from sarah.errors import ConfigurationError, check_range
 from sarah.files import make_folder
+from sarah.reports.judging import PUSHED, UNPUSHED, evaluations_of
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.sessions import is_session
 
+if TYPE_CHECKING:  # the import would load the learning algorithms
+    from sarah.reports.race import Work
+
 COMMAND = "sarah-compare"
 MOST_SEEDS = 1000
-MOST_EVALUATIONS = 1000
 SCORES = (0.01, 2.0)
 """Range of best known scores: 1 is the ceiling, which the printed form of the reward can exceed."""
 
@@ -38,10 +42,15 @@ SCORES = (0.01, 2.0)
 class CompareOptions:
     """Train several algorithms with several seeds each, and see which one needs the fewest episodes.
 
-    The recommendation after every five episodes of a training is evaluated on unseen seeds. The table says after how
-    many episodes more than half of the seeds have reached 90 % and 95 % of the best known score, and held it over three
-    evaluations: a multiple of five, or "not reached". It gives the final score as well. It is printed, and written to
-    the folder with a plot. The same command continues a race that was interrupted.
+    Unseen episodes judge what each training recommends at its end, and after every five episodes along the way. The
+    table has the final score with its standard error, and how many trainings end at 95 % of the best known score. It
+    also says after how many episodes more than half of the trainings have reached 90 % and 95 % along the way, and held
+    it over three evaluations: a multiple of five, or "not reached". It is printed, and written to the folder with a
+    plot. The same command continues a race that was interrupted.
+
+    Judging takes longer than learning. With a push, {pushed_along} episodes judge after every five of the training, and
+    another {pushed_final} its end; without, {still_along} and {still_final}. What is recommended again is judged once.
+    The command says before it starts how many episodes there are to simulate.
 
     :param out: folder of the race, which also holds its run folders
     :param algorithms: names of different algorithms: {algorithms}
@@ -52,8 +61,12 @@ class CompareOptions:
     :param slots: number of episodes in flight in each training
     :param episode: settings of the episodes; by default those of ``sarah-train``, whose help also names the paper's
     :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
-    :param evaluations: number of unseen seeds on which every recommendation is evaluated
-    :param best_known: score whose shares are to be reached; by default the best final score of the race
+    :param evaluations: number of unseen episodes that judge every final recommendation; by default {pushed_final} if
+        the task has a push, and {still_final} if not
+    :param evaluations_along: number of these that judge every recommendation along the way; by default {pushed_along}
+        if the task has a push, and {still_along} if not
+    :param best_known: score whose shares are to be reached; by default that of the best training, chosen by other
+        episodes than those that say how good it is
     :param workers: number of processes on this machine that train, one training each; with 0, this process trains
     :param scheduler: address of a Dask scheduler whose workers train instead; they must share the folder's file system
     """
@@ -69,13 +82,20 @@ class CompareOptions:
     slots: int = 1
     episode: EpisodeConfig = EpisodeConfig()
     engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
-    evaluations: int = 10
+    evaluations: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
+    evaluations_along: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
     best_known: Annotated[float | None, tyro.conf.arg(metavar="FLOAT")] = None
     workers: int = 0
     scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
 
 
-CompareOptions.__doc__ = str(CompareOptions.__doc__).replace("{algorithms}", ", ".join(ALGORITHMS))  # read by the help
+CompareOptions.__doc__ = str(CompareOptions.__doc__).format(  # read by the help
+    algorithms=", ".join(ALGORITHMS),
+    pushed_final=PUSHED.final,
+    pushed_along=PUSHED.along,
+    still_final=UNPUSHED.final,
+    still_along=UNPUSHED.along,
+)
 
 
 def main() -> None:
@@ -101,7 +121,7 @@ def _compare(arguments: Sequence[str]) -> None:
     if is_session(options.out):
         raise ConfigurationError(f"{options.out} is the folder of a session: name another for the race")
     check_range("seeds", options.seeds, 1, MOST_SEEDS)
-    check_range("evaluations", options.evaluations, 1, MOST_EVALUATIONS)
+    evaluations = evaluations_of(options.task, options.evaluations, options.evaluations_along)
     if options.best_known is not None:
         check_range("best-known", options.best_known, *SCORES)
     if not options.algorithms or len(set(options.algorithms)) < len(options.algorithms):
@@ -115,18 +135,19 @@ def _compare(arguments: Sequence[str]) -> None:
     check_engine(episode.engine)
     from sarah.episode.trial import try_task
     from sarah.episode.workers import Workers
-    from sarah.reports.race import entries_of, race
+    from sarah.reports.race import race
+    from sarah.reports.race_entry import entries_of
     from sarah.reports.rankings import as_markdown, rankings, write_csv
     from sarah.reports.training_figures import draw_race
 
     seeds = range(options.first_seed, options.first_seed + options.seeds)
-    entries = entries_of(options.algorithms, seeds, base, options.evaluations, options.out)
+    entries = entries_of(options.algorithms, seeds, base, evaluations, options.out)
     try_task(options.task, episode)
     make_folder(options.out)
     with Workers(options.workers, options.scheduler) as workers:
         say_engine(episode, options.engine)
         try:
-            curves = race(entries, workers)
+            curves = race(entries, workers, _progress)
         except KeyboardInterrupt:
             print(f"\n{COMMAND}: interrupted; the same command goes on with the race", file=sys.stderr)
             raise SystemExit(130) from None
@@ -136,3 +157,17 @@ def _compare(arguments: Sequence[str]) -> None:
     write_csv(table, options.out / "race.csv")
     for file in draw_race(curves, options.out / "race"):
         print(file)
+
+
+@contextmanager
+def _progress(work: Work) -> Iterator[Callable[[], object]]:
+    """Say how much there is to simulate, and show how many trainings are finished."""
+    from tqdm import tqdm
+
+    print(
+        f"{work.trainings} trainings to go, with at most {work.training_episodes} episodes together; "
+        f"at most {work.judging_episodes} others judge what they recommend",
+        file=sys.stderr,
+    )
+    with tqdm(total=work.trainings, unit=" trainings") as bar:
+        yield bar.update

@@ -1,39 +1,38 @@
 """A race: several algorithms with several seeds each, compared by their recommendations.
 
 Each training has a run folder. Its recommendations after every five episodes are evaluated on seeds that no training
-sees, and the scores are written to ``race.csv`` in the run folder. A training with a ``race.csv`` is not run again; if
-the number of unseen seeds has changed, it is only evaluated again. A training without one is resumed, so that a race
+sees, and the mean scores are written to ``race.csv`` in the run folder. The final recommendation meets more episodes,
+and its score in each is written to ``race_scores.csv``. A training with both files is not run again; if the numbers of
+unseen seeds have changed, it is only evaluated again. A training that is not finished is resumed, so that a race
 deletes nothing.
 """
 
 from __future__ import annotations
 
 import csv
-import dataclasses
 import io
+import math
 import os
 import tempfile
 import time
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from statistics import mean, stdev
 
 from sarah.episode.evaluation import evaluate
 from sarah.episode.workers import Workers
 from sarah.errors import RunFolderError
-from sarah.files import locked, read_lines, read_text, replace_text
+from sarah.files import locked, read_text, replace_text
 from sarah.number import finite_number, whole_number
-from sarah.runs.agent_settings import settings_of
-from sarah.runs.config import TrainingConfig
+from sarah.reports.race_entry import RACE_FILE, SCORES_FILE, Entry, RaceCurve, is_evaluated, read_curve, unreadable
 from sarah.runs.config_files import first_difference
 from sarah.runs.origin import check_origin
-from sarah.runs.run_episodes import LONGEST_REASON
 from sarah.runs.run_folder import RunFolder
+from sarah.training.recorder import EPISODES_PER_RECOMMENDATION
 from sarah.training.train import train
 
-RACE_FILE = "race.csv"
-"""Name of the file in every run folder of a race: scores of its recommendations, during the training and at its end."""
 TIME_FILE = "race_seconds.txt"
 """Name of the file in every run folder of a race that has the wall time of its training, in s."""
 LOCK_FILE = "race.lock"
@@ -41,36 +40,33 @@ LOCK_FILE = "race.lock"
 
 
 @dataclass(frozen=True)
-class Entry:
-    """One training of a race.
+class Work:
+    """What a race has still to do, at most: a training goes on where it was, and what is alike is judged once.
 
-    :param config: settings of the training
-    :param folder: path of its run folder
-    :param evaluations: number of unseen seeds on which every recommendation is evaluated
+    :param trainings: number of trainings to run, or only to judge
+    :param training_episodes: number of episodes that they learn from
+    :param judging_episodes: number of episodes that judge their recommendations
     """
 
-    config: TrainingConfig
-    folder: Path
-    evaluations: int
+    trainings: int
+    training_episodes: int
+    judging_episodes: int
 
 
-@dataclass(frozen=True)
-class RaceCurve:
-    """The scores of one training's recommendations.
+Progress = Callable[[Work], AbstractContextManager[Callable[[], object]]]
+"""Function that is told what there is to do, and gives a function to call after each training, as a context."""
 
-    :param algo: name of the algorithm
-    :param episodes: numbers of episodes before each evaluation, rising; the last one is the budget
-    :param scores: mean score of each evaluation over the unseen seeds, of the same length
-    :param seconds: wall time of the training, without the evaluations, in s; of all its parts, if it was interrupted
+
+@contextmanager
+def without_progress(work: Work) -> Iterator[Callable[[], object]]:
+    """Nothing to see of a race.
+
+    :param work: what there is to do
     """
-
-    algo: str
-    episodes: tuple[int, ...]
-    scores: tuple[float, ...]
-    seconds: float
+    yield lambda: None
 
 
-def race(entries: Sequence[Entry], workers: Workers) -> list[RaceCurve]:
+def race(entries: Sequence[Entry], workers: Workers, progress: Progress = without_progress) -> list[RaceCurve]:
     """Run the trainings that are not complete, each in one process, and read the scores of all.
 
     A race that was interrupted goes on with the trainings that it was in. Several races in one folder share the work:
@@ -78,21 +74,33 @@ def race(entries: Sequence[Entry], workers: Workers) -> list[RaceCurve]:
 
     :param entries: trainings of the race; on a cluster, all workers must share the file system of their folders
     :param workers: workers that train
+    :param progress: what shows how far the race is; it is not called if there is nothing to do
     :raises RunFolderError: if a folder is not a run folder of a race, or has a training with other settings
     :raises ResumeError: if a training was made with other code or versions, and others are still to be made
     """
     for entry in entries:
         if entry.folder.exists():
             _check_settings(entry)
-    if not all(is_evaluated(entry) for entry in entries):  # otherwise nothing of today comes into the table
-        for entry in entries:
+    if left := [entry for entry in entries if not is_evaluated(entry)]:
+        for entry in entries:  # otherwise nothing of today comes into the table
             if entry.folder.exists():
                 check_origin(RunFolder(entry.folder).journal_path, entry.config)
-    for wait in (False, True):
-        jobs = [workers.submit(run_entry, entry, wait) for entry in entries if not is_evaluated(entry)]
-        for job in jobs:
-            job.result()
+        with progress(_work(left)) as note_finished:
+            for wait in (False, True):
+                jobs = [(entry, workers.submit(run_entry, entry, wait)) for entry in left]
+                for entry, job in jobs:
+                    job.result()
+                    if is_evaluated(entry):
+                        note_finished()
+                left = [entry for entry in left if not is_evaluated(entry)]
     return [read_curve(entry) for entry in entries]
+
+
+def _work(left: Sequence[Entry]) -> Work:
+    """What is to do for trainings that are not complete."""
+    learning = [entry.config.episodes for entry in left if not RunFolder(entry.folder, entry.config.task).is_finished]
+    along = (entry.config.episodes // EPISODES_PER_RECOMMENDATION * entry.evaluations.along for entry in left)
+    return Work(len(left), sum(learning), sum(along) + sum(entry.evaluations.final for entry in left))
 
 
 def _check_settings(entry: Entry) -> None:
@@ -104,22 +112,6 @@ def _check_settings(entry: Entry) -> None:
     if difference := first_difference(entry.config, there):
         key, here, recorded = difference
         raise RunFolderError(f"{entry.folder} is a training with {key} {recorded}, not {here}: name another folder")
-
-
-def is_run(entry: Entry) -> bool:
-    """Whether a training and an evaluation of it are complete.
-
-    :param entry: training of the race
-    """
-    return (entry.folder / RACE_FILE).exists()
-
-
-def is_evaluated(entry: Entry) -> bool:
-    """Whether a training is complete, and evaluated on as many unseen seeds as the race asks for.
-
-    :param entry: training of the race
-    """
-    return is_run(entry) and _rows(entry)[0].get("evaluations") == str(entry.evaluations)
 
 
 def run_entry(entry: Entry, wait: bool = True) -> None:
@@ -169,84 +161,37 @@ def _seconds(path: Path) -> float:
     except FileNotFoundError:
         return 0.0
     except (OSError, ValueError) as error:
-        raise _unreadable(path, error) from error
+        raise unreadable(path, error) from error
 
 
 def _evaluate_recommendations(entry: Entry, run: RunFolder) -> None:
     """Write the scores of all recommendations, during the training and at its end."""
-    config, names = entry.config, entry.config.task.parameter_names
-    seconds = read_curve(entry).seconds if is_run(entry) else _seconds(entry.folder / TIME_FILE)
+    config, count, names = entry.config, entry.evaluations, entry.config.task.parameter_names
     try:
         along = [
-            (whole_number(row["episodes"]), tuple(finite_number(row[name]) for name in names))
+            (whole_number(row["episodes"]), tuple(finite_number(row[name]) for name in names), count.along)
             for row in run.recommendations()
         ]
     except (KeyError, TypeError, ValueError) as error:
-        raise _unreadable(entry.folder, error) from error
-    known: dict[tuple[float, ...], float] = {}
+        raise unreadable(entry.folder, error) from error
+    final, seconds = run.parameters(), _seconds(entry.folder / TIME_FILE)
+    scores: dict[tuple[float, ...], list[float]] = {}
+    means = []
+    for episodes, parameters, evaluations in [*along, (config.episodes, final, count.final)]:
+        known = scores.setdefault(parameters, [])
+        if missing := range(len(known), evaluations):
+            found = evaluate(config.task, parameters, config.episode, missing)
+            known += (result.score for result in found.results)
+        judged = known[:evaluations]
+        standard_error = stdev(judged) / math.sqrt(evaluations) if evaluations > 1 else ""
+        means.append((episodes, mean(judged), standard_error, seconds, evaluations))
+    _write_table(entry.folder / SCORES_FILE, ("seed", "score"), enumerate(scores[final]))
+    _write_table(entry.folder / RACE_FILE, ("episodes", "score", "error", "seconds", "evaluations"), means)
+
+
+def _write_table(path: Path, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
     text = io.StringIO(newline="")
     writer = csv.writer(text)
-    writer.writerow(("episodes", "score", "seconds", "evaluations"))
-    for episodes, parameters in [*along, (config.episodes, run.parameters())]:
-        if parameters not in known:
-            evaluation = evaluate(config.task, parameters, config.episode, range(entry.evaluations))
-            known[parameters] = evaluation.mean("score")
-        writer.writerow((episodes, known[parameters], seconds, entry.evaluations))
-    replace_text(entry.folder / RACE_FILE, text.getvalue())
-
-
-def read_curve(entry: Entry) -> RaceCurve:
-    """Read the scores that :func:`run_entry` wrote.
-
-    :param entry: training that is complete
-    :raises RunFolderError: if they cannot be read
-    """
-    rows = _rows(entry)
-    try:
-        return RaceCurve(
-            entry.config.algo,
-            tuple(whole_number(row["episodes"]) for row in rows),
-            tuple(finite_number(row["score"]) for row in rows),
-            finite_number(rows[0]["seconds"]),
-        )
-    except (KeyError, TypeError, ValueError) as error:
-        raise _unreadable(entry.folder / RACE_FILE, error) from error
-
-
-def _rows(entry: Entry) -> list[dict[str, str]]:
-    """Rows of the race's table in a run folder: at most one for each episode, and one for the end."""
-    path = entry.folder / RACE_FILE
-    try:
-        rows = list(csv.DictReader(read_lines(path, entry.config.episodes + 2)))
-    except (OSError, csv.Error) as error:
-        raise _unreadable(path, error) from error
-    if not rows:
-        raise _unreadable(path, ValueError("it has no rows"))
-    return rows
-
-
-def _unreadable(path: Path, error: Exception) -> RunFolderError:
-    reason = getattr(error, "strerror", None) or repr(error)
-    return RunFolderError(f"{path} cannot be read: {reason[:LONGEST_REASON]}")
-
-
-def entries_of(
-    algorithms: Sequence[str], seeds: Sequence[int], base: TrainingConfig, evaluations: int, folder: Path
-) -> list[Entry]:
-    """Entries of a race: every algorithm with every seed.
-
-    :param algorithms: names of the algorithms
-    :param seeds: seeds of the trainings
-    :param base: settings that all trainings share
-    :param evaluations: number of unseen seeds on which every recommendation is evaluated
-    :param folder: folder for the run folders
-    """
-    return [
-        Entry(
-            dataclasses.replace(base, algo=algo, agent=settings_of(algo)(), seed=seed),
-            folder / f"{algo}-s{seed}",
-            evaluations,
-        )
-        for seed in seeds
-        for algo in algorithms
-    ]
+    writer.writerow(columns)
+    writer.writerows(rows)
+    replace_text(path, text.getvalue())

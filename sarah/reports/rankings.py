@@ -1,4 +1,7 @@
-"""The table of a race: after how many episodes each algorithm gets where, and how far.
+"""The table of a race: how good each algorithm's final recommendations are, and after how many episodes it gets where.
+
+Final recommendations are judged by many episodes, those along the way by the first of them. Each is compared with the
+best known score in the episodes that judge it.
 
 A race knows recommendations after every five episodes only. So all counts of episodes are ones at which there was a
 recommendation, also the median of an even number of trainings, which is the higher one of the two in the middle.
@@ -15,14 +18,16 @@ from statistics import median, median_high
 
 import numpy as np
 
-from sarah.reports.race import RaceCurve
+from sarah.reports.judging import Evaluations
+from sarah.reports.race_entry import RaceCurve
+from sarah.reports.uncertainty import best_known, difference, number_at, share_of, standard_error
 
 HELD = 3
 """Number of consecutive evaluations that must reach a share of the best known score."""
 SHARES = (0.9, 0.95)
-"""Shares of the best known score; the table counts the episodes until each is reached."""
-CONFIDENCE = 0.95
-BOOTSTRAP_DRAWS = 2000
+"""Shares of the best known score; the table counts the episodes until each is reached and held."""
+FINAL_SHARE = 0.95
+"""Share of the best known score that the table counts final recommendations at."""
 
 ORIGINS = {
     "naf": "chosen on the tasks stepping and balance, its warm-up too, which all algorithms with a model share",
@@ -44,19 +49,64 @@ class Ranking:
 
     :param algo: name of the algorithm
     :param runs: number of trainings, one for each seed
-    :param reached: number of trainings that reached a share of the best known score, by share
-    :param episodes: median number of episodes until a share is reached, by share, after which more than half of the
-        trainings have reached it; infinite if they never have
-    :param final: interquartile mean of the final scores, and the ends of its 95 % bootstrap interval
+    :param score: mean final score, and its standard error over trainings and judging episodes
+    :param over_reference: mean difference to the reference, and both ends of its 95 % interval; none without another
+        algorithm to compare with
+    :param at_share: number of trainings whose final score is at least :data:`FINAL_SHARE` of the best known one, and
+        both ends of its 95 % interval over the judging episodes
+    :param episodes: median number of episodes along the way until a share is reached and held, by share, after which
+        more than half of the trainings have reached it; infinite if they never have
+    :param held: number of trainings that reached and held a share along the way, by share
     :param seconds: median wall time of a training, in s
     """
 
     algo: str
     runs: int
-    reached: dict[float, int]
+    score: tuple[float, float]
+    over_reference: tuple[float, float, float] | None
+    at_share: tuple[int, int, int]
     episodes: dict[float, float]
-    final: tuple[float, float, float]
+    held: dict[float, int]
     seconds: float
+
+
+@dataclass(frozen=True)
+class Rankings:
+    """The table of a race.
+
+    :param rows: row of each algorithm; the one that reaches the highest share soonest comes first
+    :param reference: name of the algorithm that the others are compared with
+    :param evaluations: numbers of judging episodes
+    :param best: best known score, in all judging episodes
+    :param best_along: best known score in the episodes along the way
+    """
+
+    rows: tuple[Ranking, ...]
+    reference: str
+    evaluations: Evaluations
+    best: float
+    best_along: float
+
+    def columns(self, row: Ranking) -> dict[str, str | float | None]:
+        """Values of a row by column, as files have them: none where nothing is known.
+
+        :param row: one of :attr:`rows`
+        """
+        over = row.over_reference or (math.nan,) * 3
+        values: dict[str, str | float] = {"algorithm": row.algo, "runs": row.runs}
+        values |= zip(("final_score", "final_score_error"), row.score, strict=True)
+        values |= zip(_with_ends(f"over_{self.reference}"), over, strict=True)
+        values |= zip(_with_ends(f"final_at_{100 * FINAL_SHARE:.0f}"), row.at_share, strict=True)
+        for share in SHARES:
+            values[f"episodes_to_{100 * share:.0f}"] = row.episodes[share]
+            values[f"held_{100 * share:.0f}"] = row.held[share]
+        values["wall_time_s"] = round(row.seconds)
+        return {name: None if value != value else value for name, value in values.items()}
+
+
+def _with_ends(name: str) -> tuple[str, str, str]:
+    """Columns of a value and of both ends of its interval."""
+    return name, f"{name}_low", f"{name}_high"
 
 
 def episodes_until(curve: RaceCurve, score: float) -> float:
@@ -74,79 +124,104 @@ def episodes_until(curve: RaceCurve, score: float) -> float:
     return math.inf
 
 
-def rankings(curves: Sequence[RaceCurve], best_known: float | None = None) -> list[Ranking]:
+def rankings(curves: Sequence[RaceCurve], best: float | None = None, reference: str | None = None) -> Rankings:
     """Summarise a race by algorithm.
 
-    :param curves: scores of all trainings
-    :param best_known: score whose shares are to be reached; by default the best final score of the race
-    :return: one ranking for each algorithm; the one that reaches the highest share soonest comes first
+    :param curves: scores of all trainings, those of each algorithm in the same order of seeds
+    :param best: best known score, whose shares are to be reached; by default that of the race, see
+        :func:`~sarah.reports.uncertainty.best_known`
+    :param reference: name of the algorithm that the others are compared with; by default the first one
     """
-    best = max(curve.scores[-1] for curve in curves) if best_known is None else best_known
-    table = []
-    for algo in dict.fromkeys(curve.algo for curve in curves):
+    names, reference = np.array([curve.algo for curve in curves]), reference or curves[0].algo
+    scores, along = np.array([curve.final for curve in curves]), curves[0].along
+    best_along = best_known(scores, along) if best is None else best
+    rows = []
+    for algo in dict.fromkeys(names.tolist()):
+        own, compared = names == algo, algo != reference and reference in names
         runs = [curve for curve in curves if curve.algo == algo]
-        until = {share: [episodes_until(curve, best - (1.0 - share) * abs(best)) for curve in runs] for share in SHARES}
-        table.append(
+        until = {share: [episodes_until(curve, share_of(best_along, share)) for curve in runs] for share in SHARES}
+        rows.append(
             Ranking(
                 algo,
                 len(runs),
-                {share: sum(np.isfinite(counts).tolist()) for share, counts in until.items()},
+                (float(scores[own].mean()), standard_error(scores[own])),
+                difference(scores[own], scores[names == reference]) if compared else None,
+                number_at(scores, own, FINAL_SHARE, best),
                 {share: median_high(counts) for share, counts in until.items()},
-                interquartile_mean([curve.scores[-1] for curve in runs]),
+                {share: sum(np.isfinite(counts).tolist()) for share, counts in until.items()},
                 median(curve.seconds for curve in runs),
             )
         )
-    return sorted(table, key=lambda row: (row.episodes[SHARES[-1]], -row.final[0]))
+    return Rankings(
+        tuple(sorted(rows, key=lambda row: (row.episodes[SHARES[-1]], -row.score[0]))),
+        reference,
+        Evaluations(scores.shape[1], along),
+        best_known(scores) if best is None else best,
+        best_along,
+    )
 
 
-def interquartile_mean(values: Sequence[float]) -> tuple[float, float, float]:
-    """Mean of the middle half of some values, with its bootstrap interval (Agarwal et al. 2021).
-
-    :param values: values to average, one for each training
-    :return: the mean and both ends of its 95 % interval; for a single value, three times that value
-    """
-    cut = len(values) // 4
-    draws = np.random.default_rng(0).choice(np.asarray(values), (BOOTSTRAP_DRAWS, len(values)))
-    middle_halves = np.sort(np.vstack([values, draws]), axis=1)[:, cut : len(values) - cut]
-    found, *drawn = middle_halves.mean(axis=1)
-    low, high = np.quantile(drawn, ((1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2))
-    return (float(found), float(low), float(high))
-
-
-def as_markdown(table: Sequence[Ranking]) -> str:
-    """Markdown table of the rankings, and under it where each algorithm's settings come from.
+def as_markdown(table: Rankings) -> str:
+    """Markdown table of the rankings, and under it how to read it, and where each algorithm's settings come from.
 
     :param table: rankings from :func:`rankings`
     """
-    shares = "".join(f" {share:.0%} of the best after | reached by |" for share in SHARES)
-    lines = [f"| algorithm | runs |{shares} final score | wall time |", "|---" * (4 + 2 * len(SHARES)) + "|"]
-    for row in table:
-        cells = "".join(f" {_count(row.episodes[share])} | {row.reached[share]} |" for share in SHARES)
-        score, low, high = row.final
-        lines.append(
-            f"| {row.algo} | {row.runs} |{cells} {score:.3f} ({low:.3f} to {high:.3f}) | {row.seconds:.0f} s |"
-        )
+    columns = ["algorithm", "runs", "final score", f"over {table.reference}", f"final score at {_percent(FINAL_SHARE)}"]
+    for share in SHARES:
+        columns += [f"{_percent(share)} held after", "by"]
+    rows = [_cells(row) for row in table.rows]
+    lines = [f"| {' | '.join(cells)} |" for cells in ([*columns, "wall time"], *rows)]
+    lines.insert(1, "|---" * (len(columns) + 1) + "|")
     named: dict[str, list[str]] = {}
-    for row in table:
+    for row in table.rows:
         named.setdefault(ORIGINS.get(row.algo, UNKNOWN_ORIGIN), []).append(row.algo)
     settings = (f"- {', '.join(names)}: {origin}" for origin, names in named.items())
-    return "\n".join([*lines, "", "Settings:", "", *settings])
+    return "\n".join([*lines, "", *_legend(table), "", "Settings:", "", *settings])
+
+
+def _cells(row: Ranking) -> list[str]:
+    (score, error), (number, fewest, most) = row.score, row.at_share
+    over = "" if row.over_reference is None else f"{row.over_reference[0]:+.3f}"
+    if row.over_reference and math.isfinite(row.over_reference[1]):
+        over += " ({:+.3f} to {:+.3f})".format(*row.over_reference[1:])
+    cells = [row.algo, str(row.runs), f"{score:.3f}" + (f" ± {error:.3f}" if math.isfinite(error) else "")]
+    cells += [over, f"{number} ({fewest} to {most})"]
+    for share in SHARES:
+        cells += [_count(row.episodes[share]), str(row.held[share])]
+    return [*cells, f"{row.seconds:.0f} s"]
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.0f} %"
+
+
+def _legend(table: Rankings) -> list[str]:
+    """Lines that say how to read the table."""
+    final, along = table.evaluations.final, table.evaluations.along
+    return [
+        f"{final} unseen episodes judge every final recommendation, and the first {along} of them those along the way.",
+        f"The best known score is {table.best:.3f}, and {table.best_along:.3f} in the first {along}.",
+        "",
+        "- final score: mean over trainings and judging episodes ± its standard error",
+        f"- over {table.reference}: mean difference of final scores (95 % interval over seeds and judging episodes)",
+        f"- final score at {_percent(FINAL_SHARE)}: trainings that end with this share of the best known score or more",
+        "  (95 % interval over the judging episodes)",
+        f"- held: reached along the way in {HELD} evaluations in a row, by the median training, and by how many",
+    ]
 
 
 def _count(episodes: float) -> str:
     return f"{episodes:.0f}" if math.isfinite(episodes) else "not reached"
 
 
-def write_csv(table: Sequence[Ranking], path: Path) -> None:
+def write_csv(table: Rankings, path: Path) -> None:
     """Write the rankings as CSV. Counts of episodes that were never reached are ``inf``.
 
     :param table: rankings from :func:`rankings`
     :param path: path of the file
     """
+    rows = [table.columns(row) for row in table.rows]
     with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        counted = [f"{name}_{share:.0%}" for share in SHARES for name in ("episodes", "reached")]
-        writer.writerow(("algorithm", "runs", *counted, "final_score", "final_low", "final_high", "seconds"))
-        for row in table:
-            counts = [value for share in SHARES for value in (f"{row.episodes[share]:.0f}", row.reached[share])]
-            writer.writerow((row.algo, row.runs, *counts, *row.final, row.seconds))
+        writer = csv.DictWriter(file, list(rows[0]))
+        writer.writeheader()
+        writer.writerows(rows)

@@ -29,10 +29,11 @@ from sarah.pictures.colours import algorithm_colours, algorithm_label
 from sarah.pictures.style import COLUMN_WIDTH, own_style, save
 from sarah.reports.robustness import PushedEpisode, finest_sectors, survival_by_direction
 from sarah.reports.training_curves import RunCurves, read_curves
+from sarah.reports.uncertainty import standard_error
 from sarah.runs.run_folder import RunFolder
 
 if TYPE_CHECKING:  # the import would load the learning algorithms
-    from sarah.reports.race import RaceCurve
+    from sarah.reports.race_entry import RaceCurve
 
 WINDOW = 15
 """Number of episodes in the window of the running median."""
@@ -171,25 +172,37 @@ def running_median(values: np.ndarray) -> np.ndarray:
 def draw_race(curves: Sequence[RaceCurve], path: Path) -> list[Path]:
     """Draw the score of each algorithm's recommendations against episodes: median and quartiles over its runs.
 
-    Steps show that a recommendation counts until the next one: nothing is known in between. Dots are final scores.
+    Steps show that a recommendation counts until the next one: nothing is known in between. Dots beside them are the
+    mean final scores in all judging episodes, with their standard errors over trainings and episodes.
 
     :param curves: scores of all trainings
     :param path: path of the picture, without suffix
     :return: the files, PNG and PDF
     """
     with own_style():
-        figure, axis = plt.subplots(figsize=(COLUMN_WIDTH, 0.9 * COLUMN_WIDTH), layout="constrained")
+        figure, (axis, ends) = plt.subplots(
+            1,
+            2,
+            sharey=True,
+            width_ratios=(4, 1),
+            figsize=(COLUMN_WIDTH, 0.9 * COLUMN_WIDTH),
+            layout="constrained",
+        )
         colours = algorithm_colours(curve.algo for curve in curves)
-        for algo in dict.fromkeys(curve.algo for curve in curves):
+        for place, algo in enumerate(dict.fromkeys(curve.algo for curve in curves)):
             runs = [curve for curve in curves if curve.algo == algo]
             episodes = runs[0].episodes
             low, middle, high = np.quantile([run.scores for run in runs], (0.25, 0.5, 0.75), axis=0)
             axis.fill_between(episodes, low, high, step="post", color=colours[algo], alpha=0.15, linewidth=0)
             label = f"{algorithm_label(algo)} ({len(runs)})"
             axis.plot(episodes, middle, drawstyle="steps-post", color=colours[algo], linewidth=1.2, label=label)
-            axis.plot(episodes[-1:], middle[-1:], "o", markersize=2.5, color=colours[algo])
+            final = np.array([run.final for run in runs])
+            ends.errorbar(place, final.mean(), standard_error(final), fmt="o", markersize=2.5, color=colours[algo])
         axis.set_xlabel("episodes")
         axis.set_ylabel("score on unseen seeds")
+        ends.set_xlabel("final")
+        ends.set_xticks([])
+        ends.margins(x=0.2)
         figure.legend(loc="outside upper center", ncols=2)  # three columns would not fit for eight algorithms
         return save(figure, path)
 

@@ -28,6 +28,7 @@ MISTAKES = {
         ("race --episodes 0", "episodes must be between 1 and 1000000, not 0"),
         ("race --simulations 0", "episodes must be between 1 and 1000000, not 0"),
         ("race --evaluations 0", "evaluations must be between 1 and 1000, not 0"),
+        ("race --evaluations 9 --evaluations-along 10", "evaluations-along must be between 1 and 9, not 10"),
         ("race --first-seed -1", "seed must be between 0 and 2147483647, not -1"),
         ("race --seeds -1", "seeds must be between 1 and 1000, not -1"),
         ("race --seeds 0", "seeds must be between 1 and 1000, not 0"),

@@ -1,13 +1,18 @@
-"""The race: what counts as reached, how runs are summed up, and a whole small race that is interrupted."""
+"""The race: a whole small one that is judged, interrupted and shared, and its files."""
 
+import csv
 import dataclasses
 import math
 import subprocess
 import threading
 import time
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures import TimeoutError as FutureTimeoutError
+from contextlib import contextmanager
 from pathlib import Path
+from statistics import mean, stdev
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -18,119 +23,114 @@ from sarah.episode.episode import simulate
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import STEPPING
 from sarah.episode.workers import Workers
 from sarah.errors import ResumeError, RunFolderError
 from sarah.files import locked
 from sarah.reports import race as race_module
-from sarah.reports.race import LOCK_FILE, RaceCurve, entries_of, is_run, race, read_curve, run_entry
-from sarah.reports.rankings import as_markdown, episodes_until, interquartile_mean, rankings, write_csv
+from sarah.reports.judging import Evaluations
+from sarah.reports.race import LOCK_FILE, Work, race, run_entry
+from sarah.reports.race_entry import RaceCurve, entries_of, is_run, read_curve
 from sarah.runs import origin as origin_module
-from sarah.runs.config import ALGORITHMS, TrainingConfig
+from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 
+ONCE = Evaluations(1, 1)
 TINY = TrainingConfig(episodes=10, slots=1, episode=EpisodeConfig(time_limit=1.5, physics=COARSE_PHYSICS))
 
 
-def curve(algo: str, *scores: float) -> RaceCurve:
-    return RaceCurve(algo, tuple(5 * (index + 1) for index in range(len(scores))), scores, seconds=1.0)
-
-
-def test_a_score_counts_once_it_is_held() -> None:
-    assert episodes_until(curve("naf", 0.2, 0.9, 0.3, 0.9, 0.9, 0.9), 0.8) == 20
-    assert episodes_until(curve("naf", 0.9, 0.9, 0.9), 0.8) == 5
-    assert math.isinf(episodes_until(curve("naf", 0.2, 0.9, 0.9), 0.8))
-
-
-def test_two_evaluations_after_the_same_episodes_are_one() -> None:
-    """Without a comparison of candidates, the last recommendation is what was learned, and is evaluated twice."""
-    assert math.isinf(episodes_until(RaceCurve("naf", (5, 10, 15, 15), (0.2, 0.9, 0.9, 0.9), 1.0), 0.8))
-
-
-def test_counts_are_ones_after_which_there_was_a_recommendation(tmp_path: Path) -> None:
-    early, late = curve("naf", 1, 1, 1, 1, 1, 1), curve("naf", 0, 0, 0, 1, 1, 1)
-    (row,) = rankings([early, late])
-    assert row.episodes == {0.9: 20.0, 0.95: 20.0}  # not 12.5, after which nobody was asked
-    (row,) = rankings([early, late, early])
-    assert row.episodes[0.9] == 5.0
-    write_csv([row], tmp_path / "race.csv")
-    assert (tmp_path / "race.csv").read_text().splitlines()[1].startswith("naf,3,5,3,5,3,")
-
-
-def test_what_half_of_the_trainings_never_reach_is_not_reached(tmp_path: Path) -> None:
-    good, bad = curve("naf", 1, 1, 1), curve("naf", 0, 0, 0)
-    (row,) = rankings([good, bad])
-    assert math.isinf(row.episodes[0.9]) and row.reached[0.9] == 1
-    assert "| naf | 2 | not reached | 1 | not reached | 1 |" in as_markdown([row])
-    write_csv([row], tmp_path / "race.csv")
-    assert (tmp_path / "race.csv").read_text().splitlines()[1].startswith("naf,2,inf,1,inf,1,")
-
-
-def test_an_algorithm_that_nobody_described_has_its_row() -> None:
-    assert "- mine: nobody has said" in as_markdown(rankings([curve("mine", 0.1, 0.2)]))
-
-
-def test_interquartile_mean_leaves_the_quarters_out() -> None:
-    mean, low, high = interquartile_mean([0.0, 0.4, 0.6, 9.0])
-    assert mean == pytest.approx(0.5) and low <= mean <= high
-    assert interquartile_mean([0.7]) == pytest.approx((0.7, 0.7, 0.7))
-
-
-def test_rankings_are_shares_of_the_best_final_score() -> None:
-    good = curve("naf", 0.1, 0.78, 0.78, 0.8)
-    slow = curve("td3", 0.1, 0.1, 0.74, 0.74, 0.74)
-    never = curve("td3", 0.1, 0.1, 0.1, 0.1, 0.1)
-    first, second = rankings([slow, good, never])
-    assert (first.algo, second.algo) == ("naf", "td3")
-    assert first.episodes == {0.9: 10.0, 0.95: 10.0} and first.reached == {0.9: 1, 0.95: 1}
-    assert second.runs == 2 and second.reached == {0.9: 1, 0.95: 0}
-    assert math.isinf(second.episodes[0.95])
-    assert "| naf | 1 | 10 | 1 | 10 | 1 | 0.800 (0.800 to 0.800) | 1 s |" in as_markdown([first, second])
-    assert "\n- naf: chosen on the tasks stepping and balance" in as_markdown([first, second])
-    assert rankings([good], best_known=2.0)[0].reached == {0.9: 0, 0.95: 0}
-
-
-def test_rewards_below_zero_have_shares_as_well() -> None:
-    (row,) = rankings([curve("naf", -9.0, -1.09, -1.0, -1.0, -1.0)])
-    assert row.episodes == {0.9: 10.0, 0.95: 15.0}
-
-
-def test_the_origin_of_every_algorithms_settings_is_said() -> None:
-    table = as_markdown(rankings([curve(algo, 0.1, 0.2) for algo in ALGORITHMS]))
-    assert "- td3, sac, ddpg: set once by hand" in table and "- gp, tpe: the defaults of Optuna" in table
-
-
 def test_a_race_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    entries = entries_of(("naf", "random"), range(1), TINY, 2, tmp_path)
+    entries = entries_of(("naf", "random"), range(1), TINY, Evaluations(3, 2), tmp_path)
     curves = race(entries, Workers())
     assert [one.algo for one in curves] == ["naf", "random"] and all(map(is_run, entries))
     assert sorted(path.name for path in tmp_path.iterdir()) == ["naf-s0", "random-s0"]
     run = RunFolder.open(entries[0].folder)
     assert curves[0].episodes == (5, 10, 10)
-    specs = [EpisodeSpec(run.parameters(), seed, config=TINY.episode) for seed in range(2)]
-    assert curves[0].scores[-1] == pytest.approx(sum(simulate(spec).score for spec in specs) / 2)
+    specs = [EpisodeSpec(run.parameters(), seed, config=TINY.episode) for seed in range(4)]
+    judged = [simulate(spec).score for spec in specs]
+    assert curves[0].final == tuple(judged[:3]) and curves[0].scores[-1] == mean(judged[:2])
+    (*_, along, final) = csv.DictReader((entries[0].folder / "race.csv").open())
+    assert (along["evaluations"], final["evaluations"]) == ("2", "3")
+    assert float(final["score"]) == pytest.approx(mean(judged[:3]))
+    assert float(final["error"]) == pytest.approx(stdev(judged[:3]) / math.sqrt(3))
 
-    third = EpisodeSpec(run.parameters(), 2, config=TINY.episode)
     monkeypatch.setattr(race_module, "run_entry", lambda *_: pytest.fail("it is there already"))
     assert race(entries, Workers()) == curves
     monkeypatch.undo()
     monkeypatch.setattr(race_module, "train", lambda *_, **__: pytest.fail("it is trained already"))
-    (more,) = race([dataclasses.replace(entries[0], evaluations=3)], Workers())
-    assert more.seconds == curves[0].seconds and more.episodes == (5, 10, 10)
-    assert 3 * more.scores[-1] == pytest.approx(2 * curves[0].scores[-1] + simulate(third).score)
+    (more,) = race([dataclasses.replace(entries[0], evaluations=Evaluations(4, 2))], Workers())
+    assert more == dataclasses.replace(curves[0], final=tuple(judged))
 
     other = [dataclasses.replace(entries[0], config=dataclasses.replace(TINY, episodes=11))]
     with pytest.raises(RunFolderError, match="naf-s0 is a training with episodes 10, not 11: name another folder"):
         race(other, Workers())
 
 
+@pytest.fixture
+def met(monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, int]]:
+    """Judging episodes, as parameter and seed: no simulation, and a training that recommends 0.3, 0.4 and 0.4 again."""
+    episodes: list[tuple[float, int]] = []
+
+    def learn(config: TrainingConfig, run: RunFolder, **_: Any) -> None:
+        for count, value in ((5, 0.3), (10, 0.4)):
+            run.append_recommendation(count, dict.fromkeys(STEPPING.parameter_names, value))
+        run.write_parameters({"parameters": dict.fromkeys(STEPPING.parameter_names, 0.4)})
+
+    def judge(task: Any, parameters: tuple[float, ...], config: Any, seeds: Iterable[int]) -> Any:
+        episodes.extend((parameters[0], seed) for seed in seeds)
+        return SimpleNamespace(results=[SimpleNamespace(score=parameters[0] + 0.1 * seed) for seed in seeds])
+
+    monkeypatch.setattr(race_module, "train", learn)
+    monkeypatch.setattr(race_module, "evaluate", judge)
+    monkeypatch.setattr(race_module, "check_origin", lambda *_: None)  # nothing has a journal
+    return episodes
+
+
+def test_what_is_recommended_again_is_judged_once_and_by_the_same_episodes(
+    tmp_path: Path, met: list[tuple[float, int]]
+) -> None:
+    (found,) = race(entries_of(("random",), range(1), TINY, Evaluations(3, 2), tmp_path), Workers())
+    assert met == [(0.3, 0), (0.3, 1), (0.4, 0), (0.4, 1), (0.4, 2)]
+    assert found.final == pytest.approx((0.4, 0.5, 0.6)) and found.scores == pytest.approx((0.35, 0.45, 0.45))
+
+
+@pytest.mark.usefixtures("met")
+def test_a_folder_without_scores_of_single_episodes_is_judged_again(tmp_path: Path) -> None:
+    (entry,) = entries_of(("random",), range(1), TINY, Evaluations(2, 1), tmp_path)
+    (whole,) = race([entry], Workers())
+    scores = entry.folder / "race_scores.csv"
+    for cut in ("", "seed,score\n0,0.5\n"):
+        scores.write_text(cut) if cut else scores.unlink()
+        assert race([entry], Workers()) == [whole]
+
+
+@pytest.mark.usefixtures("met")
+def test_a_race_says_before_it_starts_what_there_is_to_do(tmp_path: Path) -> None:
+    told: list[Any] = []
+
+    @contextmanager
+    def progress(work: Work) -> Iterator[Callable[[], object]]:
+        told.append(work)
+        yield lambda: told.append("finished")
+
+    entries = entries_of(("random",), range(2), TINY, Evaluations(2, 1), tmp_path)
+    race(entries[:1], Workers(), progress)
+    assert told == [Work(trainings=1, training_episodes=10, judging_episodes=2 * 1 + 2), "finished"]
+    told.clear()
+    race([dataclasses.replace(entry, evaluations=Evaluations(3, 1)) for entry in entries], Workers(), progress)
+    assert told == [Work(trainings=2, training_episodes=10, judging_episodes=2 * (2 * 1 + 3)), "finished", "finished"]
+    race([dataclasses.replace(entry, evaluations=Evaluations(3, 1)) for entry in entries], Workers(), progress)
+    assert len(told) == 3
+
+
 def test_a_race_does_not_mix_states_of_the_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (first, second) = entries_of(("random",), range(2), TINY, 2, tmp_path)
+    (first, second) = entries_of(("random",), range(2), TINY, Evaluations(2, 1), tmp_path)
     monkeypatch.setattr(origin_module, "versions", lambda: {"sarah-sources": "another state"})
     finished = race([first], Workers())
     monkeypatch.undo()
     assert race([first], Workers()) == finished  # nothing new comes into the table
-    for entries in ([first, second], [dataclasses.replace(first, evaluations=3)]):
+    for entries in ([first, second], [dataclasses.replace(first, evaluations=Evaluations(3, 1))]):
         with pytest.raises(ResumeError, match=r"random-s0 cannot be resumed: .*sarah-sources is \w+ here, and another"):
             race(entries, Workers())
     assert not second.folder.exists()
@@ -141,12 +141,12 @@ def test_a_race_removes_nobody_elses_run(tmp_path: Path) -> None:
     precious.parent.mkdir()
     precious.write_text("{}")
     with pytest.raises(RunFolderError, match="is not of a race"):
-        race(entries_of(("naf",), range(1), TINY, 1, tmp_path), Workers())
+        race(entries_of(("naf",), range(1), TINY, ONCE, tmp_path), Workers())
     assert precious.read_text() == "{}"
 
 
 def test_a_race_leaves_a_training_alone_that_another_is_at(tmp_path: Path) -> None:
-    (entry,) = entries_of(("random",), range(1), TINY, 1, tmp_path)
+    (entry,) = entries_of(("random",), range(1), TINY, ONCE, tmp_path)
     begun = RunFolder.create(tmp_path / "random-s0", entry.config)
     with (
         Journal(begun.journal_path, entry.config, Workers()),
@@ -159,7 +159,7 @@ def test_a_race_leaves_a_training_alone_that_another_is_at(tmp_path: Path) -> No
 def test_an_evaluation_that_was_interrupted_is_all_that_is_repeated(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (entry,) = entries_of(("random",), range(1), TINY, 2, tmp_path)
+    (entry,) = entries_of(("random",), range(1), TINY, Evaluations(2, 1), tmp_path)
     (whole,) = race([entry], Workers())
     (entry.folder / "race.csv").unlink()
     monkeypatch.setattr(race_module, "train", lambda *_, **__: pytest.fail("it is trained already"))
@@ -167,7 +167,7 @@ def test_an_evaluation_that_was_interrupted_is_all_that_is_repeated(
 
 
 def test_a_race_waits_for_another_that_is_at_the_same_training(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (entry,) = entries_of(("random",), range(1), TINY, 1, tmp_path)
+    (entry,) = entries_of(("random",), range(1), TINY, ONCE, tmp_path)
     begun, may_end = threading.Event(), threading.Event()
     evaluate = race_module.evaluate
 
@@ -221,7 +221,7 @@ def test_a_killed_race_resumes_and_two_races_at_once_share_the_work(tmp_path: Pa
 
     episode = EpisodeConfig(time_limit=2.0, physics=COARSE_PHYSICS)
     config = TrainingConfig(algo="random", episodes=30, slots=1, episode=episode)
-    (entry,) = entries_of(("random",), range(1), config, 2, tmp_path / "undisturbed")
+    (entry,) = entries_of(("random",), range(1), config, Evaluations(2, 2), tmp_path / "undisturbed")
     (undisturbed,) = race([entry], Workers())
     for name in ("episodes.csv", "recommendations.csv", "parameters.json", "journal.jsonl"):
         assert (run / name).read_bytes() == (entry.folder / name).read_bytes(), name  # no row is there twice
@@ -231,7 +231,7 @@ def test_a_killed_race_resumes_and_two_races_at_once_share_the_work(tmp_path: Pa
 
 
 def test_a_race_leaves_out_what_another_is_at_and_waits_for_it_at_its_end(tmp_path: Path) -> None:
-    entries = entries_of(("random", "cma-es"), range(2), TINY, 1, tmp_path)
+    entries = entries_of(("random", "cma-es"), range(2), TINY, ONCE, tmp_path)
     busy, *others = entries
     RunFolder.create(busy.folder, busy.config)
     curves: list[RaceCurve] = []
@@ -249,17 +249,23 @@ def test_a_race_leaves_out_what_another_is_at_and_waits_for_it_at_its_end(tmp_pa
 @pytest.mark.parametrize(
     ("name", "content"),
     [
-        ("race.csv", "episodes,score,seconds,evaluations\n" + 50 * "5,0.5,1,1\n"),
-        ("race.csv", "episodes,score,seconds,evaluations\n5,x,1,1\n"),
+        ("race.csv", "episodes,score,error,seconds,evaluations\n" + 50 * "5,0.5,,1,1\n"),
+        ("race.csv", "episodes,score,error,seconds,evaluations\n5,x,,1,1\n10,0.5,,1,1\n"),
         ("race.csv", "x" * 100_000),
         ("race.csv", ""),
+        ("race_scores.csv", "seed,score\n0,x\n"),
+        ("race_scores.csv", "seed,score\n1,0.5\n"),
+        ("race_scores.csv", "x" * 100_000),
         ("recommendations.csv", "episodes\nx\n"),
     ],
 )
 def test_damaged_tables_are_named(name: str, content: str, tmp_path: Path) -> None:
-    (entry,) = entries_of(("random",), range(1), TINY, 1, tmp_path)
+    (entry,) = entries_of(("random",), range(1), TINY, ONCE, tmp_path)
     race([entry], Workers())
     (entry.folder / name).write_text(content)
     with pytest.raises(RunFolderError, match=r"random-s0.* cannot be read") as raised:
-        race([entry if name == "race.csv" else dataclasses.replace(entry, evaluations=2)], Workers())
+        race(
+            [entry if name != "recommendations.csv" else dataclasses.replace(entry, evaluations=Evaluations(2, 1))],
+            Workers(),
+        )
     assert len(str(raised.value).splitlines()) == 1

@@ -14,7 +14,7 @@ from sarah.episode.tasks import STEPPING, TASKS
 from sarah.errors import RunFolderError
 from sarah.pictures.colours import algorithm_colours
 from sarah.reports import training_figures
-from sarah.reports.race import RaceCurve
+from sarah.reports.race_entry import RaceCurve
 from sarah.reports.training_curves import read_curves
 from sarah.reports.training_figures import draw_figures, draw_race, running_median
 from sarah.runs.config import ALGORITHMS, TrainingConfig
@@ -140,7 +140,7 @@ def test_algorithms_without_a_colour_of_their_own_are_told_apart(tmp_path: Path)
     colours = algorithm_colours(names)
     assert len(set(colours.values())) == len(names) and colours == algorithm_colours(reversed(names))
     assert algorithm_colours(["naf"])["naf"] == colours["naf"]
-    curves = [RaceCurve(algo, (5, 10), (0.2, 0.8), 1.0) for algo in ("naf", "mine")]
+    curves = [RaceCurve(algo, (5, 10), (0.2, 0.8), (0.8,), 1, 1.0) for algo in ("naf", "mine")]
     picture, _ = draw_race(curves, tmp_path / "race")
     assert colour_share(picture, algorithm_colours(["mine"])["mine"]) > 0.0005
 
@@ -155,7 +155,7 @@ def test_a_figure_of_all_algorithms_has_room_for_its_legend(tmp_path: Path) -> N
 
 def test_a_race_of_all_algorithms_has_room_for_its_legend(tmp_path: Path) -> None:
     """Nothing is drawn on the picture's border, where it would be cut off."""
-    curves = [RaceCurve(algo, (5, 10), (0.2, 0.8), 1.0) for algo in ALGORITHMS for _ in range(10)]
+    curves = [RaceCurve(algo, (5, 10), (0.2, 0.8), (0.7, 0.9), 2, 1.0) for algo in ALGORITHMS for _ in range(10)]
     picture, _ = draw_race(curves, tmp_path / "race")
     pixels = imread(picture)[..., :3]
     for border in (pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]):

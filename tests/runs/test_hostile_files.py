@@ -13,7 +13,9 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.workers import Workers
 from sarah.errors import RunFolderError
 from sarah.files import read_lines, read_text, replace_text
-from sarah.reports.race import entries_of, race
+from sarah.reports.judging import Evaluations
+from sarah.reports.race import race
+from sarah.reports.race_entry import entries_of
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import is_installed
@@ -41,6 +43,7 @@ READERS = {
     "versions.txt": (REPORT,),
     "journal.jsonl": (RESUME,),
     "race.csv": (COMPARE,),
+    "race_scores.csv": (COMPARE.replace("--evaluations 2", "--evaluations 1"),),
     "recommendations.csv": (COMPARE,),
 }
 """Commands that read a file of a run folder."""
@@ -90,6 +93,7 @@ HARMS: dict[str, tuple[Callable[[Path], None], ...]] = {
     "versions.txt": (gigabytes, fifo, device),
     "journal.jsonl": (nested, digits, gigabytes, long_line, fifo, device),
     "race.csv": (gigabytes, long_line, blank_lines, fifo, device),
+    "race_scores.csv": (gigabytes, long_line, blank_lines, fifo, device),
     "recommendations.csv": (gigabytes, long_line, blank_lines, fifo, device),
     "episodes.csv": (gigabytes, long_line, blank_lines, fifo, device),
 }
@@ -121,7 +125,7 @@ def honest(tmp_path_factory: pytest.TempPathFactory) -> Path:
     base = TrainingConfig(episodes=5, slots=1, episode=EPISODE)
     with pytest.MonkeyPatch.context() as monkeypatch:
         monkeypatch.setattr(training, "SUMMARY_EPISODES", 1)
-        race(entries_of(("random",), range(1), base, 1, folder), Workers())
+        race(entries_of(("random",), range(1), base, Evaluations(1, 1), folder), Workers())
     return folder
 
 

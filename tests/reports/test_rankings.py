@@ -1,0 +1,105 @@
+"""The table of a race: what counts as reached and held, and how trainings are summed up."""
+
+import csv
+import math
+from pathlib import Path
+
+import pytest
+
+from sarah.reports.race_entry import RaceCurve
+from sarah.reports.rankings import as_markdown, episodes_until, rankings, write_csv
+from sarah.runs.config import ALGORITHMS
+
+
+def curve(algo: str, *scores: float, final: tuple[float, ...] = ()) -> RaceCurve:
+    """Scores of a training along the way; the last one is in all judging episodes unless their scores are given."""
+    return RaceCurve(algo, tuple(5 * (index + 1) for index in range(len(scores))), scores, final or scores[-1:], 1, 1.0)
+
+
+def test_a_score_counts_once_it_is_held() -> None:
+    assert episodes_until(curve("naf", 0.2, 0.9, 0.3, 0.9, 0.9, 0.9), 0.8) == 20
+    assert episodes_until(curve("naf", 0.9, 0.9, 0.9), 0.8) == 5
+    assert math.isinf(episodes_until(curve("naf", 0.2, 0.9, 0.9), 0.8))
+
+
+def test_two_evaluations_after_the_same_episodes_are_one() -> None:
+    """Without a comparison of candidates, the last recommendation is what was learned, and is evaluated twice."""
+    assert math.isinf(episodes_until(RaceCurve("naf", (5, 10, 15, 15), (0.2, 0.9, 0.9, 0.9), (0.9,), 1, 1.0), 0.8))
+
+
+def test_counts_are_ones_after_which_there_was_a_recommendation() -> None:
+    early, late = curve("naf", 1, 1, 1, 1, 1, 1), curve("naf", 0, 0, 0, 1, 1, 1)
+    (row,) = rankings([early, late]).rows
+    assert row.episodes == {0.9: 20.0, 0.95: 20.0}  # not 12.5, after which nobody was asked
+    (row,) = rankings([early, late, early]).rows
+    assert row.episodes[0.9] == 5.0
+
+
+def test_what_half_of_the_trainings_never_reach_is_not_reached(tmp_path: Path) -> None:
+    table = rankings([curve("naf", 1, 1, 1), curve("naf", 0, 0, 0)])
+    assert math.isinf(table.rows[0].episodes[0.9]) and table.rows[0].held[0.9] == 1
+    assert "| 1 (1 to 1) | not reached | 1 | not reached | 1 |" in as_markdown(table)
+    write_csv(table, tmp_path / "race.csv")
+    (row,) = csv.DictReader((tmp_path / "race.csv").open())
+    assert (row["episodes_to_90"], row["held_90"], row["episodes_to_95"], row["held_95"]) == ("inf", "1", "inf", "1")
+
+
+def test_an_algorithm_that_nobody_described_has_its_row() -> None:
+    assert "- mine: nobody has said" in as_markdown(rankings([curve("mine", 0.1, 0.2)]))
+
+
+def test_the_way_is_compared_with_the_best_known_score_in_its_own_episodes() -> None:
+    """The episode along the way is an unlucky one: 0.4 is the best known score in it, and held."""
+    good = curve("naf", 0.4, 0.4, 0.4, final=(0.4, 1.0, 1.0, 1.0))
+    late = curve("td3", 0.2, 0.2, 0.4, final=(0.4, 1.0, 1.0, 0.8))
+    table = rankings([good, late])
+    assert table.best == pytest.approx(0.85) and table.best_along == pytest.approx(0.4)
+    by_name = {row.algo: row for row in table.rows}
+    assert by_name["naf"].episodes[0.95] == 5.0 and math.isinf(by_name["td3"].episodes[0.95])
+    assert by_name["naf"].held[0.95] == 1 and by_name["td3"].held[0.95] == 0
+    assert by_name["td3"].at_share[0] == 0 and by_name["naf"].at_share[0] == 1
+
+
+def test_the_quickest_comes_first_and_all_are_compared_with_the_reference() -> None:
+    slow = [curve("td3", 0.1, 0.74, 0.74, 0.74, final=(0.74, 0.64)), curve("td3", 0.1, 0.1, 0.1, final=(0.1, 0.2))]
+    good = [curve("naf", 0.78, 0.78, 0.8, final=(0.8, 0.8)), curve("naf", 0.8, 0.8, 0.8, final=(0.8, 0.7))]
+    table = rankings([slow[0], good[0], slow[1], good[1]], reference="naf")
+    first, second = table.rows
+    assert (first.algo, second.algo) == ("naf", "td3")
+    assert first.runs == 2 and first.episodes == {0.9: 5.0, 0.95: 5.0} and first.held == {0.9: 2, 0.95: 2}
+    assert second.held == {0.9: 1, 0.95: 0} and math.isinf(second.episodes[0.95])
+    assert first.score[0] == pytest.approx(0.775) and first.over_reference is None
+    assert second.over_reference is not None and second.over_reference[0] == pytest.approx(0.42 - 0.775)
+    assert rankings([*slow, *good]).reference == "td3"  # the first one, unless another is asked for
+
+
+def test_a_table_names_its_columns_and_what_judged(tmp_path: Path) -> None:
+    curves = [curve("naf", 0.8, final=(0.8, 0.9)), curve("td3", 0.6, final=(0.6, 0.7))]
+    table = rankings(curves)
+    text = as_markdown(table)
+    assert "| algorithm | runs | final score | over naf | final score at 95 % | 90 % held after | by |" in text
+    assert "| naf | 1 | 0.850 ± 0.050 |  | 1 (1 to 1) | not reached | 0 |" in text
+    assert "| td3 | 1 | 0.650 ± 0.050 | -0.200 | 0 (0 to 0) |" in text
+    assert "\n2 unseen episodes judge every final recommendation, and the first 1 of them" in text
+    assert "The best known score is 0.850, and 0.800 in the first 1." in text
+    assert "\n- naf: chosen on the tasks stepping and balance" in text
+    write_csv(table, tmp_path / "race.csv")
+    naf, td3 = csv.DictReader((tmp_path / "race.csv").open())
+    assert (naf["final_score_error"][:6], naf["over_naf"], naf["final_at_95_high"]) == ("0.0499", "", "1")
+    assert td3["over_naf"][:4] == "-0.2" and td3["over_naf_low"] == ""  # of one seed there is no interval
+
+
+def test_a_known_best_score_is_the_one_that_shares_are_of() -> None:
+    table = rankings([curve("naf", 0.8, 0.8, 0.8)], best=2.0)
+    assert table.rows[0].held == {0.9: 0, 0.95: 0} and table.rows[0].at_share == (0, 0, 0)
+    assert table.best == table.best_along == 2.0
+
+
+def test_rewards_below_zero_have_shares_as_well() -> None:
+    (row,) = rankings([curve("naf", -9.0, -1.09, -1.0, -1.0, -1.0)]).rows
+    assert row.episodes == {0.9: 10.0, 0.95: 15.0}
+
+
+def test_the_origin_of_every_algorithms_settings_is_said() -> None:
+    table = as_markdown(rankings([curve(algo, 0.1, 0.2) for algo in ALGORITHMS]))
+    assert "- td3, sac, ddpg: set once by hand" in table and "- gp, tpe: the defaults of Optuna" in table
