@@ -94,7 +94,7 @@ TABLE: dict[str, Maker] = {
         {**TRAINED, "seeds": 1, "episodes": 2, "reference_episodes": 1},
     ),
     "second_training": Maker(
-        "How good is a Second Training, and where do V1 to V4 settle?",
+        "Does the robot learn to come back after a push, and where do V1 to V4 settle?",
         SecondTraining(),
         BALANCED,
     ),
