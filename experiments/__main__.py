@@ -25,7 +25,7 @@ OTHER_RESULTS = record.ROOT / "build" / "experiments"
 """Folder for the rows of experiments that options change."""
 HARMLESS = {"workers", "runs", "courses"}
 """Options that change no row."""
-MAY_BE_0 = {"workers", "seed", "first_seed", "balance_seed", "reference_episodes", "reference_pushes"}
+MAY_BE_0 = {"workers", "seed", "first_seed", "reference_episodes", "reference_pushes"}
 """Options of a whole number that may be 0; all others count what an experiment cannot do without."""
 
 

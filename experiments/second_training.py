@@ -1,86 +1,146 @@
-"""The Second Training over many seeds: what was learned, under three kinds of pushes, and stepping without one.
-
-Every controller meets the same pushes, and some of them at the reference physics too.
-"""
+"""How good Second Trainings are: each training beside V = 0, the shipped set and the best known one of its engine."""
 
 from __future__ import annotations
 
-import dataclasses
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from experiments.record import Row
-from experiments.trainings import OfTrainings
-from sarah.control.parameters import BALANCE_PARAMETERS
-from sarah.episode.evaluation import Evaluation, evaluate
-from sarah.episode.push import Push
-from sarah.episode.spec import FIRST_EVALUATION_SEED
-from sarah.episode.tasks import BALANCE, BalanceConfig
-from sarah.episode.workers import Workers
-from sarah.runs.config import TrainingConfig
-from sarah.simulation.physics import PHYSICS
+import numpy as np
 
-PUSHES = {
-    "push_100_survival": Push((100.0, 100.0), at_seconds=(2.0, 3.0)),
-    "push_125_survival": Push((125.0, 125.0), at_seconds=(2.0, 3.0)),
-    "sagittal_115_survival": Push((115.0, 115.0), at_seconds=(2.0, 3.0), sagittal_share=1.0),
-}
-"""Pushes that judge, by the column of their survivors: from all directions, and from within 30 degrees of front or
-back."""
-PUSHED_SECONDS, FREE_SECONDS = 8.0, 12.0
-"""Time limits with a push and without, in s."""
+from experiments.balance_trainings import BALANCE_NAMES, SHIPPED, OfSecondTrainings, Training
+from experiments.best_known import best_known
+from experiments.interval import crossed_bootstrap, ratio, with_error
+from experiments.record import Row, cell
+from sarah.episode.tasks import BALANCE
+from sarah.episode.workers import Executor, Workers
+from sarah.simulation.engines import Engine
+from sarah.training.recommendation import Parameters
+
+CLOSE = 0.95
+"""Share of the best known score from which a training counts as close to it."""
 
 
 @dataclass(frozen=True)
-class SecondTraining(OfTrainings):
-    """Second Trainings by NAF, judged beside V = 0.
-
-    :param seeds: number of trainings
-    :param budget: number of episodes of a training
-    :param pushes: number of pushes of each kind
-    :param reference_pushes: number of those of 125 N that are simulated at the reference physics too
-    :param unpushed: number of episodes without a push
-    """
-
-    seeds: int = 10
-    budget: int = 300
-    pushes: int = 100
-    reference_pushes: int = 12
-    unpushed: int = 10
+class SecondTraining(OfSecondTrainings):
+    """Second Trainings by NAF: what each recommends, what its network says, and how both do."""
 
     def rows(self) -> Iterator[Row]:
-        """A row for V = 0, and one for each training."""
-        config = self.episode("balance")
-        assert BALANCE.neutral is not None and isinstance(config, BalanceConfig)
+        """A row for V = 0, for the shipped set, for the best known one and for each training, in each engine."""
+        assert BALANCE.neutral is not None
         with Workers(self.workers) as workers:
-            yield self._row("V = 0", BALANCE.neutral, config, workers)
-            for seed in range(self.seeds):
-                training = TrainingConfig("balance", episodes=self.budget, seed=seed, episode=config)
-                learned = self.trained(training, workers).parameters()
-                yield self._row(f"naf seed {seed}", learned, config, workers)
+            for engine in self.engines:
+                trainings = self.told(engine, workers)
+                best = best_known(self, engine, trainings, workers).best
+                others = {"V = 0": BALANCE.neutral, "shipped": SHIPPED, "best known": best}
+                for asked in (self.judging_pushes(engine), self.survivable_pushes(engine)):
+                    self.judge.simulate(others.values(), asked, workers)
+                for run, parameters in others.items():
+                    yield self._row(engine, run, parameters, best)
+                for training in trainings:
+                    yield self._row(engine, training.name, training.recommended, best, training.mu)
 
-    def _row(self, run: str, parameters: tuple[float, ...], config: BalanceConfig, workers: Workers) -> Row:
-        def judged(push: Push, episodes: int, seconds: float, physics: str = "standard") -> Evaluation:
-            limit = self.time_limit or seconds
-            judge = dataclasses.replace(config, push=push, time_limit=limit, physics=PHYSICS[physics])
-            seeds = range(FIRST_EVALUATION_SEED, FIRST_EVALUATION_SEED + episodes)
-            return evaluate(BALANCE, parameters, judge, seeds, workers)
+    def told(self, engine: Engine, workers: Executor) -> list[Training]:
+        """All trainings of an engine, each with a line about its score as soon as this is known.
 
-        pushed = {column: judged(push, self.pushes, PUSHED_SECONDS) for column, push in PUSHES.items()}
-        hard = pushed["push_125_survival"]
-        reference = judged(PUSHES["push_125_survival"], self.reference_pushes, PUSHED_SECONDS, "reference")
-        same_pushes = Evaluation(hard.results[: self.reference_pushes])
-        stepping = judged(Push((0.0, 0.0)), self.unpushed, FREE_SECONDS)
+        :param engine: physics engine
+        :param workers: who trains
+        """
+        trainings = []
+        for training in self.trainings(engine, workers):
+            score, mu_score = (self.scores(engine, one).mean() for one in (training.recommended, training.mu))
+            print(f"{engine}, {training.name}: score {cell(float(score))}, mu {cell(float(mu_score))}", flush=True)
+            trainings.append(training)
+        return trainings
+
+    def scores(self, engine: Engine, parameters: Parameters) -> np.ndarray:
+        """Scores under the pushes that judge.
+
+        :param engine: physics engine
+        :param parameters: values of V1 to V4
+        """
+        return self.judge.scores(parameters, self.judging_pushes(engine))
+
+    def survival(self, engine: Engine, parameters: Parameters) -> float:
+        """Share of the pushes of 100 N that the robot survives.
+
+        :param engine: physics engine
+        :param parameters: values of V1 to V4
+        """
+        return float(self.judge.survival(parameters, self.survivable_pushes(engine)).mean())
+
+    def _row(
+        self, engine: Engine, run: str, parameters: Parameters, best: Parameters, mu: Parameters | None = None
+    ) -> Row:
+        scores, best_scores = self.scores(engine, parameters), self.scores(engine, best)
+        mu_scores = None if mu is None else self.scores(engine, mu)
         return {
+            "engine": engine,
             "run": run,
-            **{parameter.name: value for parameter, value in zip(BALANCE_PARAMETERS, parameters, strict=True)},
-            **{column: found.survival_rate for column, found in pushed.items()},
-            "score": hard.mean("score"),
-            "unpushed_score": stepping.mean("score"),
-            "unpushed_steps_per_second": stepping.mean("steps_per_second"),
-            "unpushed_sole_clearance_mm": 1000.0 * stepping.mean("sole_clearance"),
-            "vibration_m2_s4": hard.median("vibration"),
-            "unpushed_vibration_m2_s4": stepping.median("vibration"),
-            "reference_survival": reference.survival_rate,
-            "kept": reference.mean("score") / same_pushes.mean("score"),
+            **dict(zip(BALANCE_NAMES, parameters, strict=True)),
+            **with_error("score", scores),
+            **ratio("of_best", scores, best_scores),
+            "survival_100": self.survival(engine, parameters),
+            **{f"mu_{name}": mu and mu[index] for index, name in enumerate(BALANCE_NAMES)},
+            "mu_score": None if mu_scores is None else float(mu_scores.mean()),
+            "mu_of_best": None if mu_scores is None else float(mu_scores.mean() / best_scores.mean()),
+            "mu_survival_100": mu and self.survival(engine, mu),
         }
+
+
+@dataclass(frozen=True)
+class SecondTrainingSummary(SecondTraining):
+    """What the trainings of an engine have in common. Nothing is simulated that ``second_training`` has kept."""
+
+    def rows(self) -> Iterator[Row]:
+        """A row for each engine, for what trainings recommend and for what their networks say."""
+        with Workers(self.workers) as workers:
+            for engine in self.engines:
+                trainings = self.told(engine, workers)
+                best = best_known(self, engine, trainings, workers).best
+                self.judge.simulate([best], self.judging_pushes(engine), workers)
+                best_scores = self.scores(engine, best)
+                kinds = {
+                    "recommended": [training.recommended for training in trainings],
+                    "mu": [training.mu for training in trainings],
+                }
+                for kind, sets in kinds.items():
+                    survival = [self.survival(engine, one) for one in sets]
+                    yield {
+                        "engine": engine,
+                        "kind": kind,
+                        "trainings": len(sets),
+                        **summary([self.scores(engine, one) for one in sets], best_scores),
+                        "survival_100": float(np.mean(survival)),
+                        "lowest_survival_100": min(survival),
+                    }
+
+
+def summary(scores: Sequence[np.ndarray], best_scores: np.ndarray) -> Row:
+    """Columns about trainings of one kind, with 95 % intervals over both their seeds and the pushes.
+
+    :param scores: scores of each training
+    :param best_scores: scores of the best known set under the same pushes
+    """
+    of_all = np.array(scores)
+
+    def shares(trainings: np.ndarray, pushes: np.ndarray) -> np.ndarray:
+        return of_all[np.ix_(trainings, pushes)].mean(axis=1) / best_scores[pushes].mean()
+
+    def mean_share(trainings: np.ndarray, pushes: np.ndarray) -> float:
+        return float(shares(trainings, pushes).mean())
+
+    def close(trainings: np.ndarray, pushes: np.ndarray) -> float:
+        return float((shares(trainings, pushes) >= CLOSE).sum())
+
+    everything = np.arange(len(of_all)), np.arange(len(best_scores))
+    mean_low, mean_high = crossed_bootstrap(mean_share, *of_all.shape)
+    close_low, close_high = crossed_bootstrap(close, *of_all.shape)
+    return {
+        "of_best": mean_share(*everything),
+        "of_best_low": mean_low,
+        "of_best_high": mean_high,
+        "close": int(close(*everything)),
+        "close_low": int(close_low),
+        "close_high": int(close_high),
+        "lowest_of_best": float(shares(*everything).min()),
+    }

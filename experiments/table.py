@@ -16,6 +16,7 @@ from benchmarks.throughput import Throughput
 from benchmarks.updates import Updates
 from benchmarks.viewer import Viewer
 from experiments.box_limit import BoxLimit
+from experiments.ceiling import Ceiling
 from experiments.clock import Clock
 from experiments.conditions import Conditions
 from experiments.contexts import Contexts
@@ -40,11 +41,12 @@ from experiments.robot_dimensions import RobotDimensions
 from experiments.robustness import Robustness
 from experiments.rough_ground import RoughGround
 from experiments.scaled_actions import ScaledActions
-from experiments.second_training import SecondTraining
+from experiments.second_training import SecondTraining, SecondTrainingSummary
 from experiments.sensor_faults import SensorFaults
 from experiments.several_actions import SeveralActions
 from experiments.shift_endings import ShiftEndings
 from experiments.shipped_parameters import ShippedParameters
+from experiments.shipping_rule import Round, Shipping
 from experiments.slots import SlotsSchedule
 from experiments.slots_cost import SlotsCost
 from experiments.standard_tasks import NAF_VARIANTS, StandardTask
@@ -82,6 +84,7 @@ class Maker:
 
 SHORT = {"time_limit": 2.0}
 TRAINED = {**SHORT, "budget": 5}
+BALANCED = {**TRAINED, "engines": ("mujoco",), "seeds": 1, "judging": 3, "surviving": 1, "candidates": 4}
 
 TABLE: dict[str, Maker] = {
     # What trainings learn.
@@ -93,12 +96,27 @@ TABLE: dict[str, Maker] = {
     "second_training": Maker(
         "Does the robot learn to come back after a push, and where do V1 to V4 settle?",
         SecondTraining(),
-        {**TRAINED, "seeds": 1, "pushes": 2, "reference_pushes": 1, "unpushed": 1},
+        BALANCED,
+    ),
+    "second_training_summary": Maker(
+        "How close do Second Trainings come to the best known V1 to V4?",
+        SecondTrainingSummary(),
+        BALANCED,
+    ),
+    "ceiling": Maker(
+        "How much better than the shipped V1 to V4 could be?",
+        Ceiling(),
+        BALANCED,
+    ),
+    "shipping": Maker(
+        "Which V1 to V4 does the shipping rule choose, and why?",
+        Shipping(),
+        {**BALANCED, "rounds": (Round(None, 3, 1),)},
     ),
     "shipped_parameters": Maker(
         "Which parameters does the package ship, and how well do they do?",
         ShippedParameters(),
-        {**TRAINED, "balance_budget": 5, "episodes": 1},
+        {**BALANCED, "rounds": (Round(None, 3),), "episodes": 1},
     ),
     "robustness": Maker(
         "How hard a push does the robot come back from?",

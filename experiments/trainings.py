@@ -15,7 +15,7 @@ from experiments.made_with import short_hash
 from sarah.cli.training_defaults import default_training
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS
-from sarah.episode.workers import Workers
+from sarah.episode.workers import Executor
 from sarah.files import replace_text
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
@@ -24,6 +24,8 @@ from sarah.training.train import train
 from sarah.versions import source_hash, versions
 
 SARAH = Path(sarah.__file__).parent
+CODE = (".py", ".xacro")
+"""Endings of the names of files that decide what a training makes of its settings."""
 EPISODES: dict[str, EpisodeConfig] = {name: default_training(task).episode for name, task in TASKS.items()}
 """Settings of the trainings' episodes, by task: those of ``sarah-train``."""
 
@@ -48,11 +50,11 @@ class OfTrainings(OnWorkers):
         limit = self.time_limit or EPISODES[task].time_limit
         return dataclasses.replace(EPISODES[task], engine=engine, time_limit=limit)
 
-    def trained(self, config: TrainingConfig, workers: Workers) -> RunFolder:
+    def trained(self, config: TrainingConfig, workers: Executor | None = None) -> RunFolder:
         """The run folder of a finished training; it is run, or resumed, unless it is there.
 
         :param config: settings of the training
-        :param workers: who simulates
+        :param workers: who simulates; by default this process does
         """
         name = f"{config.task.name}-{config.algo}-{config.episodes}-s{config.seed}-{identity(config)}"
         path = self.runs / name
@@ -76,10 +78,10 @@ def kept(file: Path, make: Callable[..., Any], *arguments: Any) -> Any:
 
 
 def identity(settings: object, packages: Sequence[str] = (".",)) -> str:
-    """Name for a folder of trainings with these settings, made with today's code and versions.
+    """Name for a folder of trainings or outcomes with these settings, made with today's code and versions.
 
-    :param settings: settings of the trainings
+    :param settings: settings of the trainings, which say all that these take from the shipped parameters
     :param packages: names of the parts of sarah that the trainings depend on; by default those of any result
     """
-    sources = [source_hash(SARAH / name) for name in packages]
+    sources = [source_hash(SARAH / name, CODE) for name in packages]
     return short_hash([repr(settings), versions() | {"sarah-sources": sources}])

@@ -40,27 +40,28 @@ def _version(package: str) -> str:
 
 
 @lru_cache
-def source_hash(package: Path = Path(__file__).parent) -> str:
+def source_hash(package: Path = Path(__file__).parent, endings: tuple[str, ...] = SOURCES) -> str:
     """Hash of a package's sources that results depend on, as they were when this process first asked.
 
     A version number stays the same over many states of the code; this does not.
 
     :param package: folder of the package, by default this one
+    :param endings: endings of the names of the files that count
     :return: twelve hexadecimal digits
     """
     digest = hashlib.sha256()
-    for path in sorted(_sources(package), key=lambda path: path.relative_to(package).as_posix()):
+    for path in sorted(_sources(package, endings), key=lambda path: path.relative_to(package).as_posix()):
         name, content = path.relative_to(package).as_posix().encode(), path.read_bytes()
         digest.update(b"%d %s %d " % (len(name), name, len(content)) + content)
     return digest.hexdigest()[:12]
 
 
-def _sources(package: Path) -> Iterable[Path]:
+def _sources(package: Path, endings: tuple[str, ...]) -> Iterable[Path]:
     # In a checkout, agents/ and urdf/ are links.
     for folder, folders, names in os.walk(package, followlinks=True):
         if Path(folder) == package:
             folders[:] = set(folders) - set(SHOWING)
-        yield from (Path(folder, name) for name in names if name.endswith(SOURCES))
+        yield from (Path(folder, name) for name in names if name.endswith(endings))
 
 
 def differences(here: Mapping[str, object], there: Mapping[str, object], other: str) -> str:

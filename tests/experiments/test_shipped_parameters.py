@@ -1,6 +1,7 @@
 """The parameters that the package ships: they are those of the result, they step, and they survive pushes."""
 
 import dataclasses
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -8,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from experiments import record
-from experiments.shipped_parameters import CONDITIONS, DIGITS, ship
+from experiments.shipped_parameters import CONDITIONS, ship
+from experiments.shipping_rule import DIGITS
 from sarah.episode.episode import simulate
 from sarah.episode.evaluation import evaluate
 from sarah.episode.parameter_sets import PARAMETER_SETS
@@ -23,6 +25,15 @@ SEEDS = range(1000, 1004)
 def test_the_packages_file_says_what_the_result_says(tmp_path: Path) -> None:
     ship(record.read("shipped_parameters"), tmp_path / FILE.name)
     assert (tmp_path / FILE.name).read_text(encoding="utf-8") == FILE.read_text(encoding="utf-8")
+
+
+def test_a_set_that_stays_keeps_its_origin_and_another_gets_that_of_the_result(tmp_path: Path) -> None:
+    result = record.read("shipped_parameters")
+    rows = [{**row, "V1": "1.23"} if row["set"] == "balance" else row for row in result.rows]
+    ship(dataclasses.replace(result, rows=rows, commit="another"), tmp_path / FILE.name)
+    written = json.loads((tmp_path / FILE.name).read_text(encoding="utf-8"))
+    assert written["stepping"]["origin"] == shipped()["stepping"]["origin"]
+    assert written["balance"]["origin"]["commit"] == "another" and written["balance"]["parameters"]["V1"] == 1.23
 
 
 @pytest.mark.parametrize("name", shipped())

@@ -1,0 +1,164 @@
+"""The Second Trainings that several results are about: NAF with many seeds in each engine, and who judges them.
+
+The judge pushes by 125 N from everywhere, and by 115 N from within 30 degrees of front or back, twice as often the
+former. All sets of V1 to V4 meet the same pushes. Pushes of other seeds, of the same kind, choose among sets: those
+that judge have chosen nothing.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from experiments.judge import Asked, Condition, Judge
+from experiments.trainings import OfTrainings, kept
+from sarah.control.parameters import BALANCE_PARAMETERS
+from sarah.episode.parameter_sets import PARAMETER_SETS
+from sarah.episode.push import Push
+from sarah.episode.tasks import BalanceConfig
+from sarah.episode.workers import Executor
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.simulation.engines import Engine
+from sarah.training.recommendation import Parameters
+
+BALANCE_NAMES = [parameter.name for parameter in BALANCE_PARAMETERS]
+SHIPPED: Parameters = PARAMETER_SETS["balance"].spec.parameters
+"""V1 to V4 that the package ships."""
+PUSHED_AT = (2.0, 3.0)
+"""Range of the time at which pushes begin, in s."""
+JUDGING_SEED, CHOOSING_SEED, OTHER_SEED = 20_000, 30_000, 40_000
+"""First seeds of the pushes that judge, of those that choose, and of all other conditions."""
+SEEDS_OF_A_KIND = 1000
+"""Number of seeds that are left for each kind of push."""
+
+
+class Training(NamedTuple):
+    """What a training learned.
+
+    :param name: name of the training
+    :param recommended: values of V1 to V4 that the training recommends
+    :param mu: values of V1 to V4 that the network itself says, without exploration
+    """
+
+    name: str
+    recommended: Parameters
+    mu: Parameters
+
+
+@dataclass(frozen=True)
+class OfSecondTrainings(OfTrainings):
+    """Options of an experiment that takes what Second Trainings by NAF have learned.
+
+    :param engines: physics engines, in the order in which they are asked
+    :param first_seed: seed of the first training; no setting was chosen on these
+    :param seeds: number of trainings in each engine
+    :param budget: number of episodes of a training
+    :param judging: number of pushes that judge a set, and of those that choose the best one
+    :param surviving: number of pushes of 100 N by which survival is judged
+    :param candidates: number of sets that the search for the best known set begins with
+    """
+
+    engines: tuple[Engine, ...] = ("mujoco", "pybullet")
+    first_seed: int = 300
+    seeds: int = 20
+    budget: int = 300
+    judging: int = 300
+    surviving: int = 100
+    candidates: int = 256
+
+    @property
+    def judge(self) -> Judge:
+        """Who keeps the outcomes of all sets."""
+        return Judge(self.runs / "judged")
+
+    def balance(self, engine: Engine, **changes: Any) -> BalanceConfig:
+        """Settings of the trainings' episodes, with changes.
+
+        :param engine: physics engine
+        :param changes: other values, by name
+        """
+        config = self.episode("balance", engine)
+        assert isinstance(config, BalanceConfig)
+        return dataclasses.replace(config, **changes)
+
+    def pushes(self, engine: Engine, first_seed: int, episodes: int) -> Asked:
+        """Hard pushes: two thirds by 125 N from everywhere, the others sagittal, by 115 N.
+
+        :param engine: physics engine
+        :param first_seed: seed of the first push
+        :param episodes: number of pushes
+        """
+        kinds = (("125 N", 125.0, 0.0, 2 * episodes // 3), ("sagittal 115 N", 115.0, 1.0, episodes - 2 * episodes // 3))
+        return [
+            (self.pushed(name, engine, newtons, first_seed + index * SEEDS_OF_A_KIND, sagittal_share=share), count)
+            for index, (name, newtons, share, count) in enumerate(kinds)
+        ]
+
+    def judging_pushes(self, engine: Engine) -> Asked:
+        """Pushes that judge.
+
+        :param engine: physics engine
+        """
+        return self.pushes(engine, JUDGING_SEED, self.judging)
+
+    def survivable_pushes(self, engine: Engine) -> Asked:
+        """Pushes of 100 N from everywhere, most of which a good set survives.
+
+        :param engine: physics engine
+        """
+        return [(self.pushed("100 N", engine, 100.0, JUDGING_SEED + 2 * SEEDS_OF_A_KIND), self.surviving)]
+
+    def pushed(
+        self, name: str, engine: Engine, newtons: float, first_seed: int, sagittal_share: float = 0.0, **changes: Any
+    ) -> Condition:
+        """A condition with pushes.
+
+        :param name: name of the condition
+        :param engine: physics engine
+        :param newtons: force of the pushes, in N
+        :param first_seed: seed of the first push
+        :param sagittal_share: share of the pushes that come from front or back
+        :param changes: other settings of the episodes, by name
+        """
+        push = Push((newtons, newtons), at_seconds=PUSHED_AT, sagittal_share=sagittal_share)
+        return Condition(name, self.balance(engine, push=push, **changes), first_seed)
+
+    def trainings(self, engine: Engine, workers: Executor) -> Iterator[Training]:
+        """All trainings of an engine, run or resumed unless they are there, and judged: one for each worker at a time.
+
+        :param engine: physics engine
+        :param workers: who trains
+        """
+        seeds = range(self.first_seed, self.first_seed + self.seeds)
+        jobs = [workers.submit(self.training, engine, seed) for seed in seeds]
+        return (job.result() for job in jobs)
+
+    def training(self, engine: Engine, seed: int) -> Training:
+        """A training, run or resumed in this process unless it is there, and judged.
+
+        :param engine: physics engine
+        :param seed: seed of the training
+        """
+        config = TrainingConfig("balance", episodes=self.budget, seed=seed, slots=1, episode=self.balance(engine))
+        run = self.trained(config)
+        mu = tuple(kept(run.path / "mu.json", network_says, run))
+        training = Training(f"naf seed {seed}", run.parameters(), mu)
+        for one in (training.recommended, training.mu):
+            for asked in (self.judging_pushes(engine), self.survivable_pushes(engine)):
+                self.judge.scores(one, asked)
+        return training
+
+
+def network_says(run: RunFolder) -> Parameters:
+    """V1 to V4 that the network of a finished training says for the robot as designed, without exploration.
+
+    :param run: run folder of the training
+    """
+    from sarah.training.learners import LEARNERS, chosen_parameters, nominal_observation
+
+    config = run.config()
+    algorithm, _ = LEARNERS[type(config.agent)]  # type: ignore[index]  # NAF's settings are a learner's
+    return chosen_parameters(algorithm.load(run.model_path), nominal_observation(config), config.task)

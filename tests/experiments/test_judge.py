@@ -1,0 +1,144 @@
+"""Judging V1 to V4: what is kept, who is the best, and how sure that is."""
+
+import shutil
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from experiments import judge as module
+from experiments import trainings
+from experiments.best_known import around, successive_halving
+from experiments.interval import ratio
+from experiments.judge import KEPT_TOGETHER, Condition, Judge
+from experiments.second_training import summary
+from experiments.trainings import identity
+from sarah.control.parameters import BALANCE_PARAMETERS
+from sarah.episode.evaluation import Evaluation
+from sarah.episode.tasks import BalanceConfig
+
+SET = (0.7, 0.4, 0.7, -0.4)
+CONDITION = Condition("a push", BalanceConfig(), 100)
+
+
+class Simulation:
+    """Episodes whose score is their seed, some of which fail."""
+
+    def __init__(self) -> None:
+        self.seeds: list[int] = []
+        self.fails_from = 10_000
+
+    def evaluate(self, task: Any, parameters: tuple[float, ...], config: Any, seeds: Iterable[int]) -> Evaluation:
+        """Evaluate, or fail."""
+        seeds = list(seeds)
+        if seeds[-1] >= self.fails_from:
+            raise KeyboardInterrupt
+        self.seeds += seeds
+        return Evaluation(tuple(SimpleNamespace(score=float(seed), survived=seed % 2 == 0) for seed in seeds))
+
+
+@pytest.fixture
+def simulation(monkeypatch: pytest.MonkeyPatch) -> Simulation:
+    made = Simulation()
+    monkeypatch.setattr(module, "evaluate", made.evaluate)
+    return made
+
+
+def test_no_episode_is_simulated_twice(tmp_path: Path, simulation: Simulation) -> None:
+    for episodes in (3, 5, 2):
+        assert list(Judge(tmp_path).scores(SET, [(CONDITION, episodes)])) == [100.0 + i for i in range(episodes)]
+    assert list(Judge(tmp_path).survival(SET, [(CONDITION, 4)])) == [1.0, 0.0, 1.0, 0.0]
+    assert simulation.seeds == [100, 101, 102, 103, 104]
+
+
+def test_an_interrupted_judge_goes_on(tmp_path: Path, simulation: Simulation) -> None:
+    simulation.fails_from = 100 + KEPT_TOGETHER
+    with pytest.raises(KeyboardInterrupt):
+        Judge(tmp_path).scores(SET, [(CONDITION, KEPT_TOGETHER + 2)])
+    simulation.fails_from = 10_000
+    Judge(tmp_path).scores(SET, [(CONDITION, KEPT_TOGETHER + 2)])
+    assert simulation.seeds == list(range(100, 100 + KEPT_TOGETHER + 2))
+
+
+def test_sets_and_conditions_have_outcomes_of_their_own(tmp_path: Path, simulation: Simulation) -> None:
+    others = [
+        (SET[::-1], CONDITION),
+        (SET, Condition("a push", BalanceConfig(time_limit=9.0), 100)),
+        (SET, Condition("a push", BalanceConfig(), 200)),
+    ]
+    for parameters, condition in [(SET, CONDITION), *others]:
+        Judge(tmp_path).scores(parameters, [(condition, 1)])
+    assert simulation.seeds == [100, 100, 100, 200]
+
+
+def test_outcomes_stay_when_other_parameters_ship_and_not_when_the_code_changes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def identity_of(name: str, file: str) -> str:
+        package = shutil.copytree(trainings.SARAH / "episode", tmp_path / name / "episode")
+        (package / file).write_text("{}")
+        monkeypatch.setattr(trainings, "SARAH", package.parent)
+        return identity(CONDITION, ("episode",))
+
+    before = identity(CONDITION, ("episode",))
+    here = trainings.SARAH
+    shipped = identity_of("shipped", "parameter_sets.json")
+    monkeypatch.setattr(trainings, "SARAH", here)
+    assert shipped == before != identity_of("changed", "reward.py")
+
+
+def test_halving_ends_with_the_best_and_asks_most_for_few_episodes() -> None:
+    asked: list[tuple[int, int]] = []
+
+    def scores(sets: Sequence[tuple[float, ...]], episodes: int) -> list[float]:
+        asked.append((len(sets), episodes))
+        noise = 0.4 / episodes
+        return [-abs(one[0] - 5.0) + noise * (index % 2) for index, one in enumerate(sets)]
+
+    ranked = successive_halving([(float(value),) for value in range(16)], [(16, 1), (4, 4), (2, 16)], scores)
+    assert ranked[0] == (5.0,) and sorted(ranked) == [(float(value),) for value in range(16)]
+    assert asked == [(16, 1), (4, 4), (2, 16)]
+
+
+def test_candidates_lie_around_known_sets_and_within_the_box() -> None:
+    near, far = (0.7, 0.0, 0.7, 0.0), (-2.0, 2.0, 2.0, -2.0)
+    drawn = np.array(around([near], 200))
+    assert np.allclose(drawn.mean(axis=0), near, atol=0.2)
+    low, high = ([getattr(parameter, end) for parameter in BALANCE_PARAMETERS] for end in ("low", "high"))
+    assert (drawn >= low).all() and (np.array(around([far], 200)) <= high).all()
+
+
+def test_a_change_of_one_known_set_leaves_the_candidates_around_the_others() -> None:
+    before, after = around([(0.7, 0.0, 0.7, 0.0), SET], 40), around([(0.8, 0.0, 0.7, 0.0), SET], 40)
+    assert 5 < sum(one == other for one, other in zip(before, after, strict=True)) < 35
+
+
+def test_the_error_of_a_ratio_is_that_of_pairs() -> None:
+    episodes = np.random.default_rng(0).normal(0.7, 0.2, (2000, 100))
+    same = ratio("share", 0.9 * episodes[0], episodes[0])
+    assert same["share"] == pytest.approx(0.9) and same["share_error"] == pytest.approx(0.0)
+    own = 0.9 * episodes + np.random.default_rng(1).normal(0.0, 0.1, episodes.shape)
+    found = [ratio("share", mine, others) for mine, others in zip(own, episodes, strict=True)]
+    spread = np.std([row["share"] for row in found])
+    assert np.mean([row["share_error"] for row in found]) == pytest.approx(spread, rel=0.1)
+
+
+def test_a_summary_counts_trainings_near_the_best_known() -> None:
+    best = np.linspace(0.5, 0.9, 50)
+    found = summary([best, 0.96 * best, 0.8 * best], best)
+    assert (found["close"], found["lowest_of_best"]) == (2, pytest.approx(0.8))
+    assert found["of_best"] == pytest.approx(0.92)
+    assert found["of_best_low"] < 0.92 < found["of_best_high"]
+    assert (found["close_low"], found["close_high"]) == (0, 3)
+
+
+def test_the_interval_of_a_summary_knows_the_noise_of_the_pushes() -> None:
+    generator = np.random.default_rng(0)
+    best, noise = generator.uniform(0.3, 1.0, 300), generator.normal(0.0, 0.3, (2, 300))
+    equal = summary([best, best], best)
+    assert equal["of_best_low"] == equal["of_best_high"] == pytest.approx(1.0)
+    noisy = summary([best + noise[0], best + noise[0]], best)
+    assert noisy["of_best_high"] - noisy["of_best_low"] > 0.05
