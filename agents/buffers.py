@@ -141,7 +141,7 @@ class RankReplayBuffer(ReplayBuffer):
             disturbances were
         :raises ValueError: if disturbances are not finite, or not as many as those of the transitions before
         """
-        self._corrected_rewards = self._cumulative_probabilities = None
+        self._forget()
         for i, info in enumerate(infos):
             row = slice(i, i + 1)
             self._add_disturbances(info.get("disturbances"))
@@ -161,7 +161,12 @@ class RankReplayBuffer(ReplayBuffer):
         Reset the buffer.
         """
         super().reset()
-        self.disturbances = self._corrected_rewards = self._cumulative_probabilities = None
+        self.disturbances = None
+        self._forget()
+
+    def _forget(self) -> None:
+        """Forget what was computed from the transitions before."""
+        self._corrected_rewards = self._cumulative_probabilities = None
 
     def sample(self, batch_size: int, env: VecNormalize | None = None) -> ReplayBufferSamples:
         """
@@ -177,15 +182,13 @@ class RankReplayBuffer(ReplayBuffer):
             raise ValueError("the replay buffer is empty, so there is nothing to sample")
         if self._cumulative_probabilities is None:
             with np.errstate(under="ignore"):  # Ranks that are hardly ever drawn
-                weights = np.exp(self.temperature * (average_ranks(self._without_luck()) - 1))
+                weights = np.exp(self.temperature * (average_ranks(self._learned_rewards()) - 1))
             cumulative = np.cumsum(weights)
             self._cumulative_probabilities = cumulative / cumulative[-1]
         # As np.random.choice does with probabilities, which it would add up again for every batch
         batch_inds = self._cumulative_probabilities.searchsorted(np.random.random_sample(batch_size), side="right")
         samples = self._get_samples(batch_inds, env=env)
-        if self.disturbances is None:
-            return samples
-        rewards = self._without_luck()[batch_inds, None].astype(np.float32)
+        rewards = self._learned_rewards()[batch_inds, None].astype(np.float32)
         return samples._replace(rewards=self.to_torch(self._normalize_reward(rewards, env)))
 
     def best_action(self) -> np.ndarray:
@@ -196,13 +199,16 @@ class RankReplayBuffer(ReplayBuffer):
             makes one of the environment of it
         :raises ValueError: if the buffer is empty, as it is after loading an agent
         """
-        if self.size() == 0:
-            raise ValueError("the replay buffer is empty, so there is no best action; an agent's file does not hold it")
+        self._check_not_empty()
         actions, ranks = self._newest()
         highest = np.argsort(-ranks, kind="stable")[:BEST_CANDIDATES]
         means = neighbourhood_means(actions[highest], actions, ranks, NEIGHBOURHOOD)
         best: np.ndarray = actions[highest[np.argmax(means)]]
         return best
+
+    def _check_not_empty(self) -> None:
+        if self.size() == 0:
+            raise ValueError("the replay buffer is empty, so there is no best action; an agent's file does not hold it")
 
     def draw_near_best(self, std: float, draws: int) -> np.ndarray:
         """
@@ -216,11 +222,18 @@ class RankReplayBuffer(ReplayBuffer):
         drawn = np.random.normal(best, std, (draws, len(best)))
         # Reflected at the bounds, where otherwise every wide draw would end
         drawn = np.where(np.abs(drawn) > 1, 2 * np.sign(drawn) - drawn, drawn).clip(-1, 1).astype(np.float32)
+        promising: np.ndarray = drawn[np.argmax(self._promises(drawn, std))]
+        return promising
+
+    def _promises(self, drawn: np.ndarray, std: float) -> np.ndarray:
+        """What is expected of actions that were drawn with a standard deviation, to compare them."""
         actions, ranks = self._newest()
         distance = max(NEIGHBOURHOOD, SURROUNDINGS * std)
-        means = neighbourhood_means(drawn, actions, ranks - ranks.mean(), distance, LITTLE_DOUBT)
-        promising: np.ndarray = drawn[np.argmax(means)]
-        return promising
+        return neighbourhood_means(drawn, actions, ranks - ranks.mean(), distance, LITTLE_DOUBT)
+
+    def _learned_rewards(self) -> np.ndarray:
+        """Rewards as they are ranked and sampled."""
+        return self._without_luck()
 
     def _newest(self) -> tuple[np.ndarray, np.ndarray]:
         """Actions and ranks of the newest transitions."""

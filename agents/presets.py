@@ -5,6 +5,8 @@ from typing import Any
 from stable_baselines3.common.utils import LinearSchedule
 from torch import nn
 
+from sarah.agents.smoothed_buffer import SmoothedReplayBuffer
+
 PRESETS: dict[str, dict[str, Any]] = {
     # Of LocalNAF, for episodes of one step with a few hundred of them to spend. With several
     # environments, ``gradient_steps`` is per step of all of them: multiply it by their number.
@@ -16,6 +18,7 @@ PRESETS: dict[str, dict[str, Any]] = {
         gamma=0.0,  # The reward is the return, also where a time limit ends the episode
         gradient_steps=10,
         max_grad_norm=10.0,
+        replay_buffer_class=SmoothedReplayBuffer,
         replay_buffer_kwargs=dict(temperature=4.0),
         exploration_std=LinearSchedule(0.3, 0.05, end_fraction=0.8),
         elite_share=0.5,

@@ -18,6 +18,7 @@ Activation = Literal["tanh", "relu", "sigmoid"]
 PRESETS: dict[str, dict[str, Any]] = {
     "one-step": dict(
         temperature=4.0,
+        smoothed=True,
         elite_share=0.5,
         v_layers=(32, 32),
         mu_layers=(32, 32),
@@ -28,6 +29,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     ),
     "paper": dict(
         temperature=0.0,
+        smoothed=False,
         elite_share=0.0,
         v_layers=(256, 256, 256),
         mu_layers=(16, 16, 16, 16),
@@ -134,6 +136,7 @@ class NAFSettings(LearnerSettings):
     :param max_grad_norm: largest norm of an update's gradient, above 0
     :param exploration_std: standard deviation, 0 to 2, of the noise around mu: at first, and after 80 % of the training
     :param temperature: logarithm, from 0, of how much more often the best episode is replayed than the worst
+    :param smoothed: learning from the returns that are expected of the actions, and not from those that they had
     :param elite_share: share of the actions, 0 to 1, that are drawn around the best one so far instead of around mu
     :param elite_std: standard deviation, 0 to 2, of these draws: at first, and after 80 % of the training
     :param elite_draws: number of draws, from 1, of which the most promising is tried
@@ -152,6 +155,7 @@ class NAFSettings(LearnerSettings):
     max_grad_norm: float = 10.0
     exploration_std: tuple[float, float] = (0.3, 0.05)
     temperature: float = _by_preset()
+    smoothed: bool = _by_preset()
     elite_share: float = _by_preset()
     elite_std: tuple[float, float] = (0.4, 0.15)
     elite_draws: int = 16

@@ -29,7 +29,8 @@ class AgentLearner:
     def operate(self, robot: Operation) -> Parameters:
         """Learn window by window; the agent leaves the robot with the best action that it knows."""
         env = SarahOperationEnv(robot.config, self._first, operated=robot)
-        settings: dict[str, Any] = {**PRESETS["one-step"], "device": "cpu"}
+        # A robot in operation changes, so the newest rewards count, as they were.
+        settings: dict[str, Any] = {**PRESETS["one-step"], "replay_buffer_class": RankReplayBuffer, "device": "cpu"}
         model = LocalNAF("MlpPolicy", env, seed=self._seed, first_action_centre=True, **settings)
         model.learn(LONGEST, callback=_UntilOver(robot), log_interval=None)  # type: ignore[arg-type]
         assert isinstance(model.replay_buffer, RankReplayBuffer)

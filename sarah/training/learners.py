@@ -45,7 +45,7 @@ from sarah.training.beginnings import BeginningDDPG, BeginningSAC, BeginningTD3
 from sarah.training.optimisers import OPTIMISERS, Start
 from sarah.training.recommendation import Parameters
 from sarah.training.recorder import EpisodeRecorder, check_weights
-from sarah.training.replay import LateRankReplayBuffer
+from sarah.training.replay import LateRankReplayBuffer, LateSmoothedReplayBuffer
 from sarah.training.seeds import seeds_of
 from sarah.training.warm_up import begins_at_centre, warm_up
 
@@ -126,7 +126,7 @@ def make_agent(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
     task = config.task
     own = own_arguments(settings, task) | {"first_action_centre": begins_at_centre(task)}
     seeds = seeds_of(config.seed)
-    model = algorithm("MlpPolicy", env, seed=seeds.algorithm, **common, **own)
+    model = algorithm("MlpPolicy", env, seed=seeds.algorithm, **(common | own))
     # stable-baselines3 seeds everything alike: torch and numpy then draw the same bits, as do warm-up and episodes.
     np.random.seed(seeds.exploration)
     env.seed(seeds.episodes)
@@ -148,6 +148,7 @@ def check_device(settings: AgentSettings) -> None:
 def _naf_arguments(settings: NAFSettings, task: Task) -> dict[str, Any]:
     layers = dict(V=settings.v_layers, mu=settings.mu_layers, L=settings.l_layers, shared=settings.shared_layers)
     return dict(
+        replay_buffer_class=LateSmoothedReplayBuffer if settings.smoothed else LateRankReplayBuffer,
         replay_buffer_kwargs=dict(temperature=settings.temperature),
         max_grad_norm=settings.max_grad_norm,
         exploration_std=LinearSchedule(*settings.exploration_std, end_fraction=SCHEDULED_SHARE),

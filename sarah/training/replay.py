@@ -1,4 +1,4 @@
-"""The replay buffer that stores what :class:`~sarah.envs.episode_vec_env.EpisodeVecEnv` returns with its own action."""
+"""Replay buffers that store what :class:`~sarah.envs.episode_vec_env.EpisodeVecEnv` returns with its own action."""
 
 from __future__ import annotations
 
@@ -7,13 +7,11 @@ from typing import Any
 import numpy as np
 
 from sarah.agents.buffers import RankReplayBuffer
+from sarah.agents.smoothed_buffer import SmoothedReplayBuffer
 
 
-class LateRankReplayBuffer(RankReplayBuffer):
-    """The replay buffer of all learners for :class:`EpisodeVecEnv`, and for any other environment.
-
-    It stores what :class:`EpisodeVecEnv` returns with the action that it came from, and what others return as it is.
-    """
+class _LateTransitions:
+    """Stores what :class:`EpisodeVecEnv` returns with the action that it came from, and what others return as it is."""
 
     def add(
         self,
@@ -29,4 +27,12 @@ class LateRankReplayBuffer(RankReplayBuffer):
             if infos[0]["transition"] is None:
                 return
             obs, action, next_obs = (part[None] for part in infos[0]["transition"])
-        super().add(obs, next_obs, action, reward, done, infos)
+        super().add(obs, next_obs, action, reward, done, infos)  # type: ignore[misc]  # of the replay buffer
+
+
+class LateRankReplayBuffer(_LateTransitions, RankReplayBuffer):
+    """The replay buffer of learners without smoothing for :class:`EpisodeVecEnv`, and for any other environment."""
+
+
+class LateSmoothedReplayBuffer(_LateTransitions, SmoothedReplayBuffer):
+    """The replay buffer of local NAF for :class:`EpisodeVecEnv`, and for any other environment."""

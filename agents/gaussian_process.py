@@ -1,0 +1,114 @@
+"""What a Gaussian process expects of actions after some episodes, and where it expects most."""
+
+import numpy as np
+
+LENGTHS = (0.6, 0.3)
+"""Length scales to choose from, in actions scaled to [-1, 1]; the first one is believed at first."""
+NOISES = (1.0, 0.3, 0.1, 0.03)
+"""Variances of a reward by chance to choose from, as shares of the variance between actions; likewise."""
+BELIEF = 1.0
+"""Log-likelihood that a step away from the first length costs; a step away from the first noise costs half of it."""
+FEWEST_TO_CHOOSE = 10
+"""Number of episodes below which length and noise are the first ones: so few tell them badly."""
+DOUBT = 0.1
+"""Quantile of the rewards that is expected where nothing is known."""
+DISTINCT = 0.2
+"""Distance from avoided actions within which nothing counts as best, in scaled actions."""
+MOST_EPISODES = 500
+"""Newest episodes that are known: the time that an expectation takes grows with the third power of their number."""
+ANYWHERE = 128
+"""Number of places in the box, drawn uniformly, at which the search for the best begins beside the known ones."""
+STEPS = (0.2, 0.1, 0.05, 0.025)
+"""Standard deviations of the draws around the best places so far, in scaled actions: one for each round."""
+BEST_PLACES, DRAWS = 6, 10
+"""Number of places that a round draws around, and of draws around each."""
+
+
+class GaussianProcess:
+    """
+    Rewards that are expected of actions: the mean of a Gaussian process (Rasmussen and Williams 2006, equation 2.25)
+
+    Its kernel is a Gaussian of the distance between actions. Length and noise are the likeliest of a few, with a prior
+    for long lengths and much noise. Where nothing is known it expects the lower tenth of the rewards, so what nobody
+    has tried is worth little. Shift and scale of the rewards make no difference.
+
+    :param actions: Actions of the episodes, scaled to [-1, 1], of shape (n, dim), the newest last
+    :param rewards: Rewards of the episodes, finite, of shape (n,)
+    :param kernel: Length and noise; by default the likeliest ones
+    """
+
+    def __init__(self, actions: np.ndarray, rewards: np.ndarray, kernel: tuple[float, float] | None = None) -> None:
+        self._known = np.asarray(actions[-MOST_EPISODES:], dtype=float)
+        known = np.asarray(rewards[-MOST_EPISODES:], dtype=float)
+        self._doubt = float(np.quantile(known, DOUBT)) if len(known) else 0.0
+        distances = _squared_distances(self._known, self._known)
+        self.kernel = _likeliest(distances, known - self._doubt) if kernel is None else kernel
+        self._length, noise = self.kernel
+        covariances = _covariances(distances, self._length) + noise * np.eye(len(known))
+        self._weights = np.linalg.solve(covariances, known - self._doubt)
+
+    def expected(self, actions: np.ndarray) -> np.ndarray:
+        """
+        Expected rewards.
+
+        :param actions: Scaled actions, of shape (m, dim)
+        :return: Expected rewards, of shape (m,)
+        """
+        covariances = _covariances(_squared_distances(actions, self._known), self._length)
+        expected: np.ndarray = self._doubt + covariances @ self._weights
+        return expected
+
+    def best(self, candidates: np.ndarray | None = None, avoided: np.ndarray | None = None) -> np.ndarray:
+        """
+        Action of the highest expected reward in the box from -1 to 1: random draws, ever closer to the best so far.
+
+        :param candidates: Scaled actions to begin at beside the known ones; the first one among equals
+        :param avoided: Scaled actions whose surroundings are left out, see :data:`DISTINCT`
+        :return: A scaled action, of shape (dim,)
+        """
+        generator = np.random.default_rng(0)  # The same draws each time, so that episodes alone decide
+        places = self._known if candidates is None else np.vstack([candidates, self._known])
+        places = np.vstack([places, generator.uniform(-1, 1, (ANYWHERE, places.shape[1]))])
+        values = self._values(places, avoided)
+        for step in STEPS:
+            highest = np.argsort(-values, kind="stable")[:BEST_PLACES]
+            draws = generator.normal(np.repeat(places[highest], DRAWS, axis=0), step).clip(-1, 1)
+            places = np.vstack([places[highest], draws])
+            values = np.concatenate([values[highest], self._values(draws, avoided)])
+        best: np.ndarray = places[np.argmax(values)]
+        return best
+
+    def _values(self, places: np.ndarray, avoided: np.ndarray | None) -> np.ndarray:
+        values = self.expected(places)
+        if avoided is not None and len(avoided):
+            values[_squared_distances(places, avoided).min(axis=1) < DISTINCT**2] = -np.inf
+        return values
+
+
+def _likeliest(distances: np.ndarray, rewards: np.ndarray) -> tuple[float, float]:
+    """Length and noise of the highest likelihood and belief; the variance between actions follows from them."""
+    count = len(rewards)
+    if count < FEWEST_TO_CHOOSE or not rewards.any():
+        return LENGTHS[0], NOISES[0]
+    found = []
+    for step, length in enumerate(LENGTHS):
+        variances, vectors = np.linalg.eigh(_covariances(distances, length))
+        parts = (vectors.T @ rewards) ** 2
+        for half_step, noise in enumerate(NOISES):
+            spread = np.maximum(variances, 0) + noise
+            likelihood = -(count * np.log((parts / spread).mean()) + np.log(spread).sum()) / 2
+            found.append((likelihood - BELIEF * (step + half_step / 2), (length, noise)))
+    return max(found)[1]
+
+
+def _squared_distances(actions: np.ndarray, others: np.ndarray) -> np.ndarray:
+    # By a matrix product: differences of all pairs would take several times as long
+    lengths, other_lengths = ((rows**2).sum(axis=1) for rows in (actions, others))
+    distances: np.ndarray = lengths[:, None] + other_lengths - 2 * actions @ others.T
+    return np.maximum(distances, 0)
+
+
+@np.errstate(under="ignore")  # What is far away says nothing
+def _covariances(squared_distances: np.ndarray, length: float) -> np.ndarray:
+    covariances: np.ndarray = np.exp(squared_distances / (-2 * length**2))
+    return covariances

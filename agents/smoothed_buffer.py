@@ -1,0 +1,90 @@
+"""Replay buffer for noisy tasks of one step: every reward is replaced by what is expected of its action."""
+
+from typing import Any
+
+import numpy as np
+
+from sarah.agents.buffers import RankReplayBuffer
+from sarah.agents.gaussian_process import GaussianProcess
+
+TRANSITIONS_PER_CHOICE = 10
+"""New transitions after which length and noise of the Gaussian process are chosen again."""
+
+
+class SmoothedReplayBuffer(RankReplayBuffer):
+    """
+    Replay buffer that ranks and samples the rewards that a Gaussian process expects of the actions, not those they had.
+
+    Lucky transitions are then as good as their neighbours, and the best action is looked for in the whole action space.
+    This suits tasks of one step whose observation says little of the reward. What it does say is averaged as well:
+    where it matters, take :class:`~sarah.agents.buffers.RankReplayBuffer`. The process knows the newest 500
+    transitions; ``rewards`` stay as they came.
+
+    :param arguments: Arguments of :class:`~sarah.agents.buffers.RankReplayBuffer`
+    :param kwargs: The same by name
+    """
+
+    def __init__(self, *arguments: Any, **kwargs: Any) -> None:
+        super().__init__(*arguments, **kwargs)
+        self._process: GaussianProcess | None = None
+        self._kernel: tuple[float, float] | None = None
+        self._learned: np.ndarray | None = None
+        self._new_transitions = 0
+
+    def add(
+        self,
+        obs: np.ndarray,
+        next_obs: np.ndarray,
+        action: np.ndarray,
+        reward: np.ndarray,
+        done: np.ndarray,
+        infos: list[dict[str, Any]],
+    ) -> None:
+        """
+        Add one transition of each environment.
+
+        :param obs: Observations
+        :param next_obs: Next observations
+        :param action: Actions
+        :param reward: Rewards
+        :param done: Whether the episodes ended
+        :param infos: Additional information, see :class:`~sarah.agents.buffers.RankReplayBuffer`
+        """
+        super().add(obs, next_obs, action, reward, done, infos)
+        self._new_transitions += len(infos)
+        if self._new_transitions >= TRANSITIONS_PER_CHOICE:
+            self._kernel, self._new_transitions = None, 0
+
+    def best_action(self) -> np.ndarray:
+        """
+        The action of the highest expected reward.
+
+        :return: An action scaled to [-1, 1], of shape (action dim,); ``unscale_action`` of the policy makes one of the
+            environment of it
+        :raises ValueError: if the buffer is empty, as it is after loading an agent
+        """
+        self._check_not_empty()
+        return self._expectation().best().astype(np.float32)
+
+    def _forget(self) -> None:
+        super()._forget()
+        self._process = self._learned = None
+
+    def _promises(self, drawn: np.ndarray, std: float) -> np.ndarray:
+        return self._expectation().expected(drawn)
+
+    def _learned_rewards(self) -> np.ndarray:
+        if self._learned is None:
+            rewards, actions = self._without_luck(), self.actions[: self.size(), 0].astype(float)
+            self._learned = np.where(np.isfinite(rewards), self._expectation().expected(actions), rewards)
+        return self._learned
+
+    def _expectation(self) -> GaussianProcess:
+        """What the process expects after the transitions so far."""
+        if self._process is None:
+            rewards = self._without_luck()
+            oldest_first = np.arange(self.pos - len(rewards), self.pos)  # Negative ones are at its end
+            known = oldest_first[np.isfinite(rewards[oldest_first])]
+            self._process = GaussianProcess(self.actions[known, 0], rewards[known], self._kernel)
+            self._kernel = self._process.kernel
+        return self._process

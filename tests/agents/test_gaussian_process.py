@@ -1,0 +1,89 @@
+"""What a Gaussian process expects of actions, against its definition and against tasks whose truth is known."""
+
+import numpy as np
+import pytest
+
+from sarah.agents.gaussian_process import DISTINCT, DOUBT, LENGTHS, MOST_EPISODES, NOISES, GaussianProcess
+
+
+def tried(seed: int, count: int = 80, dim: int = 3) -> tuple[np.ndarray, np.ndarray]:
+    rng = np.random.default_rng(seed)
+    return rng.uniform(-1, 1, (count, dim)), rng.normal(5.0, 2.0, count)
+
+
+@pytest.mark.parametrize("kernel", [(0.6, 1.0), (0.3, 0.1)])
+def test_expectations_are_those_of_the_definition(kernel: tuple[float, float]) -> None:
+    """Computed by eigenvectors."""
+    actions, rewards = tried(0)
+    length, noise = kernel
+    covariances = np.exp(-0.5 * (np.linalg.norm(actions[:, None] - actions, axis=2) / length) ** 2)
+    values, vectors = np.linalg.eigh(covariances)
+    doubt = np.quantile(rewards, DOUBT)
+    expected = doubt + covariances @ (vectors @ ((vectors.T @ (rewards - doubt)) / (values + noise)))
+    assert GaussianProcess(actions, rewards, kernel).expected(actions) == pytest.approx(expected)
+
+
+def test_what_nobody_has_tried_is_worth_little() -> None:
+    actions, rewards = tried(0)
+    far = GaussianProcess(actions / 100, rewards).expected(np.full((1, 3), 9.0))
+    assert far == pytest.approx(np.quantile(rewards, DOUBT))
+
+
+@pytest.mark.parametrize(("scale", "shift"), [(1e-3, 0.0), (1e3, -4e3), (1.0, 100.0)])
+def test_units_of_the_reward_make_no_difference(scale: float, shift: float) -> None:
+    actions, rewards = tried(1)
+    process, other = GaussianProcess(actions, rewards), GaussianProcess(actions, scale * rewards + shift)
+    assert other.kernel == process.kernel
+    assert other.expected(actions) == pytest.approx(scale * process.expected(actions) + shift)
+    assert other.best() == pytest.approx(process.best(), abs=1e-6)
+
+
+@pytest.mark.parametrize(("noise", "believed"), [(0.02, min(NOISES)), (0.5, max(NOISES))])
+def test_noise_is_recognised(noise: float, believed: float) -> None:
+    rng = np.random.default_rng(0)
+    actions = rng.uniform(-1, 1, (200, 2))
+    rewards = np.exp(-2 * (actions**2).sum(axis=1)) + rng.normal(0, noise, 200)
+    assert GaussianProcess(actions, rewards).kernel[1] == believed
+
+
+def test_a_fine_landscape_is_recognised() -> None:
+    actions = np.random.default_rng(0).uniform(-1, 1, (200, 2))
+    assert GaussianProcess(actions, np.sin(8 * actions[:, 0])).kernel[0] == LENGTHS[1]
+    assert GaussianProcess(actions, np.sin(2 * actions[:, 0])).kernel[0] == LENGTHS[0]
+
+
+def test_a_few_episodes_choose_nothing() -> None:
+    actions = np.linspace(-1, 1, 9)[:, None]
+    assert GaussianProcess(actions, np.sin(9 * actions[:, 0])).kernel == (LENGTHS[0], NOISES[0])
+
+
+@pytest.mark.parametrize("top", [(0.3, -0.2), (1.0, 0.4)])
+def test_the_best_is_the_highest_in_the_box_whether_it_was_tried_or_not(top: tuple[float, float]) -> None:
+    rng = np.random.default_rng(3)
+    actions = rng.uniform(-1, 1, (60, 2))
+    process = GaussianProcess(actions, -((actions - top) ** 2).sum(axis=1))
+    best = process.best()
+    assert np.linalg.norm(best - top) < 0.25 and np.linalg.norm(actions - best, axis=1).min() > 1e-3
+    grid = np.stack(np.meshgrid(*[np.linspace(-1, 1, 101)] * 2), axis=-1).reshape(-1, 2)
+    assert process.expected(best[None])[0] >= process.expected(grid).max() - 1e-3
+    assert np.abs(best).max() <= 1
+
+
+def test_surroundings_of_avoided_actions_are_left_out() -> None:
+    actions, rewards = tried(2)
+    process = GaussianProcess(actions, rewards)
+    first = process.best()
+    second = process.best(avoided=first[None])
+    assert np.linalg.norm(first - second) >= DISTINCT
+    assert process.expected(second[None]) < process.expected(first[None])
+
+
+def test_without_episodes_the_first_candidate_is_best() -> None:
+    nothing = GaussianProcess(np.empty((0, 2)), np.empty(0))
+    assert nothing.best(np.array([[0.1, 0.2], [0.3, 0.4]])).tolist() == [0.1, 0.2]
+
+
+def test_the_newest_episodes_decide() -> None:
+    (actions, rewards), (others, other_rewards) = tried(0, MOST_EPISODES), tried(1, 100)
+    process = GaussianProcess(np.vstack([others, actions]), np.concatenate([other_rewards, rewards]))
+    assert process.expected(others).tolist() == GaussianProcess(actions, rewards).expected(others).tolist()
