@@ -19,7 +19,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     "one-step": dict(
         temperature=4.0,
         smoothed=True,
-        elite_share=0.5,
+        elite_share=0.8,
         v_layers=(32, 32),
         mu_layers=(32, 32),
         l_layers=(32, 32),
@@ -158,7 +158,7 @@ class NAFSettings(LearnerSettings):
     smoothed: bool = _by_preset()
     elite_share: float = _by_preset()
     elite_std: tuple[float, float] = (0.4, 0.15)
-    elite_draws: int = 16
+    elite_draws: int = 1
     v_layers: tuple[int, ...] = _by_preset()
     mu_layers: tuple[int, ...] = _by_preset()
     l_layers: tuple[int, ...] = _by_preset()

@@ -11,6 +11,8 @@ from sarah.envs.operation_env import SarahOperationEnv
 from sarah.operation.operation import Operation
 from sarah.operation.settings import Parameters
 
+UNSMOOTHED: dict[str, Any] = dict(replay_buffer_class=RankReplayBuffer, elite_share=0.5, elite_draws=16)
+"""Arguments that differ from the preset's: a robot in operation changes, and rewards from before say less of it."""
 LONGEST = 1_000_000
 """Number of windows that no operation has."""
 
@@ -29,8 +31,7 @@ class AgentLearner:
     def operate(self, robot: Operation) -> Parameters:
         """Learn window by window; the agent leaves the robot with the best action that it knows."""
         env = SarahOperationEnv(robot.config, self._first, operated=robot)
-        # A robot in operation changes, so the newest rewards count, as they were.
-        settings: dict[str, Any] = {**PRESETS["one-step"], "replay_buffer_class": RankReplayBuffer, "device": "cpu"}
+        settings: dict[str, Any] = {**PRESETS["one-step"], **UNSMOOTHED, "device": "cpu"}
         model = LocalNAF("MlpPolicy", env, seed=self._seed, first_action_centre=True, **settings)
         model.learn(LONGEST, callback=_UntilOver(robot), log_interval=None)  # type: ignore[arg-type]
         assert isinstance(model.replay_buffer, RankReplayBuffer)

@@ -12,7 +12,7 @@ from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from stable_baselines3.common.utils import get_device
 from torch import nn
 
-from sarah.agents import NAF, PRESETS, LocalNAF, RankReplayBuffer
+from sarah.agents import NAF, PRESETS, LocalNAF, RankReplayBuffer, SmoothedReplayBuffer
 from sarah.envs.episode_vec_env import EpisodeVecEnv
 from sarah.envs.sarah_env import draw_seed
 from sarah.episode.workers import Job, Workers
@@ -68,6 +68,7 @@ SETTINGS: dict[str, dict[str, tuple[Any, Callable[[Any], Any]]]] = {
         "max_grad_norm": (2.5, lambda model: model.max_grad_norm),
         "exploration_std": ((0.5, 0.2), lambda model: pair(model.exploration_schedule)),
         "temperature": (1.5, lambda model: model.replay_buffer.temperature),
+        "smoothed": (False, lambda model: isinstance(model.replay_buffer, SmoothedReplayBuffer)),
         "elite_share": (0.25, lambda model: model.elite_share_schedule(0.5)),
         "elite_std": ((0.1, 0.6), lambda model: pair(model.elite_std_schedule)),
         "elite_draws": (5, lambda model: model.elite_draws),
