@@ -32,6 +32,7 @@ ONE_STEP = PRESETS["one-step"]
 NETWORKS = ONE_STEP["policy_kwargs"]
 VARIANTS: dict[str, dict[str, Any]] = {
     "the preset": {},
+    "rewards as they came": {"replay_buffer_class": RankReplayBuffer},
     "good and bad drawn alike": {"replay_buffer_kwargs": {"temperature": 0.0}},
     "Q may be flat": {"policy_kwargs": {**NETWORKS, "min_curvature": 0.0}},
     "mu and L share their layers": {
@@ -41,7 +42,7 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "noise stays at 0.3": {"exploration_std": 0.3},
     "nothing explored around the best": {"elite_share": 0.0},
     "all explored around the best": {"elite_share": 1.0},
-    "one draw around the best": {"elite_draws": 1},
+    "the most promising of 16 draws": {"elite_draws": 16},
     "warm-up of 30": {"learning_starts": 30},
     "one update per episode": {"gradient_steps": 1},
     "20 updates per episode": {"gradient_steps": 20},

@@ -18,7 +18,7 @@ from gymnasium import spaces
 
 from experiments.experiment import OnWorkers
 from experiments.record import Row
-from sarah.agents import PRESETS, LocalNAF
+from sarah.agents import PRESETS, LocalNAF, RankReplayBuffer
 from sarah.episode.workers import Workers
 
 NOISE = 0.3
@@ -105,7 +105,8 @@ def learned(growth: float, temperature: float, seed: int, episodes: int) -> tupl
     """
     torch.set_num_threads(1)
     env = NoisyHill(growth, seed)
-    settings = {**PRESETS["one-step"], "replay_buffer_kwargs": {"temperature": temperature}}
+    buffer = {"replay_buffer_class": RankReplayBuffer, "replay_buffer_kwargs": {"temperature": temperature}}
+    settings = {**PRESETS["one-step"], **buffer}
     model = LocalNAF("MlpPolicy", env, seed=seed, device="cpu", **settings).learn(episodes)
     action = model.predict(OBSERVATION, deterministic=True)[0].astype(float)
     with torch.no_grad():
