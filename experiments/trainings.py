@@ -26,6 +26,8 @@ from sarah.versions import source_hash, versions
 SARAH = Path(sarah.__file__).parent
 CODE = (".py", ".xacro")
 """Endings of the names of files that decide what a training makes of its settings."""
+TRAINING_CODE = ("agents", "control", "envs", "episode", "robot", "runs", "simulation", "training", "urdf")
+"""Parts of sarah that a training depends on."""
 EPISODES: dict[str, EpisodeConfig] = {name: default_training(task).episode for name, task in TASKS.items()}
 """Settings of the trainings' episodes, by task: those of ``sarah-train``."""
 
@@ -56,7 +58,7 @@ class OfTrainings(OnWorkers):
         :param config: settings of the training
         :param workers: who simulates; by default this process does
         """
-        name = f"{config.task.name}-{config.algo}-{config.episodes}-s{config.seed}-{identity(config)}"
+        name = f"{config.task.name}-{config.algo}-{config.episodes}-s{config.seed}-{identity(config, TRAINING_CODE)}"
         path = self.runs / name
         run = RunFolder.resumable(path) if path.exists() else RunFolder.create(path, config)
         if not run.is_finished:
