@@ -218,12 +218,16 @@ class RankReplayBuffer(ReplayBuffer):
         :param draws: Number of draws
         :return: A scaled action, of shape (action dim,)
         """
-        best = self.best_action()
+        best = self._promising_centre()
         drawn = np.random.normal(best, std, (draws, len(best)))
         # Reflected at the bounds, where otherwise every wide draw would end
         drawn = np.where(np.abs(drawn) > 1, 2 * np.sign(drawn) - drawn, drawn).clip(-1, 1).astype(np.float32)
         promising: np.ndarray = drawn[np.argmax(self._promises(drawn, std))]
         return promising
+
+    def _promising_centre(self) -> np.ndarray:
+        """Action that others are drawn around."""
+        return self.best_action()
 
     def _promises(self, drawn: np.ndarray, std: float) -> np.ndarray:
         """What is expected of actions that were drawn with a standard deviation, to compare them."""

@@ -1,6 +1,7 @@
 """What a Gaussian process expects of actions after some episodes, and where it expects most."""
 
 import numpy as np
+from scipy.linalg import cho_solve, solve_triangular
 
 LENGTHS = (0.6, 0.3)
 """Length scales to choose from, in actions scaled to [-1, 1]; the first one is believed at first."""
@@ -45,7 +46,9 @@ class GaussianProcess:
         self.kernel = _likeliest(distances, known - self._doubt) if kernel is None else kernel
         self._length, noise = self.kernel
         covariances = _covariances(distances, self._length) + noise * np.eye(len(known))
-        self._weights = np.linalg.solve(covariances, known - self._doubt)
+        self._factor = np.linalg.cholesky(covariances)
+        self._weights = cho_solve((self._factor, True), known - self._doubt)
+        self._variance = float((known - self._doubt) @ self._weights) / max(len(known), 1)
 
     def expected(self, actions: np.ndarray) -> np.ndarray:
         """
@@ -58,31 +61,51 @@ class GaussianProcess:
         expected: np.ndarray = self._doubt + covariances @ self._weights
         return expected
 
-    def best(self, candidates: np.ndarray | None = None, avoided: np.ndarray | None = None) -> np.ndarray:
+    def upper_bounds(self, actions: np.ndarray, deviations: float) -> np.ndarray:
+        """
+        Expected rewards, and some standard deviations more: what actions may be worth (Srinivas et al. 2010).
+
+        The variance between actions is that of the highest likelihood. Noise is left out.
+
+        :param actions: Scaled actions, of shape (m, dim)
+        :param deviations: Number of standard deviations
+        :return: Bounds of shape (m,)
+        """
+        covariances = _covariances(_squared_distances(actions, self._known), self._length)
+        explained = solve_triangular(self._factor, covariances.T, lower=True) ** 2
+        unknown = self._variance * np.maximum(1 - explained.sum(axis=0), 0)
+        bounds: np.ndarray = self._doubt + covariances @ self._weights + deviations * np.sqrt(unknown)
+        return bounds
+
+    def best(
+        self, candidates: np.ndarray | None = None, avoided: np.ndarray | None = None, deviations: float = 0.0
+    ) -> np.ndarray:
         """
         Action of the highest expected reward in the box from -1 to 1: random draws, ever closer to the best so far.
 
         :param candidates: Scaled actions to begin at beside the known ones; the first one among equals
         :param avoided: Scaled actions whose surroundings are left out, see :data:`DISTINCT`
+        :param deviations: Number of standard deviations by which an action may be better than expected
         :return: A scaled action, of shape (dim,)
         """
+
+        def value_of(places: np.ndarray) -> np.ndarray:
+            values = self.upper_bounds(places, deviations) if deviations else self.expected(places)
+            if avoided is not None and len(avoided):
+                values[_squared_distances(places, avoided).min(axis=1) < DISTINCT**2] = -np.inf
+            return values
+
         generator = np.random.default_rng(0)  # The same draws each time, so that episodes alone decide
         places = self._known if candidates is None else np.vstack([candidates, self._known])
         places = np.vstack([places, generator.uniform(-1, 1, (ANYWHERE, places.shape[1]))])
-        values = self._values(places, avoided)
+        values = value_of(places)
         for step in STEPS:
             highest = np.argsort(-values, kind="stable")[:BEST_PLACES]
             draws = generator.normal(np.repeat(places[highest], DRAWS, axis=0), step).clip(-1, 1)
             places = np.vstack([places[highest], draws])
-            values = np.concatenate([values[highest], self._values(draws, avoided)])
+            values = np.concatenate([values[highest], value_of(draws)])
         best: np.ndarray = places[np.argmax(values)]
         return best
-
-    def _values(self, places: np.ndarray, avoided: np.ndarray | None) -> np.ndarray:
-        values = self.expected(places)
-        if avoided is not None and len(avoided):
-            values[_squared_distances(places, avoided).min(axis=1) < DISTINCT**2] = -np.inf
-        return values
 
 
 def _likeliest(distances: np.ndarray, rewards: np.ndarray) -> tuple[float, float]:

@@ -11,6 +11,11 @@ TRANSITIONS_PER_CHOICE = 10
 """New transitions after which length and noise of the Gaussian process are chosen again."""
 
 
+OPTIMISM = 1.0
+"""Standard deviations by which an action may be better than expected where exploration looks for the best one: without
+any it would stay where it began to be good."""
+
+
 class SmoothedReplayBuffer(RankReplayBuffer):
     """
     Replay buffer that ranks and samples the rewards that a Gaussian process expects of the actions, not those they had.
@@ -70,8 +75,12 @@ class SmoothedReplayBuffer(RankReplayBuffer):
         super()._forget()
         self._process = self._learned = None
 
+    def _promising_centre(self) -> np.ndarray:
+        self._check_not_empty()
+        return self._expectation().best(deviations=OPTIMISM)
+
     def _promises(self, drawn: np.ndarray, std: float) -> np.ndarray:
-        return self._expectation().expected(drawn)
+        return self._expectation().upper_bounds(drawn, OPTIMISM)
 
     def _learned_rewards(self) -> np.ndarray:
         if self._learned is None:
