@@ -23,6 +23,29 @@ def test_expectations_are_those_of_the_definition(kernel: tuple[float, float]) -
     assert GaussianProcess(actions, rewards, kernel).expected(actions) == pytest.approx(expected)
 
 
+def test_bounds_are_those_of_the_definition() -> None:
+    """Equation 2.26, with the variance between actions of the highest likelihood."""
+    (actions, rewards), places = tried(0), tried(1)[0]
+    process = GaussianProcess(actions, rewards, (0.6, 0.3))
+
+    def covariances(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+        return np.exp(-0.5 * (np.linalg.norm(first[:, None] - second, axis=2) / 0.6) ** 2)
+
+    inverse = np.linalg.inv(covariances(actions, actions) + 0.3 * np.eye(80))
+    above = rewards - np.quantile(rewards, DOUBT)
+    between = covariances(places, actions)
+    unknown = (above @ inverse @ above / 80) * (1 - np.einsum("ij,jk,ik->i", between, inverse, between))
+    assert process.upper_bounds(places, 2.0) == pytest.approx(process.expected(places) + 2.0 * np.sqrt(unknown))
+
+
+def test_an_optimist_leaves_a_good_place_for_one_that_may_be_better() -> None:
+    """Thirty fair trials on one side, one on the other that was as good."""
+    actions = np.array([[-0.6, -0.6]] * 30 + [[0.6, 0.6]])
+    rewards = np.array([0.5, 0.7] * 15 + [0.65])
+    process = GaussianProcess(actions, rewards, (0.6, 1.0))
+    assert process.best()[0] < 0 < process.best(deviations=1.0)[0]
+
+
 def test_what_nobody_has_tried_is_worth_little() -> None:
     actions, rewards = tried(0)
     far = GaussianProcess(actions / 100, rewards).expected(np.full((1, 3), 9.0))
