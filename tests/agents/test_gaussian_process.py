@@ -43,7 +43,7 @@ def test_an_optimist_leaves_a_good_place_for_one_that_may_be_better() -> None:
     actions = np.array([[-0.6, -0.6]] * 30 + [[0.6, 0.6]])
     rewards = np.array([0.5, 0.7] * 15 + [0.65])
     process = GaussianProcess(actions, rewards, (0.6, 1.0))
-    assert process.best()[0] < 0 < process.best(deviations=1.0)[0]
+    assert process.best()[0] < -0.5 < process.best(deviations=1.0)[0]
 
 
 def test_what_nobody_has_tried_is_worth_little() -> None:
