@@ -7,7 +7,7 @@ FEWEST_EPISODES = 20
 MOST_FITTED = 2_000
 """Newest episodes that the explanation is fitted to: with more, a correction takes hardly longer."""
 PENALTY = 30.0
-"""Penalty of the ridge regression, as a number of episodes whose returns speak against every weight."""
+"""Penalty of the ridge regression: as if so many further episodes had shown no effect."""
 CHANCE = 0.1
 """Probability with which a disturbance that explains nothing is taken for one that does, and corrected for."""
 SMALLEST_DEVIATION = 1e-9
@@ -23,7 +23,8 @@ def corrected(returns: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
 
     :param returns: Returns of the episodes, the newest last, of shape (n,)
     :param disturbances: Disturbances of the same episodes, of shape (n, number of disturbances)
-    :return: Corrected returns, of shape (n,); the given ones if there are fewer than 20, or if nothing varies
+    :return: Corrected returns, of shape (n,); the given ones if there are fewer than :data:`FEWEST_EPISODES`, if nothing
+        varies, or if no disturbance tells
     """
     known = np.flatnonzero(np.isfinite(returns))
     if len(known) < FEWEST_EPISODES:
@@ -50,7 +51,8 @@ def corrected(returns: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
 
 def _telling(disturbances: np.ndarray, targets: np.ndarray) -> np.ndarray:
     """
-    Indices of the disturbances that explain more than chance would, by a parabola (F test with 2 degrees of freedom).
+    Indices of the disturbances that explain more than chance would, by a parabola (F test with 2 degrees of freedom; of a
+    disturbance with two values, which has no parabola, it asks a little more than that).
 
     :param disturbances: Disturbances, one row an episode
     :param targets: Returns with mean 0

@@ -4,14 +4,14 @@ import numpy as np
 from scipy.linalg import cho_solve, solve_triangular
 
 LENGTHS = (0.6, 0.3)
-"""Length scales to choose from, in actions scaled to [-1, 1]; the first one is believed at first."""
+"""Length scales to choose from, in actions scaled to [-1, 1]; the first is the prior's favourite."""
 NOISES = (1.0, 0.3, 0.1, 0.03)
 """Variances of a reward by chance to choose from, as shares of the variance between actions; likewise."""
 BELIEF = 1.0
 """Log-likelihood that a step away from the first length costs; a step away from the first noise costs half of it."""
 FEWEST_TO_CHOOSE = 10
 """Number of episodes below which length and noise are the first ones: so few tell them badly."""
-DOUBT = 0.1
+PRIOR_QUANTILE = 0.1
 """Quantile of the rewards that is expected where nothing is known."""
 DISTINCT = 0.2
 """Distance from avoided actions within which nothing counts as best, in scaled actions."""
@@ -30,8 +30,8 @@ class GaussianProcess:
     Rewards that are expected of actions: the mean of a Gaussian process (Rasmussen and Williams 2006, equation 2.25)
 
     Its kernel is a Gaussian of the distance between actions. Length and noise are the likeliest of a few, with a prior
-    for long lengths and much noise. Where nothing is known it expects the lower tenth of the rewards, so what nobody
-    has tried is worth little. Shift and scale of the rewards make no difference.
+    for long lengths and much noise. Where nothing is known it expects the lowest decile of the rewards, so untried
+    actions are not attractive. Shift and scale of the rewards make no difference.
 
     :param actions: Actions of the episodes, scaled to [-1, 1], of shape (n, dim), the newest last
     :param rewards: Rewards of the episodes, finite, of shape (n,)
@@ -41,7 +41,7 @@ class GaussianProcess:
     def __init__(self, actions: np.ndarray, rewards: np.ndarray, kernel: tuple[float, float] | None = None) -> None:
         self._known = np.asarray(actions[-MOST_EPISODES:], dtype=float)
         known = np.asarray(rewards[-MOST_EPISODES:], dtype=float)
-        self._doubt = float(np.quantile(known, DOUBT)) if len(known) else 0.0
+        self._doubt = float(np.quantile(known, PRIOR_QUANTILE)) if len(known) else 0.0
         distances = _squared_distances(self._known, self._known)
         self.kernel = _likeliest(distances, known - self._doubt) if kernel is None else kernel
         self._length, noise = self.kernel
@@ -126,6 +126,7 @@ def _likeliest(distances: np.ndarray, rewards: np.ndarray) -> tuple[float, float
 
 def _squared_distances(actions: np.ndarray, others: np.ndarray) -> np.ndarray:
     # By a matrix product: differences of all pairs would take several times as long
+    actions, others = (np.asarray(rows, dtype=float) for rows in (actions, others))
     lengths, other_lengths = ((rows**2).sum(axis=1) for rows in (actions, others))
     distances: np.ndarray = lengths[:, None] + other_lengths - 2 * actions @ others.T
     return np.maximum(distances, 0)

@@ -17,7 +17,7 @@ class LocalNAF(NAF):
     NAF for tasks of one step and a few hundred of them to spend
 
     A parabola cannot fit a landscape with cliffs and decoys, and then ``mu`` is wrong. So good transitions are replayed
-    more often than bad ones, and part of the exploring actions are drawn around the best action so far, not around
+    more often than bad ones, and part of the exploring actions are drawn around the best known action, not around
     ``mu``. ``PRESETS["one-step"]`` holds the other arguments that suit such tasks.
 
     :param policy: The policy model to use (MlpPolicy, CnnPolicy, ...)
@@ -28,8 +28,8 @@ class LocalNAF(NAF):
         it can be a function of the current progress remaining (from 1 to 0)
     :param elite_std: Standard deviation of these draws, in actions scaled to [-1, 1]; it can be a function of the
         current progress remaining (from 1 to 0)
-    :param elite_draws: Number of draws for each such action, of which that is done whose neighbourhood in the replay
-        buffer had the highest rewards: wide draws find their way by what is known
+    :param elite_draws: Number of draws for each such action, of which the one is done of which the replay buffer
+        promises most: wide draws find their way by what is known
     :param first_action_centre: Whether the first environment's first action is the centre of the action space, often
         a neutral one. Then actions around the best one are drawn as soon as its outcome is known, and not only after
         ``learning_starts`` uniform ones

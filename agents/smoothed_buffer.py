@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from sarah.agents.buffers import RankReplayBuffer
-from sarah.agents.gaussian_process import GaussianProcess
+from sarah.agents.gaussian_process import MOST_EPISODES, GaussianProcess
 
 TRANSITIONS_PER_CHOICE = 10
 """New transitions after which length and noise of the Gaussian process are chosen again."""
@@ -22,15 +22,15 @@ class SmoothedReplayBuffer(RankReplayBuffer):
 
     Lucky transitions are then as good as their neighbours, and the best action is looked for in the whole action space.
     This suits tasks of one step whose observation says little of the reward. What it does say is averaged as well:
-    where it matters, take :class:`~sarah.agents.buffers.RankReplayBuffer`. The process knows the newest 500
-    transitions; ``rewards`` stay as they came.
+    where it matters, take :class:`~sarah.agents.buffers.RankReplayBuffer`. ``rewards`` stay as they came.
 
-    :param arguments: Arguments of :class:`~sarah.agents.buffers.RankReplayBuffer`
+    :param buffer_size: Max number of elements in the buffer; no more than the 500 that the process can know
+    :param arguments: Other arguments of :class:`~sarah.agents.buffers.RankReplayBuffer`
     :param kwargs: The same by name
     """
 
-    def __init__(self, *arguments: Any, **kwargs: Any) -> None:
-        super().__init__(*arguments, **kwargs)
+    def __init__(self, buffer_size: int, *arguments: Any, **kwargs: Any) -> None:
+        super().__init__(min(buffer_size, MOST_EPISODES), *arguments, **kwargs)
         self._process: GaussianProcess | None = None
         self._kernel: tuple[float, float] | None = None
         self._learned: np.ndarray | None = None
@@ -59,6 +59,13 @@ class SmoothedReplayBuffer(RankReplayBuffer):
         self._new_transitions += len(infos)
         if self._new_transitions >= TRANSITIONS_PER_CHOICE:
             self._kernel, self._new_transitions = None, 0
+
+    def reset(self) -> None:
+        """
+        Reset the buffer.
+        """
+        super().reset()
+        self._kernel, self._new_transitions = None, 0
 
     def best_action(self) -> np.ndarray:
         """

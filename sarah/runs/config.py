@@ -25,7 +25,7 @@ EPISODES_PER_TRIAL = 5
 BUDGET_PER_TRIAL = 25
 """Number of episodes of a training for each trial."""
 MOST_TRIALS = 2
-"""Largest number of trials: what comes after the first takes its place if that fails."""
+"""Largest number of sets that are tried. Of the valid ones the best expected is recommended."""
 
 ALGORITHMS = tuple(AGENT_SETTINGS)
 AGENTS = tuple(algo for algo, settings in AGENT_SETTINGS.items() if issubclass(settings, LearnerSettings))

@@ -1,10 +1,10 @@
-"""The recommendation of a training: the parameters of which the highest merit is expected after all episodes.
+"""The recommendation of a training: the parameters with the highest expected merit over all episodes.
 
-An agent's own choice stops at the edge of a flat crest. The best single episode was lucky. And the reward does not show
-a robot that steps to a clock or drags its feet, so an episode without a valid gait has less merit here than its score.
-For all algorithms, therefore, parameters are judged by the merit that a Gaussian process expects, without the part that
-known disturbances explain. Its maximum is looked for in the whole box of the parameters. The last episodes of a budget
-try it: its gait must be valid, and its hips must not chatter.
+An agent's own choice tends to stop at the edge of a plateau, and the best single episode is often luck. And the reward
+does not show a robot that steps to a clock or drags its feet, so an episode without a valid gait has less merit here
+than its score. For all algorithms, therefore, parameters are judged by the merit that a Gaussian process expects,
+without the part that known disturbances explain. Its maximum is looked for in the whole box of the parameters. The last
+episodes of a budget try it: its gait must be valid, and its hips must not chatter.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sarah.agents.gaussian_process import DISTINCT, DOUBT, LENGTHS, MOST_EPISODES, NOISES, GaussianProcess
+from sarah.agents.gaussian_process import DISTINCT, LENGTHS, MOST_EPISODES, NOISES, PRIOR_QUANTILE, GaussianProcess
 
 
 def tried(seed: int, count: int = 80, dim: int = 3) -> tuple[np.ndarray, np.ndarray]:
@@ -18,7 +18,7 @@ def test_expectations_are_those_of_the_definition(kernel: tuple[float, float]) -
     length, noise = kernel
     covariances = np.exp(-0.5 * (np.linalg.norm(actions[:, None] - actions, axis=2) / length) ** 2)
     values, vectors = np.linalg.eigh(covariances)
-    doubt = np.quantile(rewards, DOUBT)
+    doubt = np.quantile(rewards, PRIOR_QUANTILE)
     expected = doubt + covariances @ (vectors @ ((vectors.T @ (rewards - doubt)) / (values + noise)))
     assert GaussianProcess(actions, rewards, kernel).expected(actions) == pytest.approx(expected)
 
@@ -32,7 +32,7 @@ def test_bounds_are_those_of_the_definition() -> None:
         return np.exp(-0.5 * (np.linalg.norm(first[:, None] - second, axis=2) / 0.6) ** 2)
 
     inverse = np.linalg.inv(covariances(actions, actions) + 0.3 * np.eye(80))
-    above = rewards - np.quantile(rewards, DOUBT)
+    above = rewards - np.quantile(rewards, PRIOR_QUANTILE)
     between = covariances(places, actions)
     unknown = (above @ inverse @ above / 80) * (1 - np.einsum("ij,jk,ik->i", between, inverse, between))
     assert process.upper_bounds(places, 2.0) == pytest.approx(process.expected(places) + 2.0 * np.sqrt(unknown))
@@ -49,7 +49,7 @@ def test_an_optimist_leaves_a_good_place_for_one_that_may_be_better() -> None:
 def test_what_nobody_has_tried_is_worth_little() -> None:
     actions, rewards = tried(0)
     far = GaussianProcess(actions / 100, rewards).expected(np.full((1, 3), 9.0))
-    assert far == pytest.approx(np.quantile(rewards, DOUBT))
+    assert far == pytest.approx(np.quantile(rewards, PRIOR_QUANTILE))
 
 
 @pytest.mark.parametrize(("scale", "shift"), [(1e-3, 0.0), (1e3, -4e3), (1.0, 100.0)])
