@@ -23,8 +23,8 @@ def corrected(returns: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
 
     :param returns: Returns of the episodes, the newest last, of shape (n,)
     :param disturbances: Disturbances of the same episodes, of shape (n, number of disturbances)
-    :return: Corrected returns, of shape (n,); the given ones if there are fewer than :data:`FEWEST_EPISODES`, if nothing
-        varies, or if no disturbance tells
+    :return: Corrected returns, of shape (n,); the given ones if there are fewer than
+        :data:`FEWEST_EPISODES`, if nothing varies, or if no disturbance tells
     """
     known = np.flatnonzero(np.isfinite(returns))
     if len(known) < FEWEST_EPISODES:
@@ -51,8 +51,9 @@ def corrected(returns: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
 
 def _telling(disturbances: np.ndarray, targets: np.ndarray) -> np.ndarray:
     """
-    Indices of the disturbances that explain more than chance would, by a parabola (F test with 2 degrees of freedom; of a
-    disturbance with two values, which has no parabola, it asks a little more than that).
+    Indices of the disturbances that explain more than chance would, by a parabola (F test with 2 degrees of freedom).
+
+    Of a disturbance with two values, which has no parabola, the test asks a little more than that.
 
     :param disturbances: Disturbances, one row an episode
     :param targets: Returns with mean 0

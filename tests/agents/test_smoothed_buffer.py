@@ -66,6 +66,11 @@ def test_what_is_known_follows_every_addition() -> None:
         add(buffer, np.array([-0.9, -0.9]), 5.0)
     assert np.linalg.norm(buffer.best_action() + 0.9) < 0.3 < np.linalg.norm(before + 0.9)
     buffer.reset()
+    add(buffer, np.array([0.5, 0.5]), 1.0)
+    fresh = SmoothedReplayBuffer(150, BOX, BOX, "cpu")
+    add(fresh, np.array([0.5, 0.5]), 1.0)
+    assert buffer.best_action().tolist() == fresh.best_action().tolist()
+    buffer.reset()
     with pytest.raises(ValueError, match="the replay buffer is empty, so there is no best action"):
         buffer.best_action()
 
@@ -90,3 +95,13 @@ def test_a_pickled_buffer_goes_on_as_the_first() -> None:
             add(one, np.array([0.1 * step, -0.2]), 0.3 * step)
     assert copy.best_action().tolist() == buffer.best_action().tolist()
     assert sampled(copy)[1].tobytes() == sampled(buffer)[1].tobytes()
+
+
+def test_no_reward_is_expected_from_what_was_forgotten() -> None:
+    """Old episodes beside a cliff, where the newest 500 never went, keep no place in the buffer."""
+    buffer = SmoothedReplayBuffer(10_000, BOX, BOX, "cpu")
+    rng = np.random.default_rng(0)
+    for action in (*rng.uniform(-1, 0, (200, 2)), *rng.normal(0.5, 0.05, (500, 2))):
+        add(buffer, action, float(action[0] > 0))
+    actions, rewards = sampled(buffer)
+    assert (actions[:, 0] > 0).all() and np.abs(rewards - 1).max() < 0.1
