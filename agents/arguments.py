@@ -52,8 +52,8 @@ def checked_disturbances(values: Any, number: int | None) -> np.ndarray:
         numbers = np.array(np.nan)
     is_list = numbers.ndim == 1 and number in (None, len(numbers))
     if not is_list or not np.isfinite(numbers).all():
-        allowed = "finite numbers" if number is None else f"{number} finite numbers, as in the episodes before"
-        raise ValueError(f"disturbances must be {allowed}, not {reprlib.repr(values)}")
+        allowed = "finite numbers" if number is None else f"finite numbers as in the episodes before, {number} of them"
+        raise ValueError(f'info["disturbances"] must be a list of {allowed}, not {reprlib.repr(values)}')
     return numbers
 
 

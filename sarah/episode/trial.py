@@ -11,6 +11,8 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task, disturbances_of
 from sarah.errors import TaskError
 
+TRIED_SEEDS = 20
+"""Number of seeds whose disturbances are asked for in a trial."""
 TRIAL_SECONDS = 0.5
 """Time that the pattern generator runs in a trial, in s."""
 
@@ -35,11 +37,15 @@ def try_task(task: Task, config: EpisodeConfig) -> None:
 
 
 def _try_disturbances(task: Task, config: EpisodeConfig) -> None:
-    first, other, again = (disturbances_of(EpisodeSpec(task.baseline, seed, task, config)) for seed in (0, 1, 0))
-    if first != again:
+    ends = [tuple(getattr(parameter, end) for parameter in task.parameters) for end in ("low", "high")]
+    numbers = [disturbances_of(EpisodeSpec(task.baseline, seed, task, config)) for seed in range(TRIED_SEEDS)]
+    if numbers[0] != disturbances_of(EpisodeSpec(task.baseline, 0, task, config)):
         raise TaskError(f"{task.reference}: disturbances must depend on its argument only")
-    if first is not None and other is not None and len(first) != len(other):
+    if any(numbers[0] != disturbances_of(EpisodeSpec(end, 0, task, config)) for end in ends):
+        raise TaskError(f"{task.reference}: disturbances must not depend on the parameters, which are what is learned")
+    counts = sorted({len(each) for each in numbers if each is not None})
+    if len(counts) > 1:
         raise TaskError(
             f"{task.reference}: disturbances must return as many numbers for every episode, "
-            f"not {len(first)} and {len(other)}"
+            f"not {counts[0]} and {counts[-1]}"
         )

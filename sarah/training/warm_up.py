@@ -55,7 +55,7 @@ def describe_warm_up(config: TrainingConfig) -> str:
     if count == 0:
         return "none: every episode was random" if config.algo == "random" else "none"
     if count >= config.episodes:
-        return f"all {config.episodes} episodes were random: to learn takes more than {warm_up(config)}"
+        return f"all {config.episodes} episodes: to learn takes more than {warm_up(config)}"
     if not begins_at_centre(config.task):
         return f"{count} of the {config.episodes} episodes were random"
     near_best = " or around the best so far" if getattr(config.agent, "elite_share", 0.0) > 0.0 else ""

@@ -128,24 +128,24 @@ def test_a_correction_is_made_once_after_an_addition(monkeypatch: pytest.MonkeyP
 @pytest.mark.parametrize(
     ("disturbances", "words"),
     [
-        ((1.0,), "disturbances must be 2 finite numbers, as in the episodes before, not (1.0,)"),
-        ((1.0, np.nan), "disturbances must be 2 finite numbers, as in the episodes before, not (1.0, nan)"),
-        ((1.0, "a"), "disturbances must be 2 finite numbers, as in the episodes before, not (1.0, 'a')"),
-        (3.0, "disturbances must be 2 finite numbers, as in the episodes before, not 3.0"),
-        (None, 'info["disturbances"] must be there in every episode or in none'),
+        ((1.0,), "a list of finite numbers as in the episodes before, 2 of them, not (1.0,)"),
+        ((1.0, np.nan), "a list of finite numbers as in the episodes before, 2 of them, not (1.0, nan)"),
+        ((1.0, "a"), "a list of finite numbers as in the episodes before, 2 of them, not (1.0, 'a')"),
+        (3.0, "a list of finite numbers as in the episodes before, 2 of them, not 3.0"),
+        (None, "there in every episode or in none"),
     ],
 )
 def test_other_disturbances_than_before_are_refused(disturbances: Any, words: str) -> None:
     buffer = played(3)
     with pytest.raises(ValueError) as refused:
         add(buffer, 3, (0, 0), 1.0, **({} if disturbances is None else {"disturbances": disturbances}))
-    assert str(refused.value) == words and buffer.size() == 3
+    assert str(refused.value) == f'info["disturbances"] must be {words}' and buffer.size() == 3
 
 
 def test_disturbances_cannot_begin_later_or_be_infinite() -> None:
     with pytest.raises(ValueError, match=r'^info\["disturbances"\] must be there in every episode or in none$'):
         add(played(3, tells=False), 3, (0, 0), 1.0, disturbances=[1.0])
-    with pytest.raises(ValueError, match=r"^disturbances must be finite numbers, not \[inf\]$"):
+    with pytest.raises(ValueError, match=r"must be a list of finite numbers, not \[inf\]$"):
         add(played(0), 3, (0, 0), 1.0, disturbances=[np.inf])
 
 

@@ -110,9 +110,10 @@ def test_mistakes_are_one_line(tmp_path: Path, disturbances: str, words: str) ->
 @pytest.mark.parametrize(
     ("disturbances", "words"),
     [
-        ("lambda spec: [0.0] * (spec.seed + 1)", "must return as many numbers for every episode, not 1 and 2"),
         ("lambda spec: (len(seen), seen.append(1))[:1]", "disturbances must depend on its argument only"),
         ("lambda spec: 5", "disturbances must return a tuple of finite numbers, not 5"),
+        ("lambda spec: spec.parameters", "disturbances must not depend on the parameters, which are what is learned"),
+        ("lambda spec: [0.0] * (1 + (spec.seed > 9))", "must return as many numbers for every episode, not 1 and 2"),
     ],
 )
 def test_a_trial_finds_mistakes_before_the_training(tmp_path: Path, disturbances: str, words: str) -> None:

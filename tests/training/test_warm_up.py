@@ -35,7 +35,7 @@ def rows(run: RunFolder) -> list[dict[str, str]]:
         (TrainingConfig(), "8 of the 100 episodes were random"),
         (TrainingConfig(algo="gp", slots=1), "5 of the 100 episodes were random"),
         (TrainingConfig(algo="td3", agent=TD3Settings(learning_starts=30)), "30 of the 100 episodes were random"),
-        (TrainingConfig(episodes=6), "all 6 episodes were random: to learn takes more than 8"),
+        (TrainingConfig(episodes=6), "all 6 episodes: to learn takes more than 8"),
         (TrainingConfig(agent=NAFSettings(learning_starts=999)), "90 of the 100 episodes were random"),
         (TrainingConfig("balance", "td3"), "8 of the 100 episodes: the first neutral, the others random"),
         (
