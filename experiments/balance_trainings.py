@@ -29,8 +29,8 @@ SHIPPED: Parameters = PARAMETER_SETS["balance"].spec.parameters
 """V1 to V4 that the package ships."""
 PUSHED_AT = (2.0, 3.0)
 """Range of the time at which pushes begin, in s."""
-JUDGING_SEED, CHOOSING_SEED, OTHER_SEED = 20_000, 30_000, 40_000
-"""First seeds of the pushes that judge, of those that choose, and of all other conditions."""
+JUDGING_SEED, CHOOSING_SEED, OTHER_SEED, TESTING_SEED = 20_000, 30_000, 40_000, 50_000
+"""First seeds of pushes that judge, of those that choose, of all other conditions, and of pushes that test a choice."""
 SEEDS_OF_A_KIND = 1000
 """Number of seeds that are left for each kind of push."""
 
