@@ -39,11 +39,12 @@ from experiments.balance_trainings import (
     TESTING_SEED,
     OfSecondTrainings,
 )
-from experiments.interval import standard_error
+from experiments.interval import with_error
 from experiments.judge import Asked, Condition, Judge
 from experiments.record import Row
 from sarah.episode.push import NOBODY
 from sarah.episode.workers import Workers
+from sarah.reports.uncertainty import standard_error
 from sarah.simulation.engines import Engine
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import Randomisation
@@ -164,7 +165,7 @@ class Candidate:
             for criterion, own, other in zip(self.criteria, self.scores, self.shipped, strict=True)
             if criterion.name == NEW_PUSHES
         ]
-        return any(change.mean() < -SIGNIFICANT * standard_error(change) for change in differences)
+        return any(change.mean() < -SIGNIFICANT * standard_error(change[np.newaxis]) for change in differences)
 
 
 @dataclass(frozen=True)
@@ -193,8 +194,7 @@ class Shipping(OfSecondTrainings):
                     "engine": criterion.engine,
                     "condition": criterion.name,
                     "episodes": len(scores),
-                    "score": float(scores.mean()),
-                    "score_error": standard_error(scores),
+                    **with_error("score", scores),
                     "relative": relative,
                     "kept": kept,
                 }

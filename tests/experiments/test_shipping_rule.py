@@ -57,7 +57,7 @@ def test_a_set_that_loses_on_a_slope_is_not_shipped(kept: dict[float, float]) ->
     assert Shipping().verdict(other).startswith("loses on a slope of")
 
 
-def test_a_set_that_is_worse_under_new_hard_pushes_is_not_shipped() -> None:
+def test_a_set_that_is_worse_under_new_pushes_is_not_shipped() -> None:
     worse = candidate("worse", SAME | {"hard pushes": 1.1, "new hard pushes": 0.98, "weak servos": 1.5})
     assert choice(worse) == "shipped before"
     assert Shipping().verdict(worse) == "worse under new hard pushes"
