@@ -48,14 +48,14 @@ class Throughput:
     :param rounds: number of rounds, each of which measures every loop once; ratios are medians of the rounds'
     :param loop_seconds: time limit of a loop's episode, in s
     :param trainings: number of trainings, of different seeds, whose medians the figures are
-    :param budget: number of episodes of a training; below 100 there is no closing comparison
+    :param budget: number of episodes of a training; below 25 there are no trials of its recommendation
     :param time_limit: time limit of a training's episode, in s
     """
 
     rounds: int = 5
     loop_seconds: float = 11.0
     trainings: int = 3
-    budget: int = 99
+    budget: int = 100
     time_limit: float = 30.0
 
     def rows(self) -> Iterator[Row]:

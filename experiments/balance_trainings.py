@@ -1,4 +1,4 @@
-"""The Second Trainings that several results are about: NAF with many seeds in each engine, and who judges them.
+"""The Second Trainings that several results are about, NAF with many seeds in each engine, and the pushes of the judge.
 
 The judge pushes by 125 N from everywhere, and by 115 N from within 30 degrees of front or back, twice as often the
 former. All sets of V1 to V4 meet the same pushes. Pushes of other seeds, of the same kind, choose among sets: those
@@ -29,8 +29,8 @@ SHIPPED: Parameters = PARAMETER_SETS["balance"].spec.parameters
 """V1 to V4 that the package ships."""
 PUSHED_AT = (2.0, 3.0)
 """Range of the time at which pushes begin, in s."""
-JUDGING_SEED, CHOOSING_SEED, OTHER_SEED = 20_000, 30_000, 40_000
-"""First seeds of the pushes that judge, of those that choose, and of all other conditions."""
+JUDGING_SEED, CHOOSING_SEED, OTHER_SEED, TESTING_SEED = 20_000, 30_000, 40_000, 50_000
+"""First seeds of pushes that judge, of those that choose, of all other conditions, and of pushes that test a choice."""
 SEEDS_OF_A_KIND = 1000
 """Number of seeds that are left for each kind of push."""
 
@@ -56,18 +56,12 @@ class OfSecondTrainings(OfTrainings):
     :param first_seed: seed of the first training; no setting was chosen on these
     :param seeds: number of trainings in each engine
     :param budget: number of episodes of a training
-    :param judging: number of pushes that judge a set, and of those that choose the best one
-    :param surviving: number of pushes of 100 N by which survival is judged
-    :param candidates: number of sets that the search for the best known set begins with
     """
 
     engines: tuple[Engine, ...] = ("mujoco", "pybullet")
     first_seed: int = 300
     seeds: int = 20
     budget: int = 300
-    judging: int = 300
-    surviving: int = 100
-    candidates: int = 256
 
     @property
     def judge(self) -> Judge:
@@ -97,20 +91,6 @@ class OfSecondTrainings(OfTrainings):
             for index, (name, newtons, share, count) in enumerate(kinds)
         ]
 
-    def judging_pushes(self, engine: Engine) -> Asked:
-        """Pushes that judge.
-
-        :param engine: physics engine
-        """
-        return self.pushes(engine, JUDGING_SEED, self.judging)
-
-    def survivable_pushes(self, engine: Engine) -> Asked:
-        """Pushes of 100 N from everywhere, most of which a good set survives.
-
-        :param engine: physics engine
-        """
-        return [(self.pushed("100 N", engine, 100.0, JUDGING_SEED + 2 * SEEDS_OF_A_KIND), self.surviving)]
-
     def pushed(
         self, name: str, engine: Engine, newtons: float, first_seed: int, sagittal_share: float = 0.0, **changes: Any
     ) -> Condition:
@@ -127,7 +107,7 @@ class OfSecondTrainings(OfTrainings):
         return Condition(name, self.balance(engine, push=push, **changes), first_seed)
 
     def trainings(self, engine: Engine, workers: Executor) -> Iterator[Training]:
-        """All trainings of an engine, run or resumed unless they are there, and judged: one for each worker at a time.
+        """All trainings of an engine, run or resumed unless they are there: one for each worker at a time.
 
         :param engine: physics engine
         :param workers: who trains
@@ -137,7 +117,7 @@ class OfSecondTrainings(OfTrainings):
         return (job.result() for job in jobs)
 
     def training(self, engine: Engine, seed: int) -> Training:
-        """A training, run or resumed in this process unless it is there, and judged.
+        """A training, run or resumed in this process unless it is there.
 
         :param engine: physics engine
         :param seed: seed of the training
@@ -145,11 +125,7 @@ class OfSecondTrainings(OfTrainings):
         config = TrainingConfig("balance", episodes=self.budget, seed=seed, slots=1, episode=self.balance(engine))
         run = self.trained(config)
         mu = tuple(kept(run.path / "mu.json", network_says, run))
-        training = Training(f"naf seed {seed}", run.parameters(), mu)
-        for one in (training.recommended, training.mu):
-            for asked in (self.judging_pushes(engine), self.survivable_pushes(engine)):
-                self.judge.scores(one, asked)
-        return training
+        return Training(f"naf seed {seed}", run.parameters(), mu)
 
 
 def network_says(run: RunFolder) -> Parameters:

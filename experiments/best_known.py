@@ -1,18 +1,19 @@
 """The best known V1 to V4 of an engine: a search around the shipped set and around what trainings recommend.
 
 Successive halving: all candidates meet the same few pushes, the best of them more, and the last ones as many as the
-judge has. These pushes are of the judge's kind but of other seeds, so the judge's say without favour how good the
-winner is.
+judge has. These pushes are of the judge's kind but of other seeds, so the judge's estimate of the winner is unbiased.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from experiments.balance_trainings import CHOOSING_SEED, SHIPPED, OfSecondTrainings, Training
+from experiments.balance_trainings import CHOOSING_SEED, JUDGING_SEED, SHIPPED, OfSecondTrainings, Training
+from experiments.judge import Asked
 from sarah.control.parameters import BALANCE_PARAMETERS
 from sarah.episode.workers import Executor
 from sarah.simulation.engines import Engine
@@ -22,6 +23,25 @@ DEVIATION = (0.3, 0.8, 0.3, 0.8)
 """Standard deviation of candidates around a known set; what V2 and V4 do shows over longer distances."""
 ROUNDS = ((1, 9), (4, 24), (16, 87), (32, 300))
 """Divisor of the number of candidates that each round leaves, and number of pushes that these have met by its end."""
+
+
+@dataclass(frozen=True)
+class OfBestKnown(OfSecondTrainings):
+    """Options of an experiment that compares sets with the best known one of an engine.
+
+    :param judging: number of pushes that judge a set, and of those that choose the best one
+    :param candidates: number of sets that the search for the best known set begins with
+    """
+
+    judging: int = 300
+    candidates: int = 256
+
+    def judging_pushes(self, engine: Engine) -> Asked:
+        """Pushes that judge.
+
+        :param engine: physics engine
+        """
+        return self.pushes(engine, JUDGING_SEED, self.judging)
 
 
 class Found(NamedTuple):
@@ -37,7 +57,7 @@ class Found(NamedTuple):
     drawn: Parameters
 
 
-def best_known(options: OfSecondTrainings, engine: Engine, trainings: Sequence[Training], workers: Executor) -> Found:
+def best_known(options: OfBestKnown, engine: Engine, trainings: Sequence[Training], workers: Executor) -> Found:
     """Search for the best set of an engine. An outcome that is kept is not simulated again.
 
     :param options: size of the search

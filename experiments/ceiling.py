@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from experiments.balance_trainings import BALANCE_NAMES, SHIPPED, OfSecondTrainings
-from experiments.best_known import best_known
+from experiments.balance_trainings import BALANCE_NAMES, SHIPPED
+from experiments.best_known import OfBestKnown, best_known
 from experiments.interval import ratio, with_error
 from experiments.record import Row
 from sarah.episode.workers import Workers
 
 
 @dataclass(frozen=True)
-class Ceiling(OfSecondTrainings):
+class Ceiling(OfBestKnown):
     """The shipped set, the best training and what a search found, judged by pushes that chose none of them."""
 
     def rows(self) -> Iterator[Row]:

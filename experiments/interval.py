@@ -10,6 +10,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from experiments.record import Row
+from sarah.reports.uncertainty import standard_error
 
 
 def interval(values: Sequence[float]) -> tuple[float, float]:
@@ -37,9 +38,9 @@ def with_error(name: str, values: np.ndarray) -> Row:
     """Columns of a mean and of its standard error.
 
     :param name: name of the column
-    :param values: independent values
+    :param values: independent values; of a single one nothing is known
     """
-    return {name: float(values.mean()), f"{name}_error": standard_error(values)}
+    return {name: float(values.mean()), f"{name}_error": standard_error(values[np.newaxis])}
 
 
 def ratio(name: str, values: np.ndarray, others: np.ndarray) -> Row:
@@ -50,21 +51,13 @@ def ratio(name: str, values: np.ndarray, others: np.ndarray) -> Row:
     :param others: values of the denominator, in the same episodes
     """
     found = float(values.mean() / others.mean())
-    return {name: found, f"{name}_error": standard_error(values - found * others) / float(others.mean())}
-
-
-def standard_error(values: np.ndarray) -> float:
-    """Standard error of a mean.
-
-    :param values: independent values; of a single one nothing is known
-    """
-    return float(values.std(ddof=1) / math.sqrt(len(values))) if len(values) > 1 else math.inf
+    return {name: found, f"{name}_error": standard_error((values - found * others)[np.newaxis]) / float(others.mean())}
 
 
 def crossed_bootstrap(
     statistic: Callable[[np.ndarray, np.ndarray], float], sets: int, episodes: int, draws: int = 2000
 ) -> tuple[float, float]:
-    """95 % interval of what many sets say that all met the same episodes: both could have been others.
+    """95 % interval of a statistic of several sets that met the same episodes; both are resampled.
 
     :param statistic: function of the indices of the sets and of the episodes
     :param sets: number of sets

@@ -7,22 +7,28 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from experiments.balance_trainings import BALANCE_NAMES, SHIPPED, OfSecondTrainings, Training
-from experiments.best_known import best_known
+from experiments.balance_trainings import BALANCE_NAMES, JUDGING_SEED, SEEDS_OF_A_KIND, SHIPPED, Training
+from experiments.best_known import OfBestKnown, best_known
 from experiments.interval import crossed_bootstrap, ratio, with_error
+from experiments.judge import Asked
 from experiments.record import Row, cell
 from sarah.episode.tasks import BALANCE
 from sarah.episode.workers import Executor, Workers
 from sarah.simulation.engines import Engine
 from sarah.training.recommendation import Parameters
 
-CLOSE = 0.95
-"""Share of the best known score from which a training counts as close to it."""
+ENOUGH = 0.95
+"""Share of the best known score from which a training counts in ``at_95``."""
 
 
 @dataclass(frozen=True)
-class SecondTraining(OfSecondTrainings):
-    """Second Trainings by NAF: what each recommends, what its network says, and how both do."""
+class SecondTraining(OfBestKnown):
+    """Second Trainings by NAF: what each recommends, what its network says, and how both do.
+
+    :param surviving: number of pushes of 100 N by which survival is judged
+    """
+
+    surviving: int = 100
 
     def rows(self) -> Iterator[Row]:
         """A row for V = 0, for the shipped set, for the best known one and for each training, in each engine."""
@@ -51,6 +57,25 @@ class SecondTraining(OfSecondTrainings):
             print(f"{engine}, {training.name}: score {cell(float(score))}, mu {cell(float(mu_score))}", flush=True)
             trainings.append(training)
         return trainings
+
+    def training(self, engine: Engine, seed: int) -> Training:
+        """A training, run or resumed in this process unless it is there, and judged.
+
+        :param engine: physics engine
+        :param seed: seed of the training
+        """
+        training = super().training(engine, seed)
+        for one in (training.recommended, training.mu):
+            for asked in (self.judging_pushes(engine), self.survivable_pushes(engine)):
+                self.judge.scores(one, asked)
+        return training
+
+    def survivable_pushes(self, engine: Engine) -> Asked:
+        """Pushes of 100 N from everywhere, most of which a good set survives.
+
+        :param engine: physics engine
+        """
+        return [(self.pushed("100 N", engine, 100.0, JUDGING_SEED + 2 * SEEDS_OF_A_KIND), self.surviving)]
 
     def scores(self, engine: Engine, parameters: Parameters) -> np.ndarray:
         """Scores under the pushes that judge.
@@ -129,18 +154,18 @@ def summary(scores: Sequence[np.ndarray], best_scores: np.ndarray) -> Row:
     def mean_share(trainings: np.ndarray, pushes: np.ndarray) -> float:
         return float(shares(trainings, pushes).mean())
 
-    def close(trainings: np.ndarray, pushes: np.ndarray) -> float:
-        return float((shares(trainings, pushes) >= CLOSE).sum())
+    def number_at_95(trainings: np.ndarray, pushes: np.ndarray) -> float:
+        return float((shares(trainings, pushes) >= ENOUGH).sum())
 
     everything = np.arange(len(of_all)), np.arange(len(best_scores))
     mean_low, mean_high = crossed_bootstrap(mean_share, *of_all.shape)
-    close_low, close_high = crossed_bootstrap(close, *of_all.shape)
+    number_low, number_high = crossed_bootstrap(number_at_95, *of_all.shape)
     return {
         "of_best": mean_share(*everything),
         "of_best_low": mean_low,
         "of_best_high": mean_high,
-        "close": int(close(*everything)),
-        "close_low": int(close_low),
-        "close_high": int(close_high),
+        "at_95": int(number_at_95(*everything)),
+        "at_95_low": int(number_low),
+        "at_95_high": int(number_high),
         "lowest_of_best": float(shares(*everything).min()),
     }

@@ -23,13 +23,13 @@ class SlotsCost(OfTrainings):
 
     :param slots: numbers of episodes in flight
     :param seeds: number of trainings with each
-    :param budget: number of episodes of a training; below 100 there is no closing comparison
+    :param budget: number of episodes of a training; below 25 there are no trials of its recommendation
     :param episodes: number of unseen seeds that judge
     """
 
     slots: tuple[int, ...] = (1, 4, 8, 32)
     seeds: int = 5
-    budget: int = 99
+    budget: int = 100
     episodes: int = 10
     time_limit: float | None = 10.0
 
@@ -43,7 +43,7 @@ class SlotsCost(OfTrainings):
                     training = TrainingConfig("stepping", episodes=self.budget, seed=seed, slots=slots, episode=config)
                     run = self.trained(training, workers)
                     scores = [float(row["score"]) for row in run.episodes()]
-                    learning.append(mean(scores[max(WARM_UP, 2 * slots) :]))
+                    learning.append(mean(scores[max(WARM_UP, 2 * slots) : self.budget - training.trial_episodes]))
                     evaluation = evaluate("stepping", run.parameters(), config, range(self.episodes), workers)
                     final.append(evaluation.median("score"))
                 yield {

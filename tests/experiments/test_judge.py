@@ -74,7 +74,7 @@ def test_sets_and_conditions_have_outcomes_of_their_own(tmp_path: Path, simulati
     assert simulation.seeds == [100, 100, 100, 200]
 
 
-def test_outcomes_stay_when_other_parameters_ship_and_not_when_the_code_changes(
+def test_outcomes_stay_until_the_code_changes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def identity_of(name: str, file: str) -> str:
@@ -90,7 +90,7 @@ def test_outcomes_stay_when_other_parameters_ship_and_not_when_the_code_changes(
     assert shipped == before != identity_of("changed", "reward.py")
 
 
-def test_halving_ends_with_the_best_and_asks_most_for_few_episodes() -> None:
+def test_halving_ends_with_the_best_and_asks_most_for_little() -> None:
     asked: list[tuple[int, int]] = []
 
     def scores(sets: Sequence[tuple[float, ...]], episodes: int) -> list[float]:
@@ -111,7 +111,7 @@ def test_candidates_lie_around_known_sets_and_within_the_box() -> None:
     assert (drawn >= low).all() and (np.array(around([far], 200)) <= high).all()
 
 
-def test_a_change_of_one_known_set_leaves_the_candidates_around_the_others() -> None:
+def test_a_change_of_one_set_leaves_candidates_around_others() -> None:
     before, after = around([(0.7, 0.0, 0.7, 0.0), SET], 40), around([(0.8, 0.0, 0.7, 0.0), SET], 40)
     assert 5 < sum(one == other for one, other in zip(before, after, strict=True)) < 35
 
@@ -129,10 +129,10 @@ def test_the_error_of_a_ratio_is_that_of_pairs() -> None:
 def test_a_summary_counts_trainings_near_the_best_known() -> None:
     best = np.linspace(0.5, 0.9, 50)
     found = summary([best, 0.96 * best, 0.8 * best], best)
-    assert (found["close"], found["lowest_of_best"]) == (2, pytest.approx(0.8))
+    assert (found["at_95"], found["lowest_of_best"]) == (2, pytest.approx(0.8))
     assert found["of_best"] == pytest.approx(0.92)
     assert found["of_best_low"] < 0.92 < found["of_best_high"]
-    assert (found["close_low"], found["close_high"]) == (0, 3)
+    assert (found["at_95_low"], found["at_95_high"]) == (0, 3)
 
 
 def test_the_interval_of_a_summary_knows_the_noise_of_the_pushes() -> None:

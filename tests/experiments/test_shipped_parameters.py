@@ -27,7 +27,7 @@ def test_the_packages_file_says_what_the_result_says(tmp_path: Path) -> None:
     assert (tmp_path / FILE.name).read_text(encoding="utf-8") == FILE.read_text(encoding="utf-8")
 
 
-def test_a_set_that_stays_keeps_its_origin_and_another_gets_that_of_the_result(tmp_path: Path) -> None:
+def test_a_set_keeps_its_origin_as_long_as_it_ships(tmp_path: Path) -> None:
     result = record.read("shipped_parameters")
     rows = [{**row, "V1": "1.23"} if row["set"] == "balance" else row for row in result.rows]
     ship(dataclasses.replace(result, rows=rows, commit="another"), tmp_path / FILE.name)
