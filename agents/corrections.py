@@ -10,8 +10,26 @@ PENALTY = 30.0
 """Penalty of the ridge regression: as if so many further episodes had shown no effect."""
 CHANCE = 0.1
 """Probability with which a disturbance that explains nothing is taken for one that does, and corrected for."""
+OUTER_DECILES = (0.1, 0.9)
+LARGEST_DISTANCE = 3.0
+"""Largest distance of a return below the lowest decile, in distances between the outer deciles: lower ones count as
+that."""
 SMALLEST_DEVIATION = 1e-9
 """Standard deviation, as a share of the largest amount, below which a number counts as constant."""
+
+
+def bounded(returns: np.ndarray) -> np.ndarray:
+    """
+    Returns of which none is lower than most by far: a few disasters would outweigh all others (Huber 1964).
+
+    :param returns: Returns of shape (n,)
+    :return: The returns, at least the lowest decile less three times the distance between the outer deciles; the given
+        ones if these are the same
+    """
+    if not len(returns):
+        return returns
+    low, high = np.quantile(returns, OUTER_DECILES)
+    return np.maximum(returns, low - LARGEST_DISTANCE * (high - low)) if high > low else returns
 
 
 def corrected(returns: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
@@ -33,7 +51,7 @@ def corrected(returns: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
     scale = np.abs(returns[fitted]).max()
     if np.ptp(returns[fitted]) == 0:
         return returns
-    targets = returns[fitted] / scale
+    targets = bounded(returns[fitted]) / scale
     targets -= targets.mean()
     disturbances = disturbances[:, _telling(disturbances[fitted], targets)]
     features = _Features(disturbances[fitted])
@@ -112,13 +130,16 @@ class _Standard:
         self.kept = np.flatnonzero(deviations > SMALLEST_DEVIATION)
         self._largest, self._means = largest[self.kept], shares.mean(axis=0)[self.kept]
         self._deviations = deviations[self.kept]
+        standard = (shares[:, self.kept] - self._means) / self._deviations
+        self._ends = (standard.min(axis=0), standard.max(axis=0)) if len(self.kept) else (0.0, 0.0)
         self.number = len(self.kept)
 
     def of(self, columns: np.ndarray) -> np.ndarray:
         """
-        Those of other rows, with the same means and deviations.
+        Those of other rows, with the same means and deviations, and within the same range: beyond it, squares and
+        products would say anything.
 
         :param columns: As many columns as were given first
         """
         standard: np.ndarray = (columns[:, self.kept] / self._largest - self._means) / self._deviations
-        return standard
+        return standard.clip(*self._ends)

@@ -1,10 +1,16 @@
 """What a Gaussian process expects of actions after some episodes, and where it expects most."""
 
+import math
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.linalg import cho_solve, solve_triangular
 
+from sarah.agents.corrections import bounded
+
 LENGTHS = (0.6, 0.3)
-"""Length scales to choose from, in actions scaled to [-1, 1]; the first is the prior's favourite."""
+"""Length scales to choose from, in actions scaled to [-1, 1]; the first is the prior's favourite.
+With more than four numbers they grow with the distances in the box, as the root of the number."""
 NOISES = (1.0, 0.3, 0.1, 0.03)
 """Variances of a reward by chance to choose from, as shares of the variance between actions; likewise."""
 BELIEF = 1.0
@@ -40,10 +46,12 @@ class GaussianProcess:
 
     def __init__(self, actions: np.ndarray, rewards: np.ndarray, kernel: tuple[float, float] | None = None) -> None:
         self._known = np.asarray(actions[-MOST_EPISODES:], dtype=float)
-        known = np.asarray(rewards[-MOST_EPISODES:], dtype=float)
+        known = bounded(np.asarray(rewards[-MOST_EPISODES:], dtype=float))
         self._doubt = float(np.quantile(known, PRIOR_QUANTILE)) if len(known) else 0.0
         distances = _squared_distances(self._known, self._known)
-        self.kernel = _likeliest(distances, known - self._doubt) if kernel is None else kernel
+        growth = math.sqrt(max(self._known.shape[1], 4) / 4)
+        lengths = [growth * length for length in LENGTHS]
+        self.kernel = _likeliest(distances, known - self._doubt, lengths) if kernel is None else kernel
         self._length, noise = self.kernel
         covariances = _covariances(distances, self._length) + noise * np.eye(len(known))
         self._factor = np.linalg.cholesky(covariances)
@@ -108,15 +116,15 @@ class GaussianProcess:
         return best
 
 
-def _likeliest(distances: np.ndarray, rewards: np.ndarray) -> tuple[float, float]:
+def _likeliest(distances: np.ndarray, rewards: np.ndarray, lengths: Sequence[float]) -> tuple[float, float]:
     """Length and noise of the highest likelihood and belief; the variance between actions follows from them."""
     count = len(rewards)
     if count < FEWEST_TO_CHOOSE or not rewards.any():
-        return LENGTHS[0], NOISES[0]
+        return lengths[0], NOISES[0]
     found = []
-    for step, length in enumerate(LENGTHS):
+    for step, length in enumerate(lengths):
         variances, vectors = np.linalg.eigh(_covariances(distances, length))
-        parts = (vectors.T @ rewards) ** 2
+        parts = (vectors.T @ (rewards / np.abs(rewards).max())) ** 2
         for half_step, noise in enumerate(NOISES):
             spread = np.maximum(variances, 0) + noise
             likelihood = -(count * np.log((parts / spread).mean()) + np.log(spread).sum()) / 2

@@ -18,6 +18,7 @@ from sarah.agents.gaussian_process import GaussianProcess
 from sarah.episode.evaluation import SMALLEST_CLEARANCE, SMALLEST_SENSOR_SHARE, Evaluation
 from sarah.episode.result import EpisodeResult
 from sarah.episode.tasks import Task
+from sarah.errors import LearningError
 
 Parameters = tuple[float, ...]
 
@@ -51,6 +52,7 @@ class Tried:
     """
 
     def __init__(self, task: Task) -> None:
+        self._reference = task.reference
         self._low = np.array([parameter.low for parameter in task.parameters])
         self._widths = np.array([parameter.width for parameter in task.parameters])
         self._places: list[np.ndarray] = []
@@ -67,10 +69,17 @@ class Tried:
         :param parameters: parameters of the episode
         :param merit: merit of the episode; one that is no number is as bad as can be
         :param disturbances: disturbances of the episode, as many as those of all others
+        :raises LearningError: if they are more or fewer
         """
+        numbers = () if disturbances is None else disturbances
+        if self._disturbances and len(numbers) != len(self._disturbances[0]):
+            raise LearningError(
+                f"{self._reference}: disturbances must be as many numbers in every episode, "
+                f"{len(self._disturbances[0])}, not {len(numbers)}"
+            )
         self._places.append(self._place_of(parameters))
         self._merits.append(min(LARGEST_MERIT, max(-LARGEST_MERIT, merit)))
-        self._disturbances.append(() if disturbances is None else disturbances)
+        self._disturbances.append(numbers)
 
     def best(self, choice: Parameters, failed: Sequence[Parameters] = ()) -> Parameters:
         """Find the parameters of which the highest merit is expected.

@@ -6,7 +6,7 @@ from sklearn.linear_model import Ridge
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import PolynomialFeatures, StandardScaler
 
-from sarah.agents.corrections import FEWEST_EPISODES, MOST_FITTED, PENALTY, corrected
+from sarah.agents.corrections import FEWEST_EPISODES, MOST_FITTED, PENALTY, bounded, corrected
 
 
 def drawn(seed: int, number: int = 60, width: int = 3) -> tuple[np.ndarray, np.ndarray]:
@@ -70,6 +70,20 @@ def test_what_is_constant_changes_no_bit(constant: float) -> None:
     np.testing.assert_array_equal(
         corrected(returns, np.hstack([disturbances, constants])), corrected(returns, disturbances)
     )
+
+
+def test_bounded_returns_by_hand() -> None:
+    returns = np.append(np.arange(11.0), [-1000.0, -30.0])  # their outer deciles are -24 and 8.8
+    assert bounded(returns).tolist() == pytest.approx([*range(11), -24.0 - 3 * 32.8, -30.0])
+    assert bounded(np.array([1.0] * 20 + [-9.0])).tolist() == [1.0] * 20 + [-9.0]
+    assert bounded(np.empty(0)).tolist() == []
+
+
+def test_episodes_of_another_range_of_disturbances_are_not_blown_up() -> None:
+    rng = np.random.default_rng(0)
+    narrow, wide = rng.normal(0, 1e-3, (MOST_FITTED, 1)), rng.normal(0, 10, (100, 1))
+    returns = np.concatenate([rng.normal(0, 1, 100), 1e3 * narrow[:, 0]])
+    assert np.abs(corrected(returns, np.vstack([wide, narrow]))[:100]).max() < 10
 
 
 def test_a_few_episodes_stay_as_they_are() -> None:

@@ -92,6 +92,22 @@ def test_the_best_is_the_highest_in_the_box_whether_it_was_tried_or_not(top: tup
     assert np.abs(best).max() <= 1
 
 
+def test_how_deep_a_few_disasters_are_makes_no_difference() -> None:
+    """Bad luck of one episode in twenty."""
+    rng = np.random.default_rng(0)
+    actions = rng.uniform(-1, 1, (100, 2))
+    rewards = 1 - (actions**2).sum(axis=1) + rng.normal(0, 0.1, 100)
+    bad, worse = rewards.copy(), rewards.copy()
+    bad[::20], worse[::20] = -20.0, -1000.0
+    best, other = (GaussianProcess(actions, each).best() for each in (bad, worse))
+    assert best.tolist() == other.tolist() and np.linalg.norm(best) < 0.7
+
+
+def test_lengths_grow_with_the_distances_in_a_large_box() -> None:
+    few = [GaussianProcess(np.zeros((5, dim)), np.zeros(5)).kernel[0] for dim in (1, 4, 16)]
+    assert few == [LENGTHS[0], LENGTHS[0], 2 * LENGTHS[0]]
+
+
 def test_surroundings_of_avoided_actions_are_left_out() -> None:
     actions, rewards = tried(2)
     process = GaussianProcess(actions, rewards)

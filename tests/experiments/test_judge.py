@@ -74,9 +74,7 @@ def test_sets_and_conditions_have_outcomes_of_their_own(tmp_path: Path, simulati
     assert simulation.seeds == [100, 100, 100, 200]
 
 
-def test_outcomes_stay_until_the_code_changes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_outcomes_stay_until_the_code_changes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def identity_of(name: str, file: str) -> str:
         package = shutil.copytree(trainings.SARAH / "episode", tmp_path / name / "episode")
         (package / file).write_text("{}")

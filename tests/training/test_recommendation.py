@@ -13,6 +13,7 @@ from sarah.agents.gaussian_process import DISTINCT
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.result import EpisodeResult
 from sarah.episode.tasks import STEPPING, Task
+from sarah.errors import LearningError
 from sarah.runs.config import TrainingConfig
 from sarah.training.recommendation import Parameters, Tried, is_valid, merit
 
@@ -74,6 +75,16 @@ def test_what_known_disturbances_decide_is_no_merit() -> None:
         ignorant.append(place, worth)
     assert knowing.best_of([lucky, better]) == better
     assert ignorant.best_of([lucky, better]) == lucky
+
+
+def test_disturbances_of_another_number_are_one_line() -> None:
+    tried = Tried(STEPPING)
+    tried.append(CHOICE, 0.5, (1.0, 2.0))
+    with pytest.raises(
+        LearningError, match=r"^stepping: disturbances must be as many numbers in every episode, 2, not 1$"
+    ):
+        tried.append(CHOICE, 0.5, (1.0,))
+    assert len(tried) == 1
 
 
 def test_what_failed_is_avoided() -> None:
