@@ -166,8 +166,8 @@ TABLE: dict[str, Maker] = {
     ),
     "race_balance": Maker(
         "Which algorithm learns to come back after a push in the fewest episodes?",
-        Race("balance", budget=150, first_seed=300),
-        {**TRAINED, "seeds": 1, "evaluations": 1, "algorithms": ("cma-es",)},
+        Race("balance", budget=150, first_seed=300, evaluations_along=12),
+        {**TRAINED, "seeds": 1, "evaluations": 1, "evaluations_along": 1, "algorithms": ("cma-es",)},
     ),
     "naf_preset": Maker(
         "What is each part of NAF's preset for episodes of one step worth?",

@@ -23,7 +23,7 @@ def test_a_score_counts_once_it_is_held() -> None:
 
 
 def test_two_evaluations_after_the_same_episodes_are_one() -> None:
-    """A training of as many episodes as were last recommended after has its end there too: it is evaluated twice."""
+    """Without trials of it, the last recommendation along the way is the final one too, and is evaluated twice."""
     assert math.isinf(episodes_until(RaceCurve("naf", (5, 10, 15, 15), (0.2, 0.9, 0.9, 0.9), (0.9,), 1, 1.0), 0.8))
 
 
