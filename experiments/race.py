@@ -30,6 +30,7 @@ class Race(OfTrainings):
     :param seeds: number of trainings of each algorithm
     :param algorithms: names of the algorithms
     :param evaluations: number of unseen episodes that judge a final recommendation; by default that of sarah-compare
+    :param evaluations_along: number of these that judge one along the way; by default that of sarah-compare
     """
 
     task: tyro.conf.Suppress[str]
@@ -38,6 +39,7 @@ class Race(OfTrainings):
     seeds: int = 20
     algorithms: tuple[str, ...] = ALGORITHMS
     evaluations: int | None = None
+    evaluations_along: int | None = None
 
     def rows(self) -> Iterator[Row]:
         """A row for each algorithm, the quickest first."""
@@ -46,7 +48,7 @@ class Race(OfTrainings):
         seeds = range(self.first_seed, self.first_seed + self.seeds)
         folder = self.runs / f"race-{self.task}-{identity(base)}"
         folder.mkdir(parents=True, exist_ok=True)
-        evaluations = evaluations_of(base.task, self.evaluations)
+        evaluations = evaluations_of(base.task, self.evaluations, self.evaluations_along)
         entries = entries_of(self.algorithms, seeds, base, evaluations, folder)
         with Workers(self.workers) as workers:
             table = rankings(race(entries, workers), reference="naf")

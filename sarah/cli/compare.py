@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import tyro
 
@@ -29,9 +28,6 @@ from sarah.reports.judging import PUSHED, UNPUSHED, evaluations_of
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.sessions import is_session
 
-if TYPE_CHECKING:  # the import would load the learning algorithms
-    from sarah.reports.race import Work
-
 COMMAND = "sarah-compare"
 MOST_SEEDS = 1000
 SCORES = (0.01, 2.0)
@@ -48,9 +44,9 @@ class CompareOptions:
     it over three evaluations: a multiple of five, or "not reached". It is printed, and written to the folder with a
     plot. The same command continues a race that was interrupted.
 
-    Judging takes longer than learning. With a push, {pushed_along} episodes judge after every five of the training, and
-    another {pushed_final} its end; without, {still_along} and {still_final}. What is recommended again is judged once.
-    The command says before it starts how many episodes there are to simulate.
+    Judging takes longer than learning. With a push, {pushed_final} episodes judge the end of a training, and the first
+    {pushed_along} of them judge after every five of its episodes; without, {still_final} and {still_along}. What is
+    recommended again is judged once. The command says before it starts how many episodes there are to simulate.
 
     :param out: folder of the race, which also holds its run folders
     :param algorithms: names of different algorithms: {algorithms}
@@ -147,7 +143,7 @@ def _compare(arguments: Sequence[str]) -> None:
     with Workers(options.workers, options.scheduler) as workers:
         say_engine(episode, options.engine)
         try:
-            curves = race(entries, workers, _progress)
+            curves = race(entries, workers, progress_bar=True)
         except KeyboardInterrupt:
             print(f"\n{COMMAND}: interrupted; the same command goes on with the race", file=sys.stderr)
             raise SystemExit(130) from None
@@ -157,17 +153,3 @@ def _compare(arguments: Sequence[str]) -> None:
     write_csv(table, options.out / "race.csv")
     for file in draw_race(curves, options.out / "race"):
         print(file)
-
-
-@contextmanager
-def _progress(work: Work) -> Iterator[Callable[[], object]]:
-    """Say how much there is to simulate, and show how many trainings are finished."""
-    from tqdm import tqdm
-
-    print(
-        f"{work.trainings} trainings to go, with at most {work.training_episodes} episodes together; "
-        f"at most {work.judging_episodes} others judge what they recommend",
-        file=sys.stderr,
-    )
-    with tqdm(total=work.trainings, unit=" trainings") as bar:
-        yield bar.update

@@ -11,15 +11,16 @@ from __future__ import annotations
 
 import csv
 import io
-import math
 import os
+import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, suppress
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from pathlib import Path
-from statistics import mean, stdev
+from statistics import mean
+
+from tqdm import tqdm
 
 from sarah.episode.evaluation import evaluate
 from sarah.episode.workers import Workers
@@ -39,34 +40,7 @@ LOCK_FILE = "race.lock"
 """Name of the file in every run folder of a race that is locked while a race is at it."""
 
 
-@dataclass(frozen=True)
-class Work:
-    """What a race has still to do, at most: a training goes on where it was, and what is alike is judged once.
-
-    :param trainings: number of trainings to run, or only to judge
-    :param training_episodes: number of episodes that they learn from
-    :param judging_episodes: number of episodes that judge their recommendations
-    """
-
-    trainings: int
-    training_episodes: int
-    judging_episodes: int
-
-
-Progress = Callable[[Work], AbstractContextManager[Callable[[], object]]]
-"""Function that is told what there is to do, and gives a function to call after each training, as a context."""
-
-
-@contextmanager
-def without_progress(work: Work) -> Iterator[Callable[[], object]]:
-    """Nothing to see of a race.
-
-    :param work: what there is to do
-    """
-    yield lambda: None
-
-
-def race(entries: Sequence[Entry], workers: Workers, progress: Progress = without_progress) -> list[RaceCurve]:
+def race(entries: Sequence[Entry], workers: Workers, progress_bar: bool = False) -> list[RaceCurve]:
     """Run the trainings that are not complete, each in one process, and read the scores of all.
 
     A race that was interrupted goes on with the trainings that it was in. Several races in one folder share the work:
@@ -74,7 +48,7 @@ def race(entries: Sequence[Entry], workers: Workers, progress: Progress = withou
 
     :param entries: trainings of the race; on a cluster, all workers must share the file system of their folders
     :param workers: workers that train
-    :param progress: what shows how far the race is; it is not called if there is nothing to do
+    :param progress_bar: whether to say how much there is to simulate, and show how many trainings are finished
     :raises RunFolderError: if a folder is not a run folder of a race, or has a training with other settings
     :raises ResumeError: if a training was made with other code or versions, and others are still to be made
     """
@@ -85,22 +59,29 @@ def race(entries: Sequence[Entry], workers: Workers, progress: Progress = withou
         for entry in entries:  # otherwise nothing of today comes into the table
             if entry.folder.exists():
                 check_origin(RunFolder(entry.folder).journal_path, entry.config)
-        with progress(_work(left)) as note_finished:
+        progress_bar = progress_bar and sys.stderr is not None
+        if progress_bar:
+            print(_work(left), file=sys.stderr)
+        with tqdm(total=len(left), unit=" trainings", disable=not progress_bar) as progress:
             for wait in (False, True):
                 jobs = [(entry, workers.submit(run_entry, entry, wait)) for entry in left]
                 for entry, job in jobs:
                     job.result()
                     if is_evaluated(entry):
-                        note_finished()
+                        progress.update()
                 left = [entry for entry in left if not is_evaluated(entry)]
     return [read_curve(entry) for entry in entries]
 
 
-def _work(left: Sequence[Entry]) -> Work:
-    """What is to do for trainings that are not complete."""
+def _work(left: Sequence[Entry]) -> str:
+    """What there is to do, at most: a training goes on where it was, and what is alike is judged once."""
     learning = [entry.config.episodes for entry in left if not RunFolder(entry.folder, entry.config.task).is_finished]
     along = (entry.config.episodes // EPISODES_PER_RECOMMENDATION * entry.evaluations.along for entry in left)
-    return Work(len(left), sum(learning), sum(along) + sum(entry.evaluations.final for entry in left))
+    judging = sum(along) + sum(entry.evaluations.final for entry in left)
+    return (
+        f"{len(left)} trainings to go, with at most {sum(learning)} episodes together; "
+        f"at most {judging} others judge what they recommend"
+    )
 
 
 def _check_settings(entry: Entry) -> None:
@@ -182,11 +163,9 @@ def _evaluate_recommendations(entry: Entry, run: RunFolder) -> None:
         if missing := range(len(known), evaluations):
             found = evaluate(config.task, parameters, config.episode, missing)
             known += (result.score for result in found.results)
-        judged = known[:evaluations]
-        standard_error = stdev(judged) / math.sqrt(evaluations) if evaluations > 1 else ""
-        means.append((episodes, mean(judged), standard_error, seconds, evaluations))
+        means.append((episodes, mean(known[:evaluations]), seconds, evaluations))
     _write_table(entry.folder / SCORES_FILE, ("seed", "score"), enumerate(scores[final]))
-    _write_table(entry.folder / RACE_FILE, ("episodes", "score", "error", "seconds", "evaluations"), means)
+    _write_table(entry.folder / RACE_FILE, ("episodes", "score", "seconds", "evaluations"), means)
 
 
 def _write_table(path: Path, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:

@@ -79,21 +79,13 @@ def entries_of(
     ]
 
 
-def is_run(entry: Entry) -> bool:
-    """Whether a training and an evaluation of it are complete.
-
-    :param entry: training of the race
-    """
-    return (entry.folder / RACE_FILE).exists()
-
-
 def is_evaluated(entry: Entry) -> bool:
     """Whether a training is complete, and evaluated on as many unseen seeds as the race asks for.
 
     :param entry: training of the race
     :raises RunFolderError: if its scores cannot be read
     """
-    if not is_run(entry):
+    if not (entry.folder / RACE_FILE).exists():
         return False
     *along, final = [row.get("evaluations") for row in _rows(entry)]
     if final != str(entry.evaluations.final) or any(count != str(entry.evaluations.along) for count in along):

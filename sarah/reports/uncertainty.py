@@ -1,7 +1,7 @@
-"""How far the scores of a race can be trusted, which few seeds and noisy judging episodes made.
+"""Uncertainty of a race's scores, which come from few seeds and noisy judging episodes.
 
 Scores are arrays of shape (trainings, episodes): the score of each training's final recommendation in each judging
-episode. A column is one episode, which all trainings meet. So a lucky episode lifts all of them, and hardly their
+episode. A column is one episode, which all trainings meet, so a lucky episode lifts all scores and cancels in their
 differences.
 """
 
@@ -40,7 +40,7 @@ def standard_error(scores: np.ndarray) -> float:
         return math.nan
     rest = scores - of_trainings[:, np.newaxis] - of_episodes + scores.mean()
     of_rest = (rest**2).sum() / ((trainings - 1) * (episodes - 1)) if len(squares) == 2 else 0.0
-    return math.sqrt(max(sum(squares) - of_rest, *squares) / scores.size)
+    return math.sqrt((of_rest + sum(max(square - of_rest, 0.0) for square in squares)) / scores.size)
 
 
 def difference(scores: np.ndarray, others: np.ndarray) -> tuple[float, float, float]:
@@ -65,9 +65,9 @@ def difference(scores: np.ndarray, others: np.ndarray) -> tuple[float, float, fl
 def best_known(scores: np.ndarray, count: int | None = None) -> float:
     """Score of the best training, as far as it is known.
 
-    The highest of noisy means is too high, because luck helps to be the highest. So other episodes choose the best
-    training than those that say how good it is: for each half of the episodes, the training with the highest mean in
-    all other episodes is judged by this half. The mean of both is the score. A single episode has to do both.
+    The highest of noisy means is too high, because luck helps to be the highest. So the episodes that choose the best
+    training are not those that score it: for each half of the episodes, the training with the highest mean in all other
+    episodes is scored by this half. The mean of both is the score. A single episode has to do both.
 
     :param scores: scores of shape (trainings, episodes)
     :param count: number of episodes that say how good it is, the first ones; all of them choose. By default all do both

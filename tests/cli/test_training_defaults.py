@@ -46,7 +46,7 @@ def begun(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], Tr
 
 
 @pytest.mark.parametrize("command", [TRAIN, COMPARE])
-def test_balance_is_learned_from_pushes_that_tell_controllers_apart(
+def test_balance_is_learned_from_pushes_that_tell_sets_apart(
     command: str, begun: Callable[[str], TrainingConfig]
 ) -> None:
     config = begun(command)

@@ -2,16 +2,14 @@
 
 import csv
 import dataclasses
-import math
 import subprocess
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures import TimeoutError as FutureTimeoutError
-from contextlib import contextmanager
 from pathlib import Path
-from statistics import mean, stdev
+from statistics import mean
 from types import SimpleNamespace
 from typing import Any
 
@@ -29,8 +27,8 @@ from sarah.errors import ResumeError, RunFolderError
 from sarah.files import locked
 from sarah.reports import race as race_module
 from sarah.reports.judging import Evaluations
-from sarah.reports.race import LOCK_FILE, Work, race, run_entry
-from sarah.reports.race_entry import RaceCurve, entries_of, is_run, read_curve
+from sarah.reports.race import LOCK_FILE, race, run_entry
+from sarah.reports.race_entry import RaceCurve, entries_of, is_evaluated, read_curve
 from sarah.runs import origin as origin_module
 from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
@@ -43,7 +41,7 @@ TINY = TrainingConfig(episodes=10, slots=1, episode=EpisodeConfig(time_limit=1.5
 def test_a_race_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     entries = entries_of(("naf", "random"), range(1), TINY, Evaluations(3, 2), tmp_path)
     curves = race(entries, Workers())
-    assert [one.algo for one in curves] == ["naf", "random"] and all(map(is_run, entries))
+    assert [one.algo for one in curves] == ["naf", "random"] and all(map(is_evaluated, entries))
     assert sorted(path.name for path in tmp_path.iterdir()) == ["naf-s0", "random-s0"]
     run = RunFolder.open(entries[0].folder)
     assert curves[0].episodes == (5, 10, 10)
@@ -53,7 +51,6 @@ def test_a_race_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyP
     (*_, along, final) = csv.DictReader((entries[0].folder / "race.csv").open())
     assert (along["evaluations"], final["evaluations"]) == ("2", "3")
     assert float(final["score"]) == pytest.approx(mean(judged[:3]))
-    assert float(final["error"]) == pytest.approx(stdev(judged[:3]) / math.sqrt(3))
 
     monkeypatch.setattr(race_module, "run_entry", lambda *_: pytest.fail("it is there already"))
     assert race(entries, Workers()) == curves
@@ -87,16 +84,14 @@ def met(monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, int]]:
     return episodes
 
 
-def test_what_is_recommended_again_is_judged_once_and_by_the_same_episodes(
-    tmp_path: Path, met: list[tuple[float, int]]
-) -> None:
+def test_what_is_recommended_again_is_judged_once(tmp_path: Path, met: list[tuple[float, int]]) -> None:
     (found,) = race(entries_of(("random",), range(1), TINY, Evaluations(3, 2), tmp_path), Workers())
     assert met == [(0.3, 0), (0.3, 1), (0.4, 0), (0.4, 1), (0.4, 2)]
     assert found.final == pytest.approx((0.4, 0.5, 0.6)) and found.scores == pytest.approx((0.35, 0.45, 0.45))
 
 
 @pytest.mark.usefixtures("met")
-def test_a_folder_without_scores_of_single_episodes_is_judged_again(tmp_path: Path) -> None:
+def test_a_folder_without_scores_of_episodes_is_judged_again(tmp_path: Path) -> None:
     (entry,) = entries_of(("random",), range(1), TINY, Evaluations(2, 1), tmp_path)
     (whole,) = race([entry], Workers())
     scores = entry.folder / "race_scores.csv"
@@ -106,22 +101,21 @@ def test_a_folder_without_scores_of_single_episodes_is_judged_again(tmp_path: Pa
 
 
 @pytest.mark.usefixtures("met")
-def test_a_race_says_before_it_starts_what_there_is_to_do(tmp_path: Path) -> None:
-    told: list[Any] = []
-
-    @contextmanager
-    def progress(work: Work) -> Iterator[Callable[[], object]]:
-        told.append(work)
-        yield lambda: told.append("finished")
-
+def test_a_race_says_before_it_starts_what_there_is_to_do(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     entries = entries_of(("random",), range(2), TINY, Evaluations(2, 1), tmp_path)
-    race(entries[:1], Workers(), progress)
-    assert told == [Work(trainings=1, training_episodes=10, judging_episodes=2 * 1 + 2), "finished"]
-    told.clear()
-    race([dataclasses.replace(entry, evaluations=Evaluations(3, 1)) for entry in entries], Workers(), progress)
-    assert told == [Work(trainings=2, training_episodes=10, judging_episodes=2 * (2 * 1 + 3)), "finished", "finished"]
-    race([dataclasses.replace(entry, evaluations=Evaluations(3, 1)) for entry in entries], Workers(), progress)
-    assert len(told) == 3
+    race(entries[:1], Workers(), progress_bar=True)
+    judging = 2 * 1 + 2
+    told = f"1 trainings to go, with at most 10 episodes together; at most {judging} others judge what they recommend\n"
+    shown = capsys.readouterr().err
+    assert shown.startswith(told) and "1/1" in shown
+    more = [dataclasses.replace(entry, evaluations=Evaluations(3, 1)) for entry in entries]
+    race(more, Workers(), progress_bar=True)
+    judging = 2 * (2 * 1 + 3)
+    told = f"2 trainings to go, with at most 10 episodes together; at most {judging} others judge what they recommend\n"
+    assert capsys.readouterr().err.startswith(told)
+    race(more, Workers(), progress_bar=True)
+    race([dataclasses.replace(entry, evaluations=Evaluations(4, 1)) for entry in entries], Workers())
+    assert not capsys.readouterr().err
 
 
 def test_a_race_does_not_mix_states_of_the_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -239,18 +233,18 @@ def test_a_race_leaves_out_what_another_is_at_and_waits_for_it_at_its_end(tmp_pa
     with locked(busy.folder / LOCK_FILE):
         second.start()
         deadline = time.monotonic() + 60.0
-        while not all(map(is_run, others)) and time.monotonic() < deadline:
+        while not all(map(is_evaluated, others)) and time.monotonic() < deadline:
             time.sleep(0.05)
-        assert all(map(is_run, others)) and not is_run(busy) and not curves
+        assert all(map(is_evaluated, others)) and not is_evaluated(busy) and not curves
     second.join(60.0)
-    assert is_run(busy) and [curve.algo for curve in curves] == ["random", "cma-es"] * 2
+    assert is_evaluated(busy) and [curve.algo for curve in curves] == ["random", "cma-es"] * 2
 
 
 @pytest.mark.parametrize(
     ("name", "content"),
     [
-        ("race.csv", "episodes,score,error,seconds,evaluations\n" + 50 * "5,0.5,,1,1\n"),
-        ("race.csv", "episodes,score,error,seconds,evaluations\n5,x,,1,1\n10,0.5,,1,1\n"),
+        ("race.csv", "episodes,score,seconds,evaluations\n" + 50 * "5,0.5,1,1\n"),
+        ("race.csv", "episodes,score,seconds,evaluations\n5,x,1,1\n10,0.5,1,1\n"),
         ("race.csv", "x" * 100_000),
         ("race.csv", ""),
         ("race_scores.csv", "seed,score\n0,x\n"),

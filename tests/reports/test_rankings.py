@@ -23,7 +23,7 @@ def test_a_score_counts_once_it_is_held() -> None:
 
 
 def test_two_evaluations_after_the_same_episodes_are_one() -> None:
-    """Without a comparison of candidates, the last recommendation is what was learned, and is evaluated twice."""
+    """Without trials of it, the last recommendation along the way is the final one too, and is evaluated twice."""
     assert math.isinf(episodes_until(RaceCurve("naf", (5, 10, 15, 15), (0.2, 0.9, 0.9, 0.9), (0.9,), 1, 1.0), 0.8))
 
 
@@ -48,7 +48,7 @@ def test_an_algorithm_that_nobody_described_has_its_row() -> None:
     assert "- mine: nobody has said" in as_markdown(rankings([curve("mine", 0.1, 0.2)]))
 
 
-def test_the_way_is_compared_with_the_best_known_score_in_its_own_episodes() -> None:
+def test_the_way_is_compared_with_the_best_in_its_own_episodes() -> None:
     """The episode along the way is an unlucky one: 0.4 is the best known score in it, and held."""
     good = curve("naf", 0.4, 0.4, 0.4, final=(0.4, 1.0, 1.0, 1.0))
     late = curve("td3", 0.2, 0.2, 0.4, final=(0.4, 1.0, 1.0, 0.8))
@@ -60,7 +60,7 @@ def test_the_way_is_compared_with_the_best_known_score_in_its_own_episodes() -> 
     assert by_name["td3"].at_share[0] == 0 and by_name["naf"].at_share[0] == 1
 
 
-def test_the_quickest_comes_first_and_all_are_compared_with_the_reference() -> None:
+def test_the_quickest_comes_first_and_a_reference_is_compared() -> None:
     slow = [curve("td3", 0.1, 0.74, 0.74, 0.74, final=(0.74, 0.64)), curve("td3", 0.1, 0.1, 0.1, final=(0.1, 0.2))]
     good = [curve("naf", 0.78, 0.78, 0.8, final=(0.8, 0.8)), curve("naf", 0.8, 0.8, 0.8, final=(0.8, 0.7))]
     table = rankings([slow[0], good[0], slow[1], good[1]], reference="naf")
