@@ -1,6 +1,7 @@
 """Times what a training computes between two episodes, by how many episodes there have been, on one thread.
 
-The replay buffer holds them all, more than it does by default: local NAF's is 10,000 episodes long.
+The replay buffer is that of local NAF, which holds the newest 10,000. All disturbances of the episodes matter for their
+returns: it takes longest to take out the part of so many.
 """
 
 from __future__ import annotations
@@ -16,14 +17,17 @@ import numpy as np
 from gymnasium import spaces
 
 from experiments.record import Row
-from sarah.agents import PRESETS, RankReplayBuffer
-from sarah.episode.tasks import STEPPING
+from sarah.agents import PRESETS, SmoothedReplayBuffer
+from sarah.agents.smoothed_buffer import TRANSITIONS_PER_CHOICE
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import STEPPING, disturbances_of
 from sarah.training.recommendation import Tried
 from sarah.training.recorder import EPISODES_PER_RECOMMENDATION
 
 OBSERVATION = np.zeros((1, 16), np.float32)
 ELITE_STD = 0.2
 CENTRE = (1.0,) * len(STEPPING.parameters)
+DISTURBANCES = disturbances_of(EpisodeSpec(CENTRE, seed=0)) or ()
 PRESET: dict[str, Any] = PRESETS["one-step"]
 
 
@@ -42,41 +46,52 @@ class Decisions:
         """A row for each number of episodes."""
         for count in self.episodes:
             generator = np.random.default_rng(0)
-            actions, rewards = generator.uniform(-1, 1, (count, len(CENTRE))), generator.random(count)
-            buffer = RankReplayBuffer(count, spaces.Box(-1, 1, (16,)), spaces.Box(-1, 1, (len(CENTRE),)), "cpu")
+            actions = generator.uniform(-1, 1, (count, len(CENTRE)))
+            disturbances = generator.random((count, len(DISTURBANCES)))
+            rewards = generator.random(count) + disturbances.sum(axis=1)
+            spaces_of_episodes = spaces.Box(-1, 1, (16,)), spaces.Box(-1, 1, (len(CENTRE),))
+            buffer = SmoothedReplayBuffer(PRESET["buffer_size"], *spaces_of_episodes, "cpu")
             tried = Tried(STEPPING)
-            for action, reward in zip(actions, rewards, strict=True):
-                remember(action, reward, buffer, tried)
-            note = milliseconds(partial(tried.append, CENTRE, 0.5), self.rounds)
+            for action, reward, own in zip(actions, rewards, disturbances, strict=True):
+                remember(action, reward, own, buffer, tried)
+            note = milliseconds(partial(tried.append, CENTRE, 0.5, DISTURBANCES), self.rounds)
             recommend = milliseconds(partial(tried.best, CENTRE), self.rounds)
             yield {
                 "episodes": count,
-                "action_milliseconds": milliseconds(partial(decide, buffer), self.rounds),
+                "action_milliseconds": milliseconds(partial(decide, buffer), self.rounds) / TRANSITIONS_PER_CHOICE,
                 "recommendation_milliseconds": note + recommend / EPISODES_PER_RECOMMENDATION,
             }
 
 
-def remember(action: np.ndarray, reward: float, buffer: RankReplayBuffer, tried: Tried) -> None:
+def remember(
+    action: np.ndarray, reward: float, disturbances: np.ndarray, buffer: SmoothedReplayBuffer, tried: Tried
+) -> None:
     """Keep an episode as a training does.
 
     :param action: its action
     :param reward: its return, and its merit
+    :param disturbances: its disturbances
     :param buffer: replay buffer
     :param tried: episodes so far
     """
-    buffer.add(OBSERVATION, OBSERVATION, action[None], np.array([reward]), np.ones(1), [{}])
-    tried.append(tuple(action + 1.0), reward)
+    info = {"disturbances": disturbances}
+    buffer.add(OBSERVATION, OBSERVATION, action[None], np.array([reward]), np.ones(1), [info])
+    tried.append(tuple(action + 1.0), reward, disturbances)
 
 
-def decide(buffer: RankReplayBuffer) -> None:
-    """Store an outcome, draw the next action near the best one, and sample the batches of the updates.
+def decide(buffer: SmoothedReplayBuffer) -> None:
+    """Store outcomes, and for each draw the next action near the best one, and sample the batches of the updates.
+
+    With so many the buffer chooses the length and the noise of its Gaussian process once.
 
     :param buffer: replay buffer
     """
-    buffer.add(OBSERVATION, OBSERVATION, np.zeros((1, len(CENTRE))), np.array([0.5]), np.ones(1), [{}])
-    buffer.draw_near_best(ELITE_STD, PRESET["elite_draws"])
-    for _ in range(PRESET["gradient_steps"]):
-        buffer.sample(PRESET["batch_size"])
+    info = {"disturbances": DISTURBANCES}
+    for _ in range(TRANSITIONS_PER_CHOICE):
+        buffer.add(OBSERVATION, OBSERVATION, np.zeros((1, len(CENTRE))), np.array([0.5]), np.ones(1), [info])
+        buffer.draw_near_best(ELITE_STD, PRESET["elite_draws"])
+        for _ in range(PRESET["gradient_steps"]):
+            buffer.sample(PRESET["batch_size"])
 
 
 def milliseconds(action: Callable[[], Any], rounds: int) -> float:
