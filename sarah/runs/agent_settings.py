@@ -136,7 +136,7 @@ class NAFSettings(LearnerSettings):
     :param max_grad_norm: largest norm of an update's gradient, above 0
     :param exploration_std: standard deviation, 0 to 2, of the noise around mu: at first, and after 80 % of the training
     :param temperature: logarithm, from 0, of how much more often the best episode is replayed than the worst
-    :param smoothed: smoothing of the returns over similar actions, by a Gaussian process
+    :param smoothed: smoothing of the returns over similar actions, by a Gaussian process of the newest 500 episodes
     :param elite_share: share of the actions, 0 to 1, that are drawn around the best one so far instead of around mu
     :param elite_std: standard deviation, 0 to 2, of these draws: at first, and after 80 % of the training
     :param elite_draws: number of draws, from 1, of which the most promising is tried

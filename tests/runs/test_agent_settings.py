@@ -61,7 +61,7 @@ NUMBERS = [
     (algo, item.name)
     for algo, settings in AGENT_SETTINGS.items()
     for item in dataclasses.fields(settings)
-    if item.name not in ("device", "preset", "activation", "squash_mu")
+    if item.name not in ("device", "preset", "activation", "squash_mu", "smoothed")
 ]
 
 

@@ -47,7 +47,7 @@ def noise_std(model: OffPolicyAlgorithm) -> float:
 
 COMMON: dict[str, tuple[Any, Callable[[Any], Any]]] = {
     "learning_rate": (3e-4, lambda model: model.policy.optimizer.param_groups[0]["lr"]),
-    "buffer_size": (77, lambda model: model.replay_buffer.buffer_size),
+    "buffer_size": (77, lambda model: model.buffer_size),
     "learning_starts": (9, lambda model: model.learning_starts),
     "batch_size": (13, lambda model: model.batch_size),
     "tau": (0.5, lambda model: model.tau),
