@@ -7,10 +7,8 @@ import numpy as np
 from sarah.agents.buffers import RankReplayBuffer
 from sarah.agents.gaussian_process import MOST_EPISODES, GaussianProcess
 
-TRANSITIONS_PER_CHOICE = 10
-"""New transitions after which length and noise of the Gaussian process are chosen again."""
-
-
+ADDITIONS_PER_CHOICE = 10
+"""Additions to the buffer after which length and noise of the Gaussian process are chosen again."""
 OPTIMISM = 1.0
 """Standard deviations by which an action may be better than expected where exploration looks for the best one: without
 any it would stay where it began to be good."""
@@ -34,38 +32,14 @@ class SmoothedReplayBuffer(RankReplayBuffer):
         self._process: GaussianProcess | None = None
         self._kernel: tuple[float, float] | None = None
         self._learned: np.ndarray | None = None
-        self._new_transitions = 0
-
-    def add(
-        self,
-        obs: np.ndarray,
-        next_obs: np.ndarray,
-        action: np.ndarray,
-        reward: np.ndarray,
-        done: np.ndarray,
-        infos: list[dict[str, Any]],
-    ) -> None:
-        """
-        Add one transition of each environment.
-
-        :param obs: Observations
-        :param next_obs: Next observations
-        :param action: Actions
-        :param reward: Rewards
-        :param done: Whether the episodes ended
-        :param infos: Additional information, see :class:`~sarah.agents.buffers.RankReplayBuffer`
-        """
-        super().add(obs, next_obs, action, reward, done, infos)
-        self._new_transitions += len(infos)
-        if self._new_transitions >= TRANSITIONS_PER_CHOICE:
-            self._kernel, self._new_transitions = None, 0
+        self._additions = 0
 
     def reset(self) -> None:
         """
         Reset the buffer.
         """
         super().reset()
-        self._kernel, self._new_transitions = None, 0
+        self._kernel, self._additions = None, 0
 
     def best_action(self) -> np.ndarray:
         """
@@ -81,6 +55,9 @@ class SmoothedReplayBuffer(RankReplayBuffer):
     def _forget(self) -> None:
         super()._forget()
         self._process = self._learned = None
+        self._additions += 1
+        if self._additions % ADDITIONS_PER_CHOICE == 0:
+            self._kernel = None
 
     def _promising_centre(self) -> np.ndarray:
         self._check_not_empty()
