@@ -25,6 +25,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig, load_task
 from sarah.robot.description import describe_robot
 from sarah.robot.reading import ACTUATED_JOINTS
+from sarah.runs.agent_settings import AGENT_SETTINGS
 from sarah.simulation.build import simulator_of
 from sarah.simulation.engines import is_installed
 from sarah.simulation.randomisation import NOMINAL, Randomisation
@@ -228,7 +229,7 @@ def test_what_a_robot_needs_runs_with_the_standard_library_alone(tmp_path: Path)
 
 def test_the_optimiser_of_the_page_keeps_to_the_protocol_and_climbs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sarah.training.optimisers.OPTIMISERS", {})
-    monkeypatch.setattr("sarah.runs.agent_settings.AGENT_SETTINGS", {})
+    monkeypatch.setattr("sarah.runs.agent_settings.AGENT_SETTINGS", dict(AGENT_SETTINGS))
     names: dict[str, Any] = {}
     exec(blocks("how_to/algorithm.md")[1], names)
 
