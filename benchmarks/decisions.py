@@ -18,7 +18,7 @@ from gymnasium import spaces
 
 from experiments.record import Row
 from sarah.agents import PRESETS, SmoothedReplayBuffer
-from sarah.agents.smoothed_buffer import TRANSITIONS_PER_CHOICE
+from sarah.agents.smoothed_buffer import ADDITIONS_PER_CHOICE
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING, disturbances_of
 from sarah.training.recommendation import Tried
@@ -58,7 +58,7 @@ class Decisions:
             recommend = milliseconds(partial(tried.best, CENTRE), self.rounds)
             yield {
                 "episodes": count,
-                "action_milliseconds": milliseconds(partial(decide, buffer), self.rounds) / TRANSITIONS_PER_CHOICE,
+                "action_milliseconds": milliseconds(partial(decide, buffer), self.rounds) / ADDITIONS_PER_CHOICE,
                 "recommendation_milliseconds": note + recommend / EPISODES_PER_RECOMMENDATION,
             }
 
@@ -87,7 +87,7 @@ def decide(buffer: SmoothedReplayBuffer) -> None:
     :param buffer: replay buffer
     """
     info = {"disturbances": DISTURBANCES}
-    for _ in range(TRANSITIONS_PER_CHOICE):
+    for _ in range(ADDITIONS_PER_CHOICE):
         buffer.add(OBSERVATION, OBSERVATION, np.zeros((1, len(CENTRE))), np.array([0.5]), np.ones(1), [info])
         buffer.draw_near_best(ELITE_STD, PRESET["elite_draws"])
         for _ in range(PRESET["gradient_steps"]):
