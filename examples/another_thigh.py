@@ -4,7 +4,8 @@ One sees each robot's height, and its score. ``default_dimensions`` names everyt
 """
 
 import sarah
-from sarah.robot.description import default_dimensions, describe_robot
+from sarah.robot.description import describe_robot
+from sarah.robot.dimensions import default_dimensions
 
 default = default_dimensions()["thigh_length"]
 for thigh in (default - 0.05, default, default + 0.05):

@@ -24,7 +24,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
 from sarah.errors import ConfigurationError, unknown_name
 from sarah.simulation.engines import Engine
-from sarah.simulation.physics import PHYSICS
+from sarah.simulation.physics import PHYSICS, named_physics
 
 SET_TWICE = (
     ("--engine", "--episode.engine"),
@@ -70,7 +70,7 @@ class EpisodeOptions:
         if self.physics is not None:
             if self.physics not in PHYSICS:
                 raise ConfigurationError(unknown_name("physics", self.physics, PHYSICS))
-            chosen = PHYSICS[self.physics].at_control_rate(config.physics.control_rate)
+            chosen = named_physics(self.physics, config.scale, config.physics.control_rate)
             config = dataclasses.replace(config, physics=chosen)
         if not self.randomisation:
             config = dataclasses.replace(config, randomisation=dataclasses.replace(config.randomisation, enabled=False))

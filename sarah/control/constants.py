@@ -5,12 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from sarah.errors import check_fields
+from sarah.robot.scale import ROCKING
 
 PLAUSIBLE = {
     "baseline_time_constant": (0.1, 10_000.0, "s"),
     "minimum_phase_seconds": (0.0, 1.0, "s"),
     "time_out_seconds": (0.01, 100.0, "s"),
-    "rate_scale": (0.0, 10.0, ""),
+    "landing_rate": (0.0, 1000.0, "rad/s"),
+    "rate_scale": (0.0, 10.0, "rad/s"),
     "shift_extension": (0.0, 0.1, "m"),
     "lift_retraction": (0.0, 0.2, "m"),
     "leg_speed": (0.01, 100.0, "m/s"),
@@ -52,7 +54,8 @@ class ControllerConstants:
         and the rates about x and y, in s: long beside a step and a fall, short beside a sensor's drift
     :param minimum_phase_seconds: shortest duration of a phase, in s
     :param time_out_seconds: shortest time-out of a phase, in s; P4 and P5 stretch it, by the factor 1 + P4 or 1 + P5
-    :param rate_scale: factor on P3 in the condition that ends SHIFT
+    :param landing_rate: rate of rocking back that P1 = 1 waits for before LIFT ends, in rad/s
+    :param rate_scale: rate towards the stance leg that P3 = 1 waits for before SHIFT ends, in rad/s
     :param shift_extension: length by which the swing leg extends in SHIFT, in m
     :param lift_retraction: length by which the swing leg retracts in LIFT, in m
     :param leg_speed: speed of the ramp that leg length targets follow, in m/s
@@ -90,9 +93,12 @@ class ControllerConstants:
     :param least_upright: low-passed vertical acceleration of the torso below which the robot has fallen, in m/s^2
     """
 
+    UNITS = {name: unit for name, (_, _, unit) in PLAUSIBLE.items()} | {"shift_extension": ROCKING}
+
     baseline_time_constant: float = 8.0
     minimum_phase_seconds: float = 0.04
     time_out_seconds: float = 0.5
+    landing_rate: float = 1.0
     rate_scale: float = 0.01
     shift_extension: float = 0.008
     lift_retraction: float = 0.030

@@ -293,7 +293,7 @@ class PatternGenerator:
             is_over_stance = self.tilt > parameters.P2 and self.rate > self.constants.rate_scale * parameters.P3
             return is_over_stance and self._is_loaded(self.stance)
         if self.phase is Phase.LIFT:
-            return self.rate < -parameters.P1
+            return self.rate < -self.constants.landing_rate * parameters.P1
         return self._is_loaded(self.swing)
 
     def time_out(self, phase: Phase) -> float:

@@ -26,7 +26,7 @@ def physics_warning(task: Task[Any], parameters: tuple[float, ...], config: Epis
     """
     stepping, balance = controller_of(task, parameters, config)
     hips_move = balance not in (None, LOCKED_HIPS)
-    is_coarse = config.engine == "pybullet" and config.physics.rate < PHYSICS["reference"].rate
+    is_coarse = config.engine == "pybullet" and config.physics.rate < PHYSICS["reference"].at_scale(config.scale).rate
     is_late = config.randomisation.enabled and config.randomisation.delay_seconds >= LATE_SECONDS
     if is_coarse and stepping.P1 < LOW_P1 and (is_late or hips_move):
         return f"P1 below {LOW_P1:g} can score far off here: check it with --physics reference"

@@ -6,9 +6,10 @@ They are known after the episode without a simulation, so a training can take th
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from sarah.robot.description import GROUP_MASS, GROUPS
+from sarah.robot.description import GROUPS
 from sarah.simulation.randomisation import draw_conditions
 from sarah.simulation.terrain import draw_terrain
 
@@ -37,9 +38,14 @@ def drawn_disturbances(spec: EpisodeSpec) -> tuple[float, ...]:
         conditions.actuator_bandwidth,
         slope * math.cos(uphill),
         slope * math.sin(uphill),
-        *(sum(masses[link] * factors[link] for link in links) / GROUP_MASS for links in GROUPS.values()),
+        *(_mean_factor(links, masses, factors) for links in GROUPS.values()),
         *conditions.mass_offset,
     )
+
+
+def _mean_factor(links: Sequence[str], masses: Mapping[str, float], factors: Mapping[str, float]) -> float:
+    """Factor on the mass of several links together."""
+    return sum(masses[link] * factors[link] for link in links) / sum(masses[link] for link in links)
 
 
 def _numbers_of(push: DrawnPush | None) -> tuple[float, float, float, float]:

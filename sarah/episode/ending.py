@@ -7,8 +7,6 @@ import math
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tick import Tick
 
-BOX_HALF_WIDTH = 0.25
-"""Displacement of the torso along any axis at which an episode ends, in m; the paper's second criterion."""
 OSCILLATION_SECONDS = 5.0
 """Simulated time by which the robot must oscillate, in s; the paper's third criterion."""
 OSCILLATION_STEPS = 2
@@ -36,7 +34,7 @@ def paper_ending(tick: Tick, config: EpisodeConfig) -> str | None:
     :return: one of :data:`TERMINATIONS`; ``None`` if the episode goes on
     """
     (x, y, z), (start_x, start_y, start_z) = tick.torso.position, tick.start
-    if max(abs(x - start_x), abs(y - start_y), abs(z - start_z)) > BOX_HALF_WIDTH:
+    if max(abs(x - start_x), abs(y - start_y), abs(z - start_z)) > config.box_half_width:
         return "left_box"
     if tick.upright < LEAST_UPRIGHT:
         return "fell"

@@ -59,7 +59,7 @@ class Episode(RunningRobot):
         self._return = 0.0
         seconds = config.time_limit - STAND_SECONDS
         self._highest_return = (
-            highest_return(self.robot.standing_height, seconds)
+            highest_return(self.robot.standing_height, seconds, config.reward_half_width)
             if task.best_reward is None
             else task.best_reward * seconds
         )

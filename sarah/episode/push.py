@@ -51,6 +51,8 @@ class Push:
         way, instead of anywhere in the range of directions
     """
 
+    UNITS = {"newtons": "N", "duration": "s"}
+
     newtons: tuple[float, float] = (0.0, 100.0)
     degrees: tuple[float, float] = (0.0, 360.0)
     at_seconds: tuple[float, float] = (1.0, 4.0)
@@ -127,14 +129,16 @@ def draw_push(ranges: Push, seed: int) -> DrawnPush:
 class PushedConfig(EpisodeConfig):
     """Settings that all episodes of an experiment share when the robot is pushed.
 
-    :param push: ranges that each episode's push is drawn from
+    :param push: ranges that each episode's push is drawn from; by default those for the robot's size
     """
 
-    push: Push = Push()
+    push: Push = None  # type: ignore[assignment]  # that of the robot's size
 
     def __post_init__(self) -> None:
         """Refuse settings that cannot be simulated, and a push shorter than a control tick."""
         super().__post_init__()
+        if self.push is None:
+            object.__setattr__(self, "push", self.scale.scaled(Push()))
         check_types(self, push=Push)
         if self.push.duration < self.physics.control_dt:
             tick = f"a control tick, {self.physics.control_dt:g} s"

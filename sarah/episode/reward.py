@@ -11,41 +11,57 @@ if TYPE_CHECKING:
 RewardForm = Literal["symmetric", "printed"]
 
 HALF_WIDTH = 0.5
-TARGET_STEPS_PER_SECOND = 3.0
+"""Displacement of the default robot from its start at which the reward is zero, in m."""
+STEP_FREQUENCY = 3.0
+"""Rewarded number of steps per second; both are the paper's."""
 
 
-def reward_rate(x: float, y: float, height: float, steps_per_second: float, form: RewardForm = "symmetric") -> float:
+def reward_rate(
+    x: float,
+    y: float,
+    height: float,
+    steps_per_second: float,
+    form: RewardForm = "symmetric",
+    half_width: float = HALF_WIDTH,
+    step_frequency: float = STEP_FREQUENCY,
+) -> float:
     """Reward R of equation 2: (0.5 - c_x) (0.5 - c_y) 2^(-(f - 3)^4) c_z.
 
     The printed equation has no absolute values and so rewards drifting towards negative x and y. The symmetric
-    form uses ``max(0.5 - |c|, 0)`` instead, which is largest at the start position.
+    form uses ``max(0.5 - |c|, 0)`` instead, which is largest at the start position. Where another frequency f0 than 3
+    is rewarded, its factor is 2^(-(3 (f / f0 - 1))^4): a frequency counts by its ratio to the rewarded one.
 
     :param x: displacement c_x of the torso from its start to the right, in m
     :param y: displacement c_y of the torso from its start forward, in m
     :param height: height c_z of the torso's centre over the floor, in m
     :param steps_per_second: frequency f of the steps, in 1/s
     :param form: form of the equation: ``"symmetric"``, or ``"printed"`` for the equation to the letter
+    :param half_width: displacement at which the reward is zero, in m: the equation's 0.5
+    :param step_frequency: rewarded frequency f0, in 1/s: the equation's 3
     :return: reward per second
     """
-    frequency_factor = 2.0 ** -((steps_per_second - TARGET_STEPS_PER_SECOND) ** 4)
+    deviation = (steps_per_second - step_frequency) * (STEP_FREQUENCY / step_frequency)
+    frequency_factor = 2.0 ** -(deviation**4)
     if form == "printed":
-        return (HALF_WIDTH - x) * (HALF_WIDTH - y) * frequency_factor * height
-    return max(HALF_WIDTH - abs(x), 0.0) * max(HALF_WIDTH - abs(y), 0.0) * frequency_factor * height
+        return (half_width - x) * (half_width - y) * frequency_factor * height
+    return max(half_width - abs(x), 0.0) * max(half_width - abs(y), 0.0) * frequency_factor * height
 
 
 def equation_2(tick: Tick, config: EpisodeConfig) -> float:
     """Reward of both tasks of the paper, per second: equation 2 at the end of a control tick.
 
     :param tick: what is known at the end of the tick
-    :param config: settings of the episode, which name the form of the equation
+    :param config: settings of the episode, which name the form of the equation, its half width and its frequency
     """
-    return reward_rate(tick.x, tick.y, tick.height, tick.steps_per_second, config.reward_form)
+    form, half_width, step_frequency = config.reward_form, config.reward_half_width, config.step_frequency
+    return reward_rate(tick.x, tick.y, tick.height, tick.steps_per_second, form, half_width, step_frequency)
 
 
-def highest_return(standing_height: float, seconds: float) -> float:
-    """Ceiling of the symmetric return: standing height, start position and three steps per second all along.
+def highest_return(standing_height: float, seconds: float, half_width: float = HALF_WIDTH) -> float:
+    """Ceiling of the symmetric return: standing height, start position and the rewarded step frequency all along.
 
     :param standing_height: height of the standing torso's centre over the floor, in m
     :param seconds: time that the pattern generator runs, in s
+    :param half_width: displacement at which the reward is zero, in m
     """
-    return HALF_WIDTH * HALF_WIDTH * standing_height * seconds
+    return half_width * half_width * standing_height * seconds

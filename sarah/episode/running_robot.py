@@ -9,7 +9,8 @@ from typing import Any
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, SteppingParameters
 from sarah.episode.settings import EpisodeConfig
-from sarah.robot.description import ANKLE_JOINTS, default_dimensions, describe_robot
+from sarah.robot.description import ANKLE_JOINTS, describe_robot
+from sarah.robot.dimensions import all_dimensions
 from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, SensorReading, Vector
 from sarah.simulation.build import BuildSimulator, simulator_of
 from sarah.simulation.randomisation import Conditions, draw_conditions
@@ -119,6 +120,6 @@ def conditions_of(config: EpisodeConfig, seed: int) -> Conditions:
     ground = draw_ground(config.terrain, seed)
     if not config.payload:
         return dataclasses.replace(drawn, ground=ground)
-    torso = {**default_dimensions(), **config.dimensions}["torso_mass"]
+    torso = all_dimensions(config.dimensions)["torso_mass"]
     loaded = drawn.mass_factors["torso"] + config.payload / torso
     return dataclasses.replace(drawn, ground=ground, mass_factors={**drawn.mass_factors, "torso": loaded})

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any, get_args
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeVar, get_args
 
-from sarah.control.constants import ControllerConstants
+from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.pattern_generator import STAND_SECONDS
-from sarah.episode.reward import RewardForm
+from sarah.episode.reward import HALF_WIDTH, STEP_FREQUENCY, RewardForm
 from sarah.errors import ConfigurationError, check_range, check_types, unknown_name
 from sarah.number import plain
-from sarah.robot.description import check_dimensions
+from sarah.robot.dimensions import check_dimensions, scale_of
+from sarah.robot.scale import Scale
 from sarah.simulation.engines import Engine, default_engine
 from sarah.simulation.physics import PHYSICS, Physics, physics_for
 from sarah.simulation.randomisation import Randomisation
@@ -19,13 +20,37 @@ from sarah.simulation.terrain import Terrain
 
 LONGEST_EPISODE = 3600.0
 """Longest time limit of an episode, in s."""
-PLAUSIBLE = {"payload": (0.0, 100.0, "kg"), "time_limit": (STAND_SECONDS, LONGEST_EPISODE, "s")}
+BOX_HALF_WIDTH = 0.25
+"""Displacement of the default robot's torso along any axis at which an episode ends, in m; it is the paper's."""
+LEAST_CLEARANCE = 0.010
+"""Sole clearance of the default robot below which a gait is a shuffle, in m."""
+PLAUSIBLE = {
+    "payload": (0.0, 100.0, "kg"),
+    "time_limit": (STAND_SECONDS, LONGEST_EPISODE, "s"),
+    "step_frequency": (0.1, 100.0, "per second"),
+    "reward_half_width": (0.001, 100.0, "m"),
+    "box_half_width": (0.001, 100.0, "m"),
+    "least_clearance": (0.0, 1.0, "m"),
+}
 """Lowest value, highest value and unit of each setting that is a number."""
+OF_DEFAULT_ROBOT: dict[str, Any] = {
+    "controller": STANDARD_CONSTANTS,
+    "randomisation": Randomisation(),
+    "terrain": Terrain(),
+    "reward_half_width": HALF_WIDTH,
+    "box_half_width": BOX_HALF_WIDTH,
+    "least_clearance": LEAST_CLEARANCE,
+}
+"""Defaults of the settings that go with the length and the mass of the robot."""
+ConfigType = TypeVar("ConfigType", bound="EpisodeConfig")
 
 
 @dataclass(frozen=True)
 class EpisodeConfig:
     """Settings that all episodes of an experiment share, whatever the task.
+
+    What goes with the length and the mass of a robot is by default that of the default robot, scaled
+    (:mod:`sarah.robot.scale`); what is given is taken as it is.
 
     :param physics: resolution of the physics in time; fields that the engine does not have are ignored
     :param engine: physics engine: ``pybullet``, the reference, or ``mujoco``, the default where PyBullet is not
@@ -39,36 +64,71 @@ class EpisodeConfig:
     :param time_limit: time limit of an episode, in s; the paper's first criterion
     :param reward_form: form of the reward, the paper's equation 2: ``symmetric``, or ``printed`` for the equation to
         the letter
+    :param step_frequency: rewarded number of steps per second; the paper's is 3
+    :param reward_half_width: displacement from the start at which the reward is zero, in m; the paper's is 0.5
+    :param box_half_width: displacement along any axis at which an episode ends, in m; the paper's second criterion
+    :param least_clearance: sole clearance below which a gait is a shuffle, and not valid, in m
     """
 
-    physics: Physics = PHYSICS["standard"]
+    UNITS = {"payload": "kg", "reward_half_width": "m", "box_half_width": "m", "least_clearance": "m"}
+
+    physics: Physics = None  # type: ignore[assignment]  # as are others, of the robot's size
     engine: Engine = field(default_factory=default_engine)
-    randomisation: Randomisation = Randomisation()
-    terrain: Terrain = Terrain()
-    controller: ControllerConstants = ControllerConstants()
+    randomisation: Randomisation = None  # type: ignore[assignment]
+    terrain: Terrain = None  # type: ignore[assignment]
+    controller: ControllerConstants = None  # type: ignore[assignment]
     payload: float = 0.0
     dimensions: Mapping[str, float] = field(default_factory=dict)
     time_limit: float = 30.0
     reward_form: RewardForm = "symmetric"
+    step_frequency: float = STEP_FREQUENCY
+    reward_half_width: float = None  # type: ignore[assignment]
+    box_half_width: float = None  # type: ignore[assignment]
+    least_clearance: float = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         """Refuse settings that cannot be simulated."""
-        check_types(self, physics=Physics, randomisation=Randomisation, terrain=Terrain)
-        check_types(self, controller=ControllerConstants, dimensions=Mapping)
+        check_types(self, dimensions=Mapping)
         dimensions = check_dimensions(self.dimensions) if self.dimensions else {}
         object.__setattr__(self, "dimensions", dimensions)  # whatever becomes of the mapping that was given
+        self._complete()
+        check_types(self, physics=Physics, randomisation=Randomisation, terrain=Terrain, controller=ControllerConstants)
         for name, allowed in (("engine", get_args(Engine)), ("reward_form", get_args(RewardForm))):
             given = plain(getattr(self, name))
             if given not in allowed:
                 raise ConfigurationError(unknown_name(name, str(given), allowed))
             object.__setattr__(self, name, given)
-        object.__setattr__(self, "physics", physics_for(self.engine, self.physics))
+        object.__setattr__(self, "physics", physics_for(self.engine, self.physics, self.scale))
         for name, (low, high, unit) in PLAUSIBLE.items():
             object.__setattr__(self, name, float(check_range(name, getattr(self, name), low, high, unit)))
         if self.time_limit < STAND_SECONDS + self.physics.control_dt:
             raise ConfigurationError(
                 f"time_limit must be above the {STAND_SECONDS:g} s of standing, not {self.time_limit!r}"
             )
+
+    def _complete(self) -> None:
+        """Set what was not given to that of the robot's size."""
+        for name, default in OF_DEFAULT_ROBOT.items():
+            if getattr(self, name) is None:
+                unit = self.UNITS.get(name)
+                own = self.scale.scaled(default) if unit is None else default * self.scale.factor(unit)
+                object.__setattr__(self, name, own)
+        if self.physics is None:
+            object.__setattr__(self, "physics", PHYSICS["standard"].at_scale(self.scale))
+
+    @property
+    def scale(self) -> Scale:
+        """Size of the robot as ratios to that of the default robot."""
+        return scale_of(self.dimensions)
+
+    def for_robot(self: ConfigType, dimensions: Mapping[str, float]) -> ConfigType:
+        """Settings for a robot of other dimensions: what goes with length and mass goes with the ratio of both robots.
+
+        :param dimensions: dimensions of the robot that differ from their defaults
+        """
+        dimensions = check_dimensions(dimensions)
+        ratio = scale_of(dimensions).over(self.scale)
+        return replace(ratio.scaled(self), dimensions=dimensions, physics=self.physics.at_scale(ratio))
 
     def check_for_training(self) -> None:
         """Refuse settings with which there is nothing to learn.
@@ -77,8 +137,11 @@ class EpisodeConfig:
         """
 
     def dependent_defaults(self, content: Mapping[str, Any]) -> dict[str, Any]:
-        """Values of fields that depend on other fields: the physics, on its engine.
+        """Values of fields that depend on other fields: the physics on its engine, and much on the robot's size.
 
         :param content: new values of some fields, as a file gives them
         """
-        return {"physics": physics_for(content.get("engine", self.engine), self.physics)}
+        given = content.get("dimensions")
+        robot = self.for_robot({**self.dimensions, **given}) if isinstance(given, Mapping) else self
+        dependent = {name: value for name, value in vars(robot).items() if value != getattr(self, name)}
+        return {**dependent, "physics": physics_for(content.get("engine", self.engine), robot.physics, robot.scale)}

@@ -16,9 +16,10 @@ from functools import lru_cache
 from importlib import resources
 from typing import Any, NamedTuple
 
-from sarah.errors import DescriptionError, shortened, unknown_name
-from sarah.number import is_number, plain
+from sarah.errors import DescriptionError
+from sarah.robot.dimensions import SCALED, XACRO, all_dimensions, check_dimensions, scale_of
 from sarah.robot.reading import ACTUATED_JOINTS, Side
+from sarah.robot.scale import Scale
 
 PLATES = ("forefoot", "hindfoot")
 ANKLE_JOINTS = tuple(f"{side}_{plate}" for side in Side for plate in PLATES)
@@ -39,12 +40,8 @@ GROUPS = {
     "left leg": ("left_thigh", "left_shank", "left_forefoot", "left_hindfoot"),
     "right leg": ("right_thigh", "right_shank", "right_forefoot", "right_hindfoot"),
 }
-"""The paper's three groups of links, of equal mass."""
-GROUP_MASS = 10.0
-DIMENSION_FACTOR = 10.0
-"""Largest factor by which a dimension may differ from its default: beyond it, somebody has mistaken the unit."""
+"""The three groups of links; each of the paper's robot weighs 10 kg."""
 
-_XACRO_NAMESPACE = "{http://www.ros.org/wiki/xacro}"
 _xacro_lock = threading.Lock()  # xacro keeps its state in global variables
 
 
@@ -78,6 +75,7 @@ class RobotDescription:
     :param contact_radius: radius of the sole contacts, in m
     :param standing_soles: centres of all sole contacts while the robot stands on the floor, in the world's frame, in m
     :param undersides: undersides of the foot plates' boxes, in the same pose
+    :param scale: size of the robot as ratios to that of the default robot
     """
 
     urdf: str
@@ -89,20 +87,7 @@ class RobotDescription:
     contact_radius: float
     standing_soles: tuple[tuple[float, float, float], ...]
     undersides: tuple[Underside, ...]
-
-
-def default_dimensions() -> dict[str, float]:
-    """Every dimension of the robot that can be set, with its default, in SI units.
-
-    :return: the xacro's arguments, in the order of the file
-    """
-    return dict(_default_dimensions())
-
-
-@lru_cache(maxsize=1)
-def _default_dimensions() -> tuple[tuple[str, float], ...]:
-    root = ElementTree.fromstring(_xacro_text())
-    return tuple((arg.attrib["name"], float(arg.attrib["default"])) for arg in root.iter(f"{_XACRO_NAMESPACE}arg"))
+    scale: Scale
 
 
 def describe_robot(dimensions: Mapping[str, float] | None = None) -> RobotDescription:
@@ -115,43 +100,19 @@ def describe_robot(dimensions: Mapping[str, float] | None = None) -> RobotDescri
     return _describe_cached(tuple(sorted(check_dimensions(dimensions or {}).items())))
 
 
-def check_dimensions(dimensions: Mapping[str, Any]) -> dict[str, float]:
-    """Refuse dimensions that the robot does not have.
-
-    :param dimensions: values by name, in SI units, as a user gave them
-    :return: the same, in floats
-    :raises DescriptionError: for an unknown name, or a value that is not a number near the default
-    """
-    allowed = default_dimensions()
-    checked = {}
-    for name, given in dimensions.items():
-        value = plain(given)
-        if name not in allowed:
-            raise DescriptionError(unknown_name("robot dimension", str(name), allowed))
-        low, high = allowed[name] / DIMENSION_FACTOR, allowed[name] * DIMENSION_FACTOR
-        if not is_number(value) or not low <= value <= high:
-            raise DescriptionError(
-                f"robot dimension {name!r} must be a number between {low:g} and {high:g}, not {shortened(value)} "
-                f"(default: {allowed[name]:g}; metres, kilograms, seconds and radians)"
-            )
-        checked[str(name)] = float(value)
-    return checked
-
-
 @lru_cache(maxsize=16)
 def _describe_cached(dimensions: tuple[tuple[str, float], ...]) -> RobotDescription:
-    return check_urdf(_expand_xacro(dict(dimensions)))
-
-
-def _xacro_text() -> str:
-    return resources.files("sarah.urdf").joinpath("sarah.urdf.xacro").read_text(encoding="utf-8")
+    given = dict(dimensions)
+    if scale_of(given) != Scale():
+        given = {name: value for name, value in all_dimensions(given).items() if name in given or name in SCALED}
+    return check_urdf(_expand_xacro(given))
 
 
 def _expand_xacro(dimensions: Mapping[str, float]) -> str:
     import xacro
 
     with (
-        resources.as_file(resources.files("sarah.urdf").joinpath("sarah.urdf.xacro")) as path,
+        resources.as_file(resources.files("sarah.urdf").joinpath(XACRO)) as path,
         _xacro_lock,
     ):
         document = xacro.process_file(str(path), mappings={name: repr(value) for name, value in dimensions.items()})
@@ -240,7 +201,7 @@ def _check_joints(model: Any) -> None:
 
 
 def _check_inertials(model: Any) -> None:
-    """Require positive masses, positive definite inertias, and three groups of 10 kg."""
+    """Require positive masses and positive definite inertias."""
     import numpy as np
 
     links = model.link_map
@@ -255,12 +216,6 @@ def _check_inertials(model: Any) -> None:
             raise DescriptionError(f"URDF link {name!r} must have a positive mass, not {mass}")
         if not np.isfinite(inertia).all() or not (np.linalg.eigvalsh(inertia) > 0.0).all():
             raise DescriptionError(f"URDF link {name!r} must have a positive definite inertia")
-    for group, names in GROUPS.items():
-        mass = sum(links[name].inertial.mass for name in names)
-        if abs(mass - GROUP_MASS) > 1e-6:
-            raise DescriptionError(
-                f"URDF group {group!r} ({', '.join(names)}) must weigh {GROUP_MASS:g} kg, not {mass:g}"
-            )
 
 
 def _read_off(urdf: str, model: Any) -> RobotDescription:
@@ -301,4 +256,5 @@ def _read_off(urdf: str, model: Any) -> RobotDescription:
         radius,
         tuple((x, y, z + height) for x, y, z in standing_soles),
         tuple(underside._replace(height=underside.height + height) for underside in undersides),
+        Scale.of(height, sum(masses.values()), float(model.joint_map["right_hip_abduction"].origin[0, 3])),
     )

@@ -11,7 +11,7 @@ from functools import lru_cache
 import mujoco
 
 from sarah.errors import SimulationError
-from sarah.robot.description import ANKLE_JOINTS, PLATES
+from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, Side
 from sarah.simulation.terrain import LARGEST_ROUGHNESS, REACH
 from sarah.simulation.world import check_arithmetic
@@ -19,8 +19,8 @@ from sarah.simulation.world import check_arithmetic
 CONTACT_STEPS = 0.5
 """Time constant with which a contact stops what moves towards it, in physics steps."""
 CONTACT_SECONDS = 0.015
-"""Time constant with which contacts correct errors of position, in s. MuJoCo finds a contact only when the bodies
-overlap, and a faster correction would throw the foot up again."""
+"""Time constant with which contacts of the default robot correct errors of position, in s. MuJoCo finds a contact only
+when the bodies overlap, and a faster correction would throw the foot up again."""
 CONTACT_IMPEDANCE = 0.99
 """Impedance of contacts, from 0 to 1: share of the full constraint force that a contact applies."""
 JOINT_DAMPING = 2.0
@@ -35,12 +35,12 @@ CALLBACKS = {
 _PASSIVE, _CONTROL, _FILTER, _SENSOR, _DYNAMICS, _GAIN, _BIAS = CALLBACKS.values()
 
 
-def model_of(urdf: str, rate: int, solver_iterations: int, nodes: int) -> mujoco.MjModel:
+def model_of(robot: RobotDescription, rate: int, solver_iterations: int, nodes: int) -> mujoco.MjModel:
     """A model of our own of a robot, as designed, on a plane or a field of nodes x nodes heights.
 
     Only soles touch the floor, and only pads touch their plates. A process compiles each model once.
 
-    :param urdf: text of the robot's URDF
+    :param robot: checked robot
     :param rate: physics steps per second
     :param solver_iterations: largest number of iterations of the solver in a step
     :param nodes: number of heights along each side of the ground; 0 for a plane
@@ -49,7 +49,7 @@ def model_of(urdf: str, rate: int, solver_iterations: int, nodes: int) -> mujoco
     """
     check_arithmetic()
     check_callbacks()
-    return copy.copy(_compiled(urdf, rate, solver_iterations, nodes))
+    return copy.copy(_compiled(robot.urdf, robot.scale.time, rate, solver_iterations, nodes))
 
 
 def check_callbacks() -> None:
@@ -111,7 +111,7 @@ def sole_name(side: Side, plate: str, index: int) -> str:
 
 
 @lru_cache(maxsize=32)
-def _compiled(urdf: str, rate: int, solver_iterations: int, nodes: int) -> mujoco.MjModel:
+def _compiled(urdf: str, time_scale: float, rate: int, solver_iterations: int, nodes: int) -> mujoco.MjModel:
     spec = mujoco.MjSpec.from_string(urdf)
     spec.compiler.fusestatic = False  # otherwise the torso becomes part of the world
     spec.body("torso").add_freejoint()
@@ -124,7 +124,10 @@ def _compiled(urdf: str, rate: int, solver_iterations: int, nodes: int) -> mujoc
         | mujoco.mjtDisableBit.mjDSBL_ISLAND  # there is only one robot
     )
     damping = rate / CONTACT_STEPS
-    hardness = {"solref": (-damping / CONTACT_SECONDS, -damping), "solimp": (*[CONTACT_IMPEDANCE] * 2, 0.001, 0.5, 2.0)}
+    hardness = {
+        "solref": (-damping / (CONTACT_SECONDS * time_scale), -damping),
+        "solimp": (*[CONTACT_IMPEDANCE] * 2, 0.001, 0.5, 2.0),
+    }
     for geom in spec.geoms:
         geom.contype = geom.conaffinity = 0
     if nodes:

@@ -22,7 +22,7 @@ from sarah.simulation.terrain import LARGEST_ROUGHNESS
 from sarah.simulation.world import CHECKS, HoldsWorld, check_arithmetic, check_loaded
 
 HIP_DAMPING, LEG_DAMPING = 10_000.0, 20_000.0
-"""Effort per deviation from the speed that a servo demands, in Nms/rad and Ns/m."""
+"""Effort per deviation from the speed that a servo of the default robot demands, in Nms/rad and Ns/m."""
 LOWEST_RATE = 500
 """Lowest number of physics steps per second: contacts are softer at lower rates."""
 FREE = mujoco.mjtJoint.mjJNT_FREE
@@ -59,7 +59,7 @@ class MujocoSimulator(HoldsWorld):
         self._substeps = math.ceil(max(physics.rate, LOWEST_RATE) / physics.control_rate)
         rate = self._substeps * physics.control_rate
         nodes = len(self._ground.heights)
-        self.model = model_of(robot.urdf, rate, physics.solver_iterations, nodes)
+        self.model = model_of(robot, rate, physics.solver_iterations, nodes)
         self.data = mujoco.MjData(self.model)
         self._feet = {
             side: [
@@ -109,7 +109,9 @@ class MujocoSimulator(HoldsWorld):
             self._shape_ground()
         # MuJoCo takes the position at a step's end. With this rate a servo is the same first-order lag at every rate.
         self._rate = (math.exp(conditions.actuator_bandwidth / rate) - 1.0) * rate
-        self._damping = [LEG_DAMPING if name.endswith("leg_length") else HIP_DAMPING for name in ACTUATED_JOINTS]
+        scale = self.robot.scale
+        hip, leg = HIP_DAMPING * scale.factor("Nms/rad"), LEG_DAMPING * scale.factor("Ns/m")
+        self._damping = [leg if name.endswith("leg_length") else hip for name in ACTUATED_JOINTS]
         for actuator in range(len(ACTUATED_JOINTS)):
             self._let_follow(actuator)
 

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 from sarah.errors import ConfigurationError, check_fields, check_whole
+from sarah.robot.scale import DIGITS, Scale
 
 SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE = 50, 1000
 FASTEST_PHYSICS_RATE = 20_000
 MOST_SOLVER_ITERATIONS = 10_000
 LARGEST_ADDED_INERTIA = 1.0
+
+PhysicsType = TypeVar("PhysicsType", bound="Physics")
 
 
 @dataclass(frozen=True)
@@ -39,7 +44,7 @@ class Physics:
                 f"physics.rate must be a multiple of the control rate, {self.control_rate} Hz, not {self.rate!r}"
             )
 
-    def at_control_rate(self, control_rate: int) -> Physics:
+    def at_control_rate(self: PhysicsType, control_rate: int) -> PhysicsType:
         """Physics for another control rate; the physics rate is raised to the next multiple of it.
 
         :param control_rate: control ticks per second
@@ -47,6 +52,14 @@ class Physics:
         check_whole("physics.control_rate", control_rate, SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE, "Hz")
         multiple = -(-self.rate // control_rate)
         return replace(self, rate=multiple * control_rate, control_rate=control_rate)
+
+    def at_scale(self: PhysicsType, scale: Scale) -> PhysicsType:
+        """Physics for a robot of another size: what is over sooner needs more steps per second.
+
+        :param scale: size of the robot as ratios to that of the robot which this physics is for
+        """
+        ticks = round(self.rate * scale.factor("per second") / self.control_rate, DIGITS)
+        return replace(scale.scaled(self), rate=self.control_rate * max(1, math.ceil(ticks)))
 
     @property
     def control_dt(self) -> float:
@@ -61,6 +74,8 @@ class PyBulletPhysics(Physics):
     :param added_plate_inertia: inertia added to each foot plate about its hinge while it presses on its pad, in kg m^2;
         0 leaves the robot as it is
     """
+
+    UNITS = {"added_plate_inertia": "kg m^2"}
 
     added_plate_inertia: float = 0.003
 
@@ -83,17 +98,28 @@ def physics_type(engine: str) -> type[Physics]:
     return PyBulletPhysics if engine == "pybullet" else Physics
 
 
-def physics_for(engine: str, physics: Physics) -> Physics:
+def named_physics(name: str, scale: Scale, control_rate: int) -> PyBulletPhysics:
+    """Named settings for a robot of any size.
+
+    :param name: name of the settings, one of :data:`PHYSICS`
+    :param scale: size of the robot
+    :param control_rate: control ticks per second
+    """
+    return PHYSICS[name].at_control_rate(control_rate).at_scale(scale)
+
+
+def physics_for(engine: str, physics: Physics, scale: Scale = Scale()) -> Physics:
     """Settings of any engine as another engine takes them; fields of PyBullet alone are dropped or get named values.
 
     :param engine: name of the engine that takes them, ``"pybullet"`` or ``"mujoco"``
     :param physics: settings of any engine
+    :param scale: size of the robot
     """
     if type(physics) is physics_type(engine):
         return physics
     shared = Physics(physics.rate, physics.solver_iterations, physics.control_rate)
     if engine != "pybullet":
         return shared
-    named = (setting.at_control_rate(physics.control_rate) for setting in PHYSICS.values())
+    named = [named_physics(name, scale, physics.control_rate) for name in PHYSICS]
     same = (setting for setting in named if physics_for("mujoco", setting) == shared)
-    return next(same, PyBulletPhysics(shared.rate, shared.solver_iterations, shared.control_rate))
+    return next(same, replace(named[0], rate=shared.rate, solver_iterations=shared.solver_iterations))

@@ -22,11 +22,12 @@ from sarah.simulation.simulator import TorsoState, rotate_to_body, rotate_to_wor
 from sarah.simulation.world import HoldsWorld, check_loaded
 
 CONTACT_SECONDS = 0.0015
-"""Time in which contacts reduce errors of position to 1/e, in s. PyBullet takes a share per physics step instead; with
-the same share at every rate, coarse steps would make the floor soft. With 1 ms a standing robot creeps at 1 kHz."""
+"""Time in which contacts of the default robot reduce errors of position to 1/e, in s. PyBullet takes a share per
+physics step instead; with the same share at every rate, coarse steps would make the floor soft. With 1 ms a standing
+robot creeps at 1 kHz."""
 CONTACT_MARGIN = 0.0003
-"""Distance at which the solver begins to consider a contact, in m. With 2 mm, coarse steps damp the rocking more.
-PyBullet's 0.02 also costs time for feet in the air."""
+"""Distance at which the solver begins to consider a contact of the default robot, in m. With 2 mm, coarse steps damp
+the rocking more. PyBullet's 0.02 also costs time for feet in the air."""
 
 
 class PyBulletSimulator(HoldsWorld):
@@ -57,6 +58,7 @@ class PyBulletSimulator(HoldsWorld):
         self._dt = physics.control_dt
         self._ground = conditions.ground
         self._substeps = physics.rate // physics.control_rate
+        self._contact_margin = CONTACT_MARGIN * robot.scale.length
         self._world = PyBulletWorld()
         self.client = self._world.client
         try:
@@ -67,7 +69,7 @@ class PyBulletSimulator(HoldsWorld):
             raise
 
     def _build(self, physics: Physics, conditions: Conditions) -> None:
-        corrected = 1.0 - math.exp(-1.0 / (physics.rate * CONTACT_SECONDS))
+        corrected = 1.0 - math.exp(-1.0 / (physics.rate * CONTACT_SECONDS * self.robot.scale.time))
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=self._dt,
             numSubSteps=self._substeps,
@@ -234,7 +236,7 @@ class PyBulletSimulator(HoldsWorld):
         """Simulate one control tick."""
         self._velocity_before = self._torso.velocity
         # Any code may have changed it since the last tick, because Bullet has one for all worlds of a process.
-        pybullet.setPhysicsEngineParameter(contactBreakingThreshold=CONTACT_MARGIN, physicsClientId=self.client)
+        pybullet.setPhysicsEngineParameter(contactBreakingThreshold=self._contact_margin, physicsClientId=self.client)
         pybullet.stepSimulation(physicsClientId=self.client)
         self.time += self._dt
         self.look()

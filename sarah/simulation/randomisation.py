@@ -61,6 +61,8 @@ class Randomisation:
     :param delay_seconds: delay between sensing and acting, in s
     """
 
+    UNITS = {"mass_offset": "m", "actuator_bandwidth": "per second", "pad_noise_density": "N per root Hz"}
+
     enabled: bool = True
     friction: tuple[float, float] = (0.7, 1.0)
     mass_deviation: float = 0.05

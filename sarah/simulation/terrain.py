@@ -47,6 +47,8 @@ class Terrain:
         randomisation
     """
 
+    UNITS = {"roughness": "m"}
+
     slope_degrees: tuple[float, float] = (0.0, 0.0)
     direction_degrees: tuple[float, float] = (0.0, 360.0)
     roughness: tuple[float, float] = (0.0, 0.0)

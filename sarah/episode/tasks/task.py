@@ -228,8 +228,9 @@ class Task(Generic[ConfigType]):
         :param config: settings of any task's episodes
         :param changes: new values of some fields, by name
         """
-        shared = {name: getattr(config, name) for name in vars(self.episode) if hasattr(config, name)}
-        return type(self.episode)(**{**vars(self.episode), **shared, **changes})
+        own = vars(self.episode.for_robot(config.dimensions))
+        shared = {name: getattr(config, name) for name in own if hasattr(config, name)}
+        return type(self.episode)(**{**own, **shared, **changes})
 
 
 def checked_values(parameters: Sequence[Parameter], values: Any, name: str, span: str) -> tuple[float, ...]:
