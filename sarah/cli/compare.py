@@ -13,6 +13,7 @@ import tyro
 from sarah.cli.episode_options import (
     DIRECTIONS,
     check_episode_options,
+    for_given_robot,
     given_options,
     with_engine,
     with_given_directions,
@@ -103,7 +104,7 @@ def _defaults(arguments: Sequence[str]) -> CompareOptions:
     """Default options: those of ``sarah-train``, of the type that task and engine take."""
     given = given_options(arguments, "task", "engine", "episode.engine", *DIRECTIONS)
     training = default_training(load_task(given["task"]) if "task" in given else STEPPING)
-    episode = with_given_engine(training.episode, given)
+    episode = for_given_robot(with_given_engine(training.episode, given), arguments)
     check_episode_options(arguments, episode)
     if training.task is BALANCE:
         episode = with_given_directions(episode, given)

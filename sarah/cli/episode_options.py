@@ -12,11 +12,12 @@ import dataclasses
 import io
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 
 import tyro
 
-from sarah.cli.options import named_task, parse_options
+from sarah.cli.options import dimension_words, named_numbers, named_task, parse_options
 from sarah.cli.subjects import episode_of, is_shipped, is_there
 from sarah.episode.push import NOBODY, PushedConfig
 from sarah.episode.settings import EpisodeConfig
@@ -82,6 +83,7 @@ class EpisodeOptions:
 
 
 OptionsType = TypeVar("OptionsType", bound=EpisodeOptions)
+ConfigType = TypeVar("ConfigType", bound=EpisodeConfig)
 
 
 def with_engine(episode: EpisodeConfig, engine: str | None) -> EpisodeConfig:
@@ -113,8 +115,10 @@ def parse_episode_options(
     subject = subject or _subject_among(arguments, default, given)
     own = adapted(_settings_of(subject, given.get("which"), task) if subject else (task or STEPPING).episode, subject)
     if type(own) is EpisodeConfig:  # any robot can be pushed, whether its task has a push or not
-        own = PushedConfig(**vars(own), push=NOBODY)
+        own = PushedConfig(**vars(own), push=own.scale.scaled(NOBODY))
     episode = with_given_directions(with_given_engine(own, given), given)
+    if subject is None or not Path(subject).is_dir():  # what a folder has recorded stays as it is
+        episode = for_given_robot(episode, arguments)
     check_episode_options(arguments, episode)
     return parse_options(type(default), command, arguments, dataclasses.replace(default, episode=episode))
 
@@ -205,6 +209,20 @@ def with_given_engine(episode: EpisodeConfig, given: Mapping[str, str]) -> Episo
     """
     engine = given.get("engine", given.get("episode.engine"))
     return with_engine(episode, engine if engine in get_args(Engine) else None)  # the real parser reports others
+
+
+def for_given_robot(episode: ConfigType, arguments: Sequence[str]) -> ConfigType:
+    """Episode settings for the robot whose dimensions a command was given: much goes with its length and its mass.
+
+    :param episode: settings of episodes
+    :param arguments: arguments of the command
+    :raises DescriptionError: if there is no such dimension, or if it is not near its default
+    """
+    try:
+        given = named_numbers(dimension_words(arguments))
+    except ValueError:  # the real parser says so
+        return episode
+    return episode.for_robot({**episode.dimensions, **given}) if given else episode
 
 
 def with_given_directions(episode: EpisodeConfig, given: Mapping[str, str]) -> EpisodeConfig:

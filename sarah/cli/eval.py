@@ -49,7 +49,8 @@ class EvalOptions(EpisodeOptions):
         back from a push
     :param robustness: folder for a table and a polar plot of survival by force and direction of the push, for these
         parameters and the baseline. --episodes is the number at each force
-    :param forces: forces of the pushes of --robustness, in N
+    :param forces: forces of the pushes of --robustness, in N; by default 25 to 150 N for the default robot, and as
+        much of its weight for another
     :param terrain: folder for a table and a picture of score, steps and survival on slopes, bumps and slippery ground,
         for 10 s without a push, and with one of 75 N at 2 to 4 s. --episodes is the number on each ground
     :param episodes: number of episodes
@@ -63,7 +64,7 @@ class EvalOptions(EpisodeOptions):
     subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"
     robustness: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     terrain: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
-    forces: Annotated[tuple[float, ...], tyro.conf.arg(metavar="FLOAT...")] = (25.0, 50.0, 75.0, 100.0, 125.0, 150.0)
+    forces: Annotated[tuple[float, ...], tyro.conf.arg(metavar="FLOAT...", help_behavior_hint="(by weight)")] = ()
     episodes: int = 20
     first_seed: int = FIRST_EVALUATION_SEED
     json: bool = False
@@ -148,14 +149,15 @@ def _show_robustness(
     parameters: tuple[float, ...], config: EpisodeConfig, options: EvalOptions, workers: Workers
 ) -> None:
     """Print the table as Markdown, and write the table and the polar plot."""
-    from sarah.reports.robustness import push_many, robustness_table
+    from sarah.reports.robustness import forces_for, push_many, robustness_table
     from sarah.reports.training_figures import draw_survival
 
     folder, neutral = options.robustness, BALANCE.neutral
     assert folder is not None and neutral is not None and isinstance(config, BalanceConfig)
     say_engine(config, options.engine)
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
-    pushed = push_many((neutral, parameters), config, workers, options.forces, options.episodes, options.first_seed)
+    forces = options.forces or forces_for(config.scale)
+    pushed = push_many((neutral, parameters), config, workers, forces, options.episodes, options.first_seed)
     head = "".join(f" {name}: survival | score | drift | vibration |" for name in names)
     lines = [f"| push | direction | episodes |{head}", "|---" * (3 + 4 * len(names)) + "|"]
     for rows in zip(*map(robustness_table, pushed), strict=True):
@@ -164,7 +166,7 @@ def _show_robustness(
             f"| {100 * row.drift_median:.1f} cm | {row.vibration_median:.1f} |"
             for row in rows
         )
-        lines.append(f"| {rows[0].newtons:.0f} N | {rows[0].direction} | {rows[0].episodes} |{cells}")
+        lines.append(f"| {rows[0].newtons:g} N | {rows[0].direction} | {rows[0].episodes} |{cells}")
     table = "\n".join(lines)
     print(table)
     (folder / "robustness.md").write_text(table + "\n", encoding="utf-8")
@@ -192,7 +194,7 @@ def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers
     from sarah.reports.terrain_figure import draw_terrain
 
     say_engine(spec.config, options.engine)
-    tried = list(situations())
+    tried = list(situations(spec.config.scale))
     progress = partial(tqdm, total=len(tried) * options.episodes, unit=" episodes")
     rows = try_terrain(spec.task, spec.parameters, spec.config, options.seeds, workers, tried, progress)
     values = ", ".join(f"{value:g}" for value in spec.parameters)

@@ -115,7 +115,7 @@ def _of_operation(config: EpisodeConfig, subject: str | None) -> PushedConfig:
     """Settings of a robot in operation: those of the subject, with soft pushes, unless they are a session's own."""
     shared = {item.name: getattr(config, item.name) for item in dataclasses.fields(EpisodeConfig)}
     is_own = subject is not None and is_session(Path(subject))
-    push = config.push if is_own and isinstance(config, PushedConfig) else SOFT_PUSHES
+    push = config.push if is_own and isinstance(config, PushedConfig) else config.scale.scaled(SOFT_PUSHES)
     return PushedConfig(**shared, push=push)
 
 

@@ -10,7 +10,7 @@ import itertools
 import os
 import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any, NoReturn, TypeVar, get_args, get_type_hints
 
@@ -27,6 +27,8 @@ from sarah.streams import check_output, keep_streams, say_lost_output
 
 OptionsType = TypeVar("OptionsType")
 USAGE_ERROR = 2
+DIMENSIONS = "--episode.dimensions"
+"""Option of the robot's dimensions."""
 PYTHON_WORDS = {
     r"^Error parsing (\S+): (must be .*)": r"\1 \2",
     r"^Error parsing (\S+): Could not parse arguments (.*) into tuple type .*": r"\1 must be numbers, not \2",
@@ -40,9 +42,6 @@ PYTHON_WORDS = {
     ),
     r"^Error parsing (\S+): no type matching (\S+) could be instantiated from (.*?)\.\s+Got errors.*": (
         r"\1 must be \2, not \3"
-    ),
-    r"^Error parsing (\S+): Failed to parse key-value pairs!": (
-        r"\1 must be names and numbers, such as torso_mass 9.5; no number begins with a 0 that says nothing"
     ),
     r"^Error parsing [\w.]+: ": "",
 }
@@ -88,7 +87,34 @@ def _number_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors
     )
 
 
+def _dimensions_rule(
+    info: tyro.constructors.PrimitiveTypeInfo,
+) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
+    """How tyro reads dimensions: names and numbers in turn, also where some differ from their defaults already."""
+    if info.type_origin is not Mapping:
+        return None
+    return tyro.constructors.PrimitiveConstructorSpec(
+        nargs="*",
+        metavar="NAME FLOAT",
+        instance_from_str=named_numbers,
+        is_instance=lambda value: isinstance(value, Mapping),
+        str_from_instance=lambda given: [word for name, value in given.items() for word in (name, f"{value:g}")],
+    )
+
+
+def named_numbers(words: Sequence[str]) -> dict[str, float]:
+    """Numbers by name, from words that are names and numbers in turn.
+
+    :param words: the words
+    :raises ValueError: if one of the numbers is none, or missing
+    """
+    if len(words) % 2:
+        raise ValueError(f"must be names and numbers in turn, and {words[-1]!r} has no number")
+    return {name: number(word) for name, word in zip(words[::2], words[1::2], strict=True)}
+
+
 _REGISTRY = tyro.constructors.ConstructorRegistry()
+_REGISTRY.primitive_rule(_dimensions_rule)
 _REGISTRY.primitive_rule(_number_rule)
 _REGISTRY.primitive_rule(_task_rule)
 _REGISTRY.primitive_rule(_range_rule)
@@ -133,6 +159,32 @@ def _with_both_ends(arguments: Sequence[str], config: Any) -> list[str]:
                 raise ConfigurationError(f"{word} must be one number, or two for a range, not {given}")
             completed += ends[:1] if len(ends) == 1 else []
     return completed
+
+
+def dimension_words(arguments: Sequence[str]) -> list[str]:
+    """Names and numbers that were given for the robot's dimensions.
+
+    :param arguments: arguments of a command
+    """
+    begins = [index for index, argument in enumerate(arguments) if argument == DIMENSIONS]
+    return list(
+        itertools.takewhile(lambda word: not word.startswith("--"), arguments[begins[-1] + 1 :] if begins else ())
+    )
+
+
+def _with_all_dimensions(arguments: Sequence[str], config: Any) -> list[str]:
+    """Arguments whose dimensions come beside those that the settings have already.
+
+    :param arguments: arguments of a command
+    :param config: default options
+    """
+    given = dimension_words(arguments)
+    if not given:
+        return list(arguments)
+    episode = config.episode if hasattr(config, "episode") else config.training.episode
+    index = len(arguments) - 1 - list(reversed(arguments)).index(DIMENSIONS)
+    kept = [word for name, value in episode.dimensions.items() if name not in given for word in (name, repr(value))]
+    return [*arguments[: index + 1], *kept, *arguments[index + 1 :]]
 
 
 def _checked(words: Sequence[str]) -> Sequence[str]:
@@ -183,7 +235,7 @@ def parse_options(
     errors = io.StringIO()
     try:
         with contextlib.redirect_stderr(errors):
-            return parse(args=_checked(_with_both_ends(arguments, default)))
+            return parse(args=_checked(_with_both_ends(_with_all_dimensions(arguments, default), default)))
     except SystemExit as exit_request:
         if not exit_request.code:
             check_output()

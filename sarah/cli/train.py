@@ -16,6 +16,7 @@ import tyro
 from sarah.cli.episode_options import (
     DIRECTIONS,
     check_episode_options,
+    for_given_robot,
     given_options,
     with_engine,
     with_given_directions,
@@ -26,6 +27,7 @@ from sarah.cli.options import named_task, parse_options, pushed_words, run_comma
 from sarah.cli.subjects import check_of_training
 from sarah.cli.training_defaults import default_training
 from sarah.episode.push import PushedConfig
+from sarah.episode.reward import equation_2, frequency_hint
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, Task, load_task
 from sarah.errors import (
@@ -133,6 +135,8 @@ def _train(arguments: Sequence[str]) -> None:
         pushed = f", {pushed_words(config.episode)}" if isinstance(config.episode, PushedConfig) else ""
         what = f"{config.algo} on {config.task.name}{pushed}"
         print(f"training {what}: {config.episodes} episodes into {run.path}", flush=True)
+        if config.task.reward is equation_2 and (hint := frequency_hint(config.episode)):
+            print(hint, file=sys.stderr)
         named = given_options(arguments, "task") if config.task.file is not None else {}
         learned = _learned(config, run, workers, " ".join(f" --task {quoted(task)}" for task in named.values()))
     _summarise(config.task, learned, run.path)
@@ -218,6 +222,7 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
     _check_agent_options(arguments, training)
     episode = with_given_engine(training.episode, given)
     check_episode_options(arguments, episode)
+    episode = for_given_robot(episode, arguments)
     if "config" not in given and training.task is BALANCE:
         episode = with_given_directions(episode, given)
     if "from" in given and training.task is BALANCE:

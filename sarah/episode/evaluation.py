@@ -8,7 +8,7 @@ from statistics import mean, median, pstdev
 from typing import Any
 
 from sarah.episode.result import METRICS, EpisodeResult
-from sarah.episode.settings import EpisodeConfig
+from sarah.episode.settings import LEAST_CLEARANCE, EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task, task_named
 from sarah.episode.workers import Executor, executor_of
@@ -24,8 +24,6 @@ STATISTICS: dict[str, Callable[[Sequence[float]], float]] = {
 """Statistics that make one number of a metric's values in several episodes."""
 SMALLEST_SENSOR_SHARE = 0.9
 """Share of SHIFT and of LIFT phases ended by sensors below which a gait follows the time-outs, as a clock."""
-SMALLEST_CLEARANCE = 0.010
-"""Sole clearance below which a gait is a shuffle, in m."""
 LARGEST_ACCELERATION_RATIO = 1.5
 """Ratio of the torso's acceleration from 20 to 50 Hz to that with neutral parameters, beyond which the hips chatter."""
 
@@ -35,9 +33,11 @@ class Evaluation:
     """Episodes of the same parameters, and their statistics.
 
     :param results: results of the episodes, at least one
+    :param least_clearance: sole clearance of a valid gait, in m
     """
 
     results: tuple[EpisodeResult, ...]
+    least_clearance: float = LEAST_CLEARANCE
 
     def statistic(self, metric: str, name: str) -> float:
         """Statistic of a metric over all episodes.
@@ -90,7 +90,7 @@ class Evaluation:
     def is_gait(self) -> bool:
         """Whether the gait is valid: sensors end its phases, and the soles clear the floor."""
         shares = (self.mean("shifts_by_sensors"), self.mean("lifts_by_sensors"))
-        return min(shares) >= SMALLEST_SENSOR_SHARE and self.mean("sole_clearance") >= SMALLEST_CLEARANCE
+        return min(shares) >= SMALLEST_SENSOR_SHARE and self.mean("sole_clearance") >= self.least_clearance
 
     def chatters(self, neutral: Evaluation) -> bool:
         """Whether the hips shake the torso at frequencies that no real actuator follows.
@@ -140,4 +140,4 @@ def evaluate(
     specs = [EpisodeSpec(parameters, seed, task_named(task), config) for seed in seeds]
     if not specs:
         raise ConfigurationError("seeds must not be empty: an evaluation needs an episode")
-    return Evaluation(tuple(progress(executor.simulate_all(specs))))
+    return Evaluation(tuple(progress(executor.simulate_all(specs))), config.least_clearance)

@@ -14,6 +14,8 @@ HALF_WIDTH = 0.5
 """Displacement of the default robot from its start at which the reward is zero, in m."""
 STEP_FREQUENCY = 3.0
 """Rewarded number of steps per second; both are the paper's."""
+LITTLE_LOST = 0.9
+"""Share of the reward that a robot's natural step frequency should have at least."""
 
 
 def reward_rate(
@@ -55,6 +57,30 @@ def equation_2(tick: Tick, config: EpisodeConfig) -> float:
     """
     form, half_width, step_frequency = config.reward_form, config.reward_half_width, config.step_frequency
     return reward_rate(tick.x, tick.y, tick.height, tick.steps_per_second, form, half_width, step_frequency)
+
+
+def natural_step_frequency(config: EpisodeConfig) -> float:
+    """Steps per second of a robot that rocks by itself, as a pendulum of its height: 3 for the default robot.
+
+    :param config: settings of the episodes, whose shortest phases are an upper bound
+    """
+    phases = 3 * config.controller.minimum_phase_seconds  # SHIFT, LIFT and LAND
+    by_pendulum = STEP_FREQUENCY / config.scale.time
+    return min(by_pendulum, 1.0 / phases) if phases else by_pendulum
+
+
+def frequency_hint(config: EpisodeConfig) -> str | None:
+    """Sentence that says which step frequency suits a robot; ``None`` where the rewarded one does.
+
+    :param config: settings of the episodes
+    """
+    natural = natural_step_frequency(config)
+    if reward_rate(0.0, 0.0, 1.0, natural, half_width=1.0, step_frequency=config.step_frequency) >= LITTLE_LOST:
+        return None
+    return (
+        f"a robot of this height steps {natural:.2g} times per second by itself, and "
+        f"{config.step_frequency:g} are rewarded: --episode.step-frequency {natural:.2g} suits it"
+    )
 
 
 def highest_return(standing_height: float, seconds: float, half_width: float = HALF_WIDTH) -> float:

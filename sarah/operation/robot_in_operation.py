@@ -137,12 +137,12 @@ class RobotInOperation:
         stands: bool,
         recording: Recording | None = None,
     ) -> Window:
-        physics, dt = robot.config.physics, robot.config.physics.control_dt
+        dt = robot.config.physics.control_dt
         settle, measure = round(self.config.settle_seconds / dt), round(self.config.measure_seconds / dt)
         push = self.config.robot_after(self._changes).push
         stood = STAND_SECONDS if stands else 0.0
         first = round((begin + stood) / dt)
-        record = WindowRecord(robot.robot.standing_height, physics.control_rate, settle, measure)
+        record = WindowRecord(robot.robot.standing_height, robot.config, settle, measure)
         robot.generator.set_parameters(*controller_parameters(parameters))
         ticks, fell = 0, False
         while ticks < settle + measure and not fell:

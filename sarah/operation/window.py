@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from sarah.control.pattern_generator import Phase, PhaseChange
 from sarah.episode.gait import GaitRecord
 from sarah.episode.reward import highest_return, reward_rate
+from sarah.episode.settings import EpisodeConfig
 from sarah.operation.odometry import LegOdometry
 from sarah.operation.settings import Parameters
 from sarah.robot.reading import GRAVITY, SensorReading
@@ -83,17 +85,20 @@ class WindowRecord:
     """Record of one window, tick by tick.
 
     :param standing_height: height of the torso's centre while the robot stands, in m
-    :param control_rate: control ticks per second
+    :param robot: settings of the robot
     :param settle: ticks that are not measured
     :param measure: ticks that are
     """
 
-    def __init__(self, standing_height: float, control_rate: int, settle: int, measure: int) -> None:
-        self.gait = GaitRecord(control_rate)
-        self._dt = 1.0 / control_rate
+    def __init__(self, standing_height: float, robot: EpisodeConfig, settle: int, measure: int) -> None:
+        self.gait = GaitRecord(robot.physics.control_rate)
+        self._dt = robot.physics.control_dt
         self._settle, self._measure = settle, measure
-        self._ceiling = highest_return(standing_height, measure * self._dt)
+        self._ceiling = highest_return(standing_height, measure * self._dt, robot.reward_half_width)
         self._height = standing_height
+        self._reward_rate = partial(
+            reward_rate, half_width=robot.reward_half_width, step_frequency=robot.step_frequency
+        )
         self._odometry = LegOdometry(standing_height, self._dt)
         self._ticks = 0
         self._return = self._observed = 0.0
@@ -139,9 +144,11 @@ class WindowRecord:
             self._first, self._from = torso, (self._odometry.x, self._odometry.y)
         frequency = self.gait.steps_per_second(self._ticks)
         (x, y, z), (first_x, first_y, _) = torso.position, self._first.position
-        self._return += reward_rate(x - first_x, y - first_y, z, frequency) * self._dt
+        self._return += self._reward_rate(x - first_x, y - first_y, z, frequency) * self._dt
         odometry, (from_x, from_y) = self._odometry, self._from
-        self._observed += reward_rate(odometry.x - from_x, odometry.y - from_y, self._height, frequency) * self._dt
+        self._observed += (
+            self._reward_rate(odometry.x - from_x, odometry.y - from_y, self._height, frequency) * self._dt
+        )
 
     @property
     def steps_per_second(self) -> float:

@@ -17,9 +17,10 @@ from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.workers import Workers
+from sarah.robot.scale import Scale
 
 FORCES = (25.0, 50.0, 75.0, 100.0, 125.0, 150.0)
-"""Forces of the pushes, in N."""
+"""Forces of the pushes for the default robot, in N."""
 PUSHED_BETWEEN = (2.0, 4.0)
 """Range of the simulated times at which the pushes begin, in s: 1 to 3 s after the pattern generator's start."""
 SECONDS_AFTER = 10.0
@@ -74,6 +75,22 @@ class Robustness:
     score_median: float
     drift_median: float
     vibration_median: float
+
+
+def forces_for(scale: Scale) -> tuple[float, ...]:
+    """Forces of the pushes for a robot, in N.
+
+    :param scale: size of the robot
+    """
+    return tuple(rounded(newtons * scale.factor("N")) for newtons in FORCES)
+
+
+def rounded(value: float) -> float:
+    """A number of three digits.
+
+    :param value: number to round
+    """
+    return float(f"{value:.3g}")
 
 
 def push_many(

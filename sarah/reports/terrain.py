@@ -18,7 +18,8 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
 from sarah.episode.workers import Workers
-from sarah.reports.robustness import PUSHED_BETWEEN, wilson_interval
+from sarah.reports.robustness import PUSHED_BETWEEN, rounded, wilson_interval
+from sarah.robot.scale import Scale
 from sarah.simulation.terrain import Terrain
 
 SLOPES = (2.0, 4.0, 6.0, 8.0)
@@ -26,11 +27,11 @@ SLOPES = (2.0, 4.0, 6.0, 8.0)
 UPHILL = {"right": 0.0, "forward": 90.0, "left": 180.0, "backward": 270.0}
 """Directions that lead uphill, in degrees, by name."""
 ROUGHNESSES = (0.005, 0.01, 0.015, 0.02)
-"""Heights of the bumps over and under the mean plane, in m."""
+"""Heights of the bumps over and under the mean plane for the default robot, in m."""
 FRICTIONS = (0.15, 0.25, 0.4, 0.7, 1.2)
 """Friction coefficients under both feet: ice, wet tiles, and so on to rubber."""
 PUSH_NEWTONS = 75.0
-"""Force of the push, in N."""
+"""Force of the push for the default robot, in N."""
 TIME_LIMIT = 10.0
 """Time limit of the episodes, in s."""
 
@@ -70,7 +71,8 @@ class Situation:
         changes: dict[str, Any] = {"terrain": self.terrain, "time_limit": TIME_LIMIT}
         if not (task.has_push or self.newtons):
             return task.config_of(config, **changes)
-        changes["push"] = Push((self.newtons, self.newtons), at_seconds=PUSHED_BETWEEN)
+        push = config.scale.scaled(Push(at_seconds=PUSHED_BETWEEN))
+        changes["push"] = dataclasses.replace(push, newtons=(self.newtons, self.newtons))
         if isinstance(config, PushedConfig):
             return dataclasses.replace(config, **changes)
         return PushedConfig(**(vars(config) | changes))
@@ -93,12 +95,15 @@ class OnTerrain:
         return wilson_interval(self.evaluation.survivors, self.evaluation.episodes)
 
 
-def situations() -> Iterator[Situation]:
-    """All situations of the table: each ground without a push, then with one."""
-    for force in (0.0, PUSH_NEWTONS):
+def situations(scale: Scale) -> Iterator[Situation]:
+    """All situations of the table: each ground without a push, then with one.
+
+    :param scale: size of the robot
+    """
+    for force in (0.0, rounded(PUSH_NEWTONS * scale.factor("N"))):
         yield Situation("slope", 0.0, "", force)
         yield from (Situation("slope", slope, uphill, force) for uphill, slope in product(UPHILL, SLOPES))
-        yield from (Situation("roughness", height, "", force) for height in ROUGHNESSES)
+        yield from (Situation("roughness", rounded(scale.length * height), "", force) for height in ROUGHNESSES)
         yield from (Situation("friction", friction, "", force) for friction in FRICTIONS)
 
 
@@ -124,7 +129,10 @@ def try_terrain(
     configs = [situation.config(task, config) for situation in tried]
     specs = [EpisodeSpec(parameters, seed, task, each) for each in configs for seed in seeds]
     results = iter(list(progress(workers.simulate_all(specs))))
-    return [OnTerrain(situation, Evaluation(tuple(islice(results, len(seeds))))) for situation in tried]
+    return [
+        OnTerrain(situation, Evaluation(tuple(islice(results, len(seeds))), config.least_clearance))
+        for situation in tried
+    ]
 
 
 def as_markdown(rows: Sequence[OnTerrain]) -> str:
@@ -139,7 +147,7 @@ def as_markdown(rows: Sequence[OnTerrain]) -> str:
     for row in rows:
         found, (low, high) = row.evaluation, row.interval
         lines.append(
-            f"| {_ground(row.situation)} | {row.situation.newtons:.0f} N | {found.episodes} "
+            f"| {_ground(row.situation)} | {row.situation.newtons:g} N | {found.episodes} "
             f"| {found.mean('score'):.3f} | {found.mean('steps_per_second'):.2f} "
             f"| {found.mean('shifts_by_sensors'):.0%} | {found.survival_rate:.2f} ({low:.2f} to {high:.2f}) |"
         )

@@ -67,8 +67,11 @@ def transfer(many: Sequence[LearnedParameters], seeds: Sequence[int], workers: W
     ]
     results = iter(list(workers.simulate_all(specs)))
     return [
-        Transfer(learned, {engine: Evaluation(tuple(islice(results, len(seeds)))) for engine in ENGINES})
-        for learned in many
+        Transfer(
+            one,
+            {engine: Evaluation(tuple(islice(results, len(seeds))), one.config.least_clearance) for engine in ENGINES},
+        )
+        for one in many
     ]
 
 

@@ -108,7 +108,7 @@ def named_physics(name: str, scale: Scale, control_rate: int) -> PyBulletPhysics
     return PHYSICS[name].at_control_rate(control_rate).at_scale(scale)
 
 
-def physics_for(engine: str, physics: Physics, scale: Scale = Scale()) -> Physics:
+def physics_for(engine: str, physics: Physics, scale: Scale) -> Physics:
     """Settings of any engine as another engine takes them; fields of PyBullet alone are dropped or get named values.
 
     :param engine: name of the engine that takes them, ``"pybullet"`` or ``"mujoco"``
@@ -117,9 +117,9 @@ def physics_for(engine: str, physics: Physics, scale: Scale = Scale()) -> Physic
     """
     if type(physics) is physics_type(engine):
         return physics
-    shared = Physics(physics.rate, physics.solver_iterations, physics.control_rate)
+    rate, iterations, control_rate = physics.rate, physics.solver_iterations, physics.control_rate
     if engine != "pybullet":
-        return shared
-    named = [named_physics(name, scale, physics.control_rate) for name in PHYSICS]
-    same = (setting for setting in named if physics_for("mujoco", setting) == shared)
-    return next(same, replace(named[0], rate=shared.rate, solver_iterations=shared.solver_iterations))
+        return Physics(rate, iterations, control_rate)
+    named = [named_physics(name, scale, control_rate) for name in PHYSICS]
+    same = (setting for setting in named if (setting.rate, setting.solver_iterations) == (rate, iterations))
+    return next(same, replace(named[0], rate=rate, solver_iterations=iterations))

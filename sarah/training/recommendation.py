@@ -15,8 +15,9 @@ import numpy as np
 
 from sarah.agents.corrections import corrected
 from sarah.agents.gaussian_process import GaussianProcess
-from sarah.episode.evaluation import SMALLEST_CLEARANCE, SMALLEST_SENSOR_SHARE, Evaluation
+from sarah.episode.evaluation import SMALLEST_SENSOR_SHARE, Evaluation
 from sarah.episode.result import EpisodeResult
+from sarah.episode.settings import LEAST_CLEARANCE
 from sarah.episode.tasks import Task
 from sarah.errors import LearningError
 
@@ -26,17 +27,18 @@ LARGEST_MERIT = 1e100
 """Largest merit by amount: larger ones, of a reward of your own, would overflow."""
 
 
-def merit(result: EpisodeResult, must_step: bool = True) -> float:
+def merit(result: EpisodeResult, must_step: bool = True, least_clearance: float = LEAST_CLEARANCE) -> float:
     """Merit of an episode: its score, reduced in proportion to what its gait lacks to be valid.
 
     :param result: result of the episode
     :param must_step: whether the task wants a gait; otherwise the merit is the score
+    :param least_clearance: sole clearance of a valid gait, in m
     """
     merit = result.score
     if not must_step:
         return merit
     for share in (
-        result.sole_clearance / SMALLEST_CLEARANCE,
+        result.sole_clearance / least_clearance if least_clearance else 1.0,
         result.shifts_by_sensors / SMALLEST_SENSOR_SHARE,
         result.lifts_by_sensors / SMALLEST_SENSOR_SHARE,
     ):
@@ -110,13 +112,12 @@ class Tried:
         return GaussianProcess(places, corrected(np.array(self._merits), np.array(self._disturbances)))
 
 
-def is_valid(results: Sequence[EpisodeResult], baseline: Evaluation | None, must_step: bool = True) -> bool:
+def is_valid(evaluation: Evaluation, baseline: Evaluation | None, must_step: bool = True) -> bool:
     """Whether parameters may be recommended: their gait is valid, and the hips do not chatter.
 
-    :param results: results of their episodes, at least one
+    :param evaluation: their episodes
     :param baseline: evaluation that chatter is judged against; without one nothing chatters
     :param must_step: whether the task wants a gait; otherwise every gait is valid
     """
-    evaluation = Evaluation(tuple(results))
     chatters = baseline is not None and evaluation.chatters(baseline)
     return (evaluation.is_gait or not must_step) and not chatters

@@ -84,7 +84,8 @@ class EpisodeRecorder(BaseCallback):
         """
         index = len(self.tried)
         self._write(partial(self._run.append_episode, index, spec, result))
-        self.tried.append(spec.parameters, merit(result, self._task.must_step), disturbances_of(spec))
+        worth = merit(result, self._task.must_step, spec.config.least_clearance)
+        self.tried.append(spec.parameters, worth, disturbances_of(spec))
         self.diverged += result.termination == "diverged"
         x, y, _ = result.final_position
         for name, value in {"return": result.episode_return, "x": x, "y": y}.items():

@@ -149,5 +149,6 @@ def _recommended(
         results = tuple(workers.simulate_all(specs))
         for spec, result in zip(specs, results, strict=True):
             recorder.record(spec, result)
-        (valid if is_valid(results, baseline, config.task.must_step) else failed).append(candidate)
+        evaluation = Evaluation(results, config.episode.least_clearance)
+        (valid if is_valid(evaluation, baseline, config.task.must_step) else failed).append(candidate)
     return recorder.tried.best_of(valid or failed)

@@ -6,6 +6,7 @@ import pytest
 
 from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError
+from sarah.robot.scale import Scale
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics, physics_for, physics_type
 
 
@@ -17,25 +18,25 @@ def test_only_pybullet_has_an_inertia_to_add() -> None:
 
 @pytest.mark.parametrize("name", PHYSICS)
 def test_named_settings_go_to_mujoco_and_come_back(name: str) -> None:
-    in_mujoco = physics_for("mujoco", PHYSICS[name])
+    in_mujoco = physics_for("mujoco", PHYSICS[name], Scale())
     assert type(in_mujoco) is Physics
     assert (in_mujoco.rate, in_mujoco.solver_iterations) == (PHYSICS[name].rate, PHYSICS[name].solver_iterations)
-    assert physics_for("mujoco", in_mujoco) is in_mujoco
-    assert physics_for("pybullet", in_mujoco) == PHYSICS[name]
+    assert physics_for("mujoco", in_mujoco, Scale()) is in_mujoco
+    assert physics_for("pybullet", in_mujoco, Scale()) == PHYSICS[name]
 
 
 @pytest.mark.parametrize("control_rate", [50, 200, 250])
 def test_named_settings_come_back_at_any_control_rate(control_rate: int) -> None:
     reference = PHYSICS["reference"].at_control_rate(control_rate)
-    assert physics_for("pybullet", physics_for("mujoco", reference)) == reference
+    assert physics_for("pybullet", physics_for("mujoco", reference, Scale()), Scale()) == reference
 
 
 def test_settings_without_a_name_get_the_standard_inertia_in_pybullet() -> None:
-    taken = physics_for("pybullet", Physics(rate=400, solver_iterations=7, control_rate=200))
+    taken = physics_for("pybullet", Physics(rate=400, solver_iterations=7, control_rate=200), Scale())
     assert taken == PyBulletPhysics(400, 7, 200, added_plate_inertia=PHYSICS["standard"].added_plate_inertia)
     own = PyBulletPhysics(400, 7, 200, added_plate_inertia=0.001)
-    assert physics_for("pybullet", own) is own
-    assert physics_for("mujoco", own) == Physics(400, 7, 200)
+    assert physics_for("pybullet", own, Scale()) is own
+    assert physics_for("mujoco", own, Scale()) == Physics(400, 7, 200)
 
 
 def test_episodes_take_settings_as_their_engine_can() -> None:
