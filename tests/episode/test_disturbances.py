@@ -12,7 +12,7 @@ from sarah.episode.running_robot import conditions_of
 from sarah.episode.tasks import TASKS, disturbances_of
 from sarah.episode.trial import try_task
 from sarah.errors import SarahError, TaskError
-from sarah.robot.description import GROUP_MASS, GROUPS
+from sarah.robot.description import GROUPS
 from sarah.robot.reading import Side
 from sarah.simulation.randomisation import Randomisation
 from sarah.simulation.simulator import GRAVITY
@@ -44,7 +44,7 @@ def test_they_are_what_the_episode_draws(seed: int, settings: dict[str, Any]) ->
     masses = [
         sum(conditions.mass_factors[link] * subject.robot.masses[link] for link in links) for links in GROUPS.values()
     ]
-    assert masses_and_offset == pytest.approx([*(mass / GROUP_MASS for mass in masses), *conditions.mass_offset])
+    assert masses_and_offset == pytest.approx([*(mass / 10.0 for mass in masses), *conditions.mass_offset])
 
 
 @pytest.mark.parametrize("task", TASKS)

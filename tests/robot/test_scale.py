@@ -1,0 +1,97 @@
+"""Robots of other sizes: what goes with length and mass, by Froude's rule."""
+
+import dataclasses
+
+import pytest
+
+from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
+from sarah.episode.push import Push, PushedConfig
+from sarah.episode.reward import frequency_hint, natural_step_frequency
+from sarah.episode.settings import EpisodeConfig
+from sarah.robot.description import describe_robot
+from sarah.robot.dimensions import SCALED, default_dimensions, scale_of
+from sarah.robot.scale import Scale
+
+ANGLES = ("abduction_limit", "flexion_limit", "ankle_up_limit", "ankle_down_limit")
+
+
+def alike(length: float, mass: float) -> dict[str, float]:
+    """Dimensions of a robot that is like the default one, by ratios of lengths and masses."""
+    return {
+        name: value * (mass if name.endswith("_mass") else length)
+        for name, value in default_dimensions().items()
+        if name not in ANGLES and name not in SCALED
+    }
+
+
+def test_scale_is_that_of_height_mass_and_width() -> None:
+    assert scale_of({}) == Scale() == describe_robot().scale
+    assert scale_of(alike(0.25, 0.1)) == Scale(0.25, 0.1, 0.25)
+    assert scale_of({"thigh_length": 0.33 + 0.84}) == Scale(length=2.0)
+    assert scale_of({"torso_mass": 23.0}) == Scale(mass=1.5)
+    assert scale_of({"hip_offset": 0.26}) == Scale(width=2.0)
+
+
+@pytest.mark.parametrize(("length", "mass"), [(1.0, 1.0), (0.3125, 0.1333), (1.7, 4.1)])
+def test_the_urdf_has_the_scale_of_its_dimensions(length: float, mass: float) -> None:
+    dimensions = alike(length, mass)
+    assert describe_robot(dimensions).scale == pytest.approx(scale_of(dimensions))
+
+
+def test_quantities_go_by_their_units() -> None:
+    scale = Scale(length=0.25, mass=0.1, width=0.5)
+    factors = {unit: scale.factor(unit) for unit in ("m", "s", "m/s", "rad/s", "N", "Nm", "kg m^2", "Nms/rad", "Ns/m")}
+    expected = [0.25, 0.5, 0.5, 2.0, 0.1, 0.025, 0.00625, 0.0125, 0.2]
+    assert list(factors.values()) == pytest.approx(expected)
+    assert scale.factor("m/s^2") == scale.factor("rad") == 1.0
+    assert scale.factor("m of rocking") == 1.0  # width^2 / length
+
+
+def test_what_goes_with_the_size_does() -> None:
+    """A quarter of the length halves all times, and doubles all rates."""
+    config = PushedConfig(dimensions=alike(0.25, 0.1))
+    controller, drawn = config.controller, config.randomisation
+    lengths = (controller.shift_extension, controller.lift_retraction, drawn.mass_offset, config.least_clearance)
+    assert lengths == pytest.approx((0.002, 0.0075, 0.0025, 0.0025))
+    assert (config.reward_half_width, config.box_half_width) == pytest.approx((0.125, 0.0625))
+    assert (controller.time_out_seconds, controller.tilt_time_constant) == pytest.approx((0.25, 0.05))
+    assert (controller.landing_rate, controller.rate_scale, controller.fall_rate) == pytest.approx((2.0, 0.02, 8.0))
+    assert controller.pad_threshold == pytest.approx(3.0)
+    assert (*config.push.newtons, config.push.duration) == pytest.approx((0.0, 10.0, 0.075))
+    assert drawn.actuator_bandwidth == pytest.approx((80.0, 100.0))
+    assert drawn.delay_seconds == 0.01 and config.time_limit == 30.0 and config.step_frequency == 3.0
+    assert describe_robot(config.dimensions).efforts["left_leg_length"] == pytest.approx(100.0)
+    assert config.physics.rate == 800
+
+
+def test_what_is_given_stays() -> None:
+    own = ControllerConstants(pad_threshold=5.0)
+    config = PushedConfig(dimensions=alike(0.25, 0.1), controller=own, push=Push(newtons=(7.0, 7.0)))
+    assert config.controller == own and config.push == Push(newtons=(7.0, 7.0))
+    assert describe_robot({**alike(0.25, 0.1), "leg_effort": 150.0}).efforts["left_leg_length"] == 150.0
+    assert dataclasses.replace(config, payload=1.0).controller == own
+
+
+def test_settings_for_another_robot_go_with_the_ratio_of_both() -> None:
+    settings = PushedConfig(payload=3.0, controller=dataclasses.replace(STANDARD_CONSTANTS, pad_threshold=60.0))
+    small = settings.for_robot(alike(0.25, 0.1))
+    assert (small.payload, small.controller.pad_threshold) == pytest.approx((0.3, 6.0))
+    assert small.for_robot(alike(1.0, 1.0)).controller.pad_threshold == pytest.approx(60.0)
+    assert settings.for_robot({"torso_width": 0.3}).controller is settings.controller
+
+
+def test_another_engine_gets_the_inertia_of_the_robots_size() -> None:
+    for engine in ("pybullet", "mujoco"):
+        config = EpisodeConfig(dimensions=alike(0.25, 0.1), engine=engine)  # type: ignore[arg-type]
+        there = dataclasses.replace(config, engine="pybullet")
+        assert there.physics.added_plate_inertia == pytest.approx(0.003 * 0.00625)  # type: ignore[attr-defined]
+
+
+def test_a_robot_whose_own_step_frequency_is_not_rewarded_is_told() -> None:
+    small = EpisodeConfig(dimensions=alike(0.25, 0.1))
+    assert natural_step_frequency(EpisodeConfig()) == 3.0 and frequency_hint(EpisodeConfig()) is None
+    assert natural_step_frequency(small) == pytest.approx(6.0)
+    assert "--episode.step-frequency 6 suits it" in str(frequency_hint(small))
+    assert frequency_hint(dataclasses.replace(small, step_frequency=6.0)) is None
+    slow = dataclasses.replace(small, controller=dataclasses.replace(small.controller, minimum_phase_seconds=0.1))
+    assert natural_step_frequency(slow) == pytest.approx(1 / 0.3)
