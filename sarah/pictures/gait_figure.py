@@ -15,7 +15,7 @@ from sarah.control.pattern_generator import Phase, SteppingParameters
 from sarah.episode.trace import Trace
 from sarah.errors import ConfigurationError
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, RIGHT
-from sarah.pictures.style import COLUMN_WIDTH, own_style, save
+from sarah.pictures.style import COLUMN_WIDTH, own_style, save, times
 
 THRESHOLD = "#A51417"
 PADS_SHOWN, WEIGHTS_SHOWN = 700.0, 1.8
@@ -65,9 +65,9 @@ def draw_gait_cycle(
         _threshold(tilt, time, trace.phase[rows] == "shift", parameters.P2, "P2")
         tilt.set_ylabel("tilt\n(m/s²)")
         rate.plot(time, trace.rate[rows], color="black", linewidth=1.2)
-        _threshold(rate, time, trace.phase[rows] == "lift", -parameters.P1, "\N{MINUS SIGN}P1", "top")
-        scale = constants.rate_scale
-        _threshold(rate, time, trace.phase[rows] == "shift", scale * parameters.P3, f"{scale:g} P3", "bottom")
+        landing, scale = constants.landing_rate, constants.rate_scale
+        _threshold(rate, time, trace.phase[rows] == "lift", -landing * parameters.P1, times(-landing, "P1"), "top")
+        _threshold(rate, time, trace.phase[rows] == "shift", scale * parameters.P3, times(scale, "P3"), "bottom")
         rate.set_ylabel("rate\n(rad/s)")
         pads = trace.pressures[rows]
         _both(load, time, pads[:, :2].sum(axis=1), pads[:, 2:].sum(axis=1))

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.pattern_generator import STAND_SECONDS, Phase
 from sarah.pictures.colours import PHASE_COLOURS
-from sarah.pictures.style import COLUMN_WIDTH, own_style, save
+from sarah.pictures.style import COLUMN_WIDTH, own_style, save, times
 
 NOTE = """tilt (m/s²), rate (rad/s): low-passed lateral acceleration and angular rate
 about y, towards the stance leg, plus {tilt:g} and {rate:g} times the abduction
@@ -42,10 +42,15 @@ def phases(constants: ControllerConstants = STANDARD_CONSTANTS) -> tuple[PhaseFa
     :param constants: constants of the controller
     """
     seconds = f"{constants.time_out_seconds:g}"
-    over_stance = f"tilt > P2 and rate > {constants.rate_scale:g} P3 and stance foot loaded"
+    over_stance = f"tilt > P2 and rate > {times(constants.rate_scale, 'P3')} and stance foot loaded"
     return (
         PhaseFacts(Phase.SHIFT, over_stance, f"{seconds} (1 + P5)", -constants.shift_extension),
-        PhaseFacts(Phase.LIFT, "rate < \u2212P1", f"{seconds} (1 + P4)", constants.lift_retraction),
+        PhaseFacts(
+            Phase.LIFT,
+            f"rate < {times(-constants.landing_rate, 'P1')}",
+            f"{seconds} (1 + P4)",
+            constants.lift_retraction,
+        ),
         PhaseFacts(Phase.LAND, "swing foot loaded", f"{seconds} (1 + P5)", 0.0),
     )
 
@@ -104,7 +109,7 @@ def _motion(length: float) -> str:
     """Words for what a leg does."""
     if length == 0.0:
         return "straight"
-    return f"{'retracts' if length > 0 else 'pushes'} by {1000 * abs(length):.0f} mm"
+    return f"{'retracts' if length > 0 else 'pushes'} by {1000 * abs(length):.3g} mm"
 
 
 def _box(axis: Axes, top: float, text: str, colour: str, height: float = 1.3) -> float:

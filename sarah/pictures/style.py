@@ -52,3 +52,13 @@ def save(figure: Figure, path: Path) -> list[Path]:
         figure.savefig(file, dpi=200)
     plt.close(figure)
     return files
+
+
+def times(factor: float, name: str) -> str:
+    """A parameter with its factor, which is left out if it is 1.
+
+    :param factor: factor of the parameter
+    :param name: name of the parameter
+    """
+    sign = "\N{MINUS SIGN}" if factor < 0.0 else ""
+    return f"{sign}{name}" if abs(factor) == 1.0 else f"{sign}{abs(factor):.3g} {name}"

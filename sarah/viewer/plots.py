@@ -56,6 +56,10 @@ class Chart:
     smallest_span: float = 0.0
 
 
+def _landing_rate(_: Trace, scenario: Scenario) -> float:
+    return -scenario.config.controller.landing_rate * scenario.stepping[0]
+
+
 def _least_rate(_: Trace, scenario: Scenario) -> float:
     return scenario.config.controller.rate_scale * scenario.stepping[2]
 
@@ -82,7 +86,7 @@ CHARTS = (
         (
             Line("rate", DARK, lambda trace, _: trace.rate),
             Line("0.01 P3: SHIFT ends above", UPPER, _least_rate, dashed=True),
-            Line("-P1: LIFT ends below", LOWER, lambda _, scenario: -scenario.stepping[0], dashed=True),
+            Line("-P1: LIFT ends below", LOWER, _landing_rate, dashed=True),
         ),
     ),
     Chart("pads (N)", _pads()),
