@@ -6,6 +6,7 @@ from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
+from gymnasium import spaces
 from stable_baselines3.common.type_aliases import Schedule
 from stable_baselines3.common.utils import FloatSchedule
 
@@ -74,3 +75,19 @@ def checked_schedule(
     for progress_remaining in (1, 0):
         checked_number(f"{name}({progress_remaining})", value(progress_remaining), lowest, highest)
     return FloatSchedule(value)
+
+
+def check_actions(space: spaces.Box) -> None:
+    """
+    Refuse an action space in which an action has no range or an endless one, as actions are scaled to [-1, 1].
+
+    :param space: Action space
+    """
+    low, high = space.low, space.high
+    if not (low < high).all():
+        raise ValueError(
+            f"every action must have a range, but the lowest are {low.tolist()}, the highest {high.tolist()}"
+        )
+    with np.errstate(over="ignore"):
+        if not np.isfinite(high - low).all():
+            raise ValueError(f"the range of every action must be finite, not {low.tolist()} to {high.tolist()}")

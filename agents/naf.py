@@ -1,6 +1,7 @@
 """Normalized advantage functions (NAF): Q-learning for continuous actions, for stable-baselines3."""
 
 import math
+import time
 import warnings
 from typing import Any, ClassVar, TypeVar
 
@@ -16,12 +17,13 @@ from stable_baselines3.common.utils import get_parameters_by_name, polyak_update
 from torch import nn
 from torch.optim.swa_utils import get_ema_multi_avg_fn
 
-from sarah.agents.arguments import checked_number, checked_schedule
+from sarah.agents.arguments import check_actions, checked_number, checked_schedule
 from sarah.agents.buffers import RankReplayBuffer
 from sarah.agents.critic import QuadraticCritic
 from sarah.agents.losses import centre_loss, nearby_loss
-from sarah.agents.naf_warnings import FRESH_UPDATES, RUNAWAY_RATIO, reward_warning, value_warning
+from sarah.agents.naf_warnings import FRESH_UPDATES, RUNAWAY_RATIO, FirstUpdates, reward_warning, value_warning
 from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy, NAFPolicy
+from sarah.agents.unknown_arguments import explains_unknown
 
 SelfNAF = TypeVar("SelfNAF", bound="NAF")
 
@@ -90,6 +92,7 @@ class NAF(OffPolicyAlgorithm):
     q_net_target: QuadraticCritic
     policy: NAFPolicy
 
+    @explains_unknown
     def __init__(
         self,
         policy: str | type[NAFPolicy],
@@ -148,6 +151,7 @@ class NAF(OffPolicyAlgorithm):
         self.exploration_std = exploration_std
         self.value_bound = self.value_ceiling = 0.0
         self.warned_of_values = False
+        self.first_updates = FirstUpdates()
 
         if _init_setup_model:
             self._setup_model()
@@ -157,14 +161,7 @@ class NAF(OffPolicyAlgorithm):
             raise ValueError(
                 f"the policy of NAF must be NAFPolicy or a subclass of it, not {self.policy_class.__name__}"
             )
-        low, high = self.action_space.low, self.action_space.high
-        if not (low < high).all():
-            raise ValueError(
-                f"every action must have a range, but the lowest are {low.tolist()}, the highest {high.tolist()}"
-            )
-        with np.errstate(over="ignore"):
-            if not np.isfinite(high - low).all():
-                raise ValueError(f"the range of every action must be finite, not {low.tolist()} to {high.tolist()}")
+        check_actions(self.action_space)
         self.buffer_size = checked_number("buffer_size", self.buffer_size, 1, whole=True)
         self.learning_starts = checked_number("learning_starts", self.learning_starts, 0)
         self.gradient_steps = checked_number("gradient_steps", self.gradient_steps, -1, whole=True)
@@ -226,10 +223,11 @@ class NAF(OffPolicyAlgorithm):
         assert self.replay_buffer is not None
         # A small replay buffer has forgotten some, and a loaded one has others
         n_transitions = max(self.num_timesteps, self.replay_buffer.size() * self.replay_buffer.n_envs)
-        losses, w_losses, mean_q_values = [], [], []
+        losses, w_losses, mean_q_values, seconds = [], [], [], 0.0
         for _ in range(gradient_steps):
             # Sample replay buffer
             replay_data = self.replay_buffer.sample(batch_size, env=self._vec_normalize_env)
+            start = time.perf_counter()
             # For n-step replay, discount factor is gamma**n_steps (when no early termination)
             discounts = replay_data.discounts if replay_data.discounts is not None else self.gamma
 
@@ -262,9 +260,12 @@ class NAF(OffPolicyAlgorithm):
             average_parameters(target_parameters, parameters, 1)
             # Copy running stats, as all algorithms of stable-baselines3 do
             polyak_update(self.batch_norm_stats, self.batch_norm_stats_target, 1.0)
+            seconds += time.perf_counter() - start
 
         # Increase update counter
         self._n_updates += gradient_steps
+        if (text := self.first_updates.thread_warning(seconds, gradient_steps, parameters, batch_size)) is not None:
+            warnings.warn(text, stacklevel=2)
 
         mean_loss = th.stack(losses).mean().item()
         if not math.isfinite(mean_loss):
@@ -321,17 +322,7 @@ class NAF(OffPolicyAlgorithm):
         reset_num_timesteps: bool = True,
         progress_bar: bool = False,
     ) -> SelfNAF:
-        """
-        Return a trained model.
-
-        :param total_timesteps: The total number of samples (env steps) to train on
-        :param callback: callback(s) called at every step with state of the algorithm.
-        :param log_interval: The number of episodes before logging.
-        :param tb_log_name: the name of the run for TensorBoard logging
-        :param reset_num_timesteps: whether or not to reset the current timestep number (used in logging)
-        :param progress_bar: Display a progress bar using tqdm and rich.
-        :return: the trained model
-        """
+        """Return a trained model; the arguments are those of all algorithms of stable-baselines3."""
         return super().learn(
             total_timesteps=total_timesteps,
             callback=callback,
@@ -342,7 +333,7 @@ class NAF(OffPolicyAlgorithm):
         )
 
     def _excluded_save_params(self) -> list[str]:
-        return [*super()._excluded_save_params(), "q_net", "q_net_target"]
+        return [*super()._excluded_save_params(), "q_net", "q_net_target", "first_updates"]
 
     def _get_torch_save_params(self) -> tuple[list[str], list[str]]:
         state_dicts = ["policy", "policy.optimizer"]

@@ -1,4 +1,6 @@
-"""Warnings of NAF: of rewards that mu learns badly from, and of values that run away."""
+"""Warnings of NAF: of rewards that mu learns badly from, of values that run away, and of threads that wait."""
+
+from collections.abc import Sequence
 
 import numpy as np
 import torch as th
@@ -15,6 +17,12 @@ LARGE_DEVIATION = 30.0
 """Deviation of the rewards that is large: somewhat above it first seeds of a small task fail."""
 FEWEST_REWARDS = 5
 """Number of rewards below which their mean and deviation say nothing."""
+FIRST_UPDATES = 10
+"""Number of updates that are timed, or fewer if they have taken too long by then."""
+SLOW_UPDATE = 0.05
+"""Seconds that a small network's update only takes where threads wait for each other."""
+SMALL_UPDATE = 1e8
+"""Number of weights times transitions of a batch up to which one thread needs a small part of that time."""
 
 
 def reward_warning(rewards: np.ndarray) -> str | None:
@@ -68,3 +76,47 @@ def value_warning(largest: float, ceiling: float, bound: float, gamma: float, ha
         f"allow, by {(largest - ceiling) / bound:.2g} times |reward| / (1 - gamma) = {bound:.3g}: {cause}. "
         f"Remedy: {remedy}"
     )
+
+
+class FirstUpdates:
+    """Time that the first updates of an agent take, and the warning if threads make them slow."""
+
+    def __init__(self) -> None:
+        self.seconds = 0.0
+        self.updates = 0
+
+    def thread_warning(
+        self, seconds: float, updates: int, parameters: Sequence[th.Tensor], batch_size: int
+    ) -> str | None:
+        """
+        What to say once of updates that are slow because several threads share the work of small networks.
+
+        Where other processes keep the cores busy, an operation waits until each of its threads has had its turn. On
+        idle cores small networks gain nothing by a second thread.
+
+        :param seconds: Time that some more updates took
+        :param updates: Number of them
+        :param parameters: Weights that they changed
+        :param batch_size: Number of transitions in a minibatch
+        :return: The warning; none if there is nothing to say
+        """
+        if self.updates >= FIRST_UPDATES:
+            return None
+        self.seconds += seconds
+        self.updates += updates
+        threads, mean = th.get_num_threads(), self.seconds / self.updates
+        is_slow = self.seconds >= SLOW_UPDATE * max(self.updates, FIRST_UPDATES)
+        if not is_slow or threads == 1 or not _is_small(parameters, batch_size):
+            return None
+        self.updates = max(self.updates, FIRST_UPDATES)
+        return (
+            f"updates take {mean:.2g} s each, as the {threads} threads of torch wait for each other: the cores are "
+            "busy, and the networks small. Remedy: torch.set_num_threads(1), or OMP_NUM_THREADS=1 in the environment "
+            "of the program, which holds for NumPy as well"
+        )
+
+
+def _is_small(parameters: Sequence[th.Tensor], batch_size: int) -> bool:
+    """Whether an update is so little work that threads gain next to nothing; weights of images are used many times."""
+    on_cpu = all(weights.device.type == "cpu" and weights.dim() <= 2 for weights in parameters)
+    return on_cpu and batch_size * sum(weights.numel() for weights in parameters) <= SMALL_UPDATE

@@ -17,6 +17,7 @@ from torch import nn
 
 from sarah.agents.arguments import checked_number
 from sarah.agents.critic import QuadraticCritic
+from sarah.agents.unknown_arguments import explains_unknown
 
 
 class NAFPolicy(BasePolicy):
@@ -55,6 +56,7 @@ class NAFPolicy(BasePolicy):
     q_net: QuadraticCritic
     q_net_target: QuadraticCritic
 
+    @explains_unknown
     def __init__(
         self,
         observation_space: spaces.Space,

@@ -42,6 +42,41 @@ def test_bad_values_of_the_algorithm(algorithm, name, value):
         algorithm("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL, **{name: value})
 
 
+UNKNOWN = [
+    (NAF, {"learning_rat": 1e-3}, "NAF", "learning_rat', did you mean 'learning_rate'[?]"),
+    (LocalNAF, {"learning_rat": 1e-3}, "LocalNAF", "learning_rat', did you mean 'learning_rate'[?]"),
+    (LocalNAF, {"elite_shar": 0.5}, "LocalNAF", "elite_shar', did you mean 'elite_share'[?]"),
+    (NAF, {"elite_share": 0.5}, "NAF", "elite_share': only LocalNAF has it"),
+    (NAF, {"net_arch": [8]}, "NAF", "net_arch': it goes into policy_kwargs"),
+    (NAF, {"xyz": 1}, "NAF", "xyz', allowed are learning_rate, buffer_size, .*, seed, device"),
+    (NAF, {"policy_kwargs": {"dropot": 0.1}}, "NAFPolicy", "dropot', did you mean 'dropout'[?]"),
+    (NAF, {"policy_kwargs": {"lr": 0.1}}, "NAFPolicy", "lr', allowed are net_arch, .*, dropout, min_curvature"),
+    (NAF, {"policy_kwargs": {"n_critics": 1}}, "NAFPolicy", "n_critics': targets take W, a mean, .*"),
+]
+
+
+@pytest.mark.parametrize(("algorithm", "arguments", "of", "said"), UNKNOWN)
+def test_an_unknown_argument_gets_the_nearest_or_where_it_belongs(algorithm, arguments, of, said):
+    with pytest.raises(TypeError, match=rf"^{of}\.__init__\(\) got an unexpected keyword argument '{said}$"):
+        algorithm("MlpPolicy", "Pendulum-v1", **arguments)
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("policy_delay", "there is no actor to delay, as mu is part of Q"),
+        ("target_policy_noise", "targets take W or V of the next state, and neither needs an action to smooth"),
+        ("target_noise_clip", "targets take W or V of the next state, and neither needs an action to smooth"),
+        ("ent_coef", "mu is one action and has no entropy, and exploration_std sets how widely it explores"),
+        ("exploration_fraction", "exploration is Gaussian noise, and exploration_std sets its width, .*"),
+    ],
+)
+@pytest.mark.parametrize("algorithm", [NAF, LocalNAF])
+def test_an_argument_of_another_algorithm_gets_the_reason_why_naf_has_none(algorithm, name, reason):
+    with pytest.raises(TypeError, match=rf"unexpected keyword argument '{name}': {reason}$"):
+        algorithm("MlpPolicy", "Pendulum-v1", **{name: 0.1})
+
+
 @pytest.mark.parametrize("value", [-1.0, math.inf, math.nan, "4"])
 def test_bad_values_of_replay_and_policy(value):
     with pytest.raises(ValueError, match=refusal("temperature", value)):

@@ -1,12 +1,15 @@
-"""What NAF says of rewards and of values that it cannot learn from."""
+"""What NAF says of rewards and of values that it cannot learn from, and of threads that wait for each other."""
 
 import re
+import time
 import warnings
 
 import numpy as np
 import pytest
+import torch as th
 
-from sarah.agents.naf_warnings import reward_warning, value_warning
+from sarah.agents import NAF
+from sarah.agents.naf_warnings import FirstUpdates, reward_warning, value_warning
 
 
 @pytest.mark.parametrize(
@@ -49,3 +52,57 @@ def test_what_is_no_number_is_for_the_loss_to_refuse(wrong):
 def test_the_remedy_of_values_that_run_away_is_one_that_is_left(bound, has_w, remedy):
     text = value_warning(largest=2.5 * bound, ceiling=bound, bound=bound, gamma=0.99, has_w=has_w)
     assert remedy in text and "by 1.5 times" in text
+
+
+class SlowSGD(th.optim.SGD):
+    """As slow as threads that wait."""
+
+    def step(self, closure=None):
+        time.sleep(0.06)
+        return super().step(closure)
+
+
+def thread_warnings(model: NAF) -> list[str]:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        model.learn(25)
+    return [str(one.message) for one in caught if "threads" in str(one.message)]
+
+
+def test_updates_that_threads_make_slow_are_said_once_with_the_remedy(monkeypatch, tmp_path):
+    monkeypatch.setattr(th, "get_num_threads", lambda: 4)
+    policy_kwargs = {"net_arch": [8], "optimizer_class": SlowSGD}
+    model = NAF("MlpPolicy", "Pendulum-v1", policy_kwargs=policy_kwargs, learning_starts=10, batch_size=8)
+    (said,) = thread_warnings(model)
+    assert re.match(
+        r"updates take 0\.\d+ s each, as the 4 threads .* Remedy: torch\.set_num_threads\(1\), or OMP", said
+    )
+    model.save(tmp_path / "slow")
+    assert len(thread_warnings(NAF.load(tmp_path / "slow", env=model.env, learning_starts=10))) == 1
+
+
+SMALL_WEIGHTS = (100, 100)
+
+
+@pytest.mark.parametrize(
+    ("threads", "seconds", "shape", "is_said"),
+    [
+        (2, 1.0, SMALL_WEIGHTS, True),
+        (1, 1.0, SMALL_WEIGHTS, False),  # nothing to wait for
+        (2, 0.4, SMALL_WEIGHTS, False),  # quick
+        (2, 1.0, (1000, 1000), False),  # much to do for each thread
+        (2, 1.0, (10, 10, 3, 3), False),  # of images: each weight is used many times
+    ],
+)
+def test_threads_are_blamed_only_where_they_wait(monkeypatch, threads, seconds, shape, is_said):
+    monkeypatch.setattr(th, "get_num_threads", lambda: threads)
+    text = FirstUpdates().thread_warning(seconds, 10, [th.zeros(shape)], batch_size=256)
+    assert (text is not None) == is_said
+
+
+def test_very_slow_updates_are_said_after_the_first_ones(monkeypatch):
+    monkeypatch.setattr(th, "get_num_threads", lambda: 2)
+    first_updates = FirstUpdates()
+    weights = [th.zeros(SMALL_WEIGHTS)]
+    said = [first_updates.thread_warning(0.3, 1, weights, batch_size=256) is not None for _ in range(5)]
+    assert said == [False, True, False, False, False]

@@ -1,0 +1,73 @@
+"""Messages for arguments that NAF does not have: the nearest name, or why there is none."""
+
+from collections.abc import Callable
+from difflib import get_close_matches
+from functools import wraps
+from inspect import Parameter, signature
+from typing import ParamSpec
+
+P = ParamSpec("P")
+
+ONE_ACTION = "targets take W or V of the next state, and neither needs an action to smooth"
+NO_ENTROPY = "mu is one action and has no entropy, and exploration_std sets how widely it explores"
+GAUSSIAN = "exploration is Gaussian noise, and exploration_std sets its width, by a number or a schedule"
+OF_POLICY = "it goes into policy_kwargs"
+OF_LOCAL_NAF = "only LocalNAF has it"
+WHY_NOT = {
+    "policy_delay": "there is no actor to delay, as mu is part of Q",
+    "target_policy_noise": ONE_ACTION,
+    "target_noise_clip": ONE_ACTION,
+    "n_critics": "targets take W, a mean, so no second critic has to lower a maximum",
+    "ent_coef": NO_ENTROPY,
+    "target_entropy": NO_ENTROPY,
+    "exploration_fraction": GAUSSIAN,
+    "exploration_initial_eps": GAUSSIAN,
+    "exploration_final_eps": GAUSSIAN,
+    "use_sde": GAUSSIAN,
+    "target_update_interval": "the target network follows in every update, by tau",
+    **dict.fromkeys(("net_arch", "activation_fn", "dropout", "squash_mu", "min_curvature"), OF_POLICY),
+    **dict.fromkeys(("elite_share", "elite_std", "elite_draws", "first_action_centre"), OF_LOCAL_NAF),
+}
+"""Reason why NAF has no such argument, by the name that it has elsewhere."""
+
+
+def explains_unknown(init: Callable[P, None]) -> Callable[P, None]:
+    """
+    Decorator for a constructor: its ``TypeError`` for an unknown argument says what to write instead.
+
+    :param init: Constructor; those of subclasses may pass arguments of any name on to it
+    :return: The constructor
+    """
+    own = signature(init).parameters
+
+    @wraps(init)
+    def explaining(*arguments: P.args, **named: P.kwargs) -> None:
+        unknown = next((name for name in named if name not in own), None)
+        if unknown is not None:
+            made, given = type(arguments[0]), list(own)[: len(arguments)]
+            known = [name for name in _names(made, explaining) if name not in given]
+            raise TypeError(f"{made.__name__}.__init__() got an unexpected keyword argument {_advice(unknown, known)}")
+        init(*arguments, **named)
+
+    return explaining
+
+
+def _names(made: type, last: Callable[..., None]) -> list[str]:
+    """Names of the arguments of a class and of those that it passes them on to, up to a last constructor."""
+    constructors: list[Callable[..., None]] = [
+        vars(parent)["__init__"] for parent in made.__mro__ if "__init__" in vars(parent)
+    ]
+    names: dict[str, None] = {}
+    for constructor in constructors[: constructors.index(last) + 1]:
+        parameters = signature(constructor).parameters.values()
+        names |= dict.fromkeys(one.name for one in parameters if one.kind is not Parameter.VAR_KEYWORD)
+    return [name for name in names if not name.startswith("_")]
+
+
+def _advice(unknown: str, known: list[str]) -> str:
+    """The unknown name, and what to write instead."""
+    if unknown in WHY_NOT:
+        return f"{unknown!r}: {WHY_NOT[unknown]}"
+    if nearest := get_close_matches(unknown.lower(), known, n=1):
+        return f"{unknown!r}, did you mean {nearest[0]!r}?"
+    return f"{unknown!r}, allowed are {', '.join(known)}"
