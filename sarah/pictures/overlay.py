@@ -16,7 +16,8 @@ from sarah.episode.push import push_words
 from sarah.episode.trace import Trace
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.robot.reading import Side, Vector
-from sarah.simulation.push_arrow import LINES_OF_TEXT, arrow, draw_arrow
+from sarah.robot.scale import Scale
+from sarah.simulation.push_arrow import LINES_OF_TEXT, STANDARD, arrow, draw_arrow
 from sarah.simulation.scenery import View
 
 INK, PALE_INK = "#1B1F24", "#5A6470"
@@ -37,15 +38,15 @@ class Overlay:
     :param view: view of the camera
     :param caption: text below the robot, of any length
     :param caption_end: pixels from the picture's left edge at which the caption must end
-    :param size: size of the robot, as a multiple of the standard robot's
+    :param scale: size of the robot
     """
 
-    def __init__(self, trace: Trace, view: View, caption: str, caption_end: float, size: float = 1.0) -> None:
+    def __init__(self, trace: Trace, view: View, caption: str, caption_end: float, scale: Scale = STANDARD) -> None:
         self._trace = trace
         self._pushes = trace.shown_pushes()
         self._view = view
         self._unit = view.height / LINES_OF_TEXT
-        self._size = size
+        self._scale = scale
         self._caption = wrapped(caption, _font(0.85 * self._unit), caption_end - 1.5 * self._unit)
 
     def draw(self, picture: Image.Image, tick: int) -> None:
@@ -116,9 +117,9 @@ class Overlay:
     def _draw_push(self, pen: ImageDraw.ImageDraw, tick: int, force: Vector) -> None:
         """Draw the push's arrow, and the force in newtons."""
         unit = self._unit
-        ends = arrow(self._trace.position[tick], np.array(force), self._size)
+        ends = arrow(self._trace.position[tick], np.array(force), self._scale)
         draw_arrow(pen, self._view, ends)
-        label = self._view.pixels(ends[:1] + self._size * LABEL_OFFSET @ self._view.axes)[0]
+        label = self._view.pixels(ends[:1] + self._scale.length * LABEL_OFFSET @ self._view.axes)[0]
         text = "\n".join(push_words(force))
         style: dict[str, Any] = {"font": _font(1.2 * unit, bold=True), "spacing": 0.3 * unit}
         left, top, right, bottom = pen.multiline_textbbox(tuple(label), text, **style)

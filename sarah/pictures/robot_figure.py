@@ -17,7 +17,7 @@ from sarah.pictures.colours import LEFT, RIGHT
 from sarah.pictures.style import COLUMN_WIDTH, own_style, save
 from sarah.robot.description import ANKLE_JOINTS, GROUPS, JOINT_AXES, JOINT_TYPES, RobotDescription
 from sarah.simulation.renderer import Renderer
-from sarah.simulation.scenery import Camera, View, size_of
+from sarah.simulation.scenery import Camera, View
 
 CAMERA = Camera(height=0.46, distance=2.3, yaw=152.0, pitch=-9.0)
 HEIGHT = 1.3 * COLUMN_WIDTH
@@ -120,11 +120,11 @@ def draw_robot(robot: RobotDescription, path: Path) -> list[Path]:
     """
     width, height = round(COLUMN_WIDTH * PIXELS_PER_INCH), round(HEIGHT * PIXELS_PER_INCH)
     pose = ((0.0, 0.0, robot.standing_height), (0.0, 0.0, 0.0, 1.0), dict.fromkeys(robot.limits, 0.0))
-    triad = size_of(robot) * (TRIAD + np.vstack((np.zeros(3), TRIAD_LENGTH * np.eye(3), TRIAD_NAMES * np.eye(3))))
+    triad = robot.scale.length * (TRIAD + np.vstack((np.zeros(3), TRIAD_LENGTH * np.eye(3), TRIAD_NAMES * np.eye(3))))
     renderer = Renderer(robot)
     try:
         seen = np.concatenate((renderer.corners(*pose), triad))
-        camera = CAMERA.scaled(size_of(robot)).seeing(seen, width, height)
+        camera = CAMERA.scaled(robot.scale.length).seeing(seen, width, height)
         picture = renderer.draw(*pose, width, height, camera)
     finally:
         renderer.close()

@@ -21,7 +21,7 @@ from sarah.robot.reading import ACTUATED_JOINTS, Vector
 from sarah.simulation.ground import LEVEL, Ground
 from sarah.simulation.push_arrow import arrow
 from sarah.simulation.renderer import Renderer
-from sarah.simulation.scenery import Camera, View, size_of
+from sarah.simulation.scenery import Camera, View
 
 SUFFIXES = (".mp4", ".gif")
 WIDTH, HEIGHT = 1024, 576
@@ -73,7 +73,7 @@ def frames(
     try:
         camera, feet_camera = cameras(trace, robot, renderer, ground)
         caption_end = WIDTH - FEET_WIDTH - 2 * FEET_MARGIN
-        overlay = Overlay(trace, View(WIDTH, HEIGHT, camera), caption, caption_end, size_of(robot))
+        overlay = Overlay(trace, View(WIDTH, HEIGHT, camera), caption, caption_end, robot.scale)
         for time in times:
             tick = trace.tick_at(time)
             pose = _pose(trace, tick)
@@ -100,7 +100,6 @@ def cameras(trace: Trace, robot: RobotDescription, renderer: Renderer, ground: G
     :param renderer: renderer of the robot
     :param ground: ground of the episode
     """
-    size = size_of(robot)
     seen, feet = [], []
     for time in frame_times(trace.time[0], trace.time[-1], POSES_PER_SECOND):
         tick = trace.tick_at(time)
@@ -109,9 +108,9 @@ def cameras(trace: Trace, robot: RobotDescription, renderer: Renderer, ground: G
     camera = renderer.camera._replace(ground=ground).seeing(np.concatenate(seen), WIDTH - 2 * TEXT_WIDTH, HEIGHT)
     shown = [(tick, force) for tick, force in enumerate(trace.shown_pushes()) if force is not None]
     if shown:
-        arrows = [arrow(trace.position[tick], np.array(force), size) for tick, force in shown]
+        arrows = [arrow(trace.position[tick], np.array(force), robot.scale) for tick, force in shown]
         camera = camera.seeing(np.concatenate(arrows), WIDTH, HEIGHT)
-    feet_camera = FEET_CAMERA.scaled(size)._replace(ground=ground)
+    feet_camera = FEET_CAMERA.scaled(robot.scale.length)._replace(ground=ground)
     return camera, feet_camera.seeing(np.concatenate(feet), FEET_WIDTH, FEET_HEIGHT)
 
 

@@ -5,27 +5,40 @@ from __future__ import annotations
 import numpy as np
 from PIL import ImageDraw
 
+from sarah.robot.scale import Scale
 from sarah.simulation.scenery import View
 
 PUSH = "#8C2B8F"
 """Colour of a push."""
 METRES_PER_NEWTON = 0.005
-"""Length of a push's arrow per force, in m/N, beside the standard robot; in proportion for other sizes."""
+"""Length of a push's arrow per force, in m/N, beside the standard robot; in proportion to weight and height of
+others."""
 LONGEST_ARROW = 1.0
 """Length of the longest arrow, in m, beside the standard robot: a force above 200 N is told by words alone."""
+STANDARD = Scale()
+"""Size of the standard robot."""
 LINES_OF_TEXT = 40
 """Height of a picture as a multiple of the unit in which the arrow's width is measured."""
 
 
-def arrow(head: np.ndarray, force: np.ndarray, size: float = 1.0) -> np.ndarray:
+def arrow_length(newtons: float, scale: Scale) -> float:
+    """Length of a push's arrow, in m.
+
+    :param newtons: force of the push, in N
+    :param scale: size of the robot
+    """
+    return scale.length * min(METRES_PER_NEWTON * newtons / scale.mass, LONGEST_ARROW)
+
+
+def arrow(head: np.ndarray, force: np.ndarray, scale: Scale = STANDARD) -> np.ndarray:
     """Head and tail of a push's arrow, as rows.
 
     :param head: position of the torso's centre, where the arrow ends, in m; shape (3,)
     :param force: force of the push, in N; shape (3,)
-    :param size: size of the robot, as a multiple of the standard robot's
+    :param scale: size of the robot
     """
     newtons = max(float(np.linalg.norm(force)), 1e-9)
-    length = size * min(METRES_PER_NEWTON * newtons, LONGEST_ARROW)
+    length = arrow_length(newtons, scale)
     return np.array((head, head - length / newtons * force))
 
 

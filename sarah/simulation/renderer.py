@@ -16,7 +16,7 @@ from sarah.simulation.bumps import LIGHT
 from sarah.simulation.engines import INSTALLATION, is_installed
 from sarah.simulation.push_arrow import arrow, draw_arrow
 from sarah.simulation.pybullet_world import PyBulletWorld, pybullet
-from sarah.simulation.scenery import STANDARD_CAMERA, Camera, View, floor, shaded, size_of
+from sarah.simulation.scenery import STANDARD_CAMERA, Camera, View, floor, shaded
 from sarah.simulation.simulator import Simulator
 from sarah.simulation.world import HoldsWorld
 
@@ -51,7 +51,7 @@ class Renderer(HoldsWorld):
         check_renderer()
         self._robot = robot
         self._samples = samples
-        self.camera = STANDARD_CAMERA.scaled(size_of(robot))
+        self.camera = STANDARD_CAMERA.scaled(robot.scale.length)
         """Camera for the standing robot, whatever its dimensions."""
         self._world = PyBulletWorld()
         self._client = self._world.client
@@ -221,7 +221,7 @@ class Renderer(HoldsWorld):
             return floor(width, height, (camera or self.camera)._replace(ground=simulator.ground)).copy()
         names = ACTUATED_JOINTS + ANKLE_JOINTS
         joints = dict(zip(names, simulator.joint_positions(names), strict=True))
-        ends = None if force is None else arrow(np.array(torso.position), np.array(force), size_of(self._robot))
+        ends = None if force is None else arrow(np.array(torso.position), np.array(force), self._robot.scale)
         if camera is None:
             seen = self.corners(torso.position, torso.orientation, joints)
             view = self.camera._replace(ground=simulator.ground)

@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 from PIL import Image, ImageDraw, ImageFilter
 
-from sarah.robot.description import RobotDescription, describe_robot
 from sarah.simulation.bumps import mesh, over
 from sarah.simulation.ground import LEVEL, Ground
 
@@ -74,14 +73,6 @@ class Camera(NamedTuple):
 
 
 STANDARD_CAMERA = Camera()
-
-
-def size_of(robot: RobotDescription) -> float:
-    """Size of a robot, as a multiple of the standard robot's.
-
-    :param robot: checked robot
-    """
-    return robot.standing_height / describe_robot().standing_height
 
 
 class View:

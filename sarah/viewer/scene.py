@@ -20,10 +20,11 @@ from sarah.episode.trace import Trace
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.robot.description import ANKLE_JOINTS, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, Vector
+from sarah.robot.scale import Scale
 from sarah.simulation.bumps import mesh
 from sarah.simulation.ground import LEVEL, Ground
-from sarah.simulation.push_arrow import LONGEST_ARROW, METRES_PER_NEWTON
-from sarah.simulation.scenery import Camera, View, size_of
+from sarah.simulation.push_arrow import STANDARD, arrow_length
+from sarah.simulation.scenery import Camera, View
 
 Colour = tuple[int, int, int]
 
@@ -109,7 +110,6 @@ class RobotScene:
         self.robot = robot
         self._model = yourdfpy.URDF.load(io.StringIO(robot.urdf), load_meshes=False)
         self._order = [(*ACTUATED_JOINTS, *ANKLE_JOINTS).index(name) for name in self._model.actuated_joint_names]
-        self._size = size_of(robot)
         self._torso = self._scene.add_frame("/robot", show_axes=False, position=(0.0, 0.0, robot.standing_height))
         self._robot = ViserUrdf(self._server, self._model, root_node_name="/robot")
         self._loads = [self._add_load(robot, *pad) for pad in zip(ANKLE_JOINTS, PAD_COLOURS, strict=True)]
@@ -118,10 +118,10 @@ class RobotScene:
     def _add_arrow(self, index: int, force: Vector) -> viser.ArrowsHandle:
         return self._scene.add_arrows(
             f"/push/{index}",
-            arrow(np.array(force), self._size)[None],
+            arrow(np.array(force), self.robot.scale)[None],
             channels(PUSH),
-            shaft_radius=0.015 * self._size,
-            head_radius=0.04 * self._size,
+            shaft_radius=0.015 * self.robot.scale.length,
+            head_radius=0.04 * self.robot.scale.length,
             visible=False,
         )
 
@@ -213,16 +213,16 @@ class RobotScene:
         camera.fov = math.radians(view.field_of_view)
 
 
-def arrow(force: np.ndarray, size: float = 1.0) -> np.ndarray:
+def arrow(force: np.ndarray, scale: Scale = STANDARD) -> np.ndarray:
     """Tail and tip of a push's arrow from the torso's centre, as rows.
 
     :param force: force of the push, in N; shape (3,)
-    :param size: size of the robot, as a multiple of the standard robot's
+    :param scale: size of the robot
     """
     newtons = float(np.linalg.norm(force))
     direction = force / newtons
-    length = min(METRES_PER_NEWTON * newtons, LONGEST_ARROW)
-    return -size * np.array(((ARROW_GAP + length) * direction, ARROW_GAP * direction))
+    gap = scale.length * ARROW_GAP
+    return -np.array(((gap + arrow_length(newtons, scale)) * direction, gap * direction))
 
 
 def first_camera(robot: RobotDescription, model: yourdfpy.URDF) -> Camera:
@@ -231,16 +231,16 @@ def first_camera(robot: RobotDescription, model: yourdfpy.URDF) -> Camera:
     :param robot: robot to show
     :param model: model of the robot, with all joints at zero
     """
-    size = size_of(robot)
     torso = np.array((0.0, 0.0, robot.standing_height))
     x, y, z = (model.scene.bounds + torso).T
     corners = np.array(list(itertools.product(x, y, z)))
-    drifted = [corners + offset for offset in itertools.product((-DRIFT, DRIFT), (-DRIFT, DRIFT), (0.0,))]
+    drift = robot.scale.length * DRIFT
+    drifted = [corners + offset for offset in itertools.product((-drift, drift), (-drift, drift), (0.0,))]
     turns = np.linspace(0.0, 2 * np.pi, 36, endpoint=False)
-    forces = PUSH_SEEN * np.stack((np.cos(turns), np.sin(turns), np.zeros_like(turns)), axis=1)
-    arrows = [torso + arrow(force, size) for force in forces]
+    forces = PUSH_SEEN * robot.scale.mass * np.stack((np.cos(turns), np.sin(turns), np.zeros_like(turns)), axis=1)
+    arrows = [torso + arrow(force, robot.scale) for force in forces]
     seen = np.concatenate((*drifted, *arrows, status_place(robot, model)[None]))
-    return FIRST_CAMERA.scaled(size).seeing(seen, *WINDOW)
+    return FIRST_CAMERA.scaled(robot.scale.length).seeing(seen, *WINDOW)
 
 
 def status_place(robot: RobotDescription, model: yourdfpy.URDF) -> np.ndarray:
@@ -250,7 +250,7 @@ def status_place(robot: RobotDescription, model: yourdfpy.URDF) -> np.ndarray:
     :param model: model of the robot, with all joints at zero
     """
     top = robot.standing_height + model.scene.bounds[1, 2]
-    return np.array((0.0, 0.0, top + STATUS_GAP * size_of(robot)))
+    return np.array((0.0, 0.0, top + STATUS_GAP * robot.scale.length))
 
 
 def describe_tick(trace: Trace, tick: int) -> tuple[str, str]:

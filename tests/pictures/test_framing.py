@@ -18,7 +18,7 @@ from sarah.pictures.video import FEET_HEIGHT, FEET_MARGIN, FEET_WIDTH, HEIGHT, W
 from sarah.robot.description import RobotDescription, describe_robot
 from sarah.robot.reading import Vector
 from sarah.simulation.renderer import Renderer
-from sarah.simulation.scenery import STANDARD_CAMERA, View, floor, size_of
+from sarah.simulation.scenery import STANDARD_CAMERA, View, floor
 
 pytestmark = NEEDS_PYBULLET
 
@@ -60,7 +60,7 @@ def poses(robot: RobotDescription) -> Iterator[tuple[Vector, tuple[float, float,
     for x, y in DRIFTS:
         yield (x, y, robot.standing_height), (0.0, 0.0, 0.0, 1.0)
     for roll, pitch in FALLS:
-        yield (0.2, 0.1, 0.2 * size_of(robot)), turned(roll, pitch)
+        yield (0.2, 0.1, 0.2 * robot.scale.length), turned(roll, pitch)
 
 
 def still(robot: RobotDescription, force: np.ndarray, drift: tuple[float, float] = (0.0, 0.0)) -> Trace:
@@ -125,7 +125,7 @@ def test_pushes_from_all_sides_are_in_the_picture(robot: RobotDescription, rende
             camera, feet = cameras(trace, robot, renderer)
             view = View(WIDTH, HEIGHT, camera)
             seen = renderer.corners(tuple(trace.position[0]), (0.0, 0.0, 0.0, 1.0), {})
-            ends = arrow(trace.position[0], force, size_of(robot))
+            ends = arrow(trace.position[0], force, robot.scale)
             assert is_within(view.pixels(np.concatenate((seen, ends))), WIDTH, HEIGHT)
             assert is_within(View(FEET_WIDTH, FEET_HEIGHT, feet).pixels(renderer.soles()), FEET_WIDTH, FEET_HEIGHT)
 

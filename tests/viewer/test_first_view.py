@@ -10,7 +10,7 @@ import yourdfpy
 
 from sarah.robot.description import describe_robot
 from sarah.runs.run_episodes import episode_of_parameters
-from sarah.simulation.scenery import View, size_of
+from sarah.simulation.scenery import View
 from sarah.viewer.page import Page
 from sarah.viewer.scene import FIRST_CAMERA, WINDOW, arrow, first_camera, status_place
 from sarah.viewer.server import serving
@@ -42,7 +42,7 @@ def test_robot_words_and_pushes_are_in_the_first_view(dimensions: dict[str, floa
     seen = [*shapes, status_place(robot, model)[None]]
     for turn in range(12):
         force = 150.0 * np.array((math.cos(turn * math.pi / 6), math.sin(turn * math.pi / 6), 0.0))
-        seen.append(torso + arrow(force, size_of(robot)))
+        seen.append(torso + arrow(force, robot.scale))
     pixels = view.pixels(np.concatenate(seen))
     assert (pixels > 0.0).all() and (pixels < WINDOW).all()
     assert np.ptp(pixels, axis=0).max() > 0.3 * WINDOW[1]  # and not far away
