@@ -1,0 +1,59 @@
+"""Masses, centres of mass and inertias of a standing robot, read off its URDF."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+
+from sarah.robot.description import RobotDescription
+
+
+class MassProperties(NamedTuple):
+    """Mass of a body, and how it is distributed.
+
+    :param mass: mass, in kg
+    :param centre: centre of mass, in m: x to the robot's right and y forward from the torso's centre, z up from the
+        floor; shape (3,)
+    :param inertia: inertia about the centre of mass, about these axes, in kg m^2; shape (3, 3)
+    """
+
+    mass: float
+    centre: np.ndarray
+    inertia: np.ndarray
+
+
+def links_of(robot: RobotDescription) -> dict[str, MassProperties]:
+    """Mass properties of each link of a robot that stands with all joints at zero, by the link's name.
+
+    :param robot: robot
+    """
+    import yourdfpy
+
+    model = yourdfpy.URDF.load(io.StringIO(robot.urdf), load_meshes=False)
+    links = {}
+    for name, link in model.link_map.items():
+        inertial, to_torso = link.inertial, model.get_transform(name, "torso")
+        place = to_torso if inertial.origin is None else to_torso @ inertial.origin
+        centre = place[:3, 3] + (0.0, 0.0, robot.standing_height)
+        links[name] = MassProperties(
+            float(inertial.mass), centre, place[:3, :3] @ np.array(inertial.inertia, float) @ place[:3, :3].T
+        )
+    return links
+
+
+def together(bodies: Iterable[MassProperties]) -> MassProperties:
+    """Mass properties of bodies that do not move against each other.
+
+    :param bodies: mass properties of each, at least one
+    """
+    every = list(bodies)
+    mass = sum(body.mass for body in every)
+    centre = sum(body.mass * body.centre for body in every) / mass
+    inertia = np.zeros((3, 3))
+    for body in every:
+        away = body.centre - centre
+        inertia += body.inertia + body.mass * (away @ away * np.eye(3) - np.outer(away, away))  # parallel axes
+    return MassProperties(mass, centre, inertia)
