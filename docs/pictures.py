@@ -14,11 +14,12 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE
 from sarah.episode.tasks.balance import TRAINED_STEPPING
+from sarah.pictures.dimension_figure import draw_dimensions
 from sarah.pictures.gait_figure import draw_gait_cycle, gait_cycle
 from sarah.pictures.robot_figure import draw_robot
 from sarah.pictures.state_machine_figure import draw_state_machine
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
-from sarah.robot.description import describe_robot
+from sarah.robot.description import default_dimensions, describe_robot
 from sarah.simulation.randomisation import Randomisation
 from sarah.simulation.terrain import Terrain
 
@@ -62,6 +63,7 @@ def main() -> None:
     write_video(frames(trace, robot, times, "SARAH stepping in place"), HERE / "stepping.gif")
     for name, terrain in GROUNDS.items():
         draw_ground_picture(terrain, HERE / f"{name}.png")
+    draw_dimensions(robot, default_dimensions(), HERE / "dimensions.png")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         draw_robot(robot, folder / "robot")

@@ -21,7 +21,8 @@ from sarah.episode.result import METRICS
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS, Task
 from sarah.episode.tick import Tick
-from sarah.robot.description import JOINT_TYPES, describe_robot
+from sarah.robot.description import DIMENSION_FACTOR, JOINT_TYPES, default_dimensions, describe_robot
+from sarah.robot.dimension_words import words
 from sarah.robot.reading import ACTUATED_JOINTS
 from sarah.runs import agent_settings
 from sarah.runs.agent_settings import AGENT_SETTINGS, LearnerSettings, NAFSettings
@@ -122,6 +123,16 @@ def parameters_page() -> Iterator[str]:
         yield f"## Task `{task.name}`\n"
         rows = ([p.name, f"{p.low:g} to {p.high:g}", p.unit, p.meaning, p.paper] for p in task.parameters)
         yield from table(["name", "range", "unit", "meaning", "paper"], rows)
+
+
+def dimensions_page() -> Iterator[str]:
+    """A table of the robot's dimensions."""
+    rows = []
+    for name, default in default_dimensions().items():
+        unit, meaning = words()[name]
+        low, high = default / DIMENSION_FACTOR, default * DIMENSION_FACTOR
+        rows.append([f"`{name}`", unit, f"{default:g}", f"{low:g} to {high:g}", meaning])
+    yield from table(["dimension", "unit", "default", "range", "meaning"], rows)
 
 
 def metrics_page() -> Iterator[str]:
@@ -317,6 +328,7 @@ def shown(value: Any) -> str:
 
 
 PAGES = {
+    "dimensions": dimensions_page,
     "settings": settings_page,
     "parameters": parameters_page,
     "metrics": metrics_page,

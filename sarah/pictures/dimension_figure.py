@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import io
+import itertools
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -15,15 +15,17 @@ from matplotlib.patheffects import withStroke
 
 from sarah.pictures.dimension_layout import LABEL_HEIGHT, TITLE_HEIGHT, Layout, Panel
 from sarah.pictures.dimension_marks import CENTRE_OF_MASS, Mark, Side, marks
-from sarah.pictures.link_shapes import outlines, points_around
-from sarah.pictures.style import own_style, save
+from sarah.pictures.link_shapes import outlines
+from sarah.pictures.style import own_style
 from sarah.robot.description import RobotDescription, default_dimensions
 from sarah.robot.dimension_words import words
-from sarah.robot.mass_properties import links_of, together
+from sarah.robot.standing import links_of, model_of, together
 
-WIDTH, HEIGHT = 7.6, 8.9
-"""Size of the figure, in inches; so are all lengths below."""
+WIDTH = 7.6
+"""Width of the figure, in inches; so are all lengths below."""
 FONT_SIZE = 7.0
+RESOLUTION = 200
+"""Pixels per inch."""
 GAP = 0.05
 SHORT = 0.13
 """Length below which an arrow has bars in place of heads."""
@@ -32,14 +34,17 @@ LIGHTER = 0.45
 FROM_FRONT = np.array(((-1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)))
 FROM_RIGHT = np.array(((0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)))
 FOOT = ("right_forefoot", "right_hindfoot")
-PANELS = {
-    "front": Panel("from the front", 0.0, 2.5, 3.8, 6.4, FROM_FRONT),
-    "side": Panel("from its right", 3.8, 2.5, 3.8, 6.4, FROM_RIGHT),
-    "foot side": Panel("right foot, from its right", 0.0, 0.0, 4.4, 2.5, FROM_RIGHT, FOOT),
-    "foot front": Panel("right foot, from the front", 4.4, 0.0, 3.2, 2.5, FROM_FRONT, FOOT),
-}
-SAME_SCALE = (("front", "side"), ("foot side",), ("foot front",))
-"""Names of the panels that share a scale."""
+ROWS = (
+    {
+        "front": Panel("from the front", 0.0, 3.8, 5.5, FROM_FRONT),
+        "side": Panel("from its right", 3.8, 3.8, 5.5, FROM_RIGHT),
+    },
+    {
+        "foot side": Panel("right foot, from its right", 0.0, 4.4, 1.6, FROM_RIGHT, FOOT),
+        "foot front": Panel("right foot, from the front", 4.4, 3.2, 1.6, FROM_FRONT, FOOT),
+    },
+)
+"""Panels by the name of their marks, row by row from the top."""
 
 
 class Name(NamedTuple):
@@ -53,36 +58,44 @@ class Name(NamedTuple):
     weight: str
 
 
-def draw_dimensions(robot: RobotDescription, dimensions: Mapping[str, float], path: Path) -> list[Path]:
+def draw_dimensions(robot: RobotDescription, dimensions: Mapping[str, float], path: Path) -> None:
     """Draw the standing robot with an arrow, an arc or a dot for each of its dimensions.
 
     :param robot: robot to draw
     :param dimensions: values of all its dimensions, in SI units; those that differ from their defaults are bold
-    :param path: path of the picture, without suffix
-    :return: the files, PNG and PDF
+    :param path: path of the picture, a PNG
     """
-    import yourdfpy
-
-    model = yourdfpy.URDF.load(io.StringIO(robot.urdf), load_meshes=False)
+    model = model_of(robot)
     centre = together(links_of(robot).values()).centre
     shown = marks(dimensions, centre)
-    names = _names(dimensions) | {CENTRE_OF_MASS: Name(f"{CENTRE_OF_MASS}\n{centre[2]:.4g} m high", "normal")}
-    layouts = {name: _layout(panel, shown[name], robot, model) for name, panel in PANELS.items()}
-    for group in SAME_SCALE:
-        for name in group:
-            layouts[name].fit(min(layouts[other].largest_scale for other in group))
+    names = _names(dimensions) | {CENTRE_OF_MASS: Name(f"{CENTRE_OF_MASS}\n{centre[2]:.3g} m high", "normal")}
+    rows = [[_layout(panel, shown[name], robot, model) for name, panel in row.items()] for row in ROWS]
+    height = 0.0
+    for row in reversed(rows):
+        height += _fit(row, height)
     with own_style({"axes.grid": False, "font.size": FONT_SIZE}):
-        figure = plt.figure(figsize=(WIDTH, HEIGHT))
-        axis = figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(0.0, WIDTH), ylim=(0.0, HEIGHT))
+        figure = plt.figure(figsize=(WIDTH, height))
+        axis = figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(0.0, WIDTH), ylim=(0.0, height))
         axis.axis("off")
-        for layout in layouts.values():
+        for layout in itertools.chain(*rows):
             _draw_robot(axis, layout, robot, model)
             for mark in layout.marks:
                 _draw_mark(axis, layout, mark)
             _name_beside(axis, layout, "left", names)
             _name_beside(axis, layout, "right", names)
             _name_along(axis, layout, names)
-        return save(figure, path)
+        figure.savefig(path, dpi=RESOLUTION)
+        plt.close(figure)
+
+
+def _fit(row: list[Layout], bottom: float) -> float:
+    """Fit a row of panels, and return its height; the whole robot has one scale in all of them, a foot its own."""
+    shared = min(layout.largest_scale for layout in row)
+    scales = [layout.largest_scale if layout.panel.links else shared for layout in row]
+    height = max(layout.height(scale) for layout, scale in zip(row, scales, strict=True))
+    for layout, scale in zip(row, scales, strict=True):
+        layout.fit(scale, bottom, height)
+    return height
 
 
 def _names(dimensions: Mapping[str, float]) -> dict[str, Name]:
@@ -106,9 +119,9 @@ def _layout(panel: Panel, shown: list[Mark], robot: RobotDescription, model: Any
 
 
 def _draw_robot(axis: Axes, layout: Layout, robot: RobotDescription, model: Any) -> None:
-    """Draw the links, the floor, and on an enlarged foot the spheres that touch it; other links end at the frame."""
+    """Draw the links, which end at the frame, the floor, and the contacts of an enlarged foot."""
     panel, (width, height) = layout.panel, layout.high - layout.low
-    axis.text(panel.left + panel.width / 2, panel.bottom + panel.height - TITLE_HEIGHT / 2, panel.title, ha="center")
+    axis.text(panel.left + panel.width / 2, layout.top + TITLE_HEIGHT / 2, panel.title, ha="center")
     frame = Rectangle(tuple(layout.low - GAP), width + 2 * GAP, height + 2 * GAP, transform=axis.transData)
     links = [link for link in model.link_map if not panel.links or link.startswith("right")]
     for outline in outlines(model, links, robot.standing_height, panel.axes):
@@ -117,14 +130,29 @@ def _draw_robot(axis: Axes, layout: Layout, robot: RobotDescription, model: Any)
         axis.add_patch(Polygon(places, facecolor=colour, edgecolor=0.7 * colour, linewidth=0.3)).set_clip_path(frame)
     y = layout.at(np.zeros((1, 2)))[0, 1]
     axis.plot((layout.low[0] - GAP, layout.high[0] + GAP), (y, y), color="0.3", linewidth=0.8)
+    right_soles = np.array(robot.standing_soles[len(robot.standing_soles) // 2 :])
+    for place in layout.at(right_soles @ panel.axes[:2].T) if panel.links else ():
+        axis.add_patch(
+            Circle(tuple(place), layout.scale * robot.contact_radius, fill=False, linewidth=0.5, linestyle=":")
+        )
 
 
 def _draw_mark(axis: Axes, layout: Layout, mark: Mark) -> None:
     places, seen = layout.places(mark), layout.at(mark.points)
     if len(places) == 1:
-        style = {"markersize": 2.5, "color": "black", "markeredgecolor": "white", "markeredgewidth": 0.5}
+        style: dict[str, Any] = {
+            "markersize": 2.5,
+            "color": "black",
+            "markeredgecolor": "white",
+            "markeredgewidth": 0.5,
+        }
         if mark.name == CENTRE_OF_MASS:
-            style = {"markersize": 7, "color": "black", "fillstyle": "left", "markerfacecoloralt": "white"}
+            style: dict[str, Any] = {
+                "markersize": 7,
+                "color": "black",
+                "fillstyle": "left",
+                "markerfacecoloralt": "white",
+            }
         axis.plot(*places[0], "o", **style)
         return
     thin = list(zip(seen, places, strict=True)) if mark.is_beside else []
@@ -149,8 +177,8 @@ def _name_beside(axis: Axes, layout: Layout, side: Side, names: Mapping[str, Nam
     named.sort(key=lambda pair: -pair[0][1])
     if not named:
         return
-    panel, steps = layout.panel, LABEL_HEIGHT * np.arange(len(named))
-    top, bottom = panel.bottom + panel.height - TITLE_HEIGHT - LABEL_HEIGHT / 2, panel.bottom + LABEL_HEIGHT / 2
+    steps = LABEL_HEIGHT * np.arange(len(named))
+    top, bottom = layout.top - LABEL_HEIGHT / 2, layout.names_at("bottom") + LABEL_HEIGHT / 2
     wanted = np.array([y for (_, y), _ in named]) + steps
     heights = np.clip(isotonic_regression(wanted, increasing=False).x, bottom + steps[-1], top) - steps
     x, gap, align = layout.names_at(side), *((GAP, "left") if side == "right" else (-GAP, "right"))
@@ -160,11 +188,12 @@ def _name_beside(axis: Axes, layout: Layout, side: Side, names: Mapping[str, Nam
 
 
 def _anchor(layout: Layout, mark: Mark) -> np.ndarray:
-    """Place to which a name's line leads: the middle of an arrow in a lane, and else the nearest end."""
+    """Place to which a name's line leads: the middle of an arrow in a lane, and else the nearest head."""
     places = layout.places(mark)
     if mark.is_beside:
         return np.asarray(places.mean(axis=0))
-    return np.asarray(max(places, key=lambda place: place[0] if mark.side == "right" else -place[0]))
+    heads = places[[0, -1]] if mark.has_two_heads else places[-1:]
+    return np.asarray(max(heads, key=lambda place: place[0] if mark.side == "right" else -place[0]))
 
 
 def _name_along(axis: Axes, layout: Layout, names: Mapping[str, Name]) -> None:
@@ -177,6 +206,4 @@ def _name_along(axis: Axes, layout: Layout, names: Mapping[str, Name]) -> None:
         (first, _), (last, _) = layout.places(mark)
         gap, align = (GAP, "left") if last > first else (-GAP, "right")
         name = names[mark.name]
-        axis.text(
-            first + gap, layout.names_at("bottom") - GAP, name.text, ha=align, va="top", weight=name.weight
-        )
+        axis.text(first + gap, layout.names_at("bottom") - GAP, name.text, ha=align, va="top", weight=name.weight)

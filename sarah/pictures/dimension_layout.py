@@ -9,7 +9,7 @@ import numpy as np
 
 from sarah.pictures.dimension_marks import Mark, Side
 
-LABEL_WIDTH, LABEL_HEIGHT, TITLE_HEIGHT = 0.87, 0.26, 0.25
+LABEL_WIDTH, LABEL_HEIGHT, TITLE_HEIGHT = 0.98, 0.26, 0.25
 """Sizes of names and titles, in inches; so are all lengths of a figure."""
 LANE = 0.16
 """Distance of arrows beside the robot from it, and from each other."""
@@ -21,18 +21,16 @@ class Panel(NamedTuple):
 
     :param title: title
     :param left: left edge
-    :param bottom: lower edge
     :param width: width
-    :param height: height
+    :param tallest: largest height of what is drawn
     :param axes: unit vectors to the right, up and towards the eye, as rows
     :param links: links that the panel shows from end to end; none stands for all
     """
 
     title: str
     left: float
-    bottom: float
     width: float
-    height: float
+    tallest: float
     axes: np.ndarray
     links: tuple[str, ...] = ()
 
@@ -49,20 +47,28 @@ class Layout:
         self.panel, self.marks = panel, marks
         self._lanes = {name: lane for side in SIDES for name, lane in self._lanes_on(side).items()}
         self._low, self._size = framed.min(axis=0), np.ptp(framed, axis=0)
-        left, right, top, bottom = map(self._room, SIDES)
-        self._free = np.array((panel.width - left - right, panel.height - TITLE_HEIGHT - top - bottom))
-        self._origin = np.array((panel.left + left, panel.bottom + bottom))
-        self.largest_scale = float((self._free / self._size).min())
+        self._free_width = panel.width - self._room("left") - self._room("right")
+        self.largest_scale = float(min(self._free_width / self._size[0], panel.tallest / self._size[1]))
         """Largest scale at which everything has room, in inches per m."""
-        self.fit(self.largest_scale)
 
-    def fit(self, scale: float) -> None:
-        """Draw at a scale: the robot stands in the middle of the lower edge.
+    def height(self, scale: float) -> float:
+        """Height that the panel needs.
 
         :param scale: scale, in inches per m
         """
-        self._scale = scale
-        self.low = self._origin + ((self._free[0] - scale * self._size[0]) / 2, 0.0)
+        names = LABEL_HEIGHT * max(len(self.on("left")), len(self.on("right")))
+        return TITLE_HEIGHT + max(names, self._room("top") + scale * float(self._size[1])) + self._room("bottom")
+
+    def fit(self, scale: float, bottom: float, height: float) -> None:
+        """Choose scale and place: the robot stands in the middle of the panel's lower edge.
+
+        :param scale: scale, in inches per m
+        :param bottom: lower edge of the panel
+        :param height: height of the panel
+        """
+        self.scale, self.top = scale, bottom + height - TITLE_HEIGHT
+        left = self.panel.left + self._room("left") + (self._free_width - scale * self._size[0]) / 2
+        self.low = np.array((left, bottom + self._room("bottom")))
         """Lower left corner of what is framed."""
         self.high = self.low + scale * self._size
         """Upper right corner of what is framed."""
@@ -79,7 +85,7 @@ class Layout:
 
         :param points: points to the right and up, in m; shape (n, 2)
         """
-        return np.asarray(self.low + self._scale * (points - self._low))
+        return np.asarray(self.low + self.scale * (points - self._low))
 
     def places(self, mark: Mark) -> np.ndarray:
         """Places of a mark's points; an arrow beside the robot is in its lane.
@@ -127,9 +133,10 @@ class Layout:
         return max((self._lanes.get(mark.name, 0) for mark in self.on(side)), default=0)
 
     def _room(self, side: Side) -> float:
-        """Room that lanes and names need on a side."""
-        size = LABEL_WIDTH if side in ("left", "right") else LABEL_HEIGHT
-        return LANE * (self._count(side) + 1) + (size if self.on(side) else 0.0)
+        """Room for lanes and names on a side; all robots stand at one height."""
+        if side in ("left", "right"):
+            return LANE * (self._count(side) + 1) + (LABEL_WIDTH if self.on(side) else 0.0)
+        return LANE * 2 + LABEL_HEIGHT if self.on(side) or side == "bottom" else 0.0
 
 
 def _across(side: Side) -> int:

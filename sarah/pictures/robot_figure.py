@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,8 +13,10 @@ from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 
 from sarah.pictures.colours import LEFT, RIGHT
+from sarah.pictures.link_shapes import points_around
 from sarah.pictures.style import COLUMN_WIDTH, own_style, save
 from sarah.robot.description import ANKLE_JOINTS, GROUPS, JOINT_AXES, JOINT_TYPES, RobotDescription
+from sarah.robot.standing import model_of
 from sarah.simulation.renderer import Renderer
 from sarah.simulation.scenery import Camera, View
 
@@ -52,9 +53,7 @@ def labels_of(robot: RobotDescription) -> list[Label]:
 
     :param robot: robot, which stands with all joints at zero
     """
-    import yourdfpy
-
-    model = yourdfpy.URDF.load(io.StringIO(robot.urdf), load_meshes=False)
+    model = model_of(robot)
     torso = np.array((0.0, 0.0, robot.standing_height))
 
     def at(link: str, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> np.ndarray:
@@ -85,18 +84,8 @@ def labels_of(robot: RobotDescription) -> list[Label]:
 
 def _box(shapes: Sequence[Any]) -> tuple[np.ndarray, np.ndarray]:
     """Lowest and highest corner of a box around a link's shapes, in its frame."""
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for shape in shapes:
-        if shape.geometry.box is not None:
-            half = np.array(shape.geometry.box.size) / 2
-        elif shape.geometry.cylinder is not None:
-            half = np.array((*2 * (shape.geometry.cylinder.radius,), shape.geometry.cylinder.length / 2))
-        else:
-            half = np.full(3, shape.geometry.sphere.radius)
-        place = shape.origin if shape.origin is not None else np.eye(4)
-        reach = np.abs(place[:3, :3]) @ half
-        low, high = np.minimum(low, place[:3, 3] - reach), np.maximum(high, place[:3, 3] + reach)
-    return low, high
+    points = np.concatenate([points_around(shape) for shape in shapes])
+    return points.min(axis=0), points.max(axis=0)
 
 
 def _joint(robot: RobotDescription, joint: str) -> str:

@@ -60,7 +60,7 @@ def test_help_lists_every_algorithm_of_the_table(command: str, option: str) -> N
     assert [algo for algo in (*AGENT_SETTINGS, "ninth") if algo not in described] == []
 
 
-@pytest.mark.parametrize("command", ["train", "eval", "figures", "compare", "transfer", "video", "view"])
+@pytest.mark.parametrize("command", ["train", "eval", "figures", "compare", "describe", "transfer", "video", "view"])
 def test_help_loads_nothing_slow(command: str) -> None:
     program = (
         f"import sys\nfrom sarah.cli.{command} import main\nsys.argv = ['command', '--help']\n"

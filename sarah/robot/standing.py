@@ -1,10 +1,12 @@
-"""Masses, centres of mass and inertias of a standing robot, read off its URDF."""
+"""The standing robot, all joints at zero: its links, their masses, centres of mass and inertias."""
 
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Iterable
-from typing import NamedTuple
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,14 +27,27 @@ class MassProperties(NamedTuple):
     inertia: np.ndarray
 
 
-def links_of(robot: RobotDescription) -> dict[str, MassProperties]:
-    """Mass properties of each link of a robot that stands with all joints at zero, by the link's name.
+def model_of(robot: RobotDescription) -> Any:
+    """Robot as yourdfpy reads it, which must not be changed.
 
     :param robot: robot
     """
+    return _model_of(robot.urdf)
+
+
+@lru_cache(maxsize=4)
+def _model_of(urdf: str) -> Any:
     import yourdfpy
 
-    model = yourdfpy.URDF.load(io.StringIO(robot.urdf), load_meshes=False)
+    return yourdfpy.URDF.load(io.StringIO(urdf), load_meshes=False)
+
+
+def links_of(robot: RobotDescription) -> dict[str, MassProperties]:
+    """Mass properties of each link of a standing robot, by the link's name.
+
+    :param robot: robot
+    """
+    model = model_of(robot)
     links = {}
     for name, link in model.link_map.items():
         inertial, to_torso = link.inertial, model.get_transform(name, "torso")
@@ -50,8 +65,8 @@ def together(bodies: Iterable[MassProperties]) -> MassProperties:
     :param bodies: mass properties of each, at least one
     """
     every = list(bodies)
-    mass = sum(body.mass for body in every)
-    centre = sum(body.mass * body.centre for body in every) / mass
+    mass = math.fsum(body.mass for body in every)
+    centre = np.sum([body.mass * body.centre for body in every], axis=0) / mass
     inertia = np.zeros((3, 3))
     for body in every:
         away = body.centre - centre

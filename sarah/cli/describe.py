@@ -1,0 +1,66 @@
+"""``sarah-describe``: a robot as a drawing, as numbers, and as a URDF."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
+from sarah.cli.options import named_task, run_command
+from sarah.cli.subjects import episode_of
+
+COMMAND = "sarah-describe"
+NAME = "sarah_robot"
+"""Name of the files, without suffix."""
+
+
+@dataclass(frozen=True)
+class DescribeOptions(EpisodeOptions):
+    """Show a robot: the default one, that of a training, or one of your dimensions.
+
+    ``sarah_robot.png`` shows it from the front and from the side with an arrow for each dimension; what is not the
+    default is bold. ``sarah_robot.urdf`` is the robot for other programs, and needs no other file. Masses, centre of
+    mass, inertias, limits and efforts are printed. Nothing is simulated.
+
+    Your dimensions are pairs of names and values in SI units: --episode.dimensions thigh_length 0.2 torso_mass 5
+
+    :param subject: whose robot to show: run folder, numbers separated by commas, or the name of shipped parameters; by
+        default the default robot
+    :param out: folder for drawing and URDF
+    """
+
+    subject: Annotated[
+        str | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN|NUMBERS|NAME", help_behavior_hint="(optional)")
+    ] = None
+    out: Annotated[Path, tyro.conf.arg(metavar="DIR", help_behavior_hint="(default: the current folder)")] = Path(".")
+
+
+def main() -> None:
+    """Run the command with the arguments of the process."""
+    run_command(COMMAND, _describe)
+
+
+def _describe(arguments: Sequence[str]) -> None:
+    options = parse_episode_options(COMMAND, arguments, DescribeOptions())
+    if options.subject is not None:
+        episode_of(options.subject, None, named_task(options.task))  # refuses what there is not
+    from sarah.cli.describe_text import lines_of
+    from sarah.files import check_file, make_folder, replace_text
+    from sarah.pictures.dimension_figure import draw_dimensions
+    from sarah.robot.description import default_dimensions, describe_robot
+
+    dimensions = default_dimensions() | dict(options.episode.dimensions)
+    robot = describe_robot(options.episode.dimensions)
+    make_folder(options.out)
+    picture, urdf = options.out / f"{NAME}.png", options.out / f"{NAME}.urdf"
+    for file in (picture, urdf):
+        check_file(file)
+    print("\n".join(lines_of(robot, dimensions, options.episode.payload)))
+    replace_text(urdf, robot.urdf)
+    draw_dimensions(robot, dimensions, picture)
+    for file in (picture, urdf):
+        print(file)
