@@ -140,20 +140,7 @@ def _draw_robot(axis: Axes, layout: Layout, robot: RobotDescription, model: Any)
 def _draw_mark(axis: Axes, layout: Layout, mark: Mark) -> None:
     places, seen = layout.places(mark), layout.at(mark.points)
     if len(places) == 1:
-        style: dict[str, Any] = {
-            "markersize": 2.5,
-            "color": "black",
-            "markeredgecolor": "white",
-            "markeredgewidth": 0.5,
-        }
-        if mark.name == CENTRE_OF_MASS:
-            style: dict[str, Any] = {
-                "markersize": 7,
-                "color": "black",
-                "fillstyle": "left",
-                "markerfacecoloralt": "white",
-            }
-        axis.plot(*places[0], "o", **style)
+        _draw_dot(axis, places[0], mark.name)
         return
     thin = list(zip(seen, places, strict=True)) if mark.is_beside else []
     thin += [(centre, end) for centre in layout.at(mark.centre) for end in (places[0], places[-1])]
@@ -167,6 +154,13 @@ def _draw_mark(axis: Axes, layout: Layout, mark: Mark) -> None:
     arrow = {"arrowstyle": head, "linewidth": 0.7, "color": "black", "shrinkA": 0, "shrinkB": 0}
     for last, before in [(-1, -2), (0, 1)][: 1 + mark.has_two_heads]:
         axis.annotate("", places[last], places[before], arrowprops=arrow)
+
+
+def _draw_dot(axis: Axes, place: np.ndarray, name: str) -> None:
+    if name == CENTRE_OF_MASS:
+        axis.plot(*place, "o", markersize=7, color="black", fillstyle="left", markerfacecoloralt="white")
+    else:
+        axis.plot(*place, "o", markersize=2.5, color="black", markeredgecolor="white", markeredgewidth=0.5)
 
 
 def _name_beside(axis: Axes, layout: Layout, side: Side, names: Mapping[str, Name]) -> None:
