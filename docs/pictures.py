@@ -19,7 +19,8 @@ from sarah.pictures.gait_figure import draw_gait_cycle, gait_cycle
 from sarah.pictures.robot_figure import draw_robot
 from sarah.pictures.state_machine_figure import draw_state_machine
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
-from sarah.robot.description import default_dimensions, describe_robot
+from sarah.robot.description import describe_robot
+from sarah.robot.dimensions import default_dimensions
 from sarah.simulation.randomisation import Randomisation
 from sarah.simulation.terrain import Terrain
 

@@ -21,8 +21,8 @@ from sarah.episode.result import METRICS
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS, Task
 from sarah.episode.tick import Tick
-from sarah.robot.description import DIMENSION_FACTOR, JOINT_TYPES, default_dimensions, describe_robot
-from sarah.robot.dimension_words import words
+from sarah.robot.description import JOINT_TYPES, describe_robot
+from sarah.robot.dimensions import known_dimensions
 from sarah.robot.reading import ACTUATED_JOINTS
 from sarah.runs import agent_settings
 from sarah.runs.agent_settings import AGENT_SETTINGS, LearnerSettings, NAFSettings
@@ -127,11 +127,10 @@ def parameters_page() -> Iterator[str]:
 
 def dimensions_page() -> Iterator[str]:
     """A table of the robot's dimensions."""
-    rows = []
-    for name, default in default_dimensions().items():
-        unit, meaning = words()[name]
-        low, high = default / DIMENSION_FACTOR, default * DIMENSION_FACTOR
-        rows.append([f"`{name}`", unit, f"{default:g}", f"{low:g} to {high:g}", meaning])
+    rows = (
+        [f"`{name}`", known.unit, f"{known.default:g}", f"{known.low:g} to {known.high:g}", known.meaning]
+        for name, known in known_dimensions().items()
+    )
     yield from table(["dimension", "unit", "default", "range", "meaning"], rows)
 
 

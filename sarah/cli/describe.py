@@ -9,9 +9,10 @@ from typing import Annotated
 
 import tyro
 
-from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
+from sarah.cli.episode_options import EpisodeOptions, parse_episode_options, with_engine
 from sarah.cli.options import named_task, run_command
 from sarah.cli.subjects import episode_of
+from sarah.episode.tasks import STEPPING
 
 COMMAND = "sarah-describe"
 NAME = "sarah_robot"
@@ -46,21 +47,23 @@ def main() -> None:
 
 def _describe(arguments: Sequence[str]) -> None:
     options = parse_episode_options(COMMAND, arguments, DescribeOptions())
+    task = named_task(options.task)
     if options.subject is not None:
-        episode_of(options.subject, None, named_task(options.task))  # refuses what there is not
+        task = episode_of(options.subject, None, task).spec.task
     from sarah.cli.describe_text import lines_of
     from sarah.files import check_file, make_folder, replace_text
     from sarah.pictures.dimension_figure import draw_dimensions
-    from sarah.robot.description import default_dimensions, describe_robot
+    from sarah.robot.description import describe_robot
+    from sarah.robot.dimensions import all_dimensions
 
-    dimensions = default_dimensions() | dict(options.episode.dimensions)
-    robot = describe_robot(options.episode.dimensions)
+    config = with_engine(options.episode, options.engine)
+    robot = describe_robot(config.dimensions)
     make_folder(options.out)
     picture, urdf = options.out / f"{NAME}.png", options.out / f"{NAME}.urdf"
     for file in (picture, urdf):
         check_file(file)
-    print("\n".join(lines_of(robot, dimensions, options.episode.payload)))
+    print("\n".join(lines_of(config, with_engine((task or STEPPING).episode, config.engine))))
     replace_text(urdf, robot.urdf)
-    draw_dimensions(robot, dimensions, picture)
-    for file in (picture, urdf):
-        print(file)
+    draw_dimensions(robot, all_dimensions(config.dimensions), picture)
+    print(picture)
+    print(urdf)

@@ -2,31 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
-from sarah.robot.description import JOINT_TYPES, RobotDescription, default_dimensions
-from sarah.robot.dimension_words import words
+from sarah.episode.settings import EpisodeConfig
+from sarah.robot.description import JOINT_TYPES, RobotDescription, describe_robot
+from sarah.robot.dimensions import all_dimensions, known_dimensions
 from sarah.robot.standing import MassProperties, links_of, together
+from sarah.runs.config_files import settings_by_key
 
 
-def lines_of(robot: RobotDescription, dimensions: Mapping[str, float], payload: float) -> Iterator[str]:
-    """Lines about a robot.
+def lines_of(config: EpisodeConfig, usual: EpisodeConfig) -> Iterator[str]:
+    """Lines about a robot and about the settings that go with it.
 
-    :param robot: robot, which stands with all joints at zero
-    :param dimensions: values of all its dimensions, in SI units
-    :param payload: mass of what its torso carries, in kg
+    :param config: settings of the robot's episodes
+    :param usual: settings of the default robot
     """
+    robot = describe_robot(config.dimensions)
     links = links_of(robot)
     whole = together(links.values())
-    carried = f", and a payload of {payload:g} kg, which no number below has" if payload else ""
+    carried = f", and a payload of {config.payload:g} kg, which no number below has" if config.payload else ""
     centre = f"{_text(whole.centre[2])} m over the floor, {_text(whole.centre[1])} m before the torso's centre"
     yield f"{'mass':<17}{whole.mass:.5g} kg{carried}"
     yield f"{'standing height':<17}{robot.standing_height:.4g} m from the floor to the torso's centre"
     yield f"{'centre of mass':<17}{centre}, standing with all joints at zero"
     yield ""
-    yield from _changed(dimensions)
+    yield from _given(config)
     yield from _aligned(
         ("link", "mass", "centre: x", "y", "z", "inertia: xx", "yy", "zz"),
         ("", "kg", "m", "m", "m", "kg m²", "kg m²", "kg m²"),
@@ -37,19 +40,39 @@ def lines_of(robot: RobotDescription, dimensions: Mapping[str, float], payload: 
     yield ""
     yield from _aligned(("joint", "lowest", "highest", "", "effort", ""), *_joints(robot))
     yield ""
+    yield from _following(config, usual)
 
 
-def _changed(dimensions: Mapping[str, float]) -> Iterator[str]:
-    """Dimensions that differ from the defaults, and an empty line; nothing if there are none."""
-    defaults, meanings = default_dimensions(), words()
+def _given(config: EpisodeConfig) -> Iterator[str]:
+    """Dimensions that were given, and an empty line; nothing if there are none."""
+    known = known_dimensions()
     rows = [
-        (name, _text(value), _text(defaults[name]), meanings[name][0])
-        for name, value in dimensions.items()
-        if value != defaults[name]
+        (name, _text(value), _text(known[name].default), known[name].unit) for name, value in config.dimensions.items()
     ]
     if rows:
         yield from _aligned(("dimension", "value", "default", ""), *rows)
         yield ""
+
+
+def _following(config: EpisodeConfig, usual: EpisodeConfig) -> Iterator[str]:
+    """Settings that go with the robot's size, and an empty line; nothing if it has that of the default robot."""
+    default, ruled, own = map(_settings, (usual, usual.for_robot(config.dimensions), config))
+    rows = [
+        (name, _text(own[name]), _text(default[name]), "" if own[name] == value else f"the rule gives {_text(value)}")
+        for name, value in ruled.items()
+        if value != default[name] and name not in config.dimensions
+    ]
+    if rows:
+        length, mass, width = config.scale
+        yield f"Follows from length ({length:.3g} times the default), mass ({mass:.3g}) and hip offset ({width:.3g}):"
+        yield from _aligned(("setting", "value", "default", ""), *rows)
+        yield ""
+
+
+def _settings(config: EpisodeConfig) -> dict[str, Any]:
+    """Settings by their names as options, and dimensions by theirs."""
+    found = {f"episode.{name.replace('_', '-')}": value for name, value in settings_by_key(config).items()}
+    return all_dimensions(found.pop("episode.dimensions")) | found
 
 
 def _numbers(body: MassProperties) -> Iterator[str]:
@@ -63,8 +86,10 @@ def _joints(robot: RobotDescription) -> Iterator[Sequence[str]]:
         yield joint, _text(low), _text(high), unit, *effort
 
 
-def _text(value: float) -> str:
-    """Number of four digits, without what only rounding has left of zero."""
+def _text(value: Any) -> str:
+    """Number of four digits, without what only rounding has left of zero, or the ends of a range."""
+    if isinstance(value, list):
+        return " to ".join(map(_text, dict.fromkeys(value)))
     return f"{0.0 if abs(value) < 1e-12 else value:.4g}"
 
 

@@ -17,8 +17,8 @@ from sarah.pictures.dimension_layout import LABEL_HEIGHT, TITLE_HEIGHT, Layout, 
 from sarah.pictures.dimension_marks import CENTRE_OF_MASS, Mark, Side, marks
 from sarah.pictures.link_shapes import outlines
 from sarah.pictures.style import own_style
-from sarah.robot.description import RobotDescription, default_dimensions
-from sarah.robot.dimension_words import words
+from sarah.robot.description import RobotDescription
+from sarah.robot.dimensions import known_dimensions
 from sarah.robot.standing import links_of, model_of, together
 
 WIDTH = 7.6
@@ -99,11 +99,11 @@ def _fit(row: list[Layout], bottom: float) -> float:
 
 
 def _names(dimensions: Mapping[str, float]) -> dict[str, Name]:
-    defaults, units = default_dimensions(), {name: unit for name, (unit, _) in words().items()}
-    signs = dict.fromkeys(("abduction_limit", "flexion_limit"), "±")
+    known, signs = known_dimensions(), dict.fromkeys(("abduction_limit", "flexion_limit"), "±")
     return {
         name: Name(
-            f"{name}\n{signs.get(name, '')}{value:.4g} {units[name]}", "normal" if value == defaults[name] else "bold"
+            f"{name}\n{signs.get(name, '')}{value:.4g} {known[name].unit}",
+            "normal" if value == known[name].default else "bold",
         )
         for name, value in dimensions.items()
     }

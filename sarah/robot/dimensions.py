@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Mapping
 from functools import lru_cache
 from importlib import resources
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 from sarah.errors import DescriptionError, shortened, unknown_name
 from sarah.number import is_number, plain
@@ -17,12 +19,45 @@ LARGEST_FACTOR = {"mass": 100.0}
 mistaken the unit."""
 OTHERS_LARGEST_FACTOR = 10.0
 """The same for all other dimensions."""
-SCALED = {"hip_effort": "Nm", "leg_effort": "N", "ankle_damping": "Nms/rad"}
-"""Units of the dimensions whose defaults go with the length and the mass of the robot."""
+SCALED = ("hip_effort", "leg_effort", "ankle_damping")
+"""Dimensions whose defaults go with the length and the mass of the robot."""
 XACRO = "sarah.urdf.xacro"
 """Name of the file, in the package ``sarah.urdf``."""
 
-_NAMESPACE = "{http://www.ros.org/wiki/xacro}"
+_ARGUMENT = "{http://www.ros.org/wiki/xacro}arg"
+
+
+class Dimension(NamedTuple):
+    """What can be set of the robot.
+
+    :param default: value of the default robot
+    :param unit: SI unit of the values
+    :param meaning: what it is, in a few words
+    :param low: lowest value
+    :param high: highest value
+    """
+
+    default: float
+    unit: str
+    meaning: str
+    low: float
+    high: float
+
+
+@lru_cache(maxsize=1)
+def known_dimensions() -> Mapping[str, Dimension]:
+    """Every dimension of the robot by its name, in the order of the xacro, whose comments are units and meanings."""
+    text = resources.files("sarah.urdf").joinpath(XACRO).read_text(encoding="utf-8")
+    parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
+    elements = list(ElementTree.fromstring(text, parser))
+    dimensions = {}
+    for element, comment in itertools.pairwise(elements):
+        if element.tag == _ARGUMENT:
+            name, default = element.attrib["name"], float(element.attrib["default"])
+            factor = LARGEST_FACTOR.get(name.rpartition("_")[2], OTHERS_LARGEST_FACTOR)
+            unit, _, meaning = (comment.text or "").strip().partition(": ")
+            dimensions[name] = Dimension(default, unit, meaning, default / factor, default * factor)
+    return MappingProxyType(dimensions)
 
 
 def default_dimensions() -> dict[str, float]:
@@ -30,23 +65,7 @@ def default_dimensions() -> dict[str, float]:
 
     :return: the xacro's arguments, in the order of the file
     """
-    return dict(_default_dimensions())
-
-
-@lru_cache(maxsize=1)
-def _default_dimensions() -> tuple[tuple[str, float], ...]:
-    root = ElementTree.fromstring(resources.files("sarah.urdf").joinpath(XACRO).read_text(encoding="utf-8"))
-    return tuple((arg.attrib["name"], float(arg.attrib["default"])) for arg in root.iter(f"{_NAMESPACE}arg"))
-
-
-def range_of(name: str) -> tuple[float, float]:
-    """Lowest and highest value of a dimension.
-
-    :param name: name of the dimension, one of :func:`default_dimensions`
-    """
-    default = default_dimensions()[name]
-    factor = LARGEST_FACTOR.get(name.rpartition("_")[2], OTHERS_LARGEST_FACTOR)
-    return default / factor, default * factor
+    return {name: dimension.default for name, dimension in known_dimensions().items()}
 
 
 def check_dimensions(dimensions: Mapping[str, Any]) -> dict[str, float]:
@@ -56,17 +75,17 @@ def check_dimensions(dimensions: Mapping[str, Any]) -> dict[str, float]:
     :return: the same, in floats
     :raises DescriptionError: for an unknown name, or a value that is not a number near the default
     """
-    allowed = default_dimensions()
+    known = known_dimensions()
     checked = {}
     for name, given in dimensions.items():
         value = plain(given)
-        if name not in allowed:
-            raise DescriptionError(unknown_name("robot dimension", str(name), allowed))
-        low, high = range_of(name)
+        if name not in known:
+            raise DescriptionError(unknown_name("robot dimension", str(name), known))
+        default, unit, meaning, low, high = known[name]
         if not is_number(value) or not low <= value <= high:
             raise DescriptionError(
-                f"robot dimension {name!r} must be a number between {low:g} and {high:g}, not {shortened(value)} "
-                f"(default: {allowed[name]:g}; metres, kilograms, seconds and radians)"
+                f"robot dimension {name!r} must be a number between {low:g} and {high:g} {unit}, not "
+                f"{shortened(value)} (default: {default:g} {unit}; {meaning})"
             )
         checked[str(name)] = float(value)
     return checked
@@ -90,5 +109,6 @@ def all_dimensions(dimensions: Mapping[str, float]) -> dict[str, float]:
     :param dimensions: values of some of :func:`default_dimensions`; the others keep their defaults, of which efforts
         and ankle damping go with the length and the mass of the robot
     """
-    scale, defaults = scale_of(dimensions), default_dimensions()
-    return {**defaults, **{name: defaults[name] * scale.factor(unit) for name, unit in SCALED.items()}, **dimensions}
+    scale, known = scale_of(dimensions), known_dimensions()
+    scaled = {name: known[name].default * scale.factor(known[name].unit) for name in SCALED}
+    return {**default_dimensions(), **scaled, **dimensions}

@@ -63,7 +63,7 @@ def test_it_needs_neither_an_engine_nor_a_learner(tmp_path: Path) -> None:
     [
         ("nobody", "'nobody' is neither a run folder, nor numbers"),
         ("--episode.dimensions tigh_length 0.3", "did you mean 'thigh_length'"),
-        ("--episode.dimensions thigh_length 9", "'thigh_length' must be a number between 0.033 and 3.3"),
+        ("--episode.dimensions thigh_length 9", "'thigh_length' must be a number between 0.033 and 3.3 m, not 9.0 (default: 0.33 m; distance from"),
         ("--episode.dimensions hinge_height 0.005", "the foot plates must lie above the soles"),
     ],
 )

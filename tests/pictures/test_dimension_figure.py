@@ -11,7 +11,8 @@ from matplotlib.transforms import Bbox
 
 from sarah.pictures.dimension_figure import draw_dimensions
 from sarah.pictures.dimension_marks import CENTRE_OF_MASS, marks
-from sarah.robot.description import default_dimensions, describe_robot
+from sarah.robot.description import describe_robot
+from sarah.robot.dimensions import default_dimensions
 
 SMALL = {name: 0.4 * value for name, value in default_dimensions().items() if not name.endswith("mass")}
 STILTS = {"thigh_length": 1.5, "shank_length": 2.5, "sole_half_width": 0.02}
