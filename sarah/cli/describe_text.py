@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from sarah.episode.reward import natural_step_frequency
 from sarah.episode.settings import EpisodeConfig
 from sarah.robot.description import JOINT_TYPES, RobotDescription, describe_robot
 from sarah.robot.dimensions import all_dimensions, known_dimensions
@@ -28,6 +29,7 @@ def lines_of(config: EpisodeConfig, usual: EpisodeConfig) -> Iterator[str]:
     yield f"{'mass':<17}{whole.mass:.5g} kg{carried}"
     yield f"{'standing height':<17}{robot.standing_height:.4g} m from the floor to the torso's centre"
     yield f"{'centre of mass':<17}{centre}, standing with all joints at zero"
+    yield f"{'step frequency':<17}{natural_step_frequency(config):.3g} steps per second by itself"
     yield ""
     yield from _given(config)
     yield from _aligned(

@@ -1,51 +1,73 @@
 """``sarah-describe``, as a user runs it."""
 
-import io
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from laboratory import need
 from terminal import SHORT, run
 
+from sarah.cli.describe_text import lines_of
+from sarah.episode.settings import EpisodeConfig
+
 DIMENSIONS = ("--episode.dimensions", "thigh_length", "0.2", "shank_length", "0.25")
 
 
-def test_it_shows_the_default_robot_and_another(tmp_path: Path) -> None:
-    usual, other = (
-        run("sarah-describe", "--out", name, *dimensions, cwd=tmp_path)
-        for name, dimensions in (("usual", ()), ("other", DIMENSIONS))
-    )
-    assert usual.stderr == other.stderr == ""
-    for text in ("mass             30 kg", "standing height  0.84 m", "centre of mass   0.4877 m", "left_hip_flexion"):
-        assert text in usual.stdout
-    assert "standing height  0.65 m" in other.stdout and "thigh_length" not in usual.stdout
-    assert ["thigh_length", "0.2", "0.33", "m"] in [line.split() for line in other.stdout.splitlines()]
-    assert other.stdout.splitlines()[-2:] == ["other/sarah_robot.png", "other/sarah_robot.urdf"]
-    files = {path.name for path in (tmp_path / "other").iterdir()}
-    assert files == {"sarah_robot.png", "sarah_robot.urdf"}
+@pytest.fixture(scope="module")
+def described(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """A folder with the files of a robot, and what was printed of it."""
+    folder = tmp_path_factory.mktemp("robot")
+    process = run("sarah-describe", *DIMENSIONS, "--out", "other", cwd=folder)
+    assert process.returncode == 0 and process.stderr == ""
+    return folder / "other", process.stdout
 
 
-def test_other_tools_load_the_urdf_from_the_file_alone(tmp_path: Path) -> None:
-    run("sarah-describe", *DIMENSIONS, cwd=tmp_path)
-    text = (tmp_path / "sarah_robot.urdf").read_text()
+def test_it_shows_a_robot_of_other_dimensions(described: tuple[Path, str]) -> None:
+    folder, text = described
+    assert "standing height  0.65 m" in text and "left_hip_flexion" in text
+    assert ["thigh_length", "0.2", "0.33", "m"] in [line.split() for line in text.splitlines()]
+    assert text.splitlines()[-2:] == ["other/sarah_robot.png", "other/sarah_robot.urdf"]
+    assert {path.name for path in folder.iterdir()} == {"sarah_robot.png", "sarah_robot.urdf"}
+
+
+def test_other_tools_load_the_urdf_from_the_file_alone(described: tuple[Path, str]) -> None:
+    file = str(described[0] / "sarah_robot.urdf")
     import yourdfpy
 
-    robot = yourdfpy.URDF.load(io.StringIO(text))
+    robot = yourdfpy.URDF.load(file)
     assert robot.validate() and robot.get_transform("left_forefoot", "left_hip")[2, 3] == pytest.approx(-0.45)
     need("mujoco")
     import mujoco
 
-    assert mujoco.MjModel.from_xml_path(str(tmp_path / "sarah_robot.urdf")).njnt == 10
+    assert mujoco.MjModel.from_xml_path(file).njnt == 10
 
 
 def test_it_shows_the_robot_of_a_training(tmp_path: Path) -> None:
     short = ("--task", "stepping", "--algo", "random", "--episodes", "2", "--run-dir", "mine", *SHORT)
     assert run("sarah-train", *short, *DIMENSIONS, cwd=tmp_path).returncode == 0
-    shown = run("sarah-describe", "mine", cwd=tmp_path).stdout
-    assert shown == run("sarah-describe", *DIMENSIONS, cwd=tmp_path).stdout
+    text = run("sarah-describe", "mine", cwd=tmp_path).stdout
+    assert "standing height  0.65 m" in text and "\nthigh_length" in text
+
+
+def test_the_default_robot_has_no_rows_about_others() -> None:
+    lines = list(lines_of(EpisodeConfig(), EpisodeConfig()))
+    for text in ("mass             30 kg", "standing height  0.84 m"):
+        assert any(line.startswith(text) for line in lines)
+    assert not any("default" in line for line in lines)
+
+
+def test_it_says_what_follows_from_length_and_mass_and_what_was_set_by_hand() -> None:
+    usual = EpisodeConfig()
+    config = usual.for_robot({"torso_mass": 38.0})
+    config = replace(config, controller=replace(config.controller, pad_threshold=40.0, largest_blow=50.0))
+    text = "\n".join(lines_of(config, usual))
+    rows = {line.split()[0]: line.split()[1:] for line in text.split("Follows from ")[1].splitlines() if line}
+    assert rows["leg_effort"] == ["2000", "1000"] and rows["hip_effort"] == ["300", "150"]
+    assert rows["episode.controller.pad-threshold"] == ["40", "30", "the", "rule", "gives", "60"]
+    assert "episode.controller.leg-speed" not in rows and "episode.controller.largest-blow" not in rows
 
 
 def test_it_needs_neither_an_engine_nor_a_learner(tmp_path: Path) -> None:
@@ -63,7 +85,10 @@ def test_it_needs_neither_an_engine_nor_a_learner(tmp_path: Path) -> None:
     [
         ("nobody", "'nobody' is neither a run folder, nor numbers"),
         ("--episode.dimensions tigh_length 0.3", "did you mean 'thigh_length'"),
-        ("--episode.dimensions thigh_length 9", "'thigh_length' must be a number between 0.033 and 3.3 m, not 9.0 (default: 0.33 m; distance from"),
+        (
+            "--episode.dimensions thigh_length 9",
+            "'thigh_length' must be a number between 0.033 and 3.3 m, not 9.0 (default: 0.33 m; distance from",
+        ),
         ("--episode.dimensions hinge_height 0.005", "the foot plates must lie above the soles"),
     ],
 )

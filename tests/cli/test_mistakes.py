@@ -23,7 +23,7 @@ MISTAKES = {
         ("race --best-known high", "--best-known"),
         ("race --best-known nan", "best-known must be between 0.01 and 2, not nan"),
         ("race --engine bullet", "unknown engine 'bullet', did you mean 'pybullet'?"),
-        ("race --episode.dimensions thigh_length 33", "must be a number between 0.033 and 3.3, not 33.0"),
+        ("race --episode.dimensions thigh_length 33", "must be a number between 0.033 and 3.3 m, not 33.0"),
         ("race --episode.push.newtons 1 2", "--episode.push.newtons is for --task balance"),
         ("race --episodes 0", "episodes must be between 1 and 1000000, not 0"),
         ("race --simulations 0", "episodes must be between 1 and 1000000, not 0"),

@@ -12,9 +12,9 @@ from matplotlib.transforms import Bbox
 from sarah.pictures.dimension_figure import draw_dimensions
 from sarah.pictures.dimension_marks import CENTRE_OF_MASS, marks
 from sarah.robot.description import describe_robot
-from sarah.robot.dimensions import default_dimensions
+from sarah.robot.dimensions import all_dimensions, default_dimensions
 
-SMALL = {name: 0.4 * value for name, value in default_dimensions().items() if not name.endswith("mass")}
+SMALL = {name: 0.4 * value for name, value in default_dimensions().items()}
 STILTS = {"thigh_length": 1.5, "shank_length": 2.5, "sole_half_width": 0.02}
 DWARF = {"thigh_length": 0.05, "shank_length": 0.05, "torso_height": 0.9, "hip_drop": 0.45, "flexion_limit": 2.5}
 FEET = {"forefoot_contact": 0.6, "hindfoot_contact": 0.03, "ankle_up_limit": 1.4, "hinge_height": 0.05}
@@ -23,7 +23,7 @@ ROBOTS: list[dict[str, float]] = [{}, SMALL, STILTS, DWARF, FEET]
 
 @pytest.mark.parametrize("changed", ROBOTS)
 def test_every_dimension_is_marked_and_each_arrow_is_as_long_as_it_says(changed: dict[str, float]) -> None:
-    dimensions = default_dimensions() | changed
+    dimensions = all_dimensions(changed)
     shown = [mark for panel in marks(dimensions, np.zeros(3)).values() for mark in panel]
     assert sorted(mark.name for mark in shown) == sorted([*dimensions, CENTRE_OF_MASS])
     for mark in shown:
@@ -46,7 +46,8 @@ def test_names_are_readable_whatever_the_proportions(
         edges.append(figure.bbox)
 
     monkeypatch.setattr(Figure, "savefig", look)
-    draw_dimensions(describe_robot(changed), default_dimensions() | changed, Path("robot.png"))
+    dimensions = all_dimensions(changed)
+    draw_dimensions(describe_robot(changed), dimensions, Path("robot.png"))
     overlapping = [
         (one, other)
         for (one, _, a), (other, _, b) in combinations(seen, 2)
@@ -54,7 +55,9 @@ def test_names_are_readable_whatever_the_proportions(
     ]
     assert overlapping == []
     assert [text for text, _, box in seen if (Bbox.union([box, *edges]).bounds != edges[0].bounds)] == []
-    assert {text.splitlines()[0] for text, weight, _ in seen if weight == "bold"} == set(changed)
+    assert {text.splitlines()[0] for text, weight, _ in seen if weight == "bold"} == dict(
+        dimensions.items() - default_dimensions().items()
+    ).keys()
 
 
 def test_it_is_a_picture(tmp_path: Path) -> None:
