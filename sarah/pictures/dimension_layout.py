@@ -9,7 +9,7 @@ import numpy as np
 
 from sarah.pictures.dimension_marks import Mark, Side
 
-LABEL_WIDTH, LABEL_HEIGHT, TITLE_HEIGHT = 0.98, 0.26, 0.25
+LABEL_WIDTH, LABEL_HEIGHT, TITLE_HEIGHT = 1.07, 0.26, 0.25
 """Sizes of names and titles, in inches; so are all lengths of a figure."""
 LANE = 0.16
 """Distance of arrows beside the robot from it, and from each other."""

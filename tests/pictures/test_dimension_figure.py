@@ -14,7 +14,7 @@ from sarah.pictures.dimension_marks import CENTRE_OF_MASS, marks
 from sarah.robot.description import describe_robot
 from sarah.robot.dimensions import all_dimensions, default_dimensions
 
-SMALL = {name: 0.4 * value for name, value in default_dimensions().items()}
+SMALL = {name: 0.12345 * value for name, value in default_dimensions().items()}
 STILTS = {"thigh_length": 1.5, "shank_length": 2.5, "sole_half_width": 0.02}
 DWARF = {"thigh_length": 0.05, "shank_length": 0.05, "torso_height": 0.9, "hip_drop": 0.45, "flexion_limit": 2.5}
 FEET = {"forefoot_contact": 0.6, "hindfoot_contact": 0.03, "ankle_up_limit": 1.4, "hinge_height": 0.05}
