@@ -7,8 +7,9 @@ import pytest
 
 from sarah.errors import DescriptionError
 from sarah.robot.description import ANKLE_JOINTS, GROUPS, check_urdf, describe_robot
-from sarah.robot.dimensions import default_dimensions
+from sarah.robot.dimensions import default_dimensions, known_dimensions
 from sarah.robot.reading import ACTUATED_JOINTS
+from sarah.robot.scale import POWERS
 
 
 @pytest.fixture
@@ -63,6 +64,12 @@ def test_urdf_does_not_say_where_it_was_made(urdf: str) -> None:
     assert "xacro" not in urdf
 
 
+def test_every_dimension_has_a_unit_and_a_meaning_and_a_range_around_its_default() -> None:
+    for name, known in known_dimensions().items():
+        assert known.unit in POWERS and len(known.meaning) > 10, name
+        assert known.low < known.default < known.high, name
+
+
 @pytest.mark.parametrize("name", list(default_dimensions()))
 def test_every_dimension_reaches_the_urdf(name: str) -> None:
     assert describe_robot({name: default_dimensions()[name] * 1.01}).urdf != describe_robot().urdf
@@ -72,10 +79,10 @@ def test_every_dimension_reaches_the_urdf(name: str) -> None:
     ("dimensions", "message"),
     [
         ({"tigh_length": 0.3}, "unknown robot dimension 'tigh_length', did you mean 'thigh_length'"),
-        ({"thigh_length": "long"}, "'thigh_length' must be a number between 0.033 and 3.3, not 'long'"),
-        ({"thigh_length": True}, "'thigh_length' must be a number between 0.033 and 3.3, not True"),
-        ({"thigh_length": float("nan")}, "'thigh_length' must be a number between 0.033 and 3.3, not nan"),
-        ({"thigh_length": -0.3}, "'thigh_length' must be a number between 0.033 and 3.3, not -0.3"),
+        ({"thigh_length": "long"}, "'thigh_length' must be a number between 0.033 and 3.3 m, not 'long'"),
+        ({"thigh_length": True}, "'thigh_length' must be a number between 0.033 and 3.3 m, not True"),
+        ({"thigh_length": float("nan")}, "'thigh_length' must be a number between 0.033 and 3.3 m, not nan"),
+        ({"thigh_length": -0.3}, "'thigh_length' must be a number between 0.033 and 3.3 m, not -0.3"),
         ({"hinge_height": 0.005}, "plates must lie above the soles"),
     ],
 )
