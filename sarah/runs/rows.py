@@ -80,6 +80,13 @@ class JournalFile(ABC):
         if at_once:
             os.fsync(self._file.fileno())
 
+    def _refusal(self, budget: str) -> ResumeError:
+        """Error of a run that went on otherwise than its settings say.
+
+        :param budget: number and unit to which it should have been extended
+        """
+        return ResumeError(f"{self._path.parent} cannot be resumed: it was not extended to {budget}")
+
     @abstractmethod
     def _first_row(self) -> bytes:
         """First row that a new file would have."""
