@@ -66,7 +66,8 @@ class OperateOptions(EpisodeOptions):
         change, in the order of time
     :param run_dir: folder to write, new or empty; by default a new one, runs/operation/<learner>-s<seed>
     :param resume: folder of an interrupted session to go on with, as it is. A finished session goes on if --minutes is
-        more than its duration
+        more than its duration. Its windows are then those of a session that was as long from the beginning, unless
+        the learner is gp, which tries less shortly before an end
     :param extended_from: durations with which the session had ended before it went on, in min, in rising order;
         --resume with more --minutes adds one
     :param compare_frozen: whether to run the same robot again without learning, with the parameters of the beginning
@@ -273,7 +274,7 @@ def _summarise(result: SessionResult, frozen: SessionResult | None, spec: Sessio
     print(f"score       {_scores_of(result)}")
     print(f"falls       {result.falls} in {len(result.windows)} windows")
     if frozen is not None:
-        print(f"frozen      {_scores_of(frozen)}; {frozen.falls} falls in {len(frozen.windows)} windows")
+        print(f"frozen      {_scores_of(frozen)}; falls: {frozen.falls} in {len(frozen.windows)} windows")
     for change in spec.config.changes[result.windows[-1].changes :]:
         print(f"no change   at minute {change.minute:g}: no window began after it")
     print(f"folder      {path}")

@@ -43,8 +43,8 @@ def draw_session(
         )
         axis.plot(minutes, _running_mean(scores), color=SCORE, linewidth=1.5, label=f"mean of {SMOOTHED} windows")
         if frozen:
-            means = _running_mean([window.score for window in frozen])
-            axis.plot([window.end / 60.0 for window in frozen], means, color=FROZEN, label="the same without learning")
+            ends, means = [window.end / 60.0 for window in frozen], _running_mean([window.score for window in frozen])
+            axis.plot(ends, means, color=FROZEN, label=f"mean of {SMOOTHED} without learning")
         axis.plot([minutes[i] for i in falls], [scores[i] for i in falls], "x", color=FALL, label="fall")
         made = changes[: windows[-1].changes]
         for number, change in enumerate(made, 1):
