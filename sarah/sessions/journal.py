@@ -80,7 +80,7 @@ class SessionJournal(JournalFile):
     def _count_extension(self, row: dict[str, Any]) -> None:
         """Check that the session went on then as its specification says."""
         if self._extensions == len(self._config.extended_from) or row != self._next_extension():
-            raise self._refusal(f"{self._config.minutes:g} min")
+            raise self._other_stages(self._config.stages, "min")
         self._extensions += 1
 
     def _next_extension(self) -> dict[str, Any]:
