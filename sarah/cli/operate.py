@@ -133,7 +133,7 @@ def _begun(options: OperateOptions) -> SessionFolder:
 
 def _resumed(options: OperateOptions, arguments: Sequence[str]) -> SessionFolder | None:
     """The folder of the session to go on with, which may be extended; ``None`` if nothing is left to do."""
-    from sarah.sessions.operate import extend
+    from sarah.sessions.operate import add_frozen, extend
     from sarah.sessions.session_folder import SessionFolder
 
     assert options.resume is not None
@@ -149,7 +149,7 @@ def _resumed(options: OperateOptions, arguments: Sequence[str]) -> SessionFolder
     else:
         check_same(folder.path, "session", "minutes", there, minutes)
     if options.compare_frozen and folder.frozen is None:
-        folder.add_frozen(folder.spec())
+        add_frozen(folder)
     if folder.is_finished and (folder.frozen is None or folder.frozen.is_finished):
         print(finished_words(folder.path, "--minutes", there))
         return None

@@ -98,6 +98,17 @@ def extend(folder: SessionFolder, minutes: float) -> SessionSpec:
     return extended
 
 
+def add_frozen(folder: SessionFolder) -> None:
+    """Have a session compared with the same one without learning, from its next process on.
+
+    :param folder: folder of the session
+    :raises ResumeError: if the session was begun with other code or versions, or is in use: nothing is changed then
+    """
+    spec = folder.spec()
+    with SessionJournal(folder.journal_path, spec):
+        folder.add_frozen(spec)
+
+
 def _show(events: EventFile, window: Window) -> None:
     """Add a window to TensorBoard's curves, at its second of operation."""
     values = {f"parameters/{item.name}": value for item, value in zip(PARAMETERS, window.parameters, strict=True)}

@@ -13,7 +13,7 @@ from terminal import tree
 
 from sarah.errors import ConfigurationError, ResumeError, TrainingInterruptedError
 from sarah.operation.settings import SHIPPED, Change, OperationConfig
-from sarah.sessions.operate import compare_frozen, extend, operate
+from sarah.sessions.operate import add_frozen, compare_frozen, extend, operate
 from sarah.sessions.session import SessionResult, SessionSpec, run_session
 from sarah.sessions.session_folder import SessionFolder
 
@@ -94,14 +94,15 @@ def test_a_session_cannot_have_been_extended_otherwise(
     assert folder.journal_path.read_bytes() == before
 
 
-def test_an_extension_that_is_refused_changes_nothing(
-    finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_refused_changes_nothing(finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = copied(finished, tmp_path / "mine")
+    shutil.rmtree(folder.frozen_path)
     before = tree(folder.path)
     monkeypatch.setattr("sarah.sessions.journal.versions", lambda: {"torch": "of tomorrow"})
     with pytest.raises(ResumeError, match="torch is of tomorrow here"):
         extend(folder, LONGER)
+    with pytest.raises(ResumeError, match="torch is of tomorrow here"):
+        add_frozen(folder)
     with pytest.raises(ConfigurationError, match="extended_from must be in rising order and below minutes"):
         extend(folder, 0.1)
     assert tree(folder.path) == before
