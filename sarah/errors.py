@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import reprlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from difflib import get_close_matches
+from itertools import pairwise
 from typing import Any
 
 from sarah.number import is_number, plain
@@ -107,6 +108,18 @@ def check_ends(key: str, ends: Any, low: float, high: float, unit: str = "") -> 
     if not all(map(is_number, given)) or not low <= given[0] <= given[1] <= high:
         raise ConfigurationError(f"{key} must be {_span(low, high, unit)} and in rising order, not {shortened(given)}")
     return float(given[0]), float(given[1])
+
+
+def check_extended_from(earlier: Sequence[float], name: str, budget: float) -> None:
+    """Refuse budgets of before an extension that are not in rising order and below the present one.
+
+    :param earlier: budgets with which a training or a session had ended before it went on
+    :param name: name of the budget's setting
+    :param budget: its present value
+    :raises ConfigurationError: naming what was given
+    """
+    if not all(before < after for before, after in pairwise((0, *earlier, budget))):
+        raise ConfigurationError(f"extended_from must be in rising order and below {name}, not {shortened(earlier)}")
 
 
 def _span(low: float, high: float, unit: str) -> str:

@@ -20,6 +20,16 @@ def quick(minutes: float = 0.1, robot: dict[str, Any] | None = None, **settings:
     return dataclasses.replace(config, robot=pushed, minutes=minutes, **settings)
 
 
+KEPT = ("windows.csv", "parameters.json", "session.yaml", "journal.jsonl")
+"""Files of a session that are the same to the byte, however often it was interrupted."""
+
+
+def interrupted_after(windows: int) -> Callable[[], bool]:
+    """A function that asks to stop after some windows."""
+    countdown = iter(range(windows - 1))
+    return lambda: next(countdown, None) is None
+
+
 class FormulaRobot:
     """A robot whose reward is a function of its parameters and of the time; below 0.2 it falls."""
 

@@ -5,14 +5,16 @@ from __future__ import annotations
 import dataclasses
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, given_options, parse_episode_options
+from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import Interruption
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episode_of
@@ -63,7 +65,13 @@ class OperateOptions(EpisodeOptions):
     :param change: what changes, and when, such as "5: randomisation.actuator_bandwidth=12" at minute 5; once for each
         change, in the order of time
     :param run_dir: folder to write, new or empty; by default a new one, runs/operation/<learner>-s<seed>
-    :param resume: folder of an interrupted session to go on with, as it is
+    :param resume: folder of an interrupted session to go on with, as it is. A finished session goes on if --minutes is
+        more than its duration. Its windows are then those of a session that was as long from the beginning, unless
+        the learner is gp, which tries less shortly before an end
+    :param extended_from: durations with which the session had ended before it went on, in min, in rising order;
+        --resume with more --minutes adds one
+    :param compare_frozen: whether to run the same robot again without learning, with the parameters of the beginning
+        all along, and to show both. It takes as long again, and changes nothing in the session
     """
 
     subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"
@@ -77,6 +85,8 @@ class OperateOptions(EpisodeOptions):
     change: Annotated[tuple[str, ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="CHANGE")] = ()
     run_dir: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     resume: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
+    extended_from: tuple[float, ...] = ()
+    compare_frozen: bool = False
 
 
 def main() -> None:
@@ -89,26 +99,66 @@ def _operate(arguments: Sequence[str]) -> None:
         if argument.partition("=")[0].replace("_", "-") in WITHOUT_EFFECT:
             raise ConfigurationError(f"{argument} has no effect in an operation: leave it out")
     options = parse_episode_options(COMMAND, arguments, OperateOptions(), adapted=_of_operation)
+    folder = _begun(options) if options.resume is None else _resumed(options, arguments)
+    if folder is None:
+        return
+    from sarah.sessions.operate import compare_frozen, operate
+
+    spec = folder.spec()
+    print(f"operating for {spec.config.minutes:g} min with learner {spec.learner} into {folder.path}", flush=True)
+    if folder.frozen is not None:
+        print(f"and then without learning, which takes as long again, into {folder.frozen_path}", flush=True)
+    result = _watched(partial(operate, folder, spec), spec, folder.path)
+    frozen = None
+    if folder.frozen is not None:
+        frozen = _watched(partial(compare_frozen, folder, spec, result), spec, folder.path, "without learning ")
+    _summarise(result, frozen, spec, folder.path)
+
+
+def _begun(options: OperateOptions) -> SessionFolder:
+    """The folder of a new session."""
     from sarah.runs.run_folder import new_run_path
     from sarah.sessions.session_folder import SessionFolder
     from sarah.simulation.engines import check_engine
 
-    if options.resume is not None:
-        _check_alone(arguments)
-        folder = SessionFolder.open(options.resume)
-        spec = folder.spec()
-        if folder.is_finished:
-            print(f"{options.resume} is finished: its parameters are in {folder.path / 'parameters.json'}")
-            return
+    spec = _spec_of(options)
+    _check_learns(options, spec)
+    for count in range(len(spec.config.changes) + 1):
+        check_engine(spec.config.robot_after(count).engine)
+    path = options.run_dir or new_run_path("operation", spec.learner, spec.seed)
+    folder = SessionFolder.create(path, spec, options.compare_frozen)
+    say_engine(spec.config.robot, options.engine)
+    return folder
+
+
+def _resumed(options: OperateOptions, arguments: Sequence[str]) -> SessionFolder | None:
+    """The folder of the session to go on with, which may be extended; ``None`` if nothing is left to do."""
+    from sarah.sessions.operate import add_frozen, extend
+    from sarah.sessions.session_folder import SessionFolder
+
+    assert options.resume is not None
+    given = _check_alone(arguments)
+    folder = SessionFolder.open(options.resume)
+    _check_learns(options, folder.spec())
+    there = folder.spec().config.minutes
+    minutes = options.minutes if "minutes" in given else there
+    if minutes > there:
+        check_extendable(folder.path, "--minutes", folder.is_finished)
+        extend(folder, minutes)
+        print(f"extending {there:g} to {minutes:g} min: the first {there:g} stay as they are")
     else:
-        spec = _spec_of(options)
-        for count in range(len(spec.config.changes) + 1):
-            check_engine(spec.config.robot_after(count).engine)
-        path = options.run_dir or new_run_path("operation", spec.learner, spec.seed)
-        folder = SessionFolder.create(path, spec)
-        say_engine(spec.config.robot, options.engine)
-    print(f"operating for {spec.config.minutes:g} min with learner {spec.learner} into {folder.path}", flush=True)
-    _summarise(_watched(folder, spec), spec, folder.path)
+        check_same(folder.path, "session", "minutes", there, minutes)
+    if options.compare_frozen and folder.frozen is None:
+        add_frozen(folder)
+    if folder.is_finished and (folder.frozen is None or folder.frozen.is_finished):
+        print(finished_words(folder.path, "--minutes", there))
+        return None
+    return folder
+
+
+def _check_learns(options: OperateOptions, spec: SessionSpec) -> None:
+    if options.compare_frozen and spec == spec.frozen():
+        raise ConfigurationError("--compare-frozen is for a session that learns, and this one does not: leave it out")
 
 
 def _of_operation(config: EpisodeConfig, subject: str | None) -> PushedConfig:
@@ -119,11 +169,18 @@ def _of_operation(config: EpisodeConfig, subject: str | None) -> PushedConfig:
     return PushedConfig(**shared, push=push)
 
 
-def _check_alone(arguments: Sequence[str]) -> None:
-    given = given_options(arguments, "resume")
-    words = [argument for argument in arguments if argument not in ("--resume", given["resume"])]
-    if others := [word for word in words if not word.startswith("--resume=")]:
+def _check_alone(arguments: Sequence[str]) -> dict[str, str]:
+    """Refuse options of a session that goes on, but for its duration and the comparison.
+
+    :return: values of the options that were given, by name
+    """
+    given = given_options(arguments, "resume", "minutes")
+    known = {"--compare-frozen", "--compare_frozen", *given.values()}
+    for name, value in given.items():
+        known |= {f"--{name}", f"--{name}={value}"}
+    if others := [word for word in arguments if word not in known]:
         raise ConfigurationError(f"--resume goes on with a session as it is: leave {shortened(others[0])} out")
+    return given
 
 
 def _spec_of(options: OperateOptions) -> SessionSpec:
@@ -140,6 +197,7 @@ def _spec_of(options: OperateOptions) -> SessionSpec:
         fall_seconds=options.fall_seconds,
         push_seconds=options.push_seconds,
         changes=tuple(map(change_of, options.change)),
+        extended_from=options.extended_from,
     )
     return SessionSpec(_nine(subject), options.learner, options.seed, config)
 
@@ -171,15 +229,24 @@ def change_of(text: str) -> Change:
         ) from None
 
 
-def _watched(folder: SessionFolder, spec: SessionSpec) -> SessionResult:
-    """Run the session with a progress bar; if it stops early, the message says how to go on."""
+def _watched(
+    run: Callable[[Callable[[Window], None], Callable[[], bool]], SessionResult],
+    spec: SessionSpec,
+    path: Path,
+    title: str = "",
+) -> SessionResult:
+    """Run a session with a progress bar; if it stops early, the message says how to go on.
+
+    :param run: function that runs it, of one that is called with every window and one that says whether to stop
+    :param spec: specification of the session
+    :param path: path of its folder
+    :param title: words before the bar
+    """
     from tqdm import tqdm
 
-    from sarah.sessions.operate import operate
-
-    go_on = f"go on with {COMMAND} --resume {quoted(folder.path)}"
+    go_on = f"go on with {COMMAND} --resume {quoted(path)}"
     falls, seconds = 0, 60.0 * spec.config.minutes
-    bar = tqdm(total=seconds, disable=None, bar_format="{l_bar}{bar}| {n:.0f} of {total:.0f} s{postfix}")
+    bar = tqdm(total=seconds, desc=title, disable=None, bar_format="{l_bar}{bar}| {n:.0f} of {total:.0f} s{postfix}")
 
     def show(window: Window) -> None:
         nonlocal falls
@@ -189,7 +256,7 @@ def _watched(folder: SessionFolder, spec: SessionSpec) -> SessionResult:
 
     with bar, Interruption(COMMAND, "window") as interruption:
         try:
-            return operate(folder, spec, show, interruption.came)
+            return run(show, interruption.came)
         except (TrainingInterruptedError, KeyboardInterrupt):
             print(f"\n{COMMAND}: interrupted; {go_on}", file=sys.stderr)
             raise SystemExit(128 + (interruption.signal or signal.SIGINT)) from None
@@ -199,17 +266,24 @@ def _watched(folder: SessionFolder, spec: SessionSpec) -> SessionResult:
             raise RunFolderError(f"{error}; finished windows are kept, {go_on}") from error
 
 
-def _summarise(result: SessionResult, spec: SessionSpec, path: Path) -> None:
+def _summarise(result: SessionResult, frozen: SessionResult | None, spec: SessionSpec, path: Path) -> None:
     from sarah.operation.settings import PARAMETERS
 
     named = zip((parameter.name for parameter in PARAMETERS), result.parameters, strict=True)
     print("\nleft with   " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
+    print(f"score       {_scores_of(result)}")
+    print(f"falls       {result.falls} in {len(result.windows)} windows")
+    if frozen is not None:
+        print(f"frozen      {_scores_of(frozen)}; falls: {frozen.falls} in {len(frozen.windows)} windows")
+    for change in spec.config.changes[result.windows[-1].changes :]:
+        print(f"no change   at minute {change.minute:g}: no window began after it")
+    print(f"folder      {path}")
+
+
+def _scores_of(result: SessionResult) -> str:
+    """Mean score of a session, and how it went from its first fifth to its last."""
     scores = [window.score for window in result.windows]
     fifth = max(1, len(scores) // 5)
     first, last = sum(scores[:fifth]) / fifth, sum(scores[-fifth:]) / fifth
     windows = "window" if fifth == 1 else f"{fifth} windows"
-    print(f"score       {result.mean_score():.3f}: {first:.3f} in the first {windows}, {last:.3f} in the last")
-    print(f"falls       {result.falls} in {len(result.windows)} windows")
-    for change in spec.config.changes[result.windows[-1].changes :]:
-        print(f"no change   at minute {change.minute:g}: no window began after it")
-    print(f"folder      {path}")
+    return f"{result.mean_score():.3f}: {first:.3f} in the first {windows}, {last:.3f} in the last"

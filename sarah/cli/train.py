@@ -22,6 +22,7 @@ from sarah.cli.episode_options import (
     with_given_directions,
     with_given_engine,
 )
+from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import Interruption
 from sarah.cli.options import named_task, parse_options, pushed_words, run_command, say_engine
 from sarah.cli.subjects import check_of_training
@@ -117,7 +118,7 @@ def _train(arguments: Sequence[str]) -> None:
     if options.resume is not None:
         run = _resumed(options.resume, options, config)
         if run.is_finished and config.episodes == run.config().episodes:
-            print(f"{options.resume} is finished: to go on, add --episodes with more than its {config.episodes}")
+            print(finished_words(options.resume, "--episodes", config.episodes))
             return
         check_origin(run.journal_path, run.config())
 
@@ -151,12 +152,11 @@ def _resumed(path: Path, options: TrainOptions, config: TrainingConfig) -> RunFo
         raise ConfigurationError("--resume goes on with a training as it is: leave --run-dir, --config and --from out")
     there = dataclasses.replace(run.config(), pictures=config.pictures)  # they change no result
     if config.episodes > there.episodes and config.extended_from == there.extended_from:
-        if not run.is_finished:
-            raise ConfigurationError(f"--resume {path}: it can be extended once it is finished: leave --episodes out")
+        check_extendable(path, "--episodes", run.is_finished)
         config = dataclasses.replace(config, episodes=there.episodes)
     if difference := first_difference(config, there):
         key, given, recorded = difference
-        _check_same(path, key, recorded, given)
+        check_same(path, "training", key, recorded, given)
     return run
 
 
@@ -174,18 +174,6 @@ def _extended(run: RunFolder, config: TrainingConfig) -> TrainingConfig:
         f"as NAF's exploration, is from now on as in the last {extended.stage_episodes} of {extended.episodes} episodes"
     )
     return extended
-
-
-def _check_same(path: Path, key: str, there: object, given: object) -> None:
-    """Refuse a setting that is not what it is in the training to go on with.
-
-    :param path: path of the training's run folder
-    :param key: name of the setting
-    :param there: value in the training
-    :param given: value on the command line
-    """
-    if given != there:
-        raise ConfigurationError(f"--resume {path}: {key} is {there!r} in this training, not {given!r}: leave it out")
 
 
 def _learned(config: TrainingConfig, run: RunFolder, workers: Workers, task: str) -> Learned:
@@ -258,15 +246,14 @@ def _resumed_defaults(path: Path, given: Mapping[str, str]) -> TrainOptions:
     task, training = None, RunFolder.resumable(path).config()
     if "task" in given:
         task = load_task(given["task"])
-        _check_same(
-            path, "task", training.task.reference, task.reference if task.file is None else training.task.reference
-        )
+        if task.file is None:
+            check_same(path, "training", "task", training.task.reference, task.reference)
         training = RunFolder.resumable(path, task).config()
     if isinstance(training.task, RecordedTask):
         raise ConfigurationError(f"--resume {path}: its task is that of a file: add --task {training.task.reference}")
     engine = given.get("engine", given.get("episode.engine", training.episode.engine))
-    _check_same(path, "algo", training.algo, given.get("algo", training.algo))
-    _check_same(path, "episode.engine", training.episode.engine, engine)
+    check_same(path, "training", "algo", training.algo, given.get("algo", training.algo))
+    check_same(path, "training", "episode.engine", training.episode.engine, engine)
     return TrainOptions(training)
 
 

@@ -21,7 +21,7 @@ class Operation(Protocol):
 
     @property
     def windows_left(self) -> float:
-        """Number of windows that the time is enough for if the robot does not fall."""
+        """Number of windows that the time of the present stage is enough for if the robot does not fall."""
 
     def run(self, parameters: Parameters) -> Window:
         """Run one window.

@@ -52,13 +52,15 @@ class RobotInOperation:
     @property
     def is_over(self) -> bool:
         """Whether the operation's time is over."""
-        return self.seconds >= round(60.0 * self.config.minutes, 9)
+        return self.config.stages_over(self.seconds) == len(self.config.stages)
 
     @property
     def windows_left(self) -> float:
-        """Number of windows that the time is enough for if the robot does not fall."""
+        """Number of windows that the time of the present stage is enough for if the robot does not fall."""
+        stages = self.config.stages
+        minutes = stages[min(self.config.stages_over(self.seconds), len(stages) - 1)]
         seconds = self.config.settle_seconds + self.config.measure_seconds
-        return max(0.0, 60.0 * self.config.minutes - self.seconds) / seconds
+        return max(0.0, 60.0 * minutes - self.seconds) / seconds
 
     def run(self, parameters: Parameters, recording: Recording | None = None) -> Window:
         """Run one window, from where the robot is now.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -14,7 +15,15 @@ from sarah.episode.from_mapping import convert_fields, from_mapping
 from sarah.episode.push import Push, PushedConfig
 from sarah.episode.shipped import shipped_parameters
 from sarah.episode.tasks.task import checked_values
-from sarah.errors import ConfigurationError, check_fields, check_type, check_types, shortened
+from sarah.errors import (
+    ConfigurationError,
+    check_extended_from,
+    check_fields,
+    check_range,
+    check_type,
+    check_types,
+    shortened,
+)
 from sarah.number import plain
 from sarah.robot.description import describe_robot
 
@@ -73,6 +82,8 @@ class OperationConfig:
     :param fall_seconds: time that a fall costs, in s
     :param push_seconds: time from a push to the next, in s
     :param changes: what changes in the course of the operation, in the order of time
+    :param extended_from: durations with which the operation had ended before it went on, in min, in rising order: a
+        learner that looks ahead looks no further than the next of these ends
     """
 
     robot: PushedConfig = field(default_factory=lambda: PushedConfig(push=SOFT_PUSHES))
@@ -82,13 +93,18 @@ class OperationConfig:
     fall_seconds: float = 20.0
     push_seconds: float = 4.0
     changes: tuple[Change, ...] = ()
+    extended_from: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse settings that cannot be simulated, also those of robots that come later."""
-        check_types(self, robot=PushedConfig, changes=tuple)
+        check_types(self, robot=PushedConfig, changes=tuple, extended_from=tuple)
         if type(self.robot) is not PushedConfig:  # the file of a session holds no settings of a task
             raise ConfigurationError(f"robot must be a PushedConfig, not a {type(self.robot).__name__}")
         check_fields("operation", self, PLAUSIBLE)
+        limits = PLAUSIBLE["minutes"]
+        earlier = tuple(float(check_range("extended_from", value, *limits)) for value in self.extended_from)
+        object.__setattr__(self, "extended_from", earlier)
+        check_extended_from(earlier, "minutes", self.minutes)
         for change in self.changes:
             check_type("a change", change, Change)
         minutes = [change.minute for change in self.changes]
@@ -111,6 +127,25 @@ class OperationConfig:
                 )
             if robot.terrain.roughness != (0.0, 0.0):
                 raise ConfigurationError("terrain.roughness must be 0 in an operation: bumps end 0.7 m from the start")
+
+    @property
+    def stages(self) -> tuple[float, ...]:
+        """Durations at which the operation ends, or has ended before it was extended, in min."""
+        return (*self.extended_from, self.minutes)
+
+    def stages_over(self, seconds: float) -> int:
+        """Number of stages that are over at a time.
+
+        :param seconds: time of operation, in s
+        """
+        return sum(seconds >= round(60.0 * minutes, 9) for minutes in self.stages)
+
+    def extended_to(self, minutes: float) -> OperationConfig:
+        """The operation with a longer duration: it goes on from where it ended.
+
+        :param minutes: the longer duration, what is over included, in min
+        """
+        return dataclasses.replace(self, minutes=minutes, extended_from=self.stages)
 
     def robot_after(self, changes: int) -> PushedConfig:
         """Settings of robot and world after some of the changes.

@@ -12,7 +12,7 @@ from sarah.operation.settings import Change
 from sarah.operation.window import Window
 from sarah.pictures.style import COLUMN_WIDTH, own_style, save
 
-SCORE, OBSERVED, FALL = "#0072B2", "#E69F00", "#D55E00"
+SCORE, OBSERVED, FALL, FROZEN = "#0072B2", "#E69F00", "#D55E00", "#009E73"
 """Colours (Okabe and Ito)."""
 WIDEST_LINE, MOST_LINES = 130, 12
 """Largest numbers of characters of a line, and of lines, that tell the changes."""
@@ -20,12 +20,15 @@ SMOOTHED = 5
 """Number of windows whose mean the line shows."""
 
 
-def draw_session(windows: Sequence[Window], changes: Sequence[Change], path: Path) -> list[Path]:
+def draw_session(
+    windows: Sequence[Window], changes: Sequence[Change], path: Path, frozen: Sequence[Window] = ()
+) -> list[Path]:
     """Draw every window as a point, their running mean as a line, falls as crosses and changes as numbered lines.
 
     :param windows: windows of the session, at least one
     :param changes: what was to change in its course; what no window began after is not drawn
     :param path: path of the picture, without suffix
+    :param frozen: windows of the same session without learning, whose running mean is another line, if there are any
     :return: the files, PNG and PDF
     """
     minutes = [window.end / 60.0 for window in windows]
@@ -39,6 +42,9 @@ def draw_session(windows: Sequence[Window], changes: Sequence[Change], path: Pat
             minutes, _running_mean(observed), color=OBSERVED, linewidth=0.8, label="what the robot itself observes"
         )
         axis.plot(minutes, _running_mean(scores), color=SCORE, linewidth=1.5, label=f"mean of {SMOOTHED} windows")
+        if frozen:
+            ends, means = [window.end / 60.0 for window in frozen], _running_mean([window.score for window in frozen])
+            axis.plot(ends, means, color=FROZEN, label=f"mean of {SMOOTHED} without learning")
         axis.plot([minutes[i] for i in falls], [scores[i] for i in falls], "x", color=FALL, label="fall")
         made = changes[: windows[-1].changes]
         for number, change in enumerate(made, 1):

@@ -7,14 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Any
 
 from sarah.episode.from_mapping import convert_fields
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED
 from sarah.episode.tasks import STEPPING, Task, task_named
-from sarah.errors import ConfigurationError, check_range, shortened
+from sarah.errors import ConfigurationError, check_extended_from, check_range, shortened
 from sarah.runs.agent_settings import AGENT_SETTINGS, AgentSettings, LearnerSettings, NAFSettings, settings_of
 
 MOST_EPISODES = 1_000_000
@@ -76,11 +75,7 @@ class TrainingConfig:
             )
         convert_fields(self)
         check_range("episodes", self.episodes, 1, MOST_EPISODES)
-        for earlier, later in pairwise((0, *self.stages)):
-            if not earlier < later:
-                raise ConfigurationError(
-                    f"extended_from must be in rising order and below episodes, not {shortened(self.extended_from)}"
-                )
+        check_extended_from(self.extended_from, "episodes", self.episodes)
         check_range("slots", self.slots, 1, MOST_SLOTS)
         check_range("pictures", self.pictures, 0, MOST_EPISODES)
         if not 0 <= self.seed < FIRST_TRAINING_SEED:

@@ -184,7 +184,7 @@ class Journal(JournalFile, Executor):
         if row is None:
             self.add(request, None)
         elif row.request != request:
-            raise ResumeError(f"{self._path.parent} cannot be resumed: it was not extended to {episodes} episodes")
+            raise self._other_stages(self._config.stages, "episodes")
 
     def add(self, request: dict[str, Any], value: Any) -> None:
         """Write the outcome of an episode.

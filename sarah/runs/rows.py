@@ -7,7 +7,7 @@ import json
 import os
 import zlib
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO, TypeVar
@@ -79,6 +79,15 @@ class JournalFile(ABC):
             left = left[self._file.write(left) :]
         if at_once:
             os.fsync(self._file.fileno())
+
+    def _other_stages(self, stages: Sequence[float], unit: str) -> ResumeError:
+        """Error of a run that was extended otherwise than its settings say.
+
+        :param stages: budgets at which it should have ended before it went on, and its present one
+        :param unit: unit of the budgets
+        """
+        budgets = ", then ".join(f"{budget:g}" for budget in stages)
+        return ResumeError(f"{self._path.parent} cannot be resumed: its budget was not {budgets} {unit}")
 
     @abstractmethod
     def _first_row(self) -> bytes:

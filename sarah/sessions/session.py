@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from sarah.episode.from_mapping import convert_fields
 from sarah.errors import ConfigurationError, check_type, check_whole, unknown_name
@@ -40,6 +40,17 @@ class SessionSpec:
         if self.learner not in LEARNERS:
             raise ConfigurationError(unknown_name("learner", str(self.learner), LEARNERS))
         object.__setattr__(self, "seed", check_whole("seed", self.seed, 0, LARGEST_SEED))
+
+    def extended_to(self, minutes: float) -> SessionSpec:
+        """The session with a longer duration: it goes on from where it ended.
+
+        :param minutes: the longer duration, what is over included, in min
+        """
+        return replace(self, config=self.config.extended_to(minutes))
+
+    def frozen(self) -> SessionSpec:
+        """The same robot in the same world, with the parameters of the beginning all along."""
+        return replace(self, learner="none")
 
 
 @dataclass(frozen=True)

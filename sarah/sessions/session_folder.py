@@ -6,6 +6,7 @@ windows.csv                                one row per window
 events.out.tfevents.*                      curves for TensorBoard
 parameters.json                            the parameters that the robot is left with
 session.png  session.pdf                   score over time, with falls and changes
+frozen/                                    the same session without learning, if it is compared with that
 """
 
 from __future__ import annotations
@@ -46,16 +47,18 @@ class SessionFolder:
         self.path = path
         self.journal_path = path / "journal.jsonl"
         self.picture_path = path / "session"
+        self.frozen_path = path / "frozen"
         self._spec_path = path / SPECIFICATION
         self._windows_path = path / "windows.csv"
         self._parameters_path = path / "parameters.json"
 
     @classmethod
-    def create(cls, path: Path, spec: SessionSpec) -> SessionFolder:
+    def create(cls, path: Path, spec: SessionSpec, compare_frozen: bool = False) -> SessionFolder:
         """Make a new folder, and write the specification.
 
         :param path: path of the folder, which must be new or empty
         :param spec: specification of the session
+        :param compare_frozen: whether it is to be compared with the same session without learning
         :raises RunFolderError: if the folder is not empty or cannot be written
         """
         check_name(path)
@@ -69,6 +72,8 @@ class SessionFolder:
             folder.journal_path.touch(exist_ok=False)
             write_command(path / "command.txt")
             replace_text(path / "versions.txt", "".join(f"{name} {version}\n" for name, version in versions().items()))
+            if compare_frozen:
+                folder.add_frozen(spec)
             write_config(spec, folder._spec_path)  # last, because a folder that has it can be resumed
         except RunFolderError:
             raise
@@ -94,6 +99,29 @@ class SessionFolder:
     def is_finished(self) -> bool:
         """Whether the session has finished, with parameters that can be read."""
         return self._left() is not None
+
+    @property
+    def frozen(self) -> SessionFolder | None:
+        """Folder of the same session without learning; ``None`` if there is none."""
+        return SessionFolder(self.frozen_path) if is_session(self.frozen_path) else None
+
+    def add_frozen(self, spec: SessionSpec) -> None:
+        """Make the folder of the same session without learning.
+
+        :param spec: specification of the session with learning
+        :raises RunFolderError: if it cannot be written
+        """
+        self.create(self.frozen_path, spec.frozen())
+
+    def extend(self, spec: SessionSpec) -> None:
+        """Make a finished session, and the one without learning, unfinished ones with a longer duration.
+
+        :param spec: specification with the longer duration
+        """
+        for folder in (self.frozen, self):  # first: without them, the sessions of before would only be finished again
+            if folder is not None:
+                folder._parameters_path.unlink(missing_ok=True)
+        write_config(spec, self._spec_path)
 
     def spec(self) -> SessionSpec:
         """Read the specification.

@@ -34,7 +34,7 @@ class WatchedRobot(HoldsWorld):
 
     @property
     def windows_left(self) -> float:
-        """Number of windows that the time is enough for if the robot does not fall."""
+        """Number of windows that the time of the present stage is enough for if the robot does not fall."""
         return self._robot.windows_left
 
     def run(self, parameters: Parameters) -> Window:

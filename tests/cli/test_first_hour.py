@@ -1,13 +1,15 @@
 """A newcomer's first hour, as transcripts: what they type, from an empty folder, and what answers."""
 
 import re
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 from laboratory import NEEDS_PYBULLET
-from terminal import COARSE, run
+from terminal import BIN, COARSE, run
 
 from sarah.simulation.engines import default_engine
 
@@ -20,6 +22,20 @@ def typed(line: str, folder: Path) -> str:
     process = run(name, *arguments, cwd=folder)
     assert process.returncode == 0, f"{line}: {process.stderr}"
     return process.stdout
+
+
+def stopped(line: str, folder: Path) -> str:
+    """What a command says on its standard error when Ctrl-C comes once it has written a window."""
+    name, *arguments = line.split()
+    journal = folder / "mine/journal.jsonl"
+    before = journal.stat().st_size
+    process = subprocess.Popen([BIN / name, *arguments], stderr=subprocess.PIPE, text=True, cwd=folder)
+    while process.poll() is None and journal.stat().st_size == before:
+        time.sleep(0.002)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=300)
+    assert process.returncode == 128 + signal.SIGINT
+    return said
 
 
 def program(text: str, folder: Path) -> str:
@@ -102,6 +118,20 @@ def test_an_own_algorithm_in_a_race(tmp_path: Path) -> None:
 
 def test_extend_a_training(trained: Path) -> None:
     assert "extending 20 to 30 episodes" in typed("sarah-train --resume run --simulations 30", trained)
+
+
+def test_lengthen_and_resume_an_operation(tmp_path: Path) -> None:
+    """With Ctrl-C while it goes on; what it prints then is what one types next."""
+    windows = "--settle-seconds 0.5 --measure-seconds 0.5 --fall-seconds 1"
+    shown = typed(f"sarah-operate --minutes 0.1 --run-dir mine {windows} {' '.join(COARSE)}", tmp_path)
+    assert "left with   P1 = " in shown
+    first = (tmp_path / "mine/windows.csv").read_text()
+    interrupted = stopped("sarah-operate --resume mine --minutes 0.3 --compare-frozen", tmp_path)
+    assert "interrupted; go on with sarah-operate --resume mine\n" in interrupted
+    shown = typed("sarah-operate --resume mine", tmp_path)
+    assert "operating for 0.3 min" in shown and "frozen      0." in shown
+    assert (tmp_path / "mine/windows.csv").read_text().startswith(first)
+    assert "to go on, add --minutes with more than its 0.3" in typed("sarah-operate --resume mine", tmp_path)
 
 
 def test_the_environment_with_its_settings(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -100,7 +101,54 @@ def windows_of(journal: Path) -> int:
 
 def test_a_finished_session_says_so(operated: Path) -> None:
     process = run("sarah-operate", "--resume", "mine", cwd=operated.parent)
-    assert process.returncode == 0 and "is finished" in process.stdout
+    assert process.stdout == "mine is finished: to go on, add --minutes with more than its 0.2\n"
+
+
+def test_a_longer_session_is_the_one_that_was_meant_so(operated: Path) -> None:
+    """To the byte, and its first windows stay as they are."""
+    folder = operated.parent
+    shutil.copytree(operated, folder / "longer")
+    more = run("sarah-operate", "--resume", "longer", "--minutes", "0.3", cwd=folder)
+    assert more.returncode == 0, more.stderr
+    assert "extending 0.2 to 0.3 min: the first 0.2 stay as they are" in more.stdout
+    assert (folder / "longer/windows.csv").read_text().startswith((operated / "windows.csv").read_text())
+    line = ["--change", "0.1: payload=5", "--seed", "2", "--episode.randomisation.actuator-bandwidth", "12", *QUICK]
+    whole = run("sarah-operate", *line, "--minutes", "0.3", "--extended-from", "0.2", "--run-dir", "whole", cwd=folder)
+    assert whole.returncode == 0, whole.stderr
+    for name in (*BYTES, "session.yaml"):
+        assert (folder / "longer" / name).read_bytes() == (folder / "whole" / name).read_bytes(), name
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ("--minutes 0.1", "--resume mine: minutes is 0.2 in this session, not 0.1: leave it out"),
+        ("--minutes 700", "operation.minutes must be between 0.1 and 600 min, not 700.0"),
+        ("--minutes 0.3 --seed 3", "--resume goes on with a session as it is: leave '--seed' out"),
+        ("--extended-from 0.1", "leave '--extended-from' out"),
+    ],
+)
+def test_a_session_goes_on_as_it_was_begun(
+    answer: Callable[[str], str], operated: Path, options: str, words: str
+) -> None:
+    shutil.copytree(operated, "mine")  # answer works in a folder of its own
+    assert words in answer(f"sarah-operate --resume mine {options}")
+
+
+def test_only_a_finished_session_is_extended(answer: Callable[[str], str], operated: Path) -> None:
+    shutil.copytree(operated, "mine")
+    Path("mine/parameters.json").unlink()
+    assert "it can be extended once it is finished" in answer("sarah-operate --resume mine --minutes 0.3")
+
+
+def test_a_session_is_compared_with_the_same_robot_without_learning(tmp_path: Path) -> None:
+    """It says before that it takes as long again."""
+    process = run("sarah-operate", "--minutes", "0.1", *QUICK, "--compare-frozen", "--run-dir", "mine", cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    said, _, summary = process.stdout.partition("left with")
+    assert "without learning, which takes as long again, into mine/frozen" in said
+    assert re.search(r"frozen +0\.\d{3}: .*; falls: 0 in 5 windows", summary)
+    assert "is finished" in run("sarah-operate", "--resume", "mine", cwd=tmp_path).stdout
 
 
 def test_every_change_counts_and_a_session_keeps_its_pushes(tmp_path: Path) -> None:
@@ -153,7 +201,10 @@ def test_a_session_that_cannot_go_on_does_not_recommend_to_go_on(operated: Path,
         ("sarah-operate --episode.time-limit 5", "--episode.time-limit has no effect in an operation"),
         ("sarah-operate --episode.time_limit 5", "--episode.time_limit has no effect in an operation"),
         ("sarah-operate --episode.push.at-seconds=2", "has no effect in an operation: leave it out"),
-        ("sarah-operate --resume nowhere --minutes 3", "leave '--minutes' out"),
+        ("sarah-operate --resume nowhere --seed 3", "leave '--seed' out"),
+        ("sarah-operate --extended-from 20", "extended_from must be in rising order and below minutes, not (20.0,)"),
+        ("sarah-operate --extended-from 0", "extended_from must be between 0.1 and 600 min, not 0.0"),
+        ("sarah-operate --learner none --compare-frozen", "--compare-frozen is for a session that learns"),
         ("sarah-operate nowhere", "is neither a run folder, nor numbers"),
         ("sarah-operate 1,2,3", "parameters must be 5 numbers (P1 to P5)"),
         ("sarah-operate --seed -1", "seed must be between 0 and"),

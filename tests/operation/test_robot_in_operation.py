@@ -43,6 +43,20 @@ def test_time_goes_on_without_gaps_until_the_operation_is_over() -> None:
     assert windows[-2].end < 9.0 <= windows[-1].end
 
 
+def test_a_robot_whose_operation_was_extended_looks_to_the_next_end() -> None:
+    """As it did before: whoever chooses parameters by the time that is left chooses the same ones again."""
+    config = quick(minutes=0.2)
+    robots = [RobotInOperation(settings, 0) for settings in (config, config.extended_to(0.3))]
+    (window, *_) = windows = run_all(config)
+    assert window.seconds == 2.0
+    for window in windows:
+        assert robots[0].windows_left == robots[1].windows_left
+        for robot in robots:
+            robot.skip(window)
+    assert robots[0].is_over and robots[0].windows_left == 0.0
+    assert not robots[1].is_over and robots[1].windows_left == 6.0
+
+
 def test_a_window_that_steps_well_is_worth_more_than_one_that_stands() -> None:
     """By equation 2 and by what the robot itself feels."""
     stepping = run_all(OperationConfig(minutes=0.4))[-1]

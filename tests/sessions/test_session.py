@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from operated import quick
+from operated import KEPT, interrupted_after, quick
 
 from sarah.episode.reward import highest_return
 from sarah.errors import ConfigurationError, ResumeError, RunFolderError, TrainingInterruptedError
@@ -29,8 +29,6 @@ CONFIG = quick(
     minutes=0.3, robot={"push": {"newtons": 400.0, "duration": 0.3}}, changes=(Change(0.15, {"payload": 2.0}),)
 )
 SPEC = SessionSpec(SHIPPED, "gp", 3, CONFIG)
-KEPT = ("windows.csv", "parameters.json", "session.yaml", "journal.jsonl")
-"""Files that are the same to the byte, however often the session was interrupted."""
 
 
 @pytest.fixture(scope="module")
@@ -40,11 +38,6 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, SessionResult
     result = operate(SessionFolder.create(path, SPEC), SPEC)
     assert result.falls > 0 and result.windows[-1].changes == 1
     return path, result
-
-
-def interrupted_after(windows: int) -> Callable[[], bool]:
-    countdown = iter(range(windows - 1))
-    return lambda: next(countdown, None) is None
 
 
 def _generators() -> tuple[object, ...]:

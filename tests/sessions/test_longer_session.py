@@ -1,0 +1,128 @@
+"""A finished session goes on, and one without learning stands beside it: exactly, and what is there stays."""
+
+import dataclasses
+import re
+import shutil
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import pytest
+from operated import KEPT, interrupted_after, quick
+from terminal import tree
+
+from sarah.errors import ConfigurationError, ResumeError, TrainingInterruptedError
+from sarah.operation.settings import SHIPPED, Change, OperationConfig
+from sarah.sessions.operate import add_frozen, compare_frozen, extend, operate
+from sarah.sessions.session import SessionResult, SessionSpec, run_session
+from sarah.sessions.session_folder import SessionFolder
+
+ROBOT = {"physics": {"rate": 200, "solver_iterations": 5}, "push": {"newtons": 200.0}}
+SPEC = SessionSpec(SHIPPED, "random", 3, quick(0.1, ROBOT, changes=(Change(0.05, {"payload": 2.0}),)))
+LONGER = 0.2
+"""Duration of the longer sessions, in min."""
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a finished session that was compared with the one without learning."""
+    path = tmp_path_factory.mktemp("sessions") / "finished"
+    folder = SessionFolder.create(path, SPEC)
+    compare_frozen(folder, SPEC, operate(folder, SPEC))
+    return path
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of the longer session, in one go."""
+    path, spec = tmp_path_factory.mktemp("sessions") / "whole", SPEC.extended_to(LONGER)
+    folder = SessionFolder.create(path, spec, compare_frozen=True)
+    compare_frozen(folder, spec, operate(folder, spec))
+    return path
+
+
+def copied(path: Path, to: Path) -> SessionFolder:
+    return SessionFolder(shutil.copytree(path, to))
+
+
+def in_pieces(run: Callable[..., SessionResult]) -> SessionResult:
+    """Result of a session that is interrupted after every window."""
+    while True:
+        try:
+            return run(interrupted=interrupted_after(1))
+        except TrainingInterruptedError:
+            continue
+
+
+def test_an_extension_that_is_cut_after_every_window_ends_in_the_same_bytes(
+    finished: Path, whole: Path, tmp_path: Path
+) -> None:
+    folder = copied(finished, tmp_path / "cut")
+    spec = extend(folder, LONGER)
+    assert spec == SPEC.extended_to(LONGER) == folder.spec() and not folder.is_finished
+    result = in_pieces(partial(operate, folder, spec))
+    in_pieces(partial(compare_frozen, folder, spec, result))
+    for name in (*KEPT, *(f"frozen/{name}" for name in KEPT)):
+        assert (folder.path / name).read_bytes() == (whole / name).read_bytes(), name
+
+
+@pytest.mark.parametrize("learner", ["naf", "cma-es", "random"])
+def test_a_learner_that_does_not_look_ahead_does_as_if_it_had_been_as_long_from_the_beginning(learner: str) -> None:
+    spec = dataclasses.replace(SPEC, learner=learner)
+    longer = dataclasses.replace(spec, config=dataclasses.replace(spec.config, minutes=LONGER))
+    assert run_session(spec.extended_to(LONGER)) == run_session(longer)
+
+
+@pytest.mark.parametrize(
+    ("stages", "words"),
+    [
+        ((0.1, 0.15, 0.2), "its budget was not 0.1, then 0.15, then 0.2 min"),
+        ((0.1, 0.25), "its budget was not 0.1, then 0.25 min"),
+        ((0.1,), "its budget was not 0.1 min"),
+        ((0.15, 0.2), "config.minutes is 0.15 here, and 0.1 in this session"),
+    ],
+)
+def test_a_session_cannot_have_been_extended_otherwise(
+    whole: Path, tmp_path: Path, stages: tuple[float, ...], words: str
+) -> None:
+    folder = copied(whole, tmp_path / "other")
+    config = dataclasses.replace(SPEC.config, minutes=stages[-1], extended_from=stages[:-1])
+    folder.extend(other := dataclasses.replace(SPEC, config=config))
+    before = folder.journal_path.read_bytes()
+    with pytest.raises(ResumeError, match=f"cannot be resumed: {re.escape(words)}"):
+        operate(folder, other)
+    assert folder.journal_path.read_bytes() == before
+
+
+def test_what_is_refused_changes_nothing(finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = copied(finished, tmp_path / "mine")
+    shutil.rmtree(folder.frozen_path)
+    before = tree(folder.path)
+    monkeypatch.setattr("sarah.sessions.journal.versions", lambda: {"torch": "of tomorrow"})
+    with pytest.raises(ResumeError, match="torch is of tomorrow here"):
+        extend(folder, LONGER)
+    with pytest.raises(ResumeError, match="torch is of tomorrow here"):
+        add_frozen(folder)
+    with pytest.raises(ConfigurationError, match="extended_from must be in rising order and below minutes"):
+        extend(folder, 0.1)
+    assert tree(folder.path) == before
+
+
+def test_without_learning_the_same_robot_meets_the_same(finished: Path, whole: Path, tmp_path: Path) -> None:
+    """And the session itself is as it was, but for its picture, which shows both."""
+    frozen = run_session(dataclasses.replace(SPEC, learner="none"))
+    assert SessionFolder(finished / "frozen").windows() == list(frozen.windows)
+    assert {window.parameters for window in frozen.windows} == {SHIPPED}
+    alone = SessionFolder.create(tmp_path / "alone", SPEC)
+    operate(alone, SPEC)
+    for name in KEPT:
+        assert (finished / name).read_bytes() == (alone.path / name).read_bytes(), name
+    assert (finished / "session.png").read_bytes() != (alone.path / "session.png").read_bytes()
+
+
+def test_stages_rise() -> None:
+    config = OperationConfig(minutes=20, extended_from=(5, 10))
+    assert config.extended_to(30).stages == (5.0, 10.0, 20.0, 30.0)
+    for extended_from in ((20,), (10, 5), (10, 10)):
+        with pytest.raises(ConfigurationError, match="extended_from must be in rising order and below minutes"):
+            OperationConfig(minutes=20, extended_from=extended_from)
