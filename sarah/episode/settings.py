@@ -10,7 +10,7 @@ from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.reward import HALF_WIDTH, STEP_FREQUENCY, RewardForm
 from sarah.errors import ConfigurationError, check_range, check_types, unknown_name
-from sarah.number import plain
+from sarah.number import is_number, plain
 from sarah.robot.dimensions import check_dimensions, scale_of
 from sarah.robot.scale import Scale
 from sarah.simulation.engines import Engine, default_engine
@@ -141,7 +141,8 @@ class EpisodeConfig:
 
         :param content: new values of some fields, as a file gives them
         """
-        given = content.get("dimensions")
-        robot = self.for_robot({**self.dimensions, **given}) if isinstance(given, Mapping) else self
+        given, robot = content.get("dimensions"), self
+        if isinstance(given, Mapping) and all(is_number(plain(value)) for value in given.values()):
+            robot = self.for_robot({**self.dimensions, **given})
         dependent = {name: value for name, value in vars(robot).items() if value != getattr(self, name)}
         return {**dependent, "physics": physics_for(content.get("engine", self.engine), robot.physics, robot.scale)}

@@ -149,8 +149,8 @@ def test_a_call_that_ends_while_somebody_looks_is_answered(workers: Workers, mon
 
 
 def test_an_error_on_a_worker_is_raised_here(workers: Workers) -> None:
-    bad = EpisodeSpec(PAPER_STEPPING, 0, config=EpisodeConfig(dimensions={"thigh_mass": 9.0}))
-    with pytest.raises(DescriptionError, match="must weigh 10 kg"):
+    bad = EpisodeSpec(PAPER_STEPPING, 0, config=EpisodeConfig(dimensions={"hinge_height": 0.005}))
+    with pytest.raises(DescriptionError, match="plates must lie above"):
         list(workers.simulate_all([bad]))
 
 

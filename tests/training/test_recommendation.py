@@ -154,14 +154,15 @@ def test_a_small_budget_affords_no_trial() -> None:
     assert budgets == {1: 0, 24: 0, 25: 5, 49: 5, 50: 10, 1000: 10}
 
 
-def scoring(*scores: float) -> list[EpisodeResult]:
-    return [dataclasses.replace(RESULT, score=score) for score in scores]
+def scoring(*scores: float, **metrics: float) -> Evaluation:
+    return Evaluation(tuple(dataclasses.replace(RESULT, score=score, **metrics) for score in scores))  # type: ignore[arg-type]
 
 
 def test_what_chatters_or_is_no_gait_is_not_valid() -> None:
     still = Evaluation((RESULT,))
-    dragging = [dataclasses.replace(RESULT, score=0.95, sole_clearance=0.0099)] * 5
-    chattering = [dataclasses.replace(RESULT, score=0.95, vibration=2.5 * RESULT.vibration)] * 5
+    dragging = scoring(0.95, 0.95, sole_clearance=0.0099)
+    chattering = scoring(0.95, 0.95, vibration=2.5 * RESULT.vibration)
     assert is_valid(scoring(0.5, 0.9), still)
     assert not is_valid(dragging, still) and is_valid(dragging, still, must_step=False)
+    assert is_valid(dataclasses.replace(dragging, least_clearance=0.005), still)
     assert not is_valid(chattering, still) and is_valid(chattering, None)  # nothing to chatter against
