@@ -11,7 +11,6 @@ from laboratory import RESULT
 
 from sarah.agents.gaussian_process import DISTINCT
 from sarah.episode.evaluation import Evaluation
-from sarah.episode.result import EpisodeResult
 from sarah.episode.tasks import STEPPING, Task
 from sarah.errors import LearningError
 from sarah.runs.config import TrainingConfig
