@@ -149,7 +149,8 @@ def _show_robustness(
     parameters: tuple[float, ...], config: EpisodeConfig, options: EvalOptions, workers: Workers
 ) -> None:
     """Print the table as Markdown, and write the table and the polar plot."""
-    from sarah.reports.robustness import forces_for, push_many, robustness_table
+    from sarah.cli.eval_text import settings_of_table
+    from sarah.reports.robustness import forces_for, push_many, pushed_settings, robustness_table
     from sarah.reports.training_figures import draw_survival
 
     folder, neutral = options.robustness, BALANCE.neutral
@@ -159,7 +160,8 @@ def _show_robustness(
     forces = options.forces or forces_for(config.scale)
     pushed = push_many((neutral, parameters), config, workers, forces, options.episodes, options.first_seed)
     head = "".join(f" {name}: survival | score | drift | vibration |" for name in names)
-    lines = [f"| push | direction | episodes |{head}", "|---" * (3 + 4 * len(names)) + "|"]
+    about = settings_of_table(options.subject, pushed_settings(config, max(forces)), config)
+    lines = [about, "", f"| push | direction | episodes |{head}", "|---" * (3 + 4 * len(names)) + "|"]
     for rows in zip(*map(robustness_table, pushed), strict=True):
         cells = "".join(
             f" {row.survival:.2f} ({row.survival_low:.2f} to {row.survival_high:.2f}) | {row.score_median:.2f} "
@@ -189,6 +191,7 @@ def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers
     """Print the table as Markdown, and write the table and the picture. The command says what was asked for."""
     from tqdm import tqdm
 
+    from sarah.cli.eval_text import settings_of_table
     from sarah.reports.markdown import code
     from sarah.reports.terrain import as_markdown, situations, try_terrain
     from sarah.reports.terrain_figure import draw_terrain
@@ -199,7 +202,9 @@ def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers
     rows = try_terrain(spec.task, spec.parameters, spec.config, options.seeds, workers, tried, progress)
     values = ", ".join(f"{value:g}" for value in spec.parameters)
     about = f"{spec.task.name} ({values}) in {spec.config.engine}, seeds {options.seeds[0]} to {options.seeds[-1]}"
-    table = f"{about}: {code(command)}\n\n{as_markdown(rows)}"
+    pushed_on_level = next(situation for situation in tried if situation.newtons).config(spec.task, spec.config)
+    settings = settings_of_table(options.subject, pushed_on_level, spec.config)
+    table = f"{about}: {code(command)}\n\n{settings}\n\n{as_markdown(rows)}"
     print(table)
     (folder / "terrain.md").write_text(table + "\n", encoding="utf-8")
     for file in draw_terrain(rows, folder / "terrain"):

@@ -17,7 +17,8 @@ from sarah.episode.result import METRICS
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, Task, controller_of
-from sarah.runs.episode_words import changed_settings
+from sarah.reports.markdown import plain_text
+from sarah.runs.episode_words import changed_settings, differences
 
 MOST_ENDINGS = 5
 """Largest number of episodes of which a row says how each has ended."""
@@ -55,6 +56,17 @@ def rows_of(
     warning = physics_warning(spec.task, spec.parameters, spec.config)
     if warning is not None:
         yield "physics", warning
+
+
+def settings_of_table(subject: str, used: EpisodeConfig, config: EpisodeConfig) -> str:
+    """Line about the settings of a table's episodes, of which the table itself has the force of the pushes.
+
+    :param subject: what was evaluated, as it was given
+    :param used: settings of episodes of the table
+    :param config: settings of the subject, as the options change them
+    """
+    changes = ", ".join(line for line in differences(used, config) if not line.startswith("push.newtons "))
+    return f"Settings of {plain_text(subject)}{changes and ', but '}{changes}."
 
 
 def _subject_rows(subject: str, spec: EpisodeSpec) -> Iterator[Row]:

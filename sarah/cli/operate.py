@@ -16,10 +16,10 @@ import tyro
 from sarah.cli.episode_options import EpisodeOptions, given_options, parse_episode_options
 from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import Interruption
+from sarah.cli.operated import say_differences, settings_in_operation, times_of_session
 from sarah.cli.options import named_task, run_command, say_engine
-from sarah.cli.subjects import episode_of
+from sarah.cli.subjects import episode_of, is_shipped
 from sarah.episode.push import NOBODY, PushedConfig
-from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, controller_of
 from sarah.errors import (
@@ -33,7 +33,7 @@ from sarah.errors import (
 from sarah.files import quoted
 from sarah.formats import read_yaml
 from sarah.number import number
-from sarah.operation.settings import SOFT_PUSHES, Change, OperationConfig, Parameters
+from sarah.operation.settings import Change, OperationConfig, Parameters
 from sarah.sessions import is_session
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ def _operate(arguments: Sequence[str]) -> None:
     for argument in arguments:
         if argument.partition("=")[0].replace("_", "-") in WITHOUT_EFFECT:
             raise ConfigurationError(f"{argument} has no effect in an operation: leave it out")
-    options = parse_episode_options(COMMAND, arguments, OperateOptions(), adapted=_of_operation)
+    options = _parsed(arguments)
     folder = _begun(options) if options.resume is None else _resumed(options, arguments)
     if folder is None:
         return
@@ -128,6 +128,9 @@ def _begun(options: OperateOptions) -> SessionFolder:
     path = options.run_dir or new_run_path("operation", spec.learner, spec.seed)
     folder = SessionFolder.create(path, spec, options.compare_frozen)
     say_engine(spec.config.robot, options.engine)
+    if Path(options.subject).is_dir() or is_shipped(options.subject):  # numbers have no settings
+        of_subject = episode_of(options.subject, None, named_task(options.task)).spec
+        say_differences(options.subject, of_subject, spec.config.robot)
     return folder
 
 
@@ -161,12 +164,13 @@ def _check_learns(options: OperateOptions, spec: SessionSpec) -> None:
         raise ConfigurationError("--compare-frozen is for a session that learns, and this one does not: leave it out")
 
 
-def _of_operation(config: EpisodeConfig, subject: str | None) -> PushedConfig:
-    """Settings of a robot in operation: those of the subject, with soft pushes, unless they are a session's own."""
-    shared = {item.name: getattr(config, item.name) for item in dataclasses.fields(EpisodeConfig)}
-    is_own = subject is not None and is_session(Path(subject))
-    push = config.push if is_own and isinstance(config, PushedConfig) else config.scale.scaled(SOFT_PUSHES)
-    return PushedConfig(**shared, push=push)
+def _parsed(arguments: Sequence[str]) -> OperateOptions:
+    """Options of the command; a session that it begins with has times of its own."""
+    options = parse_episode_options(COMMAND, arguments, OperateOptions(), adapted=settings_in_operation)
+    if not is_session(Path(options.subject)):
+        return options
+    usual = dataclasses.replace(OperateOptions(), **times_of_session(Path(options.subject)))
+    return parse_episode_options(COMMAND, arguments, usual, adapted=settings_in_operation)
 
 
 def _check_alone(arguments: Sequence[str]) -> dict[str, str]:

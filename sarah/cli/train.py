@@ -22,6 +22,7 @@ from sarah.cli.episode_options import (
     with_given_directions,
     with_given_engine,
 )
+from sarah.cli.given_settings import say_differences, settings_of_file, settings_on_stepping
 from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import Interruption
 from sarah.cli.options import named_task, parse_options, pushed_words, run_command, say_engine
@@ -29,8 +30,7 @@ from sarah.cli.subjects import check_of_training
 from sarah.cli.training_defaults import default_training
 from sarah.episode.push import PushedConfig
 from sarah.episode.reward import equation_2, frequency_hint
-from sarah.episode.settings import EpisodeConfig
-from sarah.episode.tasks import BALANCE, STEPPING, Task, load_task
+from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, Task, load_task
 from sarah.errors import (
     ConfigurationError,
     ResumeError,
@@ -42,7 +42,7 @@ from sarah.errors import (
 from sarah.files import quoted
 from sarah.runs.agent_settings import AGENT_SETTINGS, NAFSettings, settings_of
 from sarah.runs.config import TrainingConfig
-from sarah.runs.config_files import first_difference, read_config
+from sarah.runs.config_files import first_difference
 
 if TYPE_CHECKING:
     from sarah.episode.workers import Workers
@@ -56,14 +56,14 @@ COMMAND = "sarah-train"
 class TrainOptions:
     """Learn the parameters of the pattern generator or of the hip law, with one action of the agent per episode.
 
-    Settings come from four places, of which a later one wins: the defaults below, the file of --config, the run folder
-    of --from, and the command line. --algo decides which settings the agent has, and --task those of the episodes:
+    Settings come from four places, of which a later one wins: the defaults below, the run folder of --from, the file of
+    --config, and the command line. --algo decides which settings the agent has, and --task those of the episodes:
     give both before --help. The training writes a run folder with the learned parameters (parameters.json), all
     episodes (episodes.csv), the agent (model.zip) and the curves that TensorBoard shows.
 
     Most robots survive the paper's pushes without learning. So by default --task balance pushes harder, in shorter
     episodes. The paper's settings are --episode.push.newtons 0 100 --episode.push.sagittal-share 0
-    --episode.time-limit 30, and those of a file of --config that names no others.
+    --episode.time-limit 30, and those of a file of --config that names no others, unless --from is given.
 
     :param training: settings of the training
     :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
@@ -71,7 +71,8 @@ class TrainOptions:
     :param config: YAML file of settings, like the config.yaml of any run folder
     :param resume: run folder of an interrupted training to go on with, with its settings; the result is the same as
         without the interruption. A finished training goes on if --episodes is larger than its budget
-    :param from_run: run folder of a First Training, for --task balance: its P1 to P5 and its robot are used
+    :param from_run: run folder of a First Training, for --task balance: its P1 to P5 and all settings of its episodes
+        are used. Push and time limit are this command's defaults, unless --config names others
     :param workers: number of processes on this machine that simulate; with 0, this process does. It changes no result
     :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
     """
@@ -138,6 +139,8 @@ def _train(arguments: Sequence[str]) -> None:
         print(f"training {what}: {config.episodes} episodes into {run.path}", flush=True)
         if config.task.reward is equation_2 and (hint := frequency_hint(config.episode)):
             print(hint, file=sys.stderr)
+        if options.from_run is not None and isinstance(config.episode, BalanceConfig):
+            say_differences(options.from_run, config.episode)
         named = given_options(arguments, "task") if config.task.file is not None else {}
         learned = _learned(config, run, workers, " ".join(f" --task {quoted(task)}" for task in named.values()))
     _summarise(config.task, learned, run.path)
@@ -205,32 +208,19 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
     if "resume" in given:
         return _resumed_defaults(Path(given["resume"]), given)
     task = named_task(given.get("task"))
-    training = _of_file(Path(given["config"]), task) if "config" in given else default_training(task or STEPPING)
+    file = Path(given["config"]) if "config" in given else None
+    training = default_training(task or STEPPING) if file is None else settings_of_file(file, task)
     training = _with_agent(training, given.get("algo"), given.get("agent.preset"))
     _check_agent_options(arguments, training)
-    episode = with_given_engine(training.episode, given)
+    first = given.get("from") if training.task is BALANCE else None
+    episode = training.episode if first is None else settings_on_stepping(Path(first), file, arguments)
+    episode = with_given_engine(episode, given)
     check_episode_options(arguments, episode)
-    episode = for_given_robot(episode, arguments)
-    if "config" not in given and training.task is BALANCE:
+    if first is None:  # what a folder has recorded stays as it is
+        episode = for_given_robot(episode, arguments)
+    if file is None and training.task is BALANCE:
         episode = with_given_directions(episode, given)
-    if "from" in given and training.task is BALANCE:
-        episode = _on_learned_stepping(Path(given["from"]), episode)
     return TrainOptions(dataclasses.replace(training, episode=episode))
-
-
-def _of_file(path: Path, task: Task[Any] | None) -> TrainingConfig:
-    """Settings of a file, with its own task unless another one is given.
-
-    :param path: path of the YAML file
-    :param task: task of --task
-    """
-    if task is None:
-        return read_config(TrainingConfig, path)
-    try:
-        own = read_config(TrainingConfig, path, task if task.file is not None else None)
-    except ConfigurationError:  # its own task may be that of another file
-        own = read_config(TrainingConfig, path, task)
-    return dataclasses.replace(own, task=task, episode=task.config_of(own.episode))
 
 
 def _resumed_defaults(path: Path, given: Mapping[str, str]) -> TrainOptions:
@@ -278,24 +268,6 @@ def _check_agent_options(arguments: Sequence[str], training: TrainingConfig) -> 
         others = [algo for algo, settings in AGENT_SETTINGS.items() if name in settings.__dataclass_fields__]
         if option.startswith("--agent.") and others and not hasattr(training.agent, name):
             raise ConfigurationError(f"{option} is for --algo {' or '.join(others)}, not {training.algo!r}")
-
-
-def _on_learned_stepping(path: Path, episode: EpisodeConfig) -> EpisodeConfig:
-    """Episode settings with the P1 to P5 and the robot of a First Training.
-
-    :param path: path of its run folder
-    :param episode: settings of the episodes
-    """
-    from sarah.runs.run_folder import RunFolder
-
-    check_of_training(path)
-    run = RunFolder.open(path)
-    learned = run.config()
-    if learned.task is not STEPPING:
-        raise ConfigurationError(
-            f"{path} learned {learned.task.name!r}, but --from needs the run folder of a training of {STEPPING.name!r}"
-        )
-    return BALANCE.config_of(episode, stepping=run.parameters(), dimensions=learned.episode.dimensions)
 
 
 def _summarise(task: Task[Any], learned: Learned, path: Path) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import dataclasses
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -83,11 +84,25 @@ def _transfer(arguments: Sequence[str]) -> None:
     seeds = range(options.first_seed, options.first_seed + options.episodes)
     with Workers(options.workers, options.scheduler) as workers:
         transfers = transfer(learned, seeds, workers)
-    table = as_markdown(transfers)
+    table = "\n".join([as_markdown(transfers), "", *_about_settings(learned)])
     print(table)
     (out / "transfer.md").write_text(table + "\n", encoding="utf-8")
     for file in draw_transfer(transfers, out / "transfer"):
         print(file)
+
+
+def _about_settings(learned: Sequence[LearnedParameters]) -> Iterator[str]:
+    """Lines about the settings that the other engine does not take as they are."""
+    from sarah.reports.markdown import plain_text
+    from sarah.reports.transfer import ENGINES
+    from sarah.runs.episode_words import differences
+
+    yield "All settings are those of the training, but:"
+    for one in learned:
+        for engine in ENGINES:
+            changes = differences(dataclasses.replace(one.config, engine=engine), one.config)
+            if words := ", ".join(change for change in changes if not change.startswith("engine ")):
+                yield f"- {plain_text(one.name)} in {engine}: {words}"
 
 
 def _learned(subject: str, arguments: Sequence[str]) -> LearnedParameters:

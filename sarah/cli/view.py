@@ -17,8 +17,11 @@ import tyro
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episodes_of, is_shipped
+from sarah.episode.from_mapping import from_mapping
+from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError
 from sarah.files import check_file
+from sarah.runs.config_files import changed_values
 
 if TYPE_CHECKING:
     from sarah.runs.run_episodes import RunEpisode
@@ -67,9 +70,10 @@ def _view(arguments: Sequence[str]) -> None:
         raise ConfigurationError("this needs the extra view: pip install 'sarah[view]'")
     task = named_task(options.task)
     choices, chosen = episodes_of(options.subject, options.which, task)
-    if options.applied_to(chosen.spec) != chosen.spec:  # otherwise each window of a session keeps its own settings
-        choices = [choice.of(options.applied_to(choice.spec)) for choice in choices]
-        chosen = chosen.of(options.applied_to(chosen.spec))
+    changed = options.applied_to(chosen.spec)
+    if changed != chosen.spec:
+        choices = [choice.of(_changed_alike(choice.spec, chosen.spec, changed)) for choice in choices]
+        chosen = chosen.of(changed)
     from sarah.simulation.engines import check_engine
 
     check_engine(chosen.spec.config.engine)
@@ -81,6 +85,18 @@ def _view(arguments: Sequence[str]) -> None:
         _export(options.export, chosen)
     else:
         _serve(options, choices, chosen)
+
+
+def _changed_alike(spec: EpisodeSpec, chosen: EpisodeSpec, changed: EpisodeSpec) -> EpisodeSpec:
+    """Specification of an episode with the changes of the chosen one. The windows of a session have settings each.
+
+    :param spec: specification of the episode
+    :param chosen: specification of the chosen episode, as it was
+    :param changed: specification of the chosen episode, as the options change it
+    """
+    if spec.config == chosen.config:
+        return dataclasses.replace(spec, config=changed.config)
+    return dataclasses.replace(spec, config=from_mapping(spec.config, changed_values(changed.config, chosen.config)))
 
 
 def _export(path: Path, chosen: RunEpisode) -> None:

@@ -14,7 +14,14 @@ from sarah.episode.from_mapping import from_mapping
 from sarah.errors import ConfigurationError, check_range, shortened
 from sarah.operation.operation import Operation
 from sarah.operation.robot_in_operation import RobotInOperation
-from sarah.operation.settings import PARAMETERS, SHIPPED, OperationConfig, Parameters, checked_parameters
+from sarah.operation.settings import (
+    PARAMETERS,
+    SHIPPED,
+    OperationConfig,
+    Parameters,
+    check_effect,
+    checked_parameters,
+)
 from sarah.operation.shares import from_shares, to_shares
 from sarah.operation.window import FELT, LARGEST, Window, observation_from
 
@@ -54,6 +61,7 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
             raise ConfigurationError(f"config must be an OperationConfig, not {shortened(config)}")
         if operated is not None and not callable(getattr(operated, "run", None)):
             raise ConfigurationError(f"operated must be a robot in operation, not {shortened(operated)}")
+        check_effect(settings.get("robot"))
         self.config = from_mapping(config, settings)
         self.first = checked_parameters(first)
         self.render_mode = checked_render_mode(render_mode, self.metadata["render_modes"])

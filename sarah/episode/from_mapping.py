@@ -6,7 +6,8 @@ import dataclasses
 from collections.abc import Mapping
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
-from sarah.episode.tasks import Task, task_named
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.tasks import TASKS, Task, task_named
 from sarah.errors import LONGEST_NAME, ConfigurationError, shortened, unknown_name
 from sarah.number import is_number, plain
 
@@ -54,7 +55,7 @@ def convert_fields(config: Any, key: str = "") -> None:
 
 
 def _unknown_key(default: Any, name: Any, key: str) -> str:
-    """Message about a key that settings lack; settings within them may have it.
+    """Message about a key that settings lack; settings within them may have it, or those of another task.
 
     :param default: the settings, a dataclass
     :param name: the key
@@ -66,6 +67,9 @@ def _unknown_key(default: Any, name: Any, key: str) -> str:
         is_settings = dataclasses.is_dataclass(inner) and not isinstance(inner, Task)
         if is_settings and name in [item.name for item in dataclasses.fields(inner)]:
             return f"unknown key {key + name!r}, did you mean {f'{key}{outer}.{name}'!r}?"
+    having = [task.name for task in TASKS.values() if name in task.episode.__dataclass_fields__]
+    if isinstance(default, EpisodeConfig) and having:
+        return f"{key}{name} is for task {' or '.join(having)}"
     return unknown_name("key", f"{key}{name}", (key + allowed for allowed in names))
 
 

@@ -113,9 +113,7 @@ class OperationConfig:
         if minutes != sorted(minutes):
             raise ConfigurationError(f"changes must be in the order of time, not {shortened(minutes)}")
         for change in self.changes:
-            for name in WITHOUT_EFFECT:
-                if _has(change.settings, name):
-                    raise ConfigurationError(f"{name} has no effect in an operation: leave its change out")
+            check_effect(change.settings, "its change")
         for count in range(len(minutes) + 1):
             robot = self.robot_after(count)
             if robot.dimensions:
@@ -163,6 +161,18 @@ class OperationConfig:
         :param seconds: time of operation, in s
         """
         return sum(round(60.0 * change.minute, 9) <= seconds for change in self.changes)
+
+
+def check_effect(settings: Any, what: str = "it") -> None:
+    """Refuse settings of an episode that an operation does not know.
+
+    :param settings: settings by name; what is no mapping names none
+    :param what: what a user is to leave out
+    :raises ConfigurationError: naming the setting
+    """
+    for name in WITHOUT_EFFECT:
+        if isinstance(settings, Mapping) and _has(settings, name):
+            raise ConfigurationError(f"{name} has no effect in an operation: leave {what} out")
 
 
 def _has(settings: Mapping[str, Any], name: str) -> bool:

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import median
 
-from sarah.episode.push import draw_push
+from sarah.episode.push import Push, draw_push
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
@@ -111,13 +111,7 @@ def push_many(
     :param first_seed: first seed; each force has the same seeds, and so the same directions and times
     :return: the episodes of each controller
     """
-    settings: dict[float, BalanceConfig] = {}
-    for newtons in forces:
-        push = dataclasses.replace(
-            config.push, newtons=(newtons, newtons), at_seconds=PUSHED_BETWEEN, sagittal_share=0.0
-        )
-        limit = PUSHED_BETWEEN[1] + push.duration + SECONDS_AFTER
-        settings[newtons] = dataclasses.replace(config, push=push, time_limit=limit)
+    settings = {newtons: pushed_settings(config, newtons) for newtons in forces}
     pushes = [(newtons, first_seed + index) for newtons in forces for index in range(episodes)]
     results = workers.simulate_all(
         [EpisodeSpec(v, seed, BALANCE, settings[newtons]) for v in controllers for newtons, seed in pushes]
@@ -127,6 +121,26 @@ def push_many(
         x, y, _ = draw_push(settings[newtons].push, seed).force
         pushed.append(PushedEpisode(newtons, math.atan2(y, x), result))
     return [pushed[index * len(pushes) : (index + 1) * len(pushes)] for index in range(len(controllers))]
+
+
+def pushed_settings(config: BalanceConfig, newtons: float) -> BalanceConfig:
+    """Settings of the episodes with pushes of one force.
+
+    :param config: settings of which the time limit, and force, time and sagittal share of the push are replaced
+    :param newtons: force of the pushes, in N
+    """
+    push = push_of_table(config.push, newtons)
+    limit = PUSHED_BETWEEN[1] + push.duration + SECONDS_AFTER
+    return dataclasses.replace(config, push=push, time_limit=limit)
+
+
+def push_of_table(push: Push, newtons: float) -> Push:
+    """Pushes of one force, at the time of all tables.
+
+    :param push: pushes whose directions and duration stay
+    :param newtons: force, in N
+    """
+    return dataclasses.replace(push, newtons=(newtons, newtons), at_seconds=PUSHED_BETWEEN, sagittal_share=0.0)
 
 
 def robustness_table(episodes: Sequence[PushedEpisode]) -> list[Robustness]:

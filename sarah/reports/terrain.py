@@ -18,7 +18,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
 from sarah.episode.workers import Workers
-from sarah.reports.robustness import PUSHED_BETWEEN, rounded, wilson_interval
+from sarah.reports.robustness import push_of_table, rounded, wilson_interval
 from sarah.robot.scale import Scale
 from sarah.simulation.terrain import Terrain
 
@@ -66,13 +66,14 @@ class Situation:
         """Settings of the situation's episodes.
 
         :param task: task of the episodes
-        :param config: settings of which time limit, ground and push are replaced
+        :param config: settings of which time limit and ground are replaced, and force, time and sagittal share of the
+            push
         """
         changes: dict[str, Any] = {"terrain": self.terrain, "time_limit": TIME_LIMIT}
         if not (task.has_push or self.newtons):
             return task.config_of(config, **changes)
-        push = config.scale.scaled(Push(at_seconds=PUSHED_BETWEEN))
-        changes["push"] = dataclasses.replace(push, newtons=(self.newtons, self.newtons))
+        push = config.push if isinstance(config, PushedConfig) else config.scale.scaled(Push())
+        changes["push"] = push_of_table(push, self.newtons)
         if isinstance(config, PushedConfig):
             return dataclasses.replace(config, **changes)
         return PushedConfig(**(vars(config) | changes))
@@ -120,7 +121,8 @@ def try_terrain(
 
     :param task: task of the parameters
     :param parameters: values of the task's parameters, in order
-    :param config: settings of the episodes; time limit, ground and push are replaced
+    :param config: settings of the episodes; time limit, ground, and force, time and sagittal share of the push are
+        replaced
     :param seeds: seeds of the episodes
     :param workers: workers that simulate the episodes
     :param tried: situations to try

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -40,16 +41,42 @@ def read_config(config_type: type[ConfigType], path: Path, task: Task[Any] | Non
     :param task: task that takes the place of the one that the file names
     :raises ConfigurationError: naming file, key and value, if a value is not allowed
     """
+    content = _read(path)
+    if task is not None and isinstance(content, dict):
+        content["task"] = task
+    with _naming(path):
+        return from_mapping(config_type(), content)
+
+
+def read_section(default: ConfigType, path: Path, name: str) -> ConfigType:
+    """Change settings by one section of a YAML file, which :func:`read_config` has read without a mistake.
+
+    :param default: settings whose values stay where the section names no others, a dataclass
+    :param path: path of the file
+    :param name: name of the section; all values stay if the file lacks it
+    :raises ConfigurationError: naming file, key and value, if a value is not allowed beside those that stay
+    """
+    section = _read(path).get(name, {})
+    with _naming(path):
+        return from_mapping(default, section, f"{name}.")
+
+
+def _read(path: Path) -> Any:
+    """Content of a YAML file; an empty one names nothing."""
     try:
         text = read_text(path)
     except OSError as error:
         raise ConfigurationError(f"cannot read {path}: {error.strerror or error}") from error
-    try:
+    with _naming(path):
         content = read_yaml(text)
-        content = {} if content is None else content
-        if task is not None and isinstance(content, dict):
-            content["task"] = task
-        return from_mapping(config_type(), content)
+    return {} if content is None else content
+
+
+@contextlib.contextmanager
+def _naming(path: Path) -> Iterator[None]:
+    """Name a file in the message about a mistake in it."""
+    try:
+        yield
     except SarahError as error:
         raise ConfigurationError(f"{path}: {error}") from error
 
@@ -79,6 +106,22 @@ def settings_by_key(config: Any) -> dict[str, Any]:
             found |= {f"{item.name}.{key}": inner for key, inner in settings_by_key(value).items()}
         else:
             found[item.name] = _to_plain(value)
+    return found
+
+
+def changed_values(config: Any, other: Any) -> dict[str, Any]:
+    """Values of a configuration that another one does not have, as :func:`~sarah.episode.from_mapping.from_mapping`
+    takes them.
+
+    :param config: configuration, a dataclass
+    :param other: configuration to compare with
+    """
+    found: dict[str, Any] = {}
+    for item in dataclasses.fields(config):
+        value, before = getattr(config, item.name), getattr(other, item.name, None)
+        if value != before:
+            is_settings = dataclasses.is_dataclass(value) and dataclasses.is_dataclass(before)
+            found[item.name] = changed_values(value, before) if is_settings else value
     return found
 
 

@@ -35,6 +35,26 @@ def changed_settings(task: Task[Any], config: EpisodeConfig) -> Iterator[str]:
             yield f"{name} {_text(value)}"
 
 
+def differences(config: EpisodeConfig, subject: EpisodeConfig) -> Iterator[str]:
+    """Settings of episodes that are not those of what they are made of, each with both values; P1 to P5 are left out.
+
+    :param config: settings of the episodes
+    :param subject: settings of what a command was given, such as a run folder
+    """
+    here, there = _by_name(config, subject), _by_name(subject, config)
+    for name in here | there:
+        if name != "stepping" and here.get(name) != there.get(name):
+            yield f"{name} {_text(here.get(name))} instead of {_text(there.get(name))}"
+
+
+def _by_name(config: EpisodeConfig, other: EpisodeConfig) -> dict[str, Any]:
+    """Settings by name; a push that only one of both has is one setting."""
+    if isinstance(config, PushedConfig) and not isinstance(other, PushedConfig):
+        shared = {name: value for name, value in settings_by_key(config).items() if not name.startswith("push.")}
+        return {**shared, "push": settings_by_key(config.push)}
+    return settings_by_key(config)
+
+
 def told_of(spec: EpisodeSpec, trace: Trace) -> list[str]:
     """What a picture of an episode leaves out or shows for a moment: its pushes, and settings that are not usual.
 
@@ -77,6 +97,8 @@ def _drawn(ranges: Terrain, usual: Terrain, seed: int) -> Terrain:
 
 def _text(value: Any) -> str:
     """Text of a setting; of a range both ends, unless they are equal."""
+    if value is None or value == {}:
+        return "none"
     if isinstance(value, list):
         return " to ".join(f"{end:g}" for end in dict.fromkeys(value))
     if isinstance(value, Mapping):

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
+from typing import Any
 
 from sarah.episode.push import Push
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, BalanceConfig, controller_of, push_of
+from sarah.episode.tasks import BALANCE, TASKS, BalanceConfig, Task, controller_of, push_of
 from sarah.simulation.terrain import Terrain, draw_terrain
 
 
@@ -40,6 +41,7 @@ class Scenario:
     :param terrain: ground of the episode, whose settings are single values
     :param seed: seed of the conditions, the bumps and the sensor noise
     :param config: settings that the sliders do not change
+    :param task: task whose reward and ending the episode has
     """
 
     stepping: tuple[float, ...]
@@ -48,6 +50,7 @@ class Scenario:
     terrain: Terrain
     seed: int
     config: BalanceConfig
+    task: Task[Any] = BALANCE
 
     @classmethod
     def of(cls, spec: EpisodeSpec) -> Scenario:
@@ -64,10 +67,10 @@ class Scenario:
             push = KnownPush(math.hypot(x, y), math.degrees(math.atan2(y, x)) % 360.0, drawn.begin, duration)
         hips = BALANCE.baseline if balance is None else astuple(balance)
         terrain = draw_terrain(spec.config.terrain, spec.seed)
-        return cls(astuple(stepping), hips, push, terrain, spec.seed, BALANCE.config_of(spec.config))
+        return cls(astuple(stepping), hips, push, terrain, spec.seed, BALANCE.config_of(spec.config), task)
 
     def spec(self) -> EpisodeSpec:
-        """Specification of the episode, in the task balance, which has everything that the sliders can set."""
+        """Specification of the episode, with the settings of balance, which has everything that the sliders can set."""
         given = Push(
             newtons=(self.push.newtons, self.push.newtons),
             degrees=(self.push.degrees, self.push.degrees),
@@ -75,4 +78,6 @@ class Scenario:
             duration=self.push.duration,
         )
         config = BALANCE.config_of(self.config, stepping=self.stepping, push=given, terrain=self.terrain)
-        return EpisodeSpec(self.balance, self.seed, BALANCE, config)
+        judged = {name: getattr(self.task, name) for name in ("reward", "best_reward", "ending", "file")}
+        task = BALANCE if self.task in TASKS.values() else replace(BALANCE, **judged)
+        return EpisodeSpec(self.balance, self.seed, task, config)

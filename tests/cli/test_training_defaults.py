@@ -1,5 +1,6 @@
 """What ``sarah-train`` and ``sarah-compare`` train with unless somebody says otherwise."""
 
+import dataclasses
 import re
 from collections.abc import Callable
 from importlib import import_module
@@ -12,10 +13,12 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
+from sarah.simulation.physics import Physics
 
 TRAIN, COMPARE = "sarah-train --task balance", "sarah-compare race --task balance"
 PUSHED = BalanceConfig(push=Push(newtons=(100.0, 125.0), sagittal_share=0.5), time_limit=10.0)
 PAPER = "--episode.push.newtons 0 100 --episode.push.sagittal-share 0 --episode.time-limit 30"
+LEGS = (0.4, 1.3, 0.1, 1.0, 1.0)
 FILE = """
 import dataclasses, sarah
 MINE = dataclasses.replace(sarah.BALANCE, name="mine")
@@ -105,12 +108,52 @@ def test_a_training_goes_on_with_its_own(tmp_path: Path, begun: Callable[[str], 
         assert begun(f"sarah-train --resume run{task}") == paper
 
 
-def test_what_was_learned_first_gives_legs_and_robot(tmp_path: Path, begun: Callable[[str], TrainingConfig]) -> None:
-    legs = (0.4, 1.3, 0.1, 1.0, 1.0)
-    longer = {"thigh_length": 0.36}
-    first = RunFolder.create(tmp_path / "first", TrainingConfig(episode=STEPPING.config_of(PUSHED, dimensions=longer)))
-    first.write_parameters({"parameters": dict(zip(STEPPING.parameter_names, legs, strict=True))})
-    config = begun(f"{TRAIN} --from first --episode.push.newtons 110")
-    push = Push(newtons=(110.0, 110.0), sagittal_share=0.5)
+@pytest.fixture
+def first(tmp_path: Path) -> EpisodeConfig:
+    """Settings of a First Training on a robot of its own, whose folder is ``first``."""
+    own = EpisodeConfig(
+        physics=Physics(400, 20, 200), payload=3.0, dimensions={"thigh_length": 0.36}, reward_form="printed"
+    )
+    run = RunFolder.create(tmp_path / "first", TrainingConfig(episode=own))
+    run.write_parameters({"parameters": dict(zip(STEPPING.parameter_names, LEGS, strict=True))})
+    return own
+
+
+def test_what_was_learned_first_gives_legs_and_robot(
+    first: EpisodeConfig, begun: Callable[[str], TrainingConfig], capsys: pytest.CaptureFixture[str]
+) -> None:
+    config = begun(f"{TRAIN} --from first --episode.push.newtons 110 --episode.payload 1")
+    push = first.scale.scaled(Push(newtons=(110.0, 110.0), sagittal_share=0.5))  # its mass is the usual one
     assert config.episodes == 300
-    assert config.episode == BalanceConfig(stepping=legs, dimensions=longer, push=push, time_limit=10.0)
+    assert config.episode == BALANCE.config_of(first, stepping=LEGS, push=push, time_limit=10.0, payload=1.0)
+    text = capsys.readouterr().out
+    said = [line.strip() for line in text.partition("all settings of its episodes, but\n")[2].splitlines()]
+    assert {"payload 1 instead of 3", "time_limit 10 instead of 30"} < set(said) and len(said) == 3
+    assert said[-1].startswith("push newtons 110, ") and said[-1].endswith(" instead of none")
+
+
+def test_a_file_goes_before_what_was_learned_first_and_an_option_before_both(
+    first: EpisodeConfig,
+    tmp_path: Path,
+    begun: Callable[[str], TrainingConfig],
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    (tmp_path / "mine.yaml").write_text("episode: {payload: 2, physics: {solver_iterations: 30}, push: {degrees: 90}}")
+    others = "--episode.physics.control-rate 100 --episode.stepping 1 1 1 1 1"
+    config = begun(f"{TRAIN} --from first --config mine.yaml {others}")
+    assert "\n  stepping 1, 1, 1, 1, 1 instead of 0.4, 1.3, 0.1, 1, 1\n" in capsys.readouterr().out
+    assert config.episode.payload == 2.0 and config.episode.reward_form == "printed"
+    assert config.episode.physics == dataclasses.replace(first.physics, solver_iterations=30, control_rate=100)
+    push = Push((100.0, 125.0), degrees=(90.0, 90.0), sagittal_share=0.5)
+    assert config.episode.push == first.scale.scaled(push)
+
+
+def test_another_robot_than_the_first_has_its_own_push_and_the_settings_that_were_recorded(
+    first: EpisodeConfig, begun: Callable[[str], TrainingConfig]
+) -> None:
+    config = begun(f"{TRAIN} --from first --episode.dimensions shank_length 0.5")
+    robot = EpisodeConfig(dimensions={"thigh_length": 0.36, "shank_length": 0.5})
+    push = robot.scale.scaled(PUSHED.push)
+    assert config.episode == BALANCE.config_of(
+        dataclasses.replace(first, dimensions=robot.dimensions), stepping=LEGS, push=push, time_limit=10.0
+    )

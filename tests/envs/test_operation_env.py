@@ -38,6 +38,12 @@ def test_changes_are_objects_or_mappings() -> None:
         SarahOperationEnv(changes=["1: payload=3"])
 
 
+@pytest.mark.parametrize("name", ["time_limit", "reward_form"])
+def test_a_setting_without_effect_is_refused(name: str) -> None:
+    with pytest.raises(ConfigurationError, match=f"{name} has no effect in an operation: leave it out"):
+        SarahOperationEnv(robot={name: 3.0})
+
+
 def test_the_checkers_of_gymnasium_and_stable_baselines3_find_nothing() -> None:
     env = SarahOperationEnv(quick(minutes=0.2))
     with warnings.catch_warnings():

@@ -15,15 +15,16 @@ from sarah.episode.push import Push, PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING
 from sarah.episode.workers import Workers
-from sarah.reports import terrain, terrain_figure
+from sarah.reports import robustness, terrain, terrain_figure
 from sarah.reports.terrain import OnTerrain, Situation, as_markdown, situations, try_terrain
+from sarah.robot.scale import Scale
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.terrain import Terrain
 
 
 def test_situations_are_slopes_in_all_directions_bumps_and_friction_each_without_a_push_and_with_one() -> None:
-    found = list(situations())
+    found = list(situations(Scale()))
     assert len(found) == 2 * (1 + 4 * 4 + 4 + 5) == len(set(found))
     without, pushed = (({one.terrain for one in found if one.newtons == newtons}) for newtons in (0.0, 75.0))
     assert without == pushed
@@ -38,7 +39,7 @@ def test_a_situation_changes_ground_push_and_time_limit_only(task: Any) -> None:
     own = task.config_of(task.episode, controller=task.episode.controller)
     pushed = Situation("roughness", 0.01, "", 75.0).config(task, own)
     assert isinstance(pushed, PushedConfig)
-    assert pushed.push == Push((75.0, 75.0), at_seconds=terrain.PUSHED_BETWEEN)
+    assert pushed.push == Push((75.0, 75.0), at_seconds=robustness.PUSHED_BETWEEN)
     assert pushed.terrain == Terrain(roughness=(0.01, 0.01)) and pushed.time_limit == terrain.TIME_LIMIT
     free = Situation("friction", 0.25, "", 0.0).config(task, own)
     assert not isinstance(free, PushedConfig) or free.push.newtons == (0.0, 0.0)
@@ -105,7 +106,7 @@ def test_the_picture_shows_every_row(tmp_path: Path, monkeypatch: pytest.MonkeyP
     slow, fast = (dataclasses.replace(RESULT, steps_per_second=steps) for steps in (2.0, 4.0))
     rows = [
         OnTerrain(situation, Evaluation((fast if situation.kind == "friction" else slow,) * 3))
-        for situation in situations()
+        for situation in situations(Scale())
     ]
     terrain_figure.draw_terrain(rows, tmp_path / "terrain")
     for axis in drawn[0].axes:

@@ -11,7 +11,7 @@ from sarah.episode.episode import simulate
 from sarah.episode.push import DrawnPush, Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, BalanceConfig, push_of
+from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, push_of
 from sarah.errors import ConfigurationError, RunFolderError
 from sarah.runs.run_episodes import choose_episode, episodes_of_run
 from sarah.runs.run_folder import RunFolder
@@ -80,6 +80,16 @@ def test_ground_that_the_seed_drew_stays_when_the_sliders_stand_still() -> None:
     scenario = Scenario.of(spec)
     assert draw_ground(scenario.terrain, 3) == draw_ground(terrain, 3)
     assert simulate(scenario.spec()) == simulate(spec)
+
+
+def test_sliders_leave_reward_and_ending_of_an_own_task() -> None:
+    """Whatever the sliders set, somebody's own reward judges it, and their own ending ends it."""
+    own = dataclasses.replace(
+        STEPPING, reward=lambda tick, config: 2.0, best_reward=4.0, ending=lambda tick, config: "tired"
+    )
+    result = simulate(Scenario.of(EpisodeSpec(PAPER_STEPPING, 3, own)).spec())
+    assert result.termination == "tired" and result.episode_return == pytest.approx(2.0 * 0.01)
+    assert result.score == pytest.approx(result.episode_return / (4.0 * 29.0))
 
 
 def test_a_push_of_a_task_keeps_its_duration() -> None:

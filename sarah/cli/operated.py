@@ -1,0 +1,55 @@
+"""What a robot in operation has of the run folder, the session or the shipped parameters that it begins with."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+from sarah.episode.push import PushedConfig
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import TASKS
+from sarah.operation.settings import SOFT_PUSHES
+from sarah.sessions import is_session
+
+
+def settings_in_operation(config: EpisodeConfig, subject: str | None) -> PushedConfig:
+    """Settings of a robot in operation: those of the subject, with soft pushes, unless they are a session's own.
+
+    :param config: settings of the subject's episodes
+    :param subject: what the robot begins with
+    """
+    shared = {item.name: getattr(config, item.name) for item in dataclasses.fields(EpisodeConfig)}
+    is_own = subject is not None and is_session(Path(subject))
+    push = config.push if is_own and isinstance(config, PushedConfig) else config.scale.scaled(SOFT_PUSHES)
+    return PushedConfig(**shared, push=push)
+
+
+def times_of_session(path: Path) -> dict[str, Any]:
+    """Times of windows, falls and pushes of a session, by the names of the options.
+
+    :param path: folder of the session
+    """
+    from sarah.sessions.session_folder import SessionFolder
+
+    config = SessionFolder.open(path).spec().config
+    names = ("settle_seconds", "measure_seconds", "fall_seconds", "push_seconds")
+    return {name: getattr(config, name) for name in names}
+
+
+def say_differences(name: str, subject: EpisodeSpec, robot: PushedConfig) -> None:
+    """Print what a robot in operation does not have of its subject.
+
+    :param name: what the robot begins with, as it was given
+    :param subject: episode of it
+    :param robot: settings of the robot in operation
+    """
+    from sarah.runs.episode_words import differences
+
+    symmetric = dataclasses.replace(robot, reward_form="symmetric")  # whatever they say, which has no effect
+    changes = list(differences(symmetric, subject.config))
+    if subject.task not in TASKS.values():
+        changes.append(f"the reward of equation 2 instead of that of task {subject.task.name}")
+    if changes:
+        print(f"robot of {name}: all settings of its episodes, but", *changes, sep="\n  ", flush=True)

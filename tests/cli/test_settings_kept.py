@@ -1,0 +1,258 @@
+"""No command drops a setting of what it looks at: what is simulated is the subject's own, and what is not is said."""
+
+import contextlib
+import dataclasses
+import shlex
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import pytest
+from laboratory import RESULT
+
+from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
+from sarah.episode.push import PushedConfig
+from sarah.episode.running_robot import RunningRobot
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BALANCE, STEPPING
+from sarah.operation.settings import Change, OperationConfig
+from sarah.operation.window import FELT, Window
+from sarah.pictures import session_figure
+from sarah.reports import all_figures, robustness, terrain, terrain_figure, training_figures, transfer_figure
+from sarah.robot.description import describe_robot
+from sarah.runs.config import TrainingConfig
+from sarah.runs.config_files import settings_by_key
+from sarah.runs.run_episodes import RunEpisode
+from sarah.runs.run_folder import RunFolder
+from sarah.sessions.session import SessionSpec
+from sarah.sessions.session_folder import SessionFolder
+from sarah.simulation.engines import default_engine, is_installed
+from sarah.simulation.physics import Physics
+from sarah.viewer.scenario import Scenario
+
+LEGS, HIPS = (0.45, 1.25, 0.15, 1.05, 0.95), (0.5, 0.1, 0.2, 0.3)
+ENGINE = next((name for name in ("mujoco", "pybullet") if name != default_engine() and is_installed(name)), None)
+CHOSEN: dict[str, Any] = {
+    "engine": ENGINE or default_engine(),
+    "physics": Physics(rate=500, solver_iterations=10, control_rate=125),
+    "dimensions": {"thigh_length": 0.36},
+    "time_limit": 1.3,
+    "reward_form": "printed",
+    "roughness": (0.0, 0.0),  # an operation refuses bumps
+    "friction_left": (0.5, 0.6),
+    "friction_right": (0.7, 0.8),
+    "at_seconds": (1.05, 1.1),
+    "stepping": LEGS,
+}
+"""Values of settings that a factor would not make."""
+
+
+def odd(config: Any) -> Any:
+    """The same settings, each with another value."""
+    changes: dict[str, Any] = {}
+    for item in dataclasses.fields(config):
+        value = getattr(config, item.name)
+        changes[item.name] = CHOSEN[item.name] if item.name in CHOSEN else _other(value)
+    return dataclasses.replace(config, **changes)
+
+
+def _other(value: Any) -> Any:
+    if isinstance(value, bool):
+        return not value
+    if isinstance(value, float):
+        return 0.98 * value or 0.01
+    return tuple(map(_other, value)) if isinstance(value, tuple) else odd(value)
+
+
+def trained(path: Path, config: TrainingConfig, learned: tuple[float, ...]) -> None:
+    run = RunFolder.create(path, config)
+    run.append_episode(0, EpisodeSpec(learned, 2**31, config.task, config.episode), RESULT)
+    run.write_parameters({"parameters": dict(zip(config.task.parameter_names, learned, strict=True))})
+
+
+@pytest.fixture(scope="module")
+def subjects(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a First and a Second Training and a session, none of whose settings is the usual one."""
+    folder = tmp_path_factory.mktemp("odd")
+    first, second = odd(STEPPING.episode), odd(BALANCE.episode)
+    trained(folder / "first", TrainingConfig(STEPPING, episodes=1, episode=first), LEGS)
+    trained(folder / "second", TrainingConfig(BALANCE, episodes=1, episode=second), HIPS)
+    shared = {name: value for name, value in vars(second).items() if name != "stepping"}
+    operation = OperationConfig(PushedConfig(**shared), 0.5, *(0.5, 0.6, 0.7, 0.8))
+    session = SessionFolder.create(folder / "session", SessionSpec((*LEGS, *HIPS), "none", 0, operation))
+    session.write_windows([Window(0, 0.0, 2.1, 0, (*LEGS, *HIPS), 0.5, 0.5, False, (0.0,) * len(FELT))])
+    session.write_parameters((*LEGS, *HIPS))
+    return folder
+    for config in (first, second):
+        usual = settings_by_key(type(config)())
+        left = {key for key, value in settings_by_key(config).items() if value == usual.get(key)}
+        assert left <= {"terrain.roughness"} | ({"engine"} if ENGINE is None else set())
+    return folder
+
+
+NEEDS = {"sarah-view": ("viser",), "sarah-video": ("pybullet",), "sarah-transfer": ("pybullet", "mujoco")}
+"""Packages that a command does not work without."""
+DRAWN = (
+    *((all_figures, name) for name in ("draw_figures", "draw_robot", "draw_state_machine", "draw_gait_cycle")),
+    *((terrain_figure, "draw_terrain"), (training_figures, "draw_survival"), (transfer_figure, "draw_transfer")),
+    (session_figure, "draw_session"),
+)
+"""Modules, and names in them of functions that draw figures."""
+
+
+@dataclasses.dataclass
+class Ran:
+    """What a command did."""
+
+    configs: list[EpisodeConfig] = dataclasses.field(default_factory=list)
+    legs: list[SteppingParameters] = dataclasses.field(default_factory=list)
+    drawn: list[object] = dataclasses.field(default_factory=list)
+    printed: str = ""
+
+
+@pytest.fixture
+def ran(
+    subjects: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Callable[[str], Ran]:
+    """Runs a command line in this process: settings and P1 to P5 of all that it simulates, and what it shows."""
+    found = Ran()
+    build, set_parameters = RunningRobot.__init__, PatternGenerator.set_parameters
+
+    def built(robot: RunningRobot, config: EpisodeConfig, *arguments: Any, **keywords: Any) -> None:
+        found.configs.append(config)
+        build(robot, config, *arguments, **keywords)
+
+    def given(generator: PatternGenerator, stepping: SteppingParameters, *balance: Any) -> None:
+        found.legs.append(stepping)
+        set_parameters(generator, stepping, *balance)
+
+    def trains(config: TrainingConfig, *_: object) -> None:
+        found.configs.append(config.episode)
+        found.legs.append(SteppingParameters(*config.episode.stepping))  # type: ignore[attr-defined]
+        raise KeyboardInterrupt
+
+    monkeypatch.chdir(tmp_path)
+    for name in ("first", "second", "session"):
+        Path(name).symlink_to(subjects / name)
+    monkeypatch.setattr(RunningRobot, "__init__", built)
+    monkeypatch.setattr(PatternGenerator, "set_parameters", given)
+    monkeypatch.setattr("sarah.training.train.train", trains)
+    monkeypatch.setattr(robustness, "SECONDS_AFTER", 0.1)
+    monkeypatch.setattr(terrain, "TIME_LIMIT", 1.2)
+    level = [terrain.Situation("slope", 0.0, "", newtons) for newtons in (0.0, 75.0)]
+    monkeypatch.setattr(terrain, "situations", lambda scale: level)
+    for module, name in DRAWN:  # which would take most of the time
+        monkeypatch.setattr(module, name, lambda *arguments: found.drawn.extend(arguments) or [])
+
+    def run(line: str) -> Ran:
+        command, *arguments = shlex.split(line)
+        for package in NEEDS.get(command, ()):
+            pytest.importorskip(package)
+        monkeypatch.setattr("sys.argv", [command, *arguments])
+        try:
+            import_module(f"sarah.cli.{command.removeprefix('sarah-')}").main()
+        except SystemExit as ended:
+            assert ended.code == 130  # the training of which only the settings matter
+        found.printed = capsys.readouterr().out
+        return found
+
+    return run
+
+
+PUSH = {"push", *(f"push.{name}" for name in ("newtons", "degrees", "at_seconds", "duration", "sagittal_share"))}
+GROUND = {f"terrain.{name}" for name in ("slope_degrees", "direction_degrees", "cell", "friction_left")}
+SHORT = "--minutes 0.1 --learner none"
+
+
+@pytest.mark.parametrize(
+    ("line", "others"),
+    [
+        *((f"sarah-eval {subject} --episodes 1", set()) for subject in ("first", "second", "session")),
+        *((f"sarah-video {subject} out.gif --seconds 1 1.05", set()) for subject in ("first", "second", "session")),
+        *((f"sarah-view {subject} --export out.html", set()) for subject in ("first", "second", "session")),
+        ("sarah-view first --export out.html --which best", set()),
+        *((f"sarah-report {run} --out out.html --episodes 1 --seconds 1 1.05", set()) for run in ("first", "second")),
+        *((f"sarah-figures {run} --out out", set()) for run in ("first", "second")),
+        *(
+            (f"sarah-transfer {subject} --out out --episodes 1", {"engine", "physics.added_plate_inertia"})
+            for subject in ("first", "second", "session")
+        ),
+        ("sarah-eval second --robustness out --forces 25 --episodes 1", {*PUSH, "time_limit"}),
+        *(
+            (
+                f"sarah-eval {subject} --terrain out --episodes 1",
+                {*PUSH, *GROUND, "terrain.friction_right", "time_limit"},
+            )
+            for subject in ("first", "second")
+        ),
+        *(
+            (f"sarah-operate {run} {SHORT} --settle-seconds 0.5 --measure-seconds 0.5", PUSH)
+            for run in ("first", "second")
+        ),
+        (f"sarah-operate session {SHORT}", set()),
+        ("sarah-train --task balance --from first", {"push", "time_limit"}),
+    ],
+)
+def test_what_is_simulated_has_the_settings_of_the_subject_and_others_are_said(
+    line: str, others: set[str], ran: Callable[[str], Ran]
+) -> None:
+    subject = next(name for name in ("first", "second", "session") if name in line)
+    own = settings_by_key(odd(STEPPING.episode if subject == "first" else BALANCE.episode))
+    found = ran(line)
+    assert found.configs and SteppingParameters(*LEGS) in found.legs
+    if subject != "first":  # a report compares P1 to P5 with the paper's
+        assert set(found.legs) == {SteppingParameters(*LEGS)}
+    if line.startswith(("sarah-figures", "sarah-report")):
+        assert describe_robot(CHOSEN["dimensions"]) in found.drawn
+        assert odd(STEPPING.episode).controller in found.drawn
+    for config in found.configs:
+        there = settings_by_key(config)
+        changed = {key for key in own | there if key != "stepping" and own.get(key) != there.get(key)}
+        if subject == "first":
+            changed = {"push" if key in PUSH else key for key in changed}
+        assert changed <= others
+        for key in changed - {"push.newtons"}:  # which the table itself has
+            assert (there[key] if key == "engine" else key) in found.printed
+
+
+def test_a_session_goes_on_with_windows_falls_and_pushes_as_there(subjects: Path, ran: Callable[[str], Ran]) -> None:
+    ran(f"sarah-operate session {SHORT} --settle-seconds 0.9 --run-dir out")
+    before, after = (SessionFolder.open(path).spec().config for path in (subjects / "session", Path("out")))
+    assert after == dataclasses.replace(before, minutes=0.1, settle_seconds=0.9)
+
+
+def test_an_option_changes_nothing_else_of_a_sessions_windows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each window of a session has P1 to P5 of its own, and a payload that may have changed on the way."""
+    pytest.importorskip("viser")
+    shown: list[list[RunEpisode]] = []
+
+    def page(server: object, choices: list[RunEpisode], chosen: RunEpisode) -> None:
+        shown.append(choices)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("sarah.viewer.page.Page", page)
+    monkeypatch.setattr("sarah.viewer.server.serving", lambda *_: contextlib.nullcontext())
+    config = OperationConfig(minutes=0.2, changes=(Change(0.1, {"payload": 5.0}),))
+    folder = SessionFolder.create(tmp_path / "session", SessionSpec(config=config))
+    parameters = ((*LEGS, *HIPS), (*LEGS[::-1], *HIPS))
+    felt = (0.0,) * len(FELT)
+    folder.write_windows(
+        [Window(index, 6.0 * index, 6.0, index, each, 0.5, 0.5, False, felt) for index, each in enumerate(parameters)]
+    )
+    monkeypatch.setattr("sys.argv", ["sarah-view", str(folder.path), "--episode.randomisation.friction", "0.5"])
+    with pytest.raises(SystemExit):
+        import_module("sarah.cli.view").main()
+    windows = [choice.spec.config for choice in shown[0] if choice.name != "best"]
+    assert [window.stepping for window in windows] == [LEGS, LEGS[::-1]]  # type: ignore[attr-defined]
+    assert [window.payload for window in windows] == [0.0, 5.0]
+    assert {window.randomisation.friction for window in windows} == {(0.5, 0.5)}
+
+
+def test_a_slider_changes_only_push_and_ground() -> None:
+    spec = EpisodeSpec(HIPS, 0, BALANCE, odd(BALANCE.episode))
+    before, after = (settings_by_key(each.config) for each in (spec, Scenario.of(spec).spec()))
+    changed = {key for key in before if before[key] != after[key]}
+    assert {key.partition(".")[0] for key in changed} == {"push", "terrain"}
+    assert "push.duration" not in changed
