@@ -17,11 +17,10 @@ import tyro
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episodes_of, is_shipped
-from sarah.episode.from_mapping import from_mapping
 from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError
 from sarah.files import check_file
-from sarah.runs.config_files import changed_values
+from sarah.runs.config_files import changed_alike
 
 if TYPE_CHECKING:
     from sarah.runs.run_episodes import RunEpisode
@@ -72,7 +71,7 @@ def _view(arguments: Sequence[str]) -> None:
     choices, chosen = episodes_of(options.subject, options.which, task)
     changed = options.applied_to(chosen.spec)
     if changed != chosen.spec:
-        choices = [choice.of(_changed_alike(choice.spec, chosen.spec, changed)) for choice in choices]
+        choices = [choice.of(_changed_as(choice.spec, chosen.spec, changed)) for choice in choices]
         chosen = chosen.of(changed)
     from sarah.simulation.engines import check_engine
 
@@ -87,7 +86,7 @@ def _view(arguments: Sequence[str]) -> None:
         _serve(options, choices, chosen)
 
 
-def _changed_alike(spec: EpisodeSpec, chosen: EpisodeSpec, changed: EpisodeSpec) -> EpisodeSpec:
+def _changed_as(spec: EpisodeSpec, chosen: EpisodeSpec, changed: EpisodeSpec) -> EpisodeSpec:
     """Specification of an episode with the changes of the chosen one. The windows of a session have settings each.
 
     :param spec: specification of the episode
@@ -96,7 +95,7 @@ def _changed_alike(spec: EpisodeSpec, chosen: EpisodeSpec, changed: EpisodeSpec)
     """
     if spec.config == chosen.config:
         return dataclasses.replace(spec, config=changed.config)
-    return dataclasses.replace(spec, config=from_mapping(spec.config, changed_values(changed.config, chosen.config)))
+    return dataclasses.replace(spec, config=changed_alike(spec.config, chosen.config, changed.config))
 
 
 def _export(path: Path, chosen: RunEpisode) -> None:

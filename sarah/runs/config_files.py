@@ -109,20 +109,20 @@ def settings_by_key(config: Any) -> dict[str, Any]:
     return found
 
 
-def changed_values(config: Any, other: Any) -> dict[str, Any]:
-    """Values of a configuration that another one does not have, as :func:`~sarah.episode.from_mapping.from_mapping`
-    takes them.
+def changed_alike(config: ConfigType, before: Any, after: Any) -> ConfigType:
+    """Make the changes of one configuration in another, which keeps the rest.
 
-    :param config: configuration, a dataclass
-    :param other: configuration to compare with
+    :param config: configuration to change, a dataclass
+    :param before: configuration of the same type, as it was
+    :param after: the same with the changes
     """
-    found: dict[str, Any] = {}
-    for item in dataclasses.fields(config):
-        value, before = getattr(config, item.name), getattr(other, item.name, None)
-        if value != before:
-            is_settings = dataclasses.is_dataclass(value) and dataclasses.is_dataclass(before)
-            found[item.name] = changed_values(value, before) if is_settings else value
-    return found
+    values: dict[str, Any] = {}
+    for item in dataclasses.fields(after):
+        own, was, value = (getattr(each, item.name, None) for each in (config, before, after))
+        if value != was:
+            is_same_kind = dataclasses.is_dataclass(value) and type(own) is type(value)
+            values[item.name] = changed_alike(own, was, value) if is_same_kind else value
+    return dataclasses.replace(config, **values)  # type: ignore[type-var]  # a dataclass
 
 
 def _to_plain(value: Any) -> Any:

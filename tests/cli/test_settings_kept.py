@@ -241,13 +241,17 @@ def test_an_option_changes_nothing_else_of_a_sessions_windows(tmp_path: Path, mo
     folder.write_windows(
         [Window(index, 6.0 * index, 6.0, index, each, 0.5, 0.5, False, felt) for index, each in enumerate(parameters)]
     )
-    monkeypatch.setattr("sys.argv", ["sarah-view", str(folder.path), "--episode.randomisation.friction", "0.5"])
+    changed = ["--episode.randomisation.friction", "0.5", "--episode.dimensions", "thigh_length", "0.36"]
+    monkeypatch.setattr("sys.argv", ["sarah-view", str(folder.path), *changed])
     with pytest.raises(SystemExit):
         import_module("sarah.cli.view").main()
     windows = [choice.spec.config for choice in shown[0] if choice.name != "best"]
     assert [window.stepping for window in windows] == [LEGS, LEGS[::-1]]  # type: ignore[attr-defined]
     assert [window.payload for window in windows] == [0.0, 5.0]
     assert {window.randomisation.friction for window in windows} == {(0.5, 0.5)}
+    assert {window.randomisation.delay_seconds for window in windows} == {config.robot.randomisation.delay_seconds}
+    assert {window.controller for window in windows} == {config.robot.controller}  # as the folder has it
+    assert [dict(window.dimensions) for window in windows] == [{"thigh_length": 0.36}] * 2
 
 
 def test_a_slider_changes_only_push_and_ground() -> None:
