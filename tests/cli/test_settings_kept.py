@@ -19,7 +19,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING
 from sarah.operation.settings import Change, OperationConfig
 from sarah.operation.window import FELT, Window
-from sarah.pictures import session_figure
+from sarah.pictures import dimension_figure, session_figure
 from sarah.reports import all_figures, robustness, terrain, terrain_figure, training_figures, transfer_figure
 from sarah.robot.description import describe_robot
 from sarah.runs.config import TrainingConfig
@@ -97,7 +97,7 @@ NEEDS = {"sarah-view": ("viser",), "sarah-video": ("pybullet",), "sarah-transfer
 DRAWN = (
     *((all_figures, name) for name in ("draw_figures", "draw_robot", "draw_state_machine", "draw_gait_cycle")),
     *((terrain_figure, "draw_terrain"), (training_figures, "draw_survival"), (transfer_figure, "draw_transfer")),
-    (session_figure, "draw_session"),
+    *((session_figure, "draw_session"), (dimension_figure, "draw_dimensions")),
 )
 """Modules, and names in them of functions that draw figures."""
 
@@ -215,6 +215,11 @@ def test_what_is_simulated_has_the_settings_of_the_subject_and_others_are_said(
         assert changed <= others
         for key in changed - {"push.newtons"}:  # which the table itself has
             assert (there[key] if key == "engine" else key) in found.printed
+
+
+@pytest.mark.parametrize("subject", ["first", "second", "session"])
+def test_the_robot_that_is_described_is_that_of_the_subject(subject: str, ran: Callable[[str], Ran]) -> None:
+    assert describe_robot(CHOSEN["dimensions"]) in ran(f"sarah-describe {subject}").drawn
 
 
 def test_a_session_goes_on_with_windows_falls_and_pushes_as_there(subjects: Path, ran: Callable[[str], Ran]) -> None:
