@@ -277,7 +277,7 @@ def pushed_words(config: EpisodeConfig) -> str:
     :param config: settings of the episodes
     """
     low, high = config.push.newtons if isinstance(config, PushedConfig) else (0.0, 0.0)
-    newtons = f"{low:g} N" if low == high else f"{low:g} to {high:g} N"
+    newtons = f"{low:.4g} N" if low == high else f"{low:.4g} to {high:.4g} N"
     return f"pushed by {newtons}" if high else "not pushed"
 
 

@@ -21,12 +21,13 @@ MOST_PUSHES = 3
 
 
 def changed_settings(task: Task[Any], config: EpisodeConfig) -> Iterator[str]:
-    """Settings that are not those of the task in the same engine, with their values.
+    """Settings that are not those of the task in the same engine and for a robot of that size, with their values.
 
     :param task: task of the episodes
     :param config: settings of the episodes
     """
-    usual: EpisodeConfig = replace(task.episode, engine=config.engine)
+    of_size: EpisodeConfig = task.episode.for_robot(config.dimensions)
+    usual = replace(of_size, engine=config.engine, dimensions=task.episode.dimensions)
     if isinstance(config, PushedConfig) and not isinstance(usual, PushedConfig):
         usual = PushedConfig(**vars(usual), push=NOBODY)
     before = settings_by_key(usual)
