@@ -19,6 +19,7 @@ from sarah.cli.episode_options import (
     with_given_directions,
     with_given_engine,
 )
+from sarah.cli.former_names import with_out
 from sarah.cli.options import parse_options, run_command, say_engine
 from sarah.cli.training_defaults import default_training
 from sarah.episode.settings import EpisodeConfig
@@ -68,9 +69,7 @@ class CompareOptions:
     :param scheduler: address of a Dask scheduler whose workers train instead; they must share the folder's file system
     """
 
-    out: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="DIR", help_behavior_hint="(required)")] = (
-        None
-    )
+    out: Annotated[Path | None, tyro.conf.arg(metavar="DIR", help_behavior_hint="(required)")] = None
     algorithms: tuple[str, ...] = ALGORITHMS
     seeds: int = 5
     first_seed: int = 0
@@ -112,9 +111,10 @@ def _defaults(arguments: Sequence[str]) -> CompareOptions:
 
 
 def _compare(arguments: Sequence[str]) -> None:
+    arguments = with_out(COMMAND, arguments, bare=0)
     options = parse_options(CompareOptions, COMMAND, arguments, _defaults(arguments))
     if options.out is None:
-        raise ConfigurationError("give a folder for the race")
+        raise ConfigurationError("give a folder for the race: --out DIR")
     if is_session(options.out):
         raise ConfigurationError(f"{options.out} is the folder of a session: name another for the race")
     check_range("seeds", options.seeds, 1, MOST_SEEDS)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, given_options, parse_episode_options
+from sarah.cli.former_names import with_out
 from sarah.cli.interruption import Interruption
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episode_of
@@ -62,7 +63,7 @@ class OperateOptions(EpisodeOptions):
     :param push_seconds: time from a push to the next, in s; --episode.push.newtons sets their force
     :param change: what changes, and when, such as "5: randomisation.actuator_bandwidth=12" at minute 5; once for each
         change, in the order of time
-    :param run_dir: folder to write, new or empty; by default a new one, runs/operation/<learner>-s<seed>
+    :param out: folder to write, new or empty; by default a new one, runs/operation/<learner>-s<seed>
     :param resume: folder of an interrupted session to go on with, as it is
     """
 
@@ -75,7 +76,7 @@ class OperateOptions(EpisodeOptions):
     fall_seconds: float = 20.0
     push_seconds: float = 4.0
     change: Annotated[tuple[str, ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="CHANGE")] = ()
-    run_dir: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
+    out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     resume: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
 
 
@@ -85,6 +86,7 @@ def main() -> None:
 
 
 def _operate(arguments: Sequence[str]) -> None:
+    arguments = with_out(COMMAND, arguments, {"--run-dir": "--out"})
     for argument in arguments:
         if argument.partition("=")[0].replace("_", "-") in WITHOUT_EFFECT:
             raise ConfigurationError(f"{argument} has no effect in an operation: leave it out")
@@ -104,7 +106,7 @@ def _operate(arguments: Sequence[str]) -> None:
         spec = _spec_of(options)
         for count in range(len(spec.config.changes) + 1):
             check_engine(spec.config.robot_after(count).engine)
-        path = options.run_dir or new_run_path("operation", spec.learner, spec.seed)
+        path = options.out or new_run_path("operation", spec.learner, spec.seed)
         folder = SessionFolder.create(path, spec)
         say_engine(spec.config.robot, options.engine)
     print(f"operating for {spec.config.minutes:g} min with learner {spec.learner} into {folder.path}", flush=True)

@@ -22,6 +22,7 @@ from sarah.cli.episode_options import (
     with_given_directions,
     with_given_engine,
 )
+from sarah.cli.former_names import with_out
 from sarah.cli.interruption import Interruption
 from sarah.cli.options import named_task, parse_options, pushed_words, run_command, say_engine
 from sarah.cli.subjects import check_of_training
@@ -66,7 +67,7 @@ class TrainOptions:
 
     :param training: settings of the training
     :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
-    :param run_dir: run folder to write, new or empty; by default a new one, runs/<task>/<algo>-s<seed>
+    :param out: run folder to write, new or empty; by default a new one, runs/<task>/<algo>-s<seed>
     :param config: YAML file of settings, like the config.yaml of any run folder
     :param resume: run folder of an interrupted training to go on with, with its settings; the result is the same as
         without the interruption. A finished training goes on if --episodes is larger than its budget
@@ -77,7 +78,7 @@ class TrainOptions:
 
     training: Annotated[TrainingConfig, tyro.conf.arg(name="")] = TrainingConfig()
     engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
-    run_dir: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
+    out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     config: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     resume: Annotated[Path | None, tyro.conf.arg(metavar="RUN")] = None
     from_run: Annotated[Path | None, tyro.conf.arg(name="from", metavar="RUN")] = None
@@ -94,6 +95,7 @@ def _train(arguments: Sequence[str]) -> None:
     arguments = [re.sub(r"^--simulations(?==|$)", "--episodes", argument) for argument in arguments]  # an alias
     if arguments and not arguments[0].startswith("-"):  # other commands begin with what they look at
         raise ConfigurationError(f"{arguments[0]!r} is no option: a task is given as --task {arguments[0]}")
+    arguments = with_out(COMMAND, arguments, {"--run-dir": "--out"})
     options = parse_options(TrainOptions, COMMAND, arguments, _defaults(arguments))
     config = options.training
     config = dataclasses.replace(config, episode=with_engine(config.episode, options.engine))
@@ -130,7 +132,7 @@ def _train(arguments: Sequence[str]) -> None:
             if run.is_finished:  # only now that somebody can simulate
                 config = _extended(run, config)
         else:
-            run = RunFolder.create(options.run_dir or new_run_path(config.task.name, config.algo, config.seed), config)
+            run = RunFolder.create(options.out or new_run_path(config.task.name, config.algo, config.seed), config)
         say_engine(config.episode, options.engine)
         pushed = f", {pushed_words(config.episode)}" if isinstance(config.episode, PushedConfig) else ""
         what = f"{config.algo} on {config.task.name}{pushed}"
@@ -147,8 +149,8 @@ def _resumed(path: Path, options: TrainOptions, config: TrainingConfig) -> RunFo
     from sarah.runs.run_folder import RunFolder
 
     run = RunFolder.resumable(path, config.task)
-    if options.run_dir is not None or options.config is not None or options.from_run is not None:
-        raise ConfigurationError("--resume goes on with a training as it is: leave --run-dir, --config and --from out")
+    if options.out is not None or options.config is not None or options.from_run is not None:
+        raise ConfigurationError("--resume goes on with a training as it is: leave --out, --config and --from out")
     there = dataclasses.replace(run.config(), pictures=config.pictures)  # they change no result
     if config.episodes > there.episodes and config.extended_from == there.extended_from:
         if not run.is_finished:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
+from sarah.cli.former_names import with_out
 from sarah.cli.options import named_task, run_command
 from sarah.cli.subjects import episode_of
 from sarah.errors import ConfigurationError
@@ -41,9 +42,7 @@ class VideoOptions(EpisodeOptions):
     subject: Annotated[
         str | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN|NUMBERS|NAME", help_behavior_hint="(required)")
     ] = None
-    out: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="OUT", help_behavior_hint="(required)")] = (
-        None
-    )
+    out: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="(required)")] = None
     which: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
     seed: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
     seconds: Annotated[tuple[float, float], tyro.conf.arg(metavar="BEGIN END")] = (0.0, math.inf)
@@ -63,9 +62,10 @@ def main() -> None:
 
 
 def _film(arguments: Sequence[str]) -> None:
+    arguments = with_out(COMMAND, arguments, bare=1)
     options = parse_episode_options(COMMAND, arguments, VideoOptions())
     if options.subject is None or options.out is None:
-        raise ConfigurationError("give a run folder, numbers or a name, and the file to write")
+        raise ConfigurationError("give a run folder, numbers or a name, and the file to write: --out FILE")
     from sarah.pictures.video import FRAMES_PER_SECOND, check_path, frame_times, frames, write_video
     from sarah.simulation.renderer import check_renderer
 

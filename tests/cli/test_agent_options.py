@@ -33,7 +33,7 @@ def trained(command: Callable[..., None]) -> Callable[..., RunFolder]:
     """Trains on ten short episodes."""
 
     def run(name: str, *arguments: str) -> RunFolder:
-        command("--episodes", "10", *SHORT, "--run-dir", name, *arguments)
+        command("--episodes", "10", *SHORT, "--out", name, *arguments)
         return RunFolder.open(Path(name))
 
     return run

@@ -29,7 +29,7 @@ def test_workers_train_and_evaluate_the_same(
     trained: tuple[Path, subprocess.CompletedProcess[str]], tmp_path: Path
 ) -> None:
     alone, _ = trained
-    arguments = ("--episodes", "4", "--seed", "1", "--workers", "2", "--run-dir", "mine")
+    arguments = ("--episodes", "4", "--seed", "1", "--workers", "2", "--out", "mine")
     process = run("sarah-train", *arguments, *SHORT, cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     assert "Warning" not in process.stderr
@@ -60,7 +60,7 @@ def test_only_a_balance_training_continues_a_first_one(balanced: Path) -> None:
 @NEEDS_PYBULLET
 def test_mujoco_trains_and_its_run_is_evaluated_in_it(tmp_path: Path) -> None:
     need("mujoco")
-    arguments = ("--algo", "random", "--episodes", "2", "--engine", "mujoco", "--run-dir", "mine")
+    arguments = ("--algo", "random", "--episodes", "2", "--engine", "mujoco", "--out", "mine")
     process = run("sarah-train", *arguments, *SHORT, "--workers", "2", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     assert "engine: mujoco" in (tmp_path / "mine" / "config.yaml").read_text()
@@ -74,7 +74,7 @@ def test_mujoco_trains_and_its_run_is_evaluated_in_it(tmp_path: Path) -> None:
 
 def test_training_is_configured_by_a_file_and_overridden_by_options(tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text("algo: td3\nepisodes: 2\nslots: 1\nepisode: {time_limit: 1.5}\n")
-    process = run("sarah-train", "--config", "mine.yaml", "--episodes", "3", "--run-dir", "out", cwd=tmp_path)
+    process = run("sarah-train", "--config", "mine.yaml", "--episodes", "3", "--out", "out", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     config = (tmp_path / "out" / "config.yaml").read_text()
     assert "algo: td3" in config and "episodes: 3" in config and "time_limit: 1.5" in config

@@ -212,7 +212,7 @@ def test_a_window_names_the_one_that_goes_on_where_it_ends(whole: tuple[Path, Se
 
 
 def test_a_folder_that_is_not_empty_is_refused(whole: tuple[Path, SessionResult], tmp_path: Path) -> None:
-    with pytest.raises(RunFolderError, match="is not empty: name another with --run-dir"):
+    with pytest.raises(RunFolderError, match="is not empty: name another with --out"):
         SessionFolder.create(whole[0], SPEC)
     with pytest.raises(RunFolderError, match=r"is not the folder of a session: it has no session\.yaml"):
         SessionFolder.open(tmp_path)
