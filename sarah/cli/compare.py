@@ -6,6 +6,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from statistics import fmean
 from typing import Annotated, Any
 
 import tyro
@@ -20,6 +21,7 @@ from sarah.cli.episode_options import (
     with_given_engine,
 )
 from sarah.cli.former_names import with_out
+from sarah.cli.next_steps import say_next, to_open, to_see, to_watch
 from sarah.cli.options import parse_options, run_command, say_engine
 from sarah.cli.training_defaults import default_training
 from sarah.episode.settings import EpisodeConfig
@@ -152,5 +154,10 @@ def _compare(arguments: Sequence[str]) -> None:
     print(as_markdown(table))
     (options.out / "race.md").write_text(as_markdown(table) + "\n", encoding="utf-8")
     write_csv(table, options.out / "race.csv")
-    for file in draw_race(curves, options.out / "race"):
+    files = draw_race(curves, options.out / "race")
+    for file in files:
         print(file)
+    best = max(range(len(curves)), key=lambda index: fmean(curves[index].final))
+    typed = [] if options.task.file is None else ["--task", options.task.reference]
+    _, see_best = to_see(entries[best].folder, *typed)
+    say_next(to_open(files[0]), ("see its best", see_best), to_watch(options.out))

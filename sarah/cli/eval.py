@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json as json_format
 import shlex
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -14,6 +14,7 @@ import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.former_names import with_out
+from sarah.cli.next_steps import Step, passed_on, say_next, to_report, to_see
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episode_of, learner_of
 from sarah.episode.settings import EpisodeConfig
@@ -21,12 +22,15 @@ from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.errors import ConfigurationError, check_range
 from sarah.files import make_folder
+from sarah.sessions import is_session
 from sarah.streams import check_output
 
 if TYPE_CHECKING:
     from sarah.episode.workers import Workers
 
 COMMAND = "sarah-eval"
+NOT_OF_VIEW = ("robustness", "terrain", "out", "forces", "episodes", "first-seed", "json", "workers", "scheduler")
+"""Options that the viewer has not."""
 LARGEST_SEED = 2**32 - 1
 MOST_EPISODES = 1_000_000
 SMALLEST_FORCE, LARGEST_FORCE = 1.0, 10_000.0
@@ -124,6 +128,7 @@ def _evaluate(arguments: Sequence[str]) -> None:
         if options.terrain:
             _show_terrain(spec, options, workers, shlex.join([COMMAND, *arguments]))
         if options.out is not None:
+            say_next(*_next_steps(options, arguments))
             return
         say_engine(spec.config, options.engine)
         shown = partial(tqdm, total=options.episodes, unit=" episodes", leave=False, disable=None)
@@ -143,6 +148,14 @@ def _evaluate(arguments: Sequence[str]) -> None:
         for label, text in rows_of(options.subject, spec, options.seeds, evaluation, baseline):
             print(f"{label:17}{text}")
     check_output()
+    if not options.json:
+        say_next(*_next_steps(options, arguments))
+
+
+def _next_steps(options: EvalOptions, arguments: Sequence[str]) -> Iterator[Step]:
+    yield to_see(options.subject, *passed_on(arguments, options.subject, *NOT_OF_VIEW))
+    if Path(options.subject).is_dir() and not is_session(Path(options.subject)):
+        yield to_report(options.subject, *([] if options.task is None else ["--task", options.task]))
 
 
 def _subject(options: EvalOptions) -> tuple[EpisodeSpec, str | None]:

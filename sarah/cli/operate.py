@@ -15,6 +15,7 @@ import tyro
 from sarah.cli.episode_options import EpisodeOptions, given_options, parse_episode_options
 from sarah.cli.former_names import with_out
 from sarah.cli.interruption import Interruption
+from sarah.cli.next_steps import say_next, to_see, to_test, to_watch
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episode_of
 from sarah.episode.push import NOBODY, PushedConfig
@@ -111,6 +112,7 @@ def _operate(arguments: Sequence[str]) -> None:
         say_engine(spec.config.robot, options.engine)
     print(f"operating for {spec.config.minutes:g} min with learner {spec.learner} into {folder.path}", flush=True)
     _summarise(_watched(folder, spec), spec, folder.path)
+    say_next(to_see(folder.path), to_test(folder.path), to_watch(folder.path))
 
 
 def _of_operation(config: EpisodeConfig, subject: str | None) -> PushedConfig:

@@ -24,6 +24,7 @@ from sarah.cli.episode_options import (
 )
 from sarah.cli.former_names import with_out
 from sarah.cli.interruption import Interruption
+from sarah.cli.next_steps import say_next, to_see, to_test, to_watch
 from sarah.cli.options import named_task, parse_options, pushed_words, run_command, say_engine
 from sarah.cli.subjects import check_of_training
 from sarah.cli.training_defaults import default_training
@@ -142,6 +143,8 @@ def _train(arguments: Sequence[str]) -> None:
         named = given_options(arguments, "task") if config.task.file is not None else {}
         learned = _learned(config, run, workers, " ".join(f" --task {quoted(task)}" for task in named.values()))
     _summarise(config.task, learned, run.path)
+    typed = [word for value in named.values() for word in ("--task", value)]
+    say_next(to_see(run.path, *typed), to_test(run.path, *typed), to_watch(run.path))
 
 
 def _resumed(path: Path, options: TrainOptions, config: TrainingConfig) -> RunFolder:

@@ -14,6 +14,7 @@ import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.former_names import with_out
+from sarah.cli.next_steps import passed_on, say_next, to_open, to_see
 from sarah.cli.options import named_task, run_command
 from sarah.cli.subjects import episode_of
 from sarah.errors import ConfigurationError
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from sarah.episode.spec import EpisodeSpec
 
 COMMAND = "sarah-video"
+NOT_OF_VIEW = ("out", "seconds", "speed")
+"""Options that the viewer has not."""
 
 
 @dataclass(frozen=True)
@@ -93,6 +96,7 @@ def _film(arguments: Sequence[str]) -> None:
     pictures = frames(result.trace, spec.robot, progress, _caption(spec, result, is_alone), spec.ground)
     write_video(pictures, options.out)
     print(options.out)
+    say_next(to_open(options.out), to_see(options.subject, *passed_on(arguments, options.subject, *NOT_OF_VIEW)))
 
 
 def _spec(options: VideoOptions, subject: str) -> tuple[EpisodeSpec, bool]:

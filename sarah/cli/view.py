@@ -16,6 +16,7 @@ import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.former_names import with_out
+from sarah.cli.next_steps import say_next, to_open
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episodes_of, is_shipped
 from sarah.errors import ConfigurationError
@@ -98,6 +99,7 @@ def _export(path: Path, chosen: RunEpisode) -> None:
     with bar, serving("127.0.0.1", DEFAULT_PORT) as server:
         record(server, chosen.spec, path, lambda share: bar.update(share - bar.n), chosen.recorded)
     print(path)
+    say_next(to_open(path))
 
 
 def _serve(options: ViewOptions, choices: list[RunEpisode], chosen: RunEpisode) -> None:
