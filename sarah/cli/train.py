@@ -41,7 +41,8 @@ from sarah.errors import (
     TrainingInterruptedError,
 )
 from sarah.files import quoted
-from sarah.runs.agent_settings import AGENT_SETTINGS, NAFSettings, settings_of
+from sarah.runs.agent_names import unknown_option
+from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import first_difference, read_config
 
@@ -285,17 +286,14 @@ def _with_agent(training: TrainingConfig, algo: str | None, preset: str | None) 
 
 
 def _check_agent_options(arguments: Sequence[str], training: TrainingConfig) -> None:
-    """Refuse ``--agent.…`` options of settings that only other algorithms have.
+    """Refuse ``--agent.…`` options of settings that the algorithm has not.
 
     :param arguments: all arguments of the command
     :param training: settings of the training, with its algorithm
     """
     for argument in arguments:
-        option = argument.partition("=")[0]
-        name = option.removeprefix("--agent.").replace("-", "_").removeprefix("no_")
-        others = [algo for algo, settings in AGENT_SETTINGS.items() if name in settings.__dataclass_fields__]
-        if option.startswith("--agent.") and others and not hasattr(training.agent, name):
-            raise ConfigurationError(f"{option} is for --algo {' or '.join(others)}, not {training.algo!r}")
+        if argument.startswith("--agent.") and (message := unknown_option(training.algo, argument.partition("=")[0])):
+            raise ConfigurationError(message)
 
 
 def _on_learned_stepping(path: Path, episode: EpisodeConfig) -> EpisodeConfig:
