@@ -324,12 +324,12 @@ def _summarise(task: Task[Any], learned: Learned, path: Path) -> None:
     named = zip(task.parameter_names, learned.parameters, strict=True)
     print("\nlearned     " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
     print(f"warm-up     {describe_warm_up(config)}")
-    score = f"{evaluation.median('score'):.3f}"
-    print(f"score       {score} (median of {evaluation.episodes} unseen seeds; 1 is the ceiling)")
-    print(f"steps       {evaluation.mean('steps_per_second'):.2f} per second")
     neutral = "the baseline (V = 0)" if task is BALANCE else "neutral parameters"
-    compared = f", {baseline.survival_rate:.0%} for {neutral}" if baseline else ""
-    print(f"survival    {evaluation.survival_rate:.0%}{compared}")
+    compared = [("", evaluation), *([] if baseline is None else [(f" for {neutral}", baseline)])]
+    scores = ", ".join(f"{one.mean('score'):.3f}{name}" for name, one in compared)
+    print(f"score       {scores} (mean of {evaluation.episodes} unseen seeds; 1 is the ceiling)")
+    print(f"steps       {evaluation.mean('steps_per_second'):.2f} per second")
+    print("survival    " + ", ".join(f"{one.survival_rate:.0%}{name}" for name, one in compared))
     shifts, lifts = evaluation.mean("shifts_by_sensors"), evaluation.mean("lifts_by_sensors")
     clearance = 1000 * evaluation.mean("sole_clearance")
     print(f"by sensors  {shifts:.0%} of shifts, {lifts:.0%} of lifts; sole clearance {clearance:.0f} mm")

@@ -1,13 +1,20 @@
 """``sarah-train`` as a user runs it."""
 
+import dataclasses
 import json
 import subprocess
 from pathlib import Path
 
-from laboratory import NEEDS_PYBULLET, need
+import pytest
+from laboratory import NEEDS_PYBULLET, RESULT, need
 from terminal import SHORT, run
 
+from sarah.cli.train import main
+from sarah.episode.evaluation import Evaluation
 from sarah.episode.tasks import STEPPING
+from sarah.runs.run_folder import RunFolder
+from sarah.training import train as training
+from sarah.training.train import Learned
 
 
 def test_train_ends_with_a_summary(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
@@ -46,6 +53,25 @@ def test_second_training_keeps_what_the_first_learned(balanced: Path) -> None:
     second = json.loads((balanced / "parameters.json").read_text())
     assert second["stepping"] == list(first["parameters"].values())
     assert list(second["parameters"]) == ["V1", "V2", "V3", "V4"]
+
+
+def test_the_summary_tells_of_falls_and_of_the_baseline(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A median would hide the fall of one in four."""
+    up, fallen = dataclasses.replace(RESULT, score=0.8), dataclasses.replace(RESULT, score=0.0, termination="fallen")
+
+    def trained(_: object, run: RunFolder, *__: object) -> Learned:
+        run.write_parameters({})
+        return Learned((1.0, 0.0, 1.0, 0.0), Evaluation((up, up, up, fallen)), Evaluation((up, fallen) * 2), 0)
+
+    monkeypatch.setattr(training, "train", trained)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("sys.argv", ["sarah-train", "--task", "balance"])
+    main()
+    shown = capsys.readouterr().out
+    assert "score       0.600, 0.400 for the baseline (V = 0) (mean of 4 unseen seeds; 1 is the ceiling)\n" in shown
+    assert "survival    75%, 50% for the baseline (V = 0)\n" in shown
 
 
 def test_only_a_balance_training_continues_a_first_one(balanced: Path) -> None:

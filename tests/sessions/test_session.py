@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import torch
 from operated import quick
+from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 from sarah.episode.reward import highest_return
 from sarah.errors import ConfigurationError, ResumeError, RunFolderError, TrainingInterruptedError
@@ -45,6 +46,14 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, SessionResult
 def interrupted_after(windows: int) -> Callable[[], bool]:
     countdown = iter(range(windows - 1))
     return lambda: next(countdown, None) is None
+
+
+def test_tensorboard_opens_on_scores_and_parameters(whole: tuple[Path, SessionResult]) -> None:
+    events = EventAccumulator(str(whole[0]))
+    events.Reload()
+    tags = sorted(events.Tags()["scalars"])
+    assert list(dict.fromkeys(tag.split("/")[0] for tag in tags))[:2] == ["operation", "parameters"]
+    assert "operation/score" in tags
 
 
 def _generators() -> tuple[object, ...]:
