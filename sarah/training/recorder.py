@@ -88,9 +88,10 @@ class EpisodeRecorder(BaseCallback):
         self.tried.append(spec.parameters, worth, disturbances_of(spec))
         self.diverged += result.termination == "diverged"
         x, y, _ = result.final_position
-        for name, value in {"episode/return": result.episode_return, "robot/x": x, "robot/y": y}.items():
-            self.log.record(name, value)
+        self.log.record("train/return", result.episode_return)
         self.log.record("train/is_warm_up", int(index < self._warm_up))
+        self.log.record("robot/x", x)
+        self.log.record("robot/y", y)
         for name, metric in METRICS.items():
             if metric.group:
                 self.log.record(f"{metric.group}/{name}", getattr(result, name))
