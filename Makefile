@@ -30,13 +30,13 @@ $(VENV)/installed: setup.cfg pyproject.toml constraints.txt
 train: RUN := $(RUN)
 train: install  ## both trainings with NAF, figures, reports and robustness table: a robot that steps in place and comes back from pushes
 	$(BIN)/sarah-train --task stepping $(EPISODES:%=--episodes %) --seed $(SEED) \
-		--workers $(WORKERS) --run-dir $(RUN)/stepping
+		--workers $(WORKERS) --out $(RUN)/stepping
 	$(BIN)/sarah-train --task balance --from $(RUN)/stepping $(BALANCE_EPISODES:%=--episodes %) --seed $(SEED) \
-		--workers $(WORKERS) --run-dir $(RUN)/balance
+		--workers $(WORKERS) --out $(RUN)/balance
 	$(BIN)/sarah-figures $(RUN)/stepping $(RUN)/balance --out $(RUN)/figures
 	$(BIN)/sarah-report $(RUN)/stepping --workers $(WORKERS)
 	$(BIN)/sarah-report $(RUN)/balance --workers $(WORKERS)
-	$(BIN)/sarah-eval $(RUN)/balance --robustness $(RUN)/figures --episodes $(PUSHES) --workers $(WORKERS)
+	$(BIN)/sarah-eval $(RUN)/balance --robustness --out $(RUN)/figures --episodes $(PUSHES) --workers $(WORKERS)
 	@echo "all of it is in $(RUN): open $(RUN)/balance/report.html"
 
 # One thread for each process: two of them share the machine, and threads that wait for each other cost more than they do.

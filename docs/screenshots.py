@@ -16,8 +16,8 @@ PORT = 6173
 PATIENCE_MILLISECONDS, SETTLING_MILLISECONDS = 120_000, 8_000
 ADDRESS = f"http://127.0.0.1:{PORT}/"
 TABS = {
-    "tensorboard": ("?tagFilter=episode%2F%28sc%7Cst%29%7Cchoice%2FP%5B12%5D#timeseries", (1100, 760)),
-    "tensorboard_images": ("?tagFilter=gait%2F%28cycle%7Cvideo%29#timeseries", (1100, 940)),
+    "tensorboard": ("#timeseries", (1100, 760)),
+    "tensorboard_images": ("?tagFilter=recommendation%2F%28cycle%7Cvideo%29#timeseries", (1100, 940)),
     "tensorboard_hparams": ("#hparams", (1620, 420)),
 }
 """Name of each picture, which page of TensorBoard, and the window's size in pixels."""

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from statistics import fmean
 from typing import Annotated, Any
 
 import tyro
@@ -19,6 +20,8 @@ from sarah.cli.episode_options import (
     with_given_directions,
     with_given_engine,
 )
+from sarah.cli.former_names import with_out
+from sarah.cli.next_steps import say_next, to_open, to_see, to_watch
 from sarah.cli.options import parse_options, run_command, say_engine
 from sarah.cli.training_defaults import default_training
 from sarah.episode.settings import EpisodeConfig
@@ -68,9 +71,7 @@ class CompareOptions:
     :param scheduler: address of a Dask scheduler whose workers train instead; they must share the folder's file system
     """
 
-    out: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="DIR", help_behavior_hint="(required)")] = (
-        None
-    )
+    out: Annotated[Path | None, tyro.conf.arg(metavar="DIR", help_behavior_hint="(required)")] = None
     algorithms: tuple[str, ...] = ALGORITHMS
     seeds: int = 5
     first_seed: int = 0
@@ -112,9 +113,10 @@ def _defaults(arguments: Sequence[str]) -> CompareOptions:
 
 
 def _compare(arguments: Sequence[str]) -> None:
+    arguments = with_out(COMMAND, arguments, bare=0)
     options = parse_options(CompareOptions, COMMAND, arguments, _defaults(arguments))
     if options.out is None:
-        raise ConfigurationError("give a folder for the race")
+        raise ConfigurationError("give a folder for the race: --out DIR")
     if is_session(options.out):
         raise ConfigurationError(f"{options.out} is the folder of a session: name another for the race")
     check_range("seeds", options.seeds, 1, MOST_SEEDS)
@@ -152,5 +154,10 @@ def _compare(arguments: Sequence[str]) -> None:
     print(as_markdown(table))
     (options.out / "race.md").write_text(as_markdown(table) + "\n", encoding="utf-8")
     write_csv(table, options.out / "race.csv")
-    for file in draw_race(curves, options.out / "race"):
+    files = draw_race(curves, options.out / "race")
+    for file in files:
         print(file)
+    best = max(range(len(curves)), key=lambda index: fmean(curves[index].final))
+    typed = [] if options.task.file is None else ["--task", options.task.reference]
+    _, see_best = to_see(entries[best].folder, *typed)
+    say_next(to_open(files[0]), ("see its best", see_best), to_watch(options.out))

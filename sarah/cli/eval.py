@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json as json_format
 import shlex
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
+from sarah.cli.former_names import with_out
+from sarah.cli.next_steps import Step, passed_on, say_next, to_report, to_see
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episode_of, learner_of
 from sarah.episode.settings import EpisodeConfig
@@ -20,12 +22,15 @@ from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.errors import ConfigurationError, check_range
 from sarah.files import make_folder
+from sarah.sessions import is_session
 from sarah.streams import check_output
 
 if TYPE_CHECKING:
     from sarah.episode.workers import Workers
 
 COMMAND = "sarah-eval"
+NOT_OF_VIEW = ("robustness", "terrain", "out", "forces", "episodes", "first-seed", "json", "workers", "scheduler")
+"""Options that the viewer has not."""
 LARGEST_SEED = 2**32 - 1
 MOST_EPISODES = 1_000_000
 SMALLEST_FORCE, LARGEST_FORCE = 1.0, 10_000.0
@@ -47,12 +52,13 @@ class EvalOptions(EpisodeOptions):
     :param subject: run folder of a finished training, numbers separated by commas (P1 to P5 for stepping, or V1 to V4
         for the task balance), or the name of shipped parameters: ``paper``, ``stepping`` or ``balance``, which comes
         back from a push
-    :param robustness: folder for a table and a polar plot of survival by force and direction of the push, for these
-        parameters and the baseline. --episodes is the number at each force
+    :param robustness: whether to write a table and a polar plot of survival by force and direction of the push, for
+        these parameters and the baseline. --episodes is the number at each force
     :param forces: forces of the pushes of --robustness, in N; by default 25 to 150 N for the default robot, and as
         much of its weight for another
-    :param terrain: folder for a table and a picture of score, steps and survival on slopes, bumps and slippery ground,
-        for 10 s without a push, and with one of 75 N at 2 to 4 s. --episodes is the number on each ground
+    :param terrain: whether to write a table and a picture of score, steps and survival on slopes, bumps and slippery
+        ground, for 10 s without a push, and with one of 75 N at 2 to 4 s. --episodes is the number on each ground
+    :param out: folder for the table and the picture of --robustness or --terrain
     :param episodes: number of episodes
     :param first_seed: seed of the first episode; the others follow. No training has seen the default: trainings draw
         seeds from 2^31 up, and their summaries begin at 0
@@ -62,8 +68,9 @@ class EvalOptions(EpisodeOptions):
     """
 
     subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"
-    robustness: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
-    terrain: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
+    robustness: bool = False
+    terrain: bool = False
+    out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     forces: Annotated[tuple[float, ...], tyro.conf.arg(metavar="FLOAT...", help_behavior_hint="(by weight)")] = ()
     episodes: int = 20
     first_seed: int = FIRST_EVALUATION_SEED
@@ -77,9 +84,13 @@ class EvalOptions(EpisodeOptions):
         check_range("first-seed", self.first_seed, 0, LARGEST_SEED)
         for newtons in self.forces:
             check_range("forces", newtons, SMALLEST_FORCE, LARGEST_FORCE, "N")
-        for option in ("robustness", "terrain"):
-            if self.json and getattr(self, option) is not None:
-                raise ConfigurationError(f"--{option} prints a table, not JSON: leave --json out")
+        tables = [f"--{option}" for option in ("robustness", "terrain") if getattr(self, option)]
+        if self.json and tables:
+            raise ConfigurationError(f"{tables[0]} prints a table, not JSON: leave --json out")
+        if tables and self.out is None:
+            raise ConfigurationError(f"{tables[0]} needs a folder for table and picture: --out DIR")
+        if self.out is not None and not tables:
+            raise ConfigurationError("--out is the folder of --robustness or --terrain: give one of them")
 
     @property
     def seeds(self) -> range:
@@ -93,10 +104,12 @@ def main() -> None:
 
 
 def _evaluate(arguments: Sequence[str]) -> None:
+    former = {option: f"{option} --out" for option in ("--robustness", "--terrain")}
+    arguments = with_out(COMMAND, arguments, former)
     options = parse_episode_options(COMMAND, arguments, EvalOptions())
     spec, algorithm = _subject(options)
     _check_replaced_options(options, arguments)
-    if options.robustness is not None and spec.task is not BALANCE:
+    if options.robustness and spec.task is not BALANCE:
         raise ConfigurationError(
             f"--robustness needs parameters of task {BALANCE.name!r}, and these are of {spec.task.name!r}"
         )
@@ -107,15 +120,15 @@ def _evaluate(arguments: Sequence[str]) -> None:
     from sarah.episode.workers import Workers
     from sarah.runs.config_files import settings_by_key
 
-    for folder in filter(None, (options.robustness, options.terrain)):
-        make_folder(folder)
+    if options.out is not None:
+        make_folder(options.out)
     with Workers(options.workers, options.scheduler) as workers:
-        if options.robustness is not None:
+        if options.robustness:
             _show_robustness(spec.parameters, spec.config, options, workers)
-        if options.terrain is not None:
-            command = shlex.join([COMMAND, *arguments])
-            _show_terrain(spec, options.terrain, options, workers, command)
-        if options.robustness is not None or options.terrain is not None:
+        if options.terrain:
+            _show_terrain(spec, options, workers, shlex.join([COMMAND, *arguments]))
+        if options.out is not None:
+            say_next(*_next_steps(options, arguments))
             return
         say_engine(spec.config, options.engine)
         shown = partial(tqdm, total=options.episodes, unit=" episodes", leave=False, disable=None)
@@ -135,6 +148,14 @@ def _evaluate(arguments: Sequence[str]) -> None:
         for label, text in rows_of(options.subject, spec, options.seeds, evaluation, baseline):
             print(f"{label:17}{text}")
     check_output()
+    if not options.json:
+        say_next(*_next_steps(options, arguments))
+
+
+def _next_steps(options: EvalOptions, arguments: Sequence[str]) -> Iterator[Step]:
+    yield to_see(options.subject, *passed_on(arguments, options.subject, *NOT_OF_VIEW))
+    if Path(options.subject).is_dir() and not is_session(Path(options.subject)):
+        yield to_report(options.subject, *([] if options.task is None else ["--task", options.task]))
 
 
 def _subject(options: EvalOptions) -> tuple[EpisodeSpec, str | None]:
@@ -153,7 +174,7 @@ def _show_robustness(
     from sarah.reports.robustness import forces_for, push_many, pushed_settings, robustness_table
     from sarah.reports.training_figures import draw_survival
 
-    folder, neutral = options.robustness, BALANCE.neutral
+    folder, neutral = options.out, BALANCE.neutral
     assert folder is not None and neutral is not None and isinstance(config, BalanceConfig)
     say_engine(config, options.engine)
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
@@ -179,15 +200,15 @@ def _show_robustness(
 def _check_replaced_options(options: EvalOptions, arguments: Sequence[str]) -> None:
     """Refuse what the table that is asked for would replace, and forces of pushes that no table has."""
     given = [argument.partition("=")[0].replace("_", "-") for argument in arguments]
-    if options.robustness is None and "--forces" in given:
+    if not options.robustness and "--forces" in given:
         raise ConfigurationError("--forces is for --robustness; one evaluation takes --episode.push.newtons")
     for table, replaced in REPLACED.items():
         mistaken = [option for option in given if option.startswith(replaced)]
-        if getattr(options, table) is not None and mistaken:
+        if getattr(options, table) and mistaken:
             raise ConfigurationError(f"--{table} has pushes and a time limit of its own: leave {mistaken[0]} out")
 
 
-def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers: Workers, command: str) -> None:
+def _show_terrain(spec: EpisodeSpec, options: EvalOptions, workers: Workers, command: str) -> None:
     """Print the table as Markdown, and write the table and the picture. The command says what was asked for."""
     from tqdm import tqdm
 
@@ -196,6 +217,8 @@ def _show_terrain(spec: EpisodeSpec, folder: Path, options: EvalOptions, workers
     from sarah.reports.terrain import as_markdown, situations, try_terrain
     from sarah.reports.terrain_figure import draw_terrain
 
+    folder = options.out
+    assert folder is not None
     say_engine(spec.config, options.engine)
     tried = list(situations(spec.config.scale))
     progress = partial(tqdm, total=len(tried) * options.episodes, unit=" episodes")

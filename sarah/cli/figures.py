@@ -9,6 +9,7 @@ from typing import Annotated
 
 import tyro
 
+from sarah.cli.next_steps import say_next, to_open, to_report
 from sarah.cli.options import named_task, parse_options, run_command
 from sarah.cli.subjects import check_of_training
 from sarah.errors import ConfigurationError
@@ -56,5 +57,9 @@ def _draw(arguments: Sequence[str]) -> None:
     folder = options.out or runs[0].figures_path
     from sarah.reports.all_figures import draw_all_figures
 
-    for file in sorted(draw_all_figures(runs, folder)):
+    files = sorted(draw_all_figures(runs, folder))
+    for file in files:
         print(file)
+    typed = [] if options.task is None else ["--task", options.task]
+    reports = [to_report(options.runs[0], *typed)] if len(runs) == 1 else []
+    say_next(to_open(next(file for file in files if file.suffix == ".png")), *reports)

@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, given_options, parse_episode_options
+from sarah.cli.former_names import with_out
 from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import Interruption
+from sarah.cli.next_steps import say_next, to_see, to_test, to_watch
 from sarah.cli.operated import say_differences, settings_in_operation, times_of_session
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episode_of, is_shipped
@@ -64,7 +66,7 @@ class OperateOptions(EpisodeOptions):
     :param push_seconds: time from a push to the next, in s; --episode.push.newtons sets their force
     :param change: what changes, and when, such as "5: randomisation.actuator_bandwidth=12" at minute 5; once for each
         change, in the order of time
-    :param run_dir: folder to write, new or empty; by default a new one, runs/operation/<learner>-s<seed>
+    :param out: folder to write, new or empty; by default a new one, runs/operation/<learner>-s<seed>
     :param resume: folder of an interrupted session to go on with, as it is. A finished session goes on if --minutes is
         more than its duration. Its windows are then those of a session that was as long from the beginning, unless
         the learner is gp, which tries less shortly before an end
@@ -83,7 +85,7 @@ class OperateOptions(EpisodeOptions):
     fall_seconds: float = 20.0
     push_seconds: float = 4.0
     change: Annotated[tuple[str, ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="CHANGE")] = ()
-    run_dir: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
+    out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     resume: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     extended_from: tuple[float, ...] = ()
     compare_frozen: bool = False
@@ -95,6 +97,7 @@ def main() -> None:
 
 
 def _operate(arguments: Sequence[str]) -> None:
+    arguments = with_out(COMMAND, arguments, {"--run-dir": "--out"})
     for argument in arguments:
         if argument.partition("=")[0].replace("_", "-") in WITHOUT_EFFECT:
             raise ConfigurationError(f"{argument} has no effect in an operation: leave it out")
@@ -113,6 +116,7 @@ def _operate(arguments: Sequence[str]) -> None:
     if folder.frozen is not None:
         frozen = _watched(partial(compare_frozen, folder, spec, result), spec, folder.path, "without learning ")
     _summarise(result, frozen, spec, folder.path)
+    say_next(to_see(folder.path), to_test(folder.path), to_watch(folder.path))
 
 
 def _begun(options: OperateOptions) -> SessionFolder:
@@ -125,7 +129,7 @@ def _begun(options: OperateOptions) -> SessionFolder:
     _check_learns(options, spec)
     for count in range(len(spec.config.changes) + 1):
         check_engine(spec.config.robot_after(count).engine)
-    path = options.run_dir or new_run_path("operation", spec.learner, spec.seed)
+    path = options.out or new_run_path("operation", spec.learner, spec.seed)
     folder = SessionFolder.create(path, spec, options.compare_frozen)
     say_engine(spec.config.robot, options.engine)
     if Path(options.subject).is_dir() or is_shipped(options.subject):  # numbers have no settings

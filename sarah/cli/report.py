@@ -9,6 +9,7 @@ from typing import Annotated
 
 import tyro
 
+from sarah.cli.next_steps import say_next, to_open, to_see
 from sarah.cli.options import named_task, parse_options, run_command
 from sarah.cli.subjects import check_of_training
 from sarah.errors import ConfigurationError
@@ -67,3 +68,5 @@ def _report(arguments: Sequence[str]) -> None:
     with Workers(options.workers) as workers:
         write_report(run, path, workers, options.episodes, options.seconds)
     print(path)
+    typed = [] if options.task is None else ["--task", options.task]
+    say_next(to_open(path), to_see(options.run, *typed))

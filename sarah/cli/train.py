@@ -22,9 +22,11 @@ from sarah.cli.episode_options import (
     with_given_directions,
     with_given_engine,
 )
+from sarah.cli.former_names import with_out
 from sarah.cli.given_settings import say_differences, settings_of_file, settings_on_stepping
 from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import Interruption
+from sarah.cli.next_steps import say_next, to_see, to_test, to_watch
 from sarah.cli.options import named_task, parse_options, pushed_words, run_command, say_engine
 from sarah.cli.subjects import check_of_training
 from sarah.cli.training_defaults import default_training
@@ -40,7 +42,8 @@ from sarah.errors import (
     TrainingInterruptedError,
 )
 from sarah.files import quoted
-from sarah.runs.agent_settings import AGENT_SETTINGS, NAFSettings, settings_of
+from sarah.runs.agent_names import unknown_option
+from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import first_difference
 
@@ -67,7 +70,7 @@ class TrainOptions:
 
     :param training: settings of the training
     :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
-    :param run_dir: run folder to write, new or empty; by default a new one, runs/<task>/<algo>-s<seed>
+    :param out: run folder to write, new or empty; by default a new one, runs/<task>/<algo>-s<seed>
     :param config: YAML file of settings, like the config.yaml of any run folder
     :param resume: run folder of an interrupted training to go on with, with its settings; the result is the same as
         without the interruption. A finished training goes on if --episodes is larger than its budget
@@ -79,7 +82,7 @@ class TrainOptions:
 
     training: Annotated[TrainingConfig, tyro.conf.arg(name="")] = TrainingConfig()
     engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
-    run_dir: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
+    out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     config: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     resume: Annotated[Path | None, tyro.conf.arg(metavar="RUN")] = None
     from_run: Annotated[Path | None, tyro.conf.arg(name="from", metavar="RUN")] = None
@@ -96,6 +99,7 @@ def _train(arguments: Sequence[str]) -> None:
     arguments = [re.sub(r"^--simulations(?==|$)", "--episodes", argument) for argument in arguments]  # an alias
     if arguments and not arguments[0].startswith("-"):  # other commands begin with what they look at
         raise ConfigurationError(f"{arguments[0]!r} is no option: a task is given as --task {arguments[0]}")
+    arguments = with_out(COMMAND, arguments, {"--run-dir": "--out"})
     options = parse_options(TrainOptions, COMMAND, arguments, _defaults(arguments))
     config = options.training
     config = dataclasses.replace(config, episode=with_engine(config.episode, options.engine))
@@ -132,7 +136,7 @@ def _train(arguments: Sequence[str]) -> None:
             if run.is_finished:  # only now that somebody can simulate
                 config = _extended(run, config)
         else:
-            run = RunFolder.create(options.run_dir or new_run_path(config.task.name, config.algo, config.seed), config)
+            run = RunFolder.create(options.out or new_run_path(config.task.name, config.algo, config.seed), config)
         say_engine(config.episode, options.engine)
         pushed = f", {pushed_words(config.episode)}" if isinstance(config.episode, PushedConfig) else ""
         what = f"{config.algo} on {config.task.name}{pushed}"
@@ -144,6 +148,8 @@ def _train(arguments: Sequence[str]) -> None:
         named = given_options(arguments, "task") if config.task.file is not None else {}
         learned = _learned(config, run, workers, " ".join(f" --task {quoted(task)}" for task in named.values()))
     _summarise(config.task, learned, run.path)
+    typed = [word for value in named.values() for word in ("--task", value)]
+    say_next(to_see(run.path, *typed), to_test(run.path, *typed), to_watch(run.path))
 
 
 def _resumed(path: Path, options: TrainOptions, config: TrainingConfig) -> RunFolder:
@@ -151,8 +157,8 @@ def _resumed(path: Path, options: TrainOptions, config: TrainingConfig) -> RunFo
     from sarah.runs.run_folder import RunFolder
 
     run = RunFolder.resumable(path, config.task)
-    if options.run_dir is not None or options.config is not None or options.from_run is not None:
-        raise ConfigurationError("--resume goes on with a training as it is: leave --run-dir, --config and --from out")
+    if options.out is not None or options.config is not None or options.from_run is not None:
+        raise ConfigurationError("--resume goes on with a training as it is: leave --out, --config and --from out")
     there = dataclasses.replace(run.config(), pictures=config.pictures)  # they change no result
     if config.episodes > there.episodes and config.extended_from == there.extended_from:
         check_extendable(path, "--episodes", run.is_finished)
@@ -257,17 +263,14 @@ def _with_agent(training: TrainingConfig, algo: str | None, preset: str | None) 
 
 
 def _check_agent_options(arguments: Sequence[str], training: TrainingConfig) -> None:
-    """Refuse ``--agent.…`` options of settings that only other algorithms have.
+    """Refuse ``--agent.…`` options of settings that the algorithm has not.
 
     :param arguments: all arguments of the command
     :param training: settings of the training, with its algorithm
     """
     for argument in arguments:
-        option = argument.partition("=")[0]
-        name = option.removeprefix("--agent.").replace("-", "_").removeprefix("no_")
-        others = [algo for algo, settings in AGENT_SETTINGS.items() if name in settings.__dataclass_fields__]
-        if option.startswith("--agent.") and others and not hasattr(training.agent, name):
-            raise ConfigurationError(f"{option} is for --algo {' or '.join(others)}, not {training.algo!r}")
+        if argument.startswith("--agent.") and (message := unknown_option(training.algo, argument.partition("=")[0])):
+            raise ConfigurationError(message)
 
 
 def _summarise(task: Task[Any], learned: Learned, path: Path) -> None:
@@ -280,12 +283,12 @@ def _summarise(task: Task[Any], learned: Learned, path: Path) -> None:
     named = zip(task.parameter_names, learned.parameters, strict=True)
     print("\nlearned     " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
     print(f"warm-up     {describe_warm_up(config)}")
-    score = f"{evaluation.median('score'):.3f}"
-    print(f"score       {score} (median of {evaluation.episodes} unseen seeds; 1 is the ceiling)")
-    print(f"steps       {evaluation.mean('steps_per_second'):.2f} per second")
     neutral = "the baseline (V = 0)" if task is BALANCE else "neutral parameters"
-    compared = f", {baseline.survival_rate:.0%} for {neutral}" if baseline else ""
-    print(f"survival    {evaluation.survival_rate:.0%}{compared}")
+    compared = [("", evaluation), *([] if baseline is None else [(f" for {neutral}", baseline)])]
+    scores = ", ".join(f"{one.mean('score'):.3f}{name}" for name, one in compared)
+    print(f"score       {scores} (mean of {evaluation.episodes} unseen seeds; 1 is the ceiling)")
+    print(f"steps       {evaluation.mean('steps_per_second'):.2f} per second")
+    print("survival    " + ", ".join(f"{one.survival_rate:.0%}{name}" for name, one in compared))
     shifts, lifts = evaluation.mean("shifts_by_sensors"), evaluation.mean("lifts_by_sensors")
     clearance = 1000 * evaluation.mean("sole_clearance")
     print(f"by sensors  {shifts:.0%} of shifts, {lifts:.0%} of lifts; sole clearance {clearance:.0f} mm")

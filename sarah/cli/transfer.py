@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
+from sarah.cli.next_steps import say_next, to_open
 from sarah.cli.options import named_task, run_command
 from sarah.cli.subjects import episode_of, learner_of
 from sarah.episode.spec import FIRST_EVALUATION_SEED
@@ -87,8 +88,10 @@ def _transfer(arguments: Sequence[str]) -> None:
     table = "\n".join([as_markdown(transfers), "", *_about_settings(learned)])
     print(table)
     (out / "transfer.md").write_text(table + "\n", encoding="utf-8")
-    for file in draw_transfer(transfers, out / "transfer"):
+    files = draw_transfer(transfers, out / "transfer")
+    for file in files:
         print(file)
+    say_next(to_open(files[0]))
 
 
 def _about_settings(learned: Sequence[LearnedParameters]) -> Iterator[str]:

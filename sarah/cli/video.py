@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
+from sarah.cli.former_names import with_out
+from sarah.cli.next_steps import passed_on, say_next, to_open, to_see
 from sarah.cli.options import named_task, run_command
 from sarah.cli.subjects import episode_of
 from sarah.errors import ConfigurationError
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
     from sarah.episode.spec import EpisodeSpec
 
 COMMAND = "sarah-video"
+NOT_OF_VIEW = ("out", "seconds", "speed")
+"""Options that the viewer has not."""
 
 
 @dataclass(frozen=True)
@@ -41,9 +45,7 @@ class VideoOptions(EpisodeOptions):
     subject: Annotated[
         str | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN|NUMBERS|NAME", help_behavior_hint="(required)")
     ] = None
-    out: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="OUT", help_behavior_hint="(required)")] = (
-        None
-    )
+    out: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="(required)")] = None
     which: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
     seed: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
     seconds: Annotated[tuple[float, float], tyro.conf.arg(metavar="BEGIN END")] = (0.0, math.inf)
@@ -63,9 +65,10 @@ def main() -> None:
 
 
 def _film(arguments: Sequence[str]) -> None:
+    arguments = with_out(COMMAND, arguments, bare=1)
     options = parse_episode_options(COMMAND, arguments, VideoOptions())
     if options.subject is None or options.out is None:
-        raise ConfigurationError("give a run folder, numbers or a name, and the file to write")
+        raise ConfigurationError("give a run folder, numbers or a name, and the file to write: --out FILE")
     from sarah.pictures.video import FRAMES_PER_SECOND, check_path, frame_times, frames, write_video
     from sarah.simulation.renderer import check_renderer
 
@@ -93,6 +96,7 @@ def _film(arguments: Sequence[str]) -> None:
     pictures = frames(result.trace, spec.robot, progress, _caption(spec, result, is_alone), spec.ground)
     write_video(pictures, options.out)
     print(options.out)
+    say_next(to_open(options.out), to_see(options.subject, *passed_on(arguments, options.subject, *NOT_OF_VIEW)))
 
 
 def _spec(options: VideoOptions, subject: str) -> tuple[EpisodeSpec, bool]:

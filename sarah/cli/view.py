@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
+from sarah.cli.former_names import with_out
+from sarah.cli.next_steps import say_next, to_open
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episodes_of, is_shipped
 from sarah.episode.spec import EpisodeSpec
@@ -39,7 +41,7 @@ class ViewOptions(EpisodeOptions):
     :param which: episode of a run folder: ``learned`` for the learned parameters, ``best``, or an index of its
         episodes.csv; by default ``learned``, or ``best`` if the training is not finished
     :param seed: seed of the episode, by which robot, sensors and push vary; by default the episode's own, or 0
-    :param export: HTML file to write the episode to, instead of showing a page; the file needs no server
+    :param out: HTML file to write the episode to, instead of showing a page; the file needs no server
     :param host: address to serve the page at. Everyone who can reach another address than 127.0.0.1 can use the page,
         as there is no password
     :param port: port to serve the page at; the next free one if it is taken
@@ -48,7 +50,7 @@ class ViewOptions(EpisodeOptions):
     subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"
     which: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
     seed: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
-    export: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    out: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     host: str = "127.0.0.1"
     port: int = DEFAULT_PORT
 
@@ -64,6 +66,7 @@ def main() -> None:
 
 
 def _view(arguments: Sequence[str]) -> None:
+    arguments = with_out(COMMAND, arguments, {"--export": "--out"})
     options = parse_episode_options(COMMAND, arguments, ViewOptions())
     if find_spec("viser") is None:
         raise ConfigurationError("this needs the extra view: pip install 'sarah[view]'")
@@ -80,8 +83,8 @@ def _view(arguments: Sequence[str]) -> None:
         chosen = chosen.of(dataclasses.replace(chosen.spec, seed=options.seed))
         chosen = dataclasses.replace(chosen, label=f"{chosen.label}, with seed {options.seed}")
         choices.insert(0, chosen)
-    if options.export is not None:
-        _export(options.export, chosen)
+    if options.out is not None:
+        _export(options.out, chosen)
     else:
         _serve(options, choices, chosen)
 
@@ -111,6 +114,7 @@ def _export(path: Path, chosen: RunEpisode) -> None:
     with bar, serving("127.0.0.1", DEFAULT_PORT) as server:
         record(server, chosen.spec, path, lambda share: bar.update(share - bar.n), chosen.recorded)
     print(path)
+    say_next(to_open(path))
 
 
 def _serve(options: ViewOptions, choices: list[RunEpisode], chosen: RunEpisode) -> None:

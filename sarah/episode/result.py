@@ -81,14 +81,14 @@ class EpisodeResult:
     )
     steps: int = _metric("steps", "", "number of completed steps", shown=(1.0, 0, ""))
     duration: float = _metric(
-        "duration", "s", "simulated time, the first second of standing included", group="episode", shown=(1.0, 1, "s")
+        "duration", "s", "simulated time, the first second of standing included", group="robot", shown=(1.0, 1, "s")
     )
     shifts_by_sensors: float = _metric(
         "SHIFT by sensors",
         "",
         "share of the SHIFT phases that sensors ended",
         "mean",
-        group="gait",
+        group="robot",
         shown=(100.0, 1, "%"),
     )
     lifts_by_sensors: float = _metric(
@@ -96,7 +96,7 @@ class EpisodeResult:
         "",
         "share of the LIFT phases that sensors ended",
         "mean",
-        group="gait",
+        group="robot",
         shown=(100.0, 1, "%"),
     )
     sole_clearance: float = _metric(
@@ -104,7 +104,7 @@ class EpisodeResult:
         "m",
         "median over the steps of the swing foot's largest height over the floor",
         "mean",
-        group="gait",
+        group="robot",
         shown=(1000.0, 1, "mm"),
     )
     vibration: float = _metric(
@@ -112,7 +112,7 @@ class EpisodeResult:
         "m²/s⁴",
         "mean square of the torso's acceleration from 20 to 50 Hz: chatter",
         "median",
-        group="actuators",
+        group="robot",
         shown=(1.0, 1, "m²/s⁴"),
     )
     actuator_power: float = _metric(
@@ -120,7 +120,7 @@ class EpisodeResult:
         "W",
         "mean mechanical power of the six actuators together",
         "mean",
-        group="actuators",
+        group="robot",
         shown=(1.0, 0, "W"),
     )
     peak_hip_rate: float = _metric("peak hip rate", "rad/s", "fastest hip motion", "max", shown=(1.0, 1, "rad/s"))

@@ -61,12 +61,12 @@ def draw_gait(parameters: tuple[float, ...], task: Task[Any], config: EpisodeCon
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         write_video(frames(trace, spec.robot, times, ground=spec.ground), folder / "video.gif")
-        pictures = [_picture("gait/video", folder / "video.gif")]
+        pictures = [_picture("recommendation/video", folder / "video.gif")]
         try:
             draw_gait_cycle(trace, stepping, folder / "cycle", config.controller)
         except ConfigurationError:  # the robot completes no gait cycle
             return pictures
-        return [*pictures, _picture("gait/cycle", folder / "cycle.png")]
+        return [*pictures, _picture("recommendation/cycle", folder / "cycle.png")]
 
 
 def _picture(name: str, path: Path) -> Picture:

@@ -168,8 +168,8 @@ def _film(spec: EpisodeSpec, folder: Path, seconds: tuple[float, float]) -> tupl
 def _commands(run: RunFolder, config: TrainingConfig) -> list[str]:
     again = f"{config.algo}-s{config.seed}-again"
     task = "" if config.task.file is None else f" --task {quoted(config.task.reference)}"
-    extra = ["sarah-eval RUN --robustness tables"] if config.task is BALANCE else ["sarah-video RUN out.mp4"]
-    commands = [f"sarah-train --config config.yaml --run-dir {again}", "sarah-eval RUN", "sarah-figures RUN", *extra]
+    extra = ["sarah-eval RUN --robustness --out tables"] if config.task is BALANCE else ["sarah-video RUN --out a.mp4"]
+    commands = [f"sarah-train --config config.yaml --out {again}", "sarah-eval RUN", "sarah-figures RUN", *extra]
     return [command.replace("RUN", again) + task for command in [*commands, "sarah-report RUN"]]
 
 

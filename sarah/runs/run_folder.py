@@ -105,7 +105,7 @@ class RunFolder:
             if any(path.iterdir()) or not run._claim():
                 can_go_on = run._config_path.is_file() and run.journal_path.is_file() and not run.is_finished
                 go_on = f", or go on with sarah-train --resume {quoted(path)}" if can_go_on else ""
-                raise RunFolderError(f"run folder {path} is not empty: name another with --run-dir{go_on}")
+                raise RunFolderError(f"run folder {path} is not empty: name another with --out{go_on}")
             write_command(path / "command.txt")
             run.write_versions()
             record_task(config.task, path)

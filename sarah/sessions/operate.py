@@ -112,8 +112,8 @@ def add_frozen(folder: SessionFolder) -> None:
 def _show(events: EventFile, window: Window) -> None:
     """Add a window to TensorBoard's curves, at its second of operation."""
     values = {f"parameters/{item.name}": value for item, value in zip(PARAMETERS, window.parameters, strict=True)}
-    values |= {"window/score": window.score, "window/observed_reward": window.observed_reward}
-    values |= {"window/fell": float(window.fell), "window/changes": float(window.changes)}
+    values |= {"operation/score": window.score, "operation/observed_reward": window.observed_reward}
+    values |= {"operation/fell": float(window.fell), "operation/changes": float(window.changes)}
     events.add_points(values, round(window.end))
 
 

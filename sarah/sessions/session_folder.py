@@ -68,7 +68,7 @@ class SessionFolder:
             if any(path.iterdir()):
                 can_go_on = folder._spec_path.is_file() and not folder.is_finished
                 go_on = f", or go on with sarah-operate --resume {quoted(path)}" if can_go_on else ""
-                raise RunFolderError(f"folder {path} is not empty: name another with --run-dir{go_on}")
+                raise RunFolderError(f"folder {path} is not empty: name another with --out{go_on}")
             folder.journal_path.touch(exist_ok=False)
             write_command(path / "command.txt")
             replace_text(path / "versions.txt", "".join(f"{name} {version}\n" for name, version in versions().items()))

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 RGB = 3
 """Number by which TensorBoard knows the colours of a picture."""
-LEARNED = ("learned/score", "learned/steps_per_second", "learned/survival_rate", "learned/sole_clearance")
+LEARNED = ("unseen/score", "unseen/steps_per_second", "unseen/survival_rate", "unseen/sole_clearance")
 """Names of the final values of a training, which TensorBoard shows beside its hyper-parameters."""
 
 

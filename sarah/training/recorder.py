@@ -88,9 +88,10 @@ class EpisodeRecorder(BaseCallback):
         self.tried.append(spec.parameters, worth, disturbances_of(spec))
         self.diverged += result.termination == "diverged"
         x, y, _ = result.final_position
-        for name, value in {"return": result.episode_return, "x": x, "y": y}.items():
-            self.log.record(f"episode/{name}", value)
-        self.log.record("episode/is_warm_up", int(index < self._warm_up))
+        self.log.record("train/return", result.episode_return)
+        self.log.record("train/is_warm_up", int(index < self._warm_up))
+        self.log.record("robot/x", x)
+        self.log.record("robot/y", y)
         for name, metric in METRICS.items():
             if metric.group:
                 self.log.record(f"{metric.group}/{name}", getattr(result, name))
@@ -152,8 +153,8 @@ class EpisodeRecorder(BaseCallback):
         :param learned: evaluation of the learned parameters on unseen seeds
         """
         values = (
-            learned.median("score"),
-            learned.median("steps_per_second"),
+            learned.mean("score"),
+            learned.mean("steps_per_second"),
             learned.survival_rate,
             learned.mean("sole_clearance"),
         )

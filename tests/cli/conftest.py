@@ -14,7 +14,7 @@ from terminal import SHORT, run, tree
 def trained(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, subprocess.CompletedProcess[str]]:
     """The run folder of a First Training, and its process."""
     folder = tmp_path_factory.mktemp("work")
-    arguments = ("--task", "stepping", "--algo", "naf", "--episodes", "4", "--seed", "1", "--run-dir", "mine")
+    arguments = ("--task", "stepping", "--algo", "naf", "--episodes", "4", "--seed", "1", "--out", "mine")
     return folder / "mine", run("sarah-train", *arguments, *SHORT, cwd=folder)
 
 
@@ -22,7 +22,7 @@ def trained(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, subprocess.
 def balanced(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> Path:
     """The run folder of a Second Training on what the First one learned."""
     first, _ = trained
-    arguments = ("--task", "balance", "--from", "mine", "--episodes", "4", "--run-dir", "second", *SHORT)
+    arguments = ("--task", "balance", "--from", "mine", "--episodes", "4", "--out", "second", *SHORT)
     process = run("sarah-train", *arguments, cwd=first.parent)
     assert process.returncode == 0, process.stderr
     assert "V4 = " in process.stdout and "baseline (V = 0)" in process.stdout

@@ -33,7 +33,7 @@ def trained(command: Callable[..., None]) -> Callable[..., RunFolder]:
     """Trains on ten short episodes."""
 
     def run(name: str, *arguments: str) -> RunFolder:
-        command("--episodes", "10", *SHORT, "--run-dir", name, *arguments)
+        command("--episodes", "10", *SHORT, "--out", name, *arguments)
         return RunFolder.open(Path(name))
 
     return run
@@ -105,6 +105,17 @@ def test_the_help_shows_the_settings_of_the_algorithm(
         ("--agent.device gpu", "agent.device must be 'cpu', 'cuda', 'cuda:' and a number, or 'auto', not 'gpu'"),
         ("--algo td3 --agent.preset paper", "--agent.preset is for --algo naf, not 'td3'"),
         ("--algo sac --agent.no-squash-mu", "--agent.no-squash-mu is for --algo naf, not 'sac'"),
+        ("--agent.net-arch 8", "did you mean --agent.v-layers or --agent.mu-layers or --agent.l-layers?"),
+        (
+            "--algo td3 --agent.net_arch=8",
+            "of --algo td3, did you mean --agent.layers? (allowed: --agent.learning-rate, ",
+        ),
+        ("--agent.layers 8", "is for --algo td3 or sac or ddpg, not 'naf', did you mean --agent.v-layers or"),
+        ("--algo td3 --agent.exploration-std 0.1", "not 'td3', did you mean --agent.action-noise-std?"),
+        ("--algo td3 --agent.elite-share 1", "is for --algo naf, not 'td3' (allowed: --agent.learning-rate, "),
+        ("--algo td3 --agent.policy-delays 1", "did you mean --agent.policy-delay?"),
+        ("--algo cma-es --agent.sigma0 1", "did you mean --agent.deviation?"),
+        ("--algo tpe --agent.x 1", "unknown option --agent.x of --algo tpe (allowed: none)"),
         ("--algo random --agent.tau 1", "--agent.tau is for --algo naf or td3 or sac or ddpg, not 'random'"),
         ("--algo sac --agent.ent-coef high", "--agent.ent-coef must be FLOAT|{auto}, not ['high']"),
         ("--algo cma-es --agent.population 1", "agent.population must be between 2 and 1000, not 1"),

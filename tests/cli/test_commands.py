@@ -104,7 +104,7 @@ def test_transfer_compares_the_engines_on_the_same_seeds(
 
 def test_compare_ends_with_table_and_plot(tmp_path: Path) -> None:
     arguments = ("--algorithms", "naf", "random", "--seeds", "1", "--episodes", "6", "--evaluations", "1")
-    process = run("sarah-compare", "race", *arguments, *SHORT, "--workers", "2", cwd=tmp_path)
+    process = run("sarah-compare", "--out", "race", *arguments, *SHORT, "--workers", "2", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     assert "| naf | 1 |" in process.stdout and "| random | 1 |" in process.stdout
     names = {path.name for path in (tmp_path / "race").iterdir()}

@@ -97,7 +97,7 @@ def test_a_file_that_is_no_text(answer: Callable[[str], str], tmp_path: Path) ->
             ("config.yaml", "episode: {engine: pybullet}", f"sarah-train {option} mujoco --resume", "not 'mujoco'")
             for option in ("--engine", "--episode.engine")
         ),
-        ("config.yaml", "slots: 4", "sarah-train --run-dir x --resume", "leave --run-dir, --config and --from out"),
+        ("config.yaml", "slots: 4", "sarah-train --out x --resume", "leave --out, --config and --from out"),
         ("config.yaml", "seed: 1", "sarah-train --episode.time-limit 9 --resume", "episode.time_limit is 30.0 in this"),
     ],
 )

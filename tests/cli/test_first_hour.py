@@ -48,8 +48,8 @@ def program(text: str, folder: Path) -> str:
 
 @NEEDS_PYBULLET
 def test_see_a_robot(tmp_path: Path) -> None:
-    typed("sarah-video stepping robot.gif --seconds 1 1.2", tmp_path)
-    typed("sarah-view balance --export robot.html --episode.time-limit 2", tmp_path)
+    typed("sarah-video stepping --out robot.gif --seconds 1 1.2", tmp_path)
+    typed("sarah-view balance --out robot.html --episode.time-limit 2", tmp_path)
     assert (tmp_path / "robot.gif").stat().st_size > 5000 and (tmp_path / "robot.html").stat().st_size > 100_000
 
 
@@ -57,7 +57,7 @@ def test_see_a_robot(tmp_path: Path) -> None:
 def trained(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a short training in ``run``."""
     folder = tmp_path_factory.mktemp("hour")
-    typed(f"sarah-train --task stepping --episodes 20 --seed 1 --run-dir run {' '.join(QUICK)}", folder)
+    typed(f"sarah-train --task stepping --episodes 20 --seed 1 --out run {' '.join(QUICK)}", folder)
     return folder
 
 
@@ -67,13 +67,13 @@ def test_train_and_evaluate_on_unseen_seeds(trained: Path) -> None:
 
 
 def test_td3_against_naf_in_one_picture(trained: Path) -> None:
-    typed(f"sarah-train --algo td3 --episodes 20 --seed 1 --run-dir td3 {' '.join(QUICK)}", trained)
+    typed(f"sarah-train --algo td3 --episodes 20 --seed 1 --out td3 {' '.join(QUICK)}", trained)
     assert "figure_4_reward_and_frequency.png" in typed("sarah-figures run td3 --out figures", trained)
 
 
 def test_another_learning_rate_and_network(tmp_path: Path) -> None:
     agent = "--agent.learning-rate 1e-4 --agent.mu-layers 64 64 --agent.v-layers 64"
-    typed(f"sarah-train --episodes 10 --run-dir run --episode.time-limit 2 {agent}", tmp_path)
+    typed(f"sarah-train --episodes 10 --out run --episode.time-limit 2 {agent}", tmp_path)
     settings = (tmp_path / "run" / "config.yaml").read_text()
     assert "learning_rate: 0.0001" in settings and "mu_layers:\n  - 64\n  - 64\n" in settings
 
@@ -91,7 +91,7 @@ def test_a_longer_thigh_and_a_push_from_the_left_as_a_video(tmp_path: Path) -> N
         "--episode.push.newtons 80 --episode.push.degrees 0 --episode.push.at-seconds 3 "
         "--episode.dimensions thigh_length 0.38"
     )
-    typed(f"sarah-video 0.4,1.3,0.1,1,1 out.gif {settings} --seconds 2.9 3.2", tmp_path)
+    typed(f"sarah-video 0.4,1.3,0.1,1,1 --out out.gif {settings} --seconds 2.9 3.2", tmp_path)
     assert (tmp_path / "out.gif").stat().st_size > 5000
 
 
@@ -101,7 +101,7 @@ def test_a_reward_with_power(tmp_path: Path) -> None:
         "def reward(tick, config):\n    return sarah.equation_2(tick, config) - 0.01 * tick.power\n\n"
         "THRIFTY = dataclasses.replace(sarah.STEPPING, name='thrifty', reward=reward)\n"
     )
-    typed("sarah-train --task my_task.py:THRIFTY --episodes 10 --episode.time-limit 2 --run-dir run", tmp_path)
+    typed("sarah-train --task my_task.py:THRIFTY --episodes 10 --episode.time-limit 2 --out run", tmp_path)
     assert "score" in typed("sarah-eval run --task my_task.py:THRIFTY --episodes 1", tmp_path)
 
 
@@ -109,8 +109,8 @@ def test_an_own_algorithm_in_a_race(tmp_path: Path) -> None:
     page = (Path(__file__).parents[2] / "docs/how_to/algorithm.md").read_text()
     (script,) = (block for block in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "HillClimber" in block)
     (tmp_path / "my_race.py").write_text(script)
-    race = "my_race.py race --algorithms climber random --seeds 1 --episodes 6 --evaluations 1 --episode.time-limit 2"
-    command = [sys.executable, *race.split(), *COARSE, "--workers", "1"]
+    race = "my_race.py --out race --algorithms climber random --seeds 1 --episodes 6 --evaluations 1"
+    command = [sys.executable, *race.split(), "--episode.time-limit", "2", *COARSE, "--workers", "1"]
     process = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=300)
     assert process.returncode == 0, process.stderr
     assert "| climber | 1 |" in process.stdout and (tmp_path / "race" / "race.png").exists()

@@ -15,7 +15,7 @@ from sarah.runs.agent_settings import AGENT_SETTINGS
     [
         (
             "sarah-train",
-            ("--task", "--algo", "--episodes", "--seed", "--run-dir", "--config", "--workers", "--scheduler"),
+            ("--task", "--algo", "--episodes", "--seed", "--out", "--config", "--workers", "--scheduler"),
         ),
         ("sarah-figures", ("RUN", "--out")),
         (
@@ -25,7 +25,7 @@ from sarah.runs.agent_settings import AGENT_SETTINGS
                 "--which",
                 "--seed",
                 "--episode.push.newtons",
-                "--export",
+                "--out",
                 "--host",
                 "--port",
                 "no password",
@@ -33,9 +33,9 @@ from sarah.runs.agent_settings import AGENT_SETTINGS
         ),
         (
             "sarah-video",
-            ("RUN|NUMBERS|NAME", "OUT", "--which", "--episode.push.newtons", "--seconds", "--speed"),
+            ("RUN|NUMBERS|NAME", "--out FILE", "--which", "--episode.push.newtons", "--seconds", "--speed"),
         ),
-        ("sarah-compare", ("DIR", "--algorithms", "--seeds", "--episodes", "--best-known", "--workers")),
+        ("sarah-compare", ("--out DIR", "--algorithms", "--seeds", "--episodes", "--best-known", "--workers")),
         ("sarah-eval", ("RUN|NUMBERS|NAME", "--episodes", "--first-seed", "--json", "--episode.engine", "--task")),
     ],
 )

@@ -17,7 +17,7 @@ from experiments import record
 
 BIN = Path(sys.executable).parent
 # Long enough to be interrupted three times also where the test itself has to wait for the processor.
-TRAINING = ("--episodes", "60", "--slots", "2", "--run-dir", "run", "--episode.time-limit", "2", *COARSE)
+TRAINING = ("--episodes", "60", "--slots", "2", "--out", "run", "--episode.time-limit", "2", *COARSE)
 RECORDS = ("episodes.csv", "recommendations.csv", "progress.csv", "parameters.json")
 
 

@@ -23,7 +23,7 @@ def operated(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a short session with weak servos, and a payload from its middle on."""
     folder = tmp_path_factory.mktemp("work")
     arguments = ("--minutes", "0.2", "--seed", "2", "--episode.randomisation.actuator-bandwidth", "12", *QUICK)
-    process = run("sarah-operate", "--change", "0.1: payload=5", *arguments, "--run-dir", "mine", cwd=folder)
+    process = run("sarah-operate", "--change", "0.1: payload=5", *arguments, "--out", "mine", cwd=folder)
     assert process.returncode == 0, process.stderr
     assert "P1 = " in process.stdout and "V4 = " in process.stdout and "falls       0 in" in process.stdout
     return folder / "mine"
@@ -75,7 +75,7 @@ def test_a_change_that_came_too_late_is_named(tmp_path: Path) -> None:
 
 def test_killed_at_any_moment_it_ends_in_the_same_bytes(tmp_path: Path) -> None:
     """A session goes on after kill -9 as if nothing had been: three times, each some windows further on."""
-    line = ["--change", "0.5: payload=5", "--minutes", "1", "--seed", "2", *QUICK, "--run-dir"]
+    line = ["--change", "0.5: payload=5", "--minutes", "1", "--seed", "2", *QUICK, "--out"]
     whole = run("sarah-operate", *line, "whole", cwd=tmp_path)
     assert whole.returncode == 0, whole.stderr
     journal = tmp_path / "cut/journal.jsonl"
@@ -154,12 +154,12 @@ def test_a_session_is_compared_with_the_same_robot_without_learning(tmp_path: Pa
 def test_every_change_counts_and_a_session_keeps_its_pushes(tmp_path: Path) -> None:
     line = ("--minutes", "0.2", *QUICK, "--learner", "none", "--episode.push.newtons", "10")
     changes = ("--change", "0.03: payload=3", "--change", "0.06: physics.control_rate=50")
-    first = run("sarah-operate", *line, *changes, "--run-dir", "first", cwd=tmp_path)
+    first = run("sarah-operate", *line, *changes, "--out", "first", cwd=tmp_path)
     assert first.returncode == 0, first.stderr
     rows = [row.split(",") for row in (tmp_path / "first/windows.csv").read_text().splitlines()[1:]]
     assert sorted({row[3] for row in rows}) == ["0", "1", "2"]
     assert {row[2] for row in rows} == {"1.0", "2.0"}  # at any control rate
-    again = run("sarah-operate", "first", "--minutes", "0.1", *QUICK, "--run-dir", "again", cwd=tmp_path)
+    again = run("sarah-operate", "first", "--minutes", "0.1", *QUICK, "--out", "again", cwd=tmp_path)
     assert again.returncode == 0, again.stderr
     assert "- 10.0" in (tmp_path / "again/session.yaml").read_text().split("newtons")[1][:20]
 

@@ -37,7 +37,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the file, and with a training of its task in ``run``."""
     path = tmp_path_factory.mktemp("own")
     (path / "my_task.py").write_text(FILE)
-    process = run("sarah-train", *TASK, "--episodes", "10", "--workers", "2", "--run-dir", "run", cwd=path)
+    process = run("sarah-train", *TASK, "--episodes", "10", "--workers", "2", "--out", "run", cwd=path)
     assert process.returncode == 0, process.stderr
     assert "score       -" in process.stdout  # its power costs more than the paper's reward gives
     (path / "it_ran").unlink()
@@ -57,8 +57,8 @@ def test_the_run_records_the_file(folder: Path) -> None:
     [
         "sarah-figures run --out out",
         "sarah-eval run",
-        "sarah-video run out.gif",
-        "sarah-view run --export out.html",
+        "sarah-video run --out out.gif",
+        "sarah-view run --out out.html",
         "sarah-report run --out report.html",
         "sarah-train --resume run",
         "sarah-train --resume run --episodes 20",
@@ -87,7 +87,7 @@ def test_every_command_takes_it_when_it_is_named(folder: Path) -> None:
     again = run("sarah-eval", "run", *kept, "--episodes", "2", "--json", cwd=folder)
     assert json.loads(again.stdout) | {"task": "my_task.py:THRIFTY"} == json.loads(process.stdout)
     if is_installed("pybullet"):  # which draws
-        assert run("sarah-video", "run", "a.gif", *TASK, "--seconds", "1", "1.1", cwd=folder).returncode == 0
+        assert run("sarah-video", "run", "--out", "a.gif", *TASK, "--seconds", "1", "1.1", cwd=folder).returncode == 0
     numbers = run("sarah-eval", "0.4,0.5,0.6,1,1", *TASK, "--episodes", "1", "--json", cwd=folder)
     assert json.loads(numbers.stdout)["task"] == "my_task.py:THRIFTY"
     drawn = run("sarah-figures", "run", *TASK, "--out", "drawn", cwd=folder)
@@ -114,7 +114,7 @@ def test_another_file_is_refused(folder: Path, tmp_path: Path) -> None:
 def test_a_file_of_settings_keeps_what_it_says(folder: Path) -> None:
     """What it does not say is the task's own: a time limit of 2 s, and 30 N."""
     (folder / "mine.yaml").write_text("algo: random\nepisodes: 2\nepisode: {push: {degrees: 90}}\n")
-    process = run("sarah-train", "--config", "mine.yaml", *TASK, "--run-dir", "mine", cwd=folder)
+    process = run("sarah-train", "--config", "mine.yaml", *TASK, "--out", "mine", cwd=folder)
     assert process.returncode == 0, process.stderr
     episode = RunFolder.open(folder / "mine").config().episode
     assert episode.time_limit == 2.0
@@ -122,7 +122,7 @@ def test_a_file_of_settings_keeps_what_it_says(folder: Path) -> None:
 
 
 def test_a_race_of_it_goes_on(folder: Path) -> None:
-    race = ("race", *TASK, "--algorithms", "random", "--seeds", "1", "--episodes", "5", "--evaluations", "1")
+    race = ("--out", "race", *TASK, "--algorithms", "random", "--seeds", "1", "--episodes", "5", "--evaluations", "1")
     process = run("sarah-compare", *race, cwd=folder)
     assert process.returncode == 0 and "| random | 1 |" in process.stdout, process.stderr
     again = run("sarah-compare", *race, cwd=folder)
@@ -135,9 +135,9 @@ def test_a_race_of_it_goes_on(folder: Path) -> None:
         ("sarah-train --task my_task.py:THIFTY", "unknown task in my_task.py 'THIFTY', did you mean 'THRIFTY'?"),
         ("sarah-train --task my_task.py", "name the task in my_task.py too, as in my_task.py:TASK"),
         ("sarah-train --task nowhere.py:JUMP", "cannot read nowhere.py: No such file or directory"),
-        ("sarah-eval 1,0,1,0 --robustness out --task my_task.py:THRIFTY", "must be 5 numbers (P1 to P5), not 4"),
+        ("sarah-eval 1,0,1,0 --robustness --out out --task my_task.py:THRIFTY", "must be 5 numbers (P1 to P5), not 4"),
         (
-            "sarah-eval 1,1,1,1,1 --robustness out --task my_task.py:THRIFTY",
+            "sarah-eval 1,1,1,1,1 --robustness --out out --task my_task.py:THRIFTY",
             "--robustness needs parameters of task 'balance', and these are of 'thrifty'",
         ),
     ],
@@ -150,7 +150,7 @@ def test_mistakes(folder: Path, command: str, words: str) -> None:
 
 def test_a_mistake_in_the_reward_names_file_and_line(folder: Path) -> None:
     (folder / "wrong.py").write_text(FILE.replace("tick.power", "tick.pover"))
-    task = ("--task", "wrong.py:THRIFTY", "--run-dir", "wrong")
+    task = ("--task", "wrong.py:THRIFTY", "--out", "wrong")
     process = run("sarah-train", *task, "--episodes", "2", "--workers", "1", cwd=folder)
     assert process.returncode == 2 and process.stderr.count("\n") == 1
     assert "wrong.py, line 11: AttributeError: 'Tick' object has no attribute 'pover'" in process.stderr
@@ -160,7 +160,7 @@ def test_a_mistake_in_the_reward_names_file_and_line(folder: Path) -> None:
 def test_a_mistake_that_shows_late_says_what_to_do(folder: Path) -> None:
     late = FILE.replace("0.01 * tick.power", "(1 / 0 if tick.time > 1.9 else 0.0)")
     (folder / "late.py").write_text(late)
-    process = run("sarah-train", "--task", "late.py:THRIFTY", "--episodes", "2", "--run-dir", "late", cwd=folder)
+    process = run("sarah-train", "--task", "late.py:THRIFTY", "--episodes", "2", "--out", "late", cwd=folder)
     assert process.returncode == 2 and "Traceback" not in process.stderr
     assert "late.py, line 11: ZeroDivisionError" in process.stderr
     assert "correct the file, and train into another folder than late" in process.stderr

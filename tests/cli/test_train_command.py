@@ -1,13 +1,20 @@
 """``sarah-train`` as a user runs it."""
 
+import dataclasses
 import json
 import subprocess
 from pathlib import Path
 
-from laboratory import NEEDS_PYBULLET, need
+import pytest
+from laboratory import NEEDS_PYBULLET, RESULT, need
 from terminal import SHORT, run
 
+from sarah.cli.train import main
+from sarah.episode.evaluation import Evaluation
 from sarah.episode.tasks import STEPPING
+from sarah.runs.run_folder import RunFolder
+from sarah.training import train as training
+from sarah.training.train import Learned
 
 
 def test_train_ends_with_a_summary(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
@@ -29,7 +36,7 @@ def test_workers_train_and_evaluate_the_same(
     trained: tuple[Path, subprocess.CompletedProcess[str]], tmp_path: Path
 ) -> None:
     alone, _ = trained
-    arguments = ("--episodes", "4", "--seed", "1", "--workers", "2", "--run-dir", "mine")
+    arguments = ("--episodes", "4", "--seed", "1", "--workers", "2", "--out", "mine")
     process = run("sarah-train", *arguments, *SHORT, cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     assert "Warning" not in process.stderr
@@ -48,6 +55,25 @@ def test_second_training_keeps_what_the_first_learned(balanced: Path) -> None:
     assert list(second["parameters"]) == ["V1", "V2", "V3", "V4"]
 
 
+def test_the_summary_tells_of_falls_and_of_the_baseline(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A median would hide the fall of one in four."""
+    up, fallen = dataclasses.replace(RESULT, score=0.8), dataclasses.replace(RESULT, score=0.0, termination="fallen")
+
+    def trained(_: object, run: RunFolder, *__: object) -> Learned:
+        run.write_parameters({})
+        return Learned((1.0, 0.0, 1.0, 0.0), Evaluation((up, up, up, fallen)), Evaluation((up, fallen) * 2), 0)
+
+    monkeypatch.setattr(training, "train", trained)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("sys.argv", ["sarah-train", "--task", "balance"])
+    main()
+    shown = capsys.readouterr().out
+    assert "score       0.600, 0.400 for the baseline (V = 0) (mean of 4 unseen seeds; 1 is the ceiling)\n" in shown
+    assert "survival    75%, 50% for the baseline (V = 0)\n" in shown
+
+
 def test_only_a_balance_training_continues_a_first_one(balanced: Path) -> None:
     for arguments, message in (
         (("--from", "mine"), "--from is for --task balance, not 'stepping'"),
@@ -60,7 +86,7 @@ def test_only_a_balance_training_continues_a_first_one(balanced: Path) -> None:
 @NEEDS_PYBULLET
 def test_mujoco_trains_and_its_run_is_evaluated_in_it(tmp_path: Path) -> None:
     need("mujoco")
-    arguments = ("--algo", "random", "--episodes", "2", "--engine", "mujoco", "--run-dir", "mine")
+    arguments = ("--algo", "random", "--episodes", "2", "--engine", "mujoco", "--out", "mine")
     process = run("sarah-train", *arguments, *SHORT, "--workers", "2", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     assert "engine: mujoco" in (tmp_path / "mine" / "config.yaml").read_text()
@@ -74,7 +100,7 @@ def test_mujoco_trains_and_its_run_is_evaluated_in_it(tmp_path: Path) -> None:
 
 def test_training_is_configured_by_a_file_and_overridden_by_options(tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text("algo: td3\nepisodes: 2\nslots: 1\nepisode: {time_limit: 1.5}\n")
-    process = run("sarah-train", "--config", "mine.yaml", "--episodes", "3", "--run-dir", "out", cwd=tmp_path)
+    process = run("sarah-train", "--config", "mine.yaml", "--episodes", "3", "--out", "out", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     config = (tmp_path / "out" / "config.yaml").read_text()
     assert "algo: td3" in config and "episodes: 3" in config and "time_limit: 1.5" in config

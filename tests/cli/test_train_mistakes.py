@@ -98,9 +98,9 @@ MISTAKES = {
     "files and folders": [
         ("--config full", "cannot read full: it is not a regular file"),
         ("--config nothing.yaml", "cannot read nothing.yaml"),
-        ("--run-dir full", "run folder full is not empty: name another with --run-dir"),
-        ("--run-dir full/precious.txt", "cannot write run folder"),
-        ("--run-dir x --simulations=0", "episodes must be between 1"),
+        ("--out full", "run folder full is not empty: name another with --out"),
+        ("--out full/precious.txt", "cannot write run folder"),
+        ("--out x --simulations=0", "episodes must be between 1"),
         ("--resume full", "full cannot be resumed: it has no config.yaml"),
         ("--resume nowhere", "run folder nowhere does not exist"),
         ("--task balance --from nowhere", "run folder nowhere does not exist"),

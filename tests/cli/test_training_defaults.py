@@ -15,7 +15,7 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
 
-TRAIN, COMPARE = "sarah-train --task balance", "sarah-compare race --task balance"
+TRAIN, COMPARE = "sarah-train --task balance", "sarah-compare --out race --task balance"
 PUSHED = BalanceConfig(push=Push(newtons=(100.0, 125.0), sagittal_share=0.5), time_limit=10.0)
 PAPER = "--episode.push.newtons 0 100 --episode.push.sagittal-share 0 --episode.time-limit 30"
 LEGS = (0.4, 1.3, 0.1, 1.0, 1.0)
@@ -82,7 +82,7 @@ def test_all_pushes_point_where_somebody_asks_for(command: str, begun: Callable[
     assert begun(f"{command} --episode.push.degrees 0 90").episode == BalanceConfig(push=push, time_limit=10.0)
 
 
-@pytest.mark.parametrize("command", ["sarah-train", "sarah-compare race"])
+@pytest.mark.parametrize("command", ["sarah-train", "sarah-compare --out race"])
 @pytest.mark.parametrize(("task", "own"), [("stepping", STEPPING.episode), ("my_task.py:MINE", BALANCE.episode)])
 def test_other_tasks_keep_their_own(
     command: str, task: str, own: EpisodeConfig, tmp_path: Path, begun: Callable[[str], TrainingConfig]

@@ -8,11 +8,11 @@ import pytest
 from terminal import SHORT, run
 
 WORK = {
-    "sarah-train --task stepping --algo random --episodes 2 --run-dir made": "made/parameters.json",
-    "sarah-operate {run} --learner random --minutes 0.1 --run-dir made": "made/parameters.json",
-    "sarah-compare made --algorithms random --seeds 1 --episodes 2 --evaluations 1": "made/race.pdf",
-    "sarah-video {run} made.gif --seconds 1 1.1": "made.gif",
-    "sarah-view {run} --export made.html": "made.html",
+    "sarah-train --task stepping --algo random --episodes 2 --out made": "made/parameters.json",
+    "sarah-operate {run} --learner random --minutes 0.1 --out made": "made/parameters.json",
+    "sarah-compare --out made --algorithms random --seeds 1 --episodes 2 --evaluations 1": "made/race.pdf",
+    "sarah-video {run} --out made.gif --seconds 1 1.1": "made.gif",
+    "sarah-view {run} --out made.html": "made.html",
     "sarah-transfer {run} --episodes 1 --out made": "made/transfer.pdf",
     "sarah-figures {run} --out made": "made/figure_4_reward_and_frequency.pdf",
     "sarah-report {run} --episodes 1 --seconds 1 1.1 --out made.html": "made.html",

@@ -214,7 +214,7 @@ PROTECTIONS = (
     Protection(
         "options that contradict a resumed run are refused",
         "cli/train.py",
-        "if options.run_dir is not None or options.config is not None or options.from_run is not None:",
+        "if options.out is not None or options.config is not None or options.from_run is not None:",
         "if False:",
         "test_damaged_run_folders",
     ),

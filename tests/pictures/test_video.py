@@ -115,7 +115,7 @@ def filmed(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
 
 
 def test_command_films_given_parameters(tmp_path: Path) -> None:
-    process = filmed("0.4,1.3,0.1,1,1", "a.mp4", "--seconds", "2", "2.4", cwd=tmp_path)
+    process = filmed("0.4,1.3,0.1,1,1", "--out", "a.mp4", "--seconds", "2", "2.4", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     assert process.stdout == "a.mp4\n" and "filming" in process.stderr
     assert count_frames_and_secs(tmp_path / "a.mp4") == (11, pytest.approx(0.44, abs=0.05))
@@ -125,7 +125,7 @@ def test_command_films_given_parameters(tmp_path: Path) -> None:
 @pytest.fixture(scope="module")
 def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("work") / "mine"
-    arguments = ("--episodes", "4", "--slots", "1", "--episode.time-limit", "1.5", "--run-dir", str(folder))
+    arguments = ("--episodes", "4", "--slots", "1", "--episode.time-limit", "1.5", "--out", str(folder))
     assert run("sarah-train", "--algo", "random", *arguments, cwd=folder.parent).returncode == 0
     return folder
 
@@ -133,7 +133,7 @@ def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_command_films_any_episode_of_a_run(run_folder: Path, tmp_path: Path) -> None:
     pictures = {}
     for episode in ("learned", "2"):
-        process = filmed(str(run_folder), "a.gif", "--which", episode, "--seconds", "1.2", "1.3", cwd=tmp_path)
+        process = filmed(str(run_folder), "--out", "a.gif", "--which", episode, "--seconds", "1.2", "1.3", cwd=tmp_path)
         assert process.returncode == 0, process.stderr
         with Image.open(tmp_path / "a.gif") as film:
             assert film.size == GIF_SIZE and film.n_frames == 3 and film.info["loop"] == 0

@@ -188,7 +188,7 @@ RACE = f"--algorithms random --seeds 1 --episodes 30 --evaluations 2 --episode.t
 
 
 def begin(folder: Path) -> subprocess.Popen[str]:
-    command = [BIN / "sarah-compare", "race", *RACE.split()]
+    command = [BIN / "sarah-compare", "--out", "race", *RACE.split()]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=folder)
 
 

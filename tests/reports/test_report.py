@@ -86,10 +86,10 @@ def events(run: RunFolder) -> EventAccumulator:
 def test_tensorboard_shows_curves_in_groups_and_pictures_at_intervals(runs: dict[str, RunFolder]) -> None:
     shown = events(runs["stepping"])
     groups = {tag.split("/")[0] for tag in shown.Tags()["scalars"]}
-    assert {"episode", "gait", "actuators", "parameters", "recommendation", "learned"} <= groups
+    assert groups == {"episode", "parameters", "recommendation", "robot", "train", "unseen"}
     rows = [(int(row["episodes"]), float(row["P1"])) for row in runs["stepping"].recommendations()]
     assert [(event.step, pytest.approx(event.value)) for event in shown.Scalars("recommendation/P1")] == rows
-    films = shown.Images("gait/video")
+    films = shown.Images("recommendation/video")
     assert [film.step for film in films] == [episodes for episodes, _ in rows]
     assert all(film.encoded_image_string.startswith(b"GIF89a") and film.width == 640 for film in films)
 

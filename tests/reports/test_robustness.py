@@ -105,7 +105,7 @@ def test_eval_prints_the_table_and_leaves_it_with_a_plot(
     fallen = [pushed(degrees, FALL, newtons) for newtons in (50.0, 100.0) for degrees in range(0, 360, 45)]
     up = [dataclasses.replace(episode, result=RESULT) for episode in fallen]
     monkeypatch.setattr(robustness, "push_many", lambda *_, **__: [fallen, up])
-    arguments = ["sarah-eval", "1,0,1,0", "--robustness", str(tmp_path / "out")]
+    arguments = ["sarah-eval", "1,0,1,0", "--robustness", "--out", str(tmp_path / "out")]
     monkeypatch.setattr("sys.argv", arguments)
     eval_command.main()
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"robustness.md", "robustness.png", "robustness.pdf"}

@@ -89,7 +89,16 @@ def test_command_writes_table_and_picture(
     config = TrainingConfig(episode=EpisodeConfig(terrain=Terrain(roughness=(0.0, 0.01))))
     run = RunFolder.create(tmp_path / "run", config)  # trained on ground of its own
     run.write_parameters({"parameters": dict(zip(STEPPING.parameter_names, STEPPING.baseline, strict=True))})
-    arguments = [str(run.path), "--terrain", str(tmp_path / "out"), "--episodes", "3", "--episode.payload", "20"]
+    arguments = [
+        str(run.path),
+        "--terrain",
+        "--out",
+        str(tmp_path / "out"),
+        "--episodes",
+        "3",
+        "--episode.payload",
+        "20",
+    ]
     monkeypatch.setattr(sys, "argv", ["sarah-eval", *arguments])
     main()
     printed = capsys.readouterr().out

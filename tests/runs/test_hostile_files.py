@@ -26,14 +26,14 @@ EPISODE = EpisodeConfig(time_limit=1.1, physics=Physics(50, 5, control_rate=50))
 SETTINGS = "--episode.time-limit 1.1 --episode.physics.rate 50 --episode.physics.solver-iterations 5"
 EVAL = "sarah-eval race/random-s0 --episodes 1"
 FIGURES = "sarah-figures race/random-s0 --out figures"
-VIDEO = "sarah-video race/random-s0 out.gif --seconds 1 1.05"
-VIEW = "sarah-view race/random-s0 --export out.html"
+VIDEO = "sarah-video race/random-s0 --out out.gif --seconds 1 1.05"
+VIEW = "sarah-view race/random-s0 --out out.html"
 REPORT = "sarah-report race/random-s0 --episodes 1 --out report.html"
 TRANSFER = "sarah-transfer race/random-s0 --episodes 1 --out transfer"
 RESUME = "sarah-train --resume race/random-s0"
-FROM = "sarah-train --task balance --run-dir second --from race/random-s0"
+FROM = "sarah-train --task balance --out second --from race/random-s0"
 COMPARE = (
-    f"sarah-compare race --algorithms random --seeds 1 --episodes 5 --evaluations 2 {SETTINGS} "
+    f"sarah-compare --out race --algorithms random --seeds 1 --episodes 5 --evaluations 2 {SETTINGS} "
     "--episode.physics.control-rate 50"
 )
 READERS = {

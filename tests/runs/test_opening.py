@@ -37,13 +37,13 @@ COARSE = "--episode.time-limit 1.2 --episode.push.at-seconds 1 1 --episode.physi
 COMMANDS = (
     "sarah-eval {run} --episodes 1",
     "sarah-figures {run} --out figures",
-    "sarah-video {run} out.gif --which best --seconds 1 1.05",
-    "sarah-view {run} --which best --export out.html",
+    "sarah-video {run} --out out.gif --which best --seconds 1 1.05",
+    "sarah-view {run} --which best --out out.html",
     "sarah-report {run} --episodes 1 --out report.html",
     "sarah-transfer {run} --episodes 1 --out transfer",
     "sarah-train --resume {run}",
-    f"sarah-train --task balance --episodes 1 --slots 1 --run-dir {{run}}-mine --from {{run}} {COARSE}",
-    "sarah-compare {run}-race --algorithms random --seeds 1 --episodes 1 --evaluations 1",
+    f"sarah-train --task balance --episodes 1 --slots 1 --out {{run}}-mine --from {{run}} {COARSE}",
+    "sarah-compare --out {run}-race --algorithms random --seeds 1 --episodes 1 --evaluations 1",
 )
 """Of the last, the run is a part of the race that is complete."""
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import torch
 from operated import KEPT, interrupted_after, quick
+from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 from sarah.episode.reward import highest_return
 from sarah.errors import ConfigurationError, ResumeError, RunFolderError, TrainingInterruptedError
@@ -38,6 +39,14 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, SessionResult
     result = operate(SessionFolder.create(path, SPEC), SPEC)
     assert result.falls > 0 and result.windows[-1].changes == 1
     return path, result
+
+
+def test_tensorboard_opens_on_scores_and_parameters(whole: tuple[Path, SessionResult]) -> None:
+    events = EventAccumulator(str(whole[0]))
+    events.Reload()
+    tags = sorted(events.Tags()["scalars"])
+    assert list(dict.fromkeys(tag.split("/")[0] for tag in tags))[:2] == ["operation", "parameters"]
+    assert "operation/score" in tags
 
 
 def _generators() -> tuple[object, ...]:
@@ -205,7 +214,7 @@ def test_a_window_names_the_one_that_goes_on_where_it_ends(whole: tuple[Path, Se
 
 
 def test_a_folder_that_is_not_empty_is_refused(whole: tuple[Path, SessionResult], tmp_path: Path) -> None:
-    with pytest.raises(RunFolderError, match="is not empty: name another with --run-dir"):
+    with pytest.raises(RunFolderError, match="is not empty: name another with --out"):
         SessionFolder.create(whole[0], SPEC)
     with pytest.raises(RunFolderError, match=r"is not the folder of a session: it has no session\.yaml"):
         SessionFolder.open(tmp_path)

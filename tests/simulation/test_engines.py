@@ -160,7 +160,7 @@ def command_without_pybullet(command: str, *arguments: str, cwd: Path) -> subpro
 
 
 def test_without_pybullet_mujoco_is_the_default_and_a_training_says_so(mujoco_engine: None, tmp_path: Path) -> None:
-    arguments = ("--algo", "random", "--episodes", "2", "--episode.time-limit", "1.5", "--run-dir", "run")
+    arguments = ("--algo", "random", "--episodes", "2", "--episode.time-limit", "1.5", "--out", "run")
     process = command_without_pybullet("train", *arguments, cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     assert process.stderr.startswith("PyBullet is not installed, so MuJoCo simulates\n")

@@ -18,7 +18,7 @@ SHORT = ("--episode.time-limit", "1.5", *COARSE, "--seed", "1")
 def extended(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
     """Algorithm, and a folder with a training of 12 episodes that was extended to 22."""
     folder, algo = tmp_path_factory.mktemp("extended"), request.param
-    first = run("sarah-train", "--algo", algo, "--episodes", "12", *SHORT, "--run-dir", "run", cwd=folder)
+    first = run("sarah-train", "--algo", algo, "--episodes", "12", *SHORT, "--out", "run", cwd=folder)
     assert first.returncode == 0, first.stderr
     shutil.copytree(folder / "run", folder / "before")
     more = run("sarah-train", "--resume", "run", "--simulations", "22", "--workers", "2", cwd=folder)
@@ -29,7 +29,7 @@ def extended(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
 
 def test_it_is_the_training_that_was_meant_so(extended: tuple[str, Path]) -> None:
     algo, folder = extended
-    budget = ("--episodes", "22", "--extended-from", "12", "--run-dir", "whole")
+    budget = ("--episodes", "22", "--extended-from", "12", "--out", "whole")
     assert run("sarah-train", "--algo", algo, *budget, *SHORT, cwd=folder).returncode == 0
     for name in ("config.yaml", "episodes.csv", "recommendations.csv", "progress.csv", "parameters.json"):
         assert (folder / "run" / name).read_bytes() == (folder / "whole" / name).read_bytes(), name
@@ -82,7 +82,7 @@ def test_an_extension_without_workers_leaves_the_training_finished(extended: tup
 
 @NEEDS_PYBULLET
 def test_only_a_finished_training_of_the_same_settings_is_extended(tmp_path: Path) -> None:
-    assert run("sarah-train", "--episodes", "3", *SHORT, "--run-dir", "run", cwd=tmp_path).returncode == 0
+    assert run("sarah-train", "--episodes", "3", *SHORT, "--out", "run", cwd=tmp_path).returncode == 0
     before = tree(tmp_path)
     other = run("sarah-train", "--resume", "run", "--episodes", "9", "--agent.tau", "0.5", cwd=tmp_path)
     assert other.returncode == 2 and "agent.tau is 0.02 in this training, not 0.5" in other.stderr

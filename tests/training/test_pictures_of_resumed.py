@@ -25,7 +25,7 @@ class Artist:
 
     def __call__(self, *_: Any) -> list[Picture]:
         self.drawn += 1
-        return [Picture("gait/cycle", 1, 1, b"picture %d" % self.drawn)]
+        return [Picture("recommendation/cycle", 1, 1, b"picture %d" % self.drawn)]
 
 
 @pytest.fixture
@@ -39,7 +39,7 @@ def pictures(run: RunFolder) -> list[tuple[int, bytes]]:
     (events,) = run.path.glob("events.out.tfevents.*")
     curves = EventAccumulator(str(events), size_guidance={"images": 0})
     curves.Reload()
-    return [(event.step, event.encoded_image_string) for event in curves.Images("gait/cycle")]
+    return [(event.step, event.encoded_image_string) for event in curves.Images("recommendation/cycle")]
 
 
 def test_a_resumed_training_keeps_its_pictures_and_draws_on(artist: Artist, tmp_path: Path) -> None:

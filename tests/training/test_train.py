@@ -91,13 +91,26 @@ def test_what_would_be_recommended_is_noted_every_five_episodes(run: RunFolder) 
     assert parameters_of(first) == tried.best((1.0,) * 5)  # the agent's own choice until it has learned
 
 
+def test_tensorboard_opens_on_score_and_parameters(run: RunFolder) -> None:
+    """It sorts the groups of curves, and opens the first two."""
+    events = EventAccumulator(str(run.path))
+    events.Reload()
+    curves = [tag.split("/") for tag in sorted(events.Tags()["scalars"])]
+    first, second = list(dict.fromkeys(group for group, _ in curves))[:2]
+    assert [name for group, name in curves if group == first] == ["score", "steps_per_second"]
+    assert [name for group, name in curves if group == second] == list(STEPPING.parameter_names)
+
+
 def test_tensorboard_shows_the_episodes_the_parameters_and_the_learning(run: RunFolder) -> None:
     events = EventAccumulator(str(run.path))
     events.Reload()
-    expected = {f"episode/{name}" for name in ("return", "score", "steps_per_second", "x", "y", "duration")}
-    expected |= {f"gait/{name}" for name in ("shifts_by_sensors", "lifts_by_sensors", "sole_clearance")}
+    expected = {f"episode/{name}" for name in ("score", "steps_per_second")}
+    robot = ("x", "y", "duration", "shifts_by_sensors", "lifts_by_sensors", "sole_clearance", "vibration")
+    expected |= {f"robot/{name}" for name in robot}
     expected |= {f"{group}/{name}" for group in ("parameters", "recommendation") for name in STEPPING.parameter_names}
-    assert expected | {"train/loss", "train/q", "train/exploration_std"} <= set(events.Tags()["scalars"])
+    assert expected | {"train/return", "train/loss", "train/q", "train/exploration_std"} <= set(
+        events.Tags()["scalars"]
+    )
     assert [event.step for event in events.Scalars("episode/score")] == list(range(1, 17))
 
 
@@ -105,7 +118,7 @@ def test_progress_has_the_same_figures_as_the_episodes(run: RunFolder) -> None:
     with (run.path / "progress.csv").open() as file:
         progress = list(csv.DictReader(file))
     for row, episode in zip(progress, run.episodes(), strict=True):
-        assert float(row["episode/return"]) == pytest.approx(float(episode["return"]))
+        assert float(row["train/return"]) == pytest.approx(float(episode["return"]))
         assert float(row["parameters/P3"]) == pytest.approx(float(episode["P3"]))
 
 

@@ -59,10 +59,10 @@ def test_curves_say_which_episodes_were_random(tmp_path: Path) -> None:
         config = TrainingConfig(algo="td3", episodes=12, slots=2, agent=settings, episode=SHORT)
         run = trained(tmp_path / str(noise), config)
         columns.append([row["P1"] for row in run.episodes()])
-        marks = [float(row["episode/is_warm_up"]) for row in rows(run)]
+        marks = [float(row["train/is_warm_up"]) for row in rows(run)]
         assert marks == [1.0] * warm_up(config) + [0.0] * (12 - warm_up(config))
         events = EventAccumulator(str(run.path)).Reload()
-        assert [event.value for event in events.Scalars("episode/is_warm_up")] == marks
+        assert [event.value for event in events.Scalars("train/is_warm_up")] == marks
     alike = [one == other for one, other in zip(*columns, strict=True)]
     assert alike == [mark == 1.0 for mark in marks]
 
@@ -70,4 +70,4 @@ def test_curves_say_which_episodes_were_random(tmp_path: Path) -> None:
 def test_a_strategy_without_warm_up_has_no_random_episodes(tmp_path: Path) -> None:
     config = TrainingConfig(algo="cma-es", episodes=5, episode=SHORT)
     assert warm_up_episodes(config) == 0
-    assert {float(row["episode/is_warm_up"]) for row in rows(trained(tmp_path / "run", config))} == {0.0}
+    assert {float(row["train/is_warm_up"]) for row in rows(trained(tmp_path / "run", config))} == {0.0}

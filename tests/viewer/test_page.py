@@ -273,7 +273,7 @@ def test_a_session_plays_on_from_window_to_window(browser: Any, tmp_path: Path) 
 
 def test_an_exported_episode_plays_without_server_and_network(browser: Any, run: RunFolder, tmp_path: Path) -> None:
     file = tmp_path / "scene.html"
-    command = [BIN / "sarah-view", run.path, "--which", "best", "--export", file]
+    command = [BIN / "sarah-view", run.path, "--which", "best", "--out", file]
     process = subprocess.run(command, capture_output=True, text=True, check=True)
     assert process.stdout.strip() == str(file)
     context = browser.new_context(viewport={"width": 500, "height": 400}, offline=True)

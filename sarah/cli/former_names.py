@@ -1,0 +1,48 @@
+"""Former names of what to write, which commands take for one release more: all of them call it ``--out``."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping, Sequence
+
+from sarah.errors import ConfigurationError
+from sarah.files import quoted
+
+OUT = "--out"
+
+
+def with_out(
+    command: str, arguments: Sequence[str], former: Mapping[str, str] | None = None, bare: int | None = None
+) -> list[str]:
+    """Arguments that name what to write by ``--out``; standard error says what a former name is called.
+
+    :param command: name of the command
+    :param arguments: arguments after the command's name
+    :param former: words that take the place of a former option, by its name; the last of them is ``--out``
+    :param bare: number of words at the beginning, none of them an option, behind which the place to write stood alone
+    :raises ConfigurationError: if former options give two places to write to
+    """
+    if OUT in (argument.partition("=")[0] for argument in arguments):
+        return list(arguments)
+    words, places = list[str](), list[str]()
+    for index, argument in enumerate(arguments):
+        option, equals, value = argument.partition("=")
+        place = value if equals else "".join(arguments[index + 1 : index + 2])
+        present = (former or {}).get(option.replace("_", "-"))
+        if index == bare and not any(word.startswith("-") for word in arguments[: index + 1]):
+            words += [OUT, argument]
+            _say(command, argument, OUT, argument)
+        elif present is not None and place and (equals or not place.startswith("-")):
+            places.append(place)
+            words += [*present.split(), *([value] if equals else [])]
+            _say(command, f"{option} {place}", present, place)
+        else:
+            words.append(argument)
+    if len(set(places)) > 1:
+        raise ConfigurationError(f"give one {OUT} instead of {' and '.join(places)}")
+    return words
+
+
+def _say(command: str, former: str, present: str, place: str) -> None:
+    instead = f"{present} {quoted(place)}"
+    print(f"{command}: say {instead} instead of {former}, which the next release refuses", file=sys.stderr)

@@ -1,0 +1,111 @@
+"""What a command says one does next: at most three lines, whose commands work as they stand."""
+
+import shlex
+import subprocess
+from pathlib import Path
+from urllib.parse import unquote, urlparse
+
+import pytest
+from terminal import BIN, SHORT, run
+
+from sarah.cli import next_steps
+from sarah.cli.next_steps import passed_on, say_next, to_see, to_watch
+
+ENDING = {"sarah-view": ("--out", "page.html"), "sarah-eval": ("--episodes", "1")}
+"""Options with which a suggested command soon ends."""
+
+
+def steps_of(said: str) -> dict[str, list[str]]:
+    """Words of the commands of the last lines, by their purpose; the path of a program is left out."""
+    lines = [line.removeprefix("to ").split(":  ", 1) for line in said.splitlines() if line.startswith("to ")]
+    assert said.endswith("\n".join(said.splitlines()[-len(lines) :]) + "\n") and 1 <= len(lines) <= 3
+    words = {purpose: shlex.split(command) for purpose, command in lines}
+    return {purpose: [Path(program).name, *others] for purpose, (program, *others) in words.items()}
+
+
+def paste(words: list[str], folder: Path) -> str:
+    """What a suggested command prints; one that opens a file, the file."""
+    if words[0] == "python":
+        assert words[1:3] == ["-m", "webbrowser"]
+        file = Path(unquote(urlparse(words[3]).path))
+        assert file.stat().st_size > 1000
+        return str(file)
+    if words[0] == "tensorboard":
+        assert words[1] == "--logdir" and list((folder / words[2]).glob("**/events.out.tfevents.*"))
+        return ""
+    process = run(*words, *ENDING.get(words[0], ()), cwd=folder)
+    assert process.returncode == 0, process.stderr
+    return process.stdout
+
+
+def test_a_training_can_be_seen_tested_and_watched(
+    trained: tuple[Path, subprocess.CompletedProcess[str]],
+) -> None:
+    folder, process = trained
+    steps = steps_of(process.stderr)
+    assert list(steps) == ["see it", "test it", "watch its curves"] and "sarah-" not in process.stdout.splitlines()[-1]
+    assert [words[-1] for words in steps.values()] == ["mine"] * 3
+    assert "which no training has seen" in paste(steps["test it"], folder.parent)
+    assert paste(steps["watch its curves"], folder.parent) == ""
+
+
+def test_what_was_evaluated_is_seen_under_the_same_conditions(tmp_path: Path) -> None:
+    line = ("0.4,1.3,0.1,1,1", "--episodes", "1", "--episode.time-limit", "1.5", "--episode.payload", "3")
+    steps = steps_of(run("sarah-eval", *line, cwd=tmp_path).stderr)
+    assert steps == {"see it": ["sarah-view", line[0], *line[3:]]}
+    assert paste(steps["see it"], tmp_path) == "page.html\n"
+
+
+def test_json_comes_alone(tmp_path: Path) -> None:
+    process = run("sarah-eval", "stepping", "--episodes", "1", "--episode.time-limit", "1.5", "--json", cwd=tmp_path)
+    assert process.returncode == 0 and process.stderr == ""
+
+
+@pytest.mark.parametrize(
+    ("line", "purposes"),
+    [
+        ("sarah-figures {run}", ["open it", "have it on one page"]),
+        ("sarah-view {run} --out 'a page.html'", ["open it"]),
+        ("sarah-operate {run} --learner none --minutes 0.1", ["see it", "test it", "watch its curves"]),
+        (
+            "sarah-compare --out race --algorithms random --seeds 1 --episodes 5 --evaluations 1 " + " ".join(SHORT),
+            ["open it", "see its best", "watch its curves"],
+        ),
+    ],
+    ids=lambda value: value.split()[0] if isinstance(value, str) else "",
+)
+def test_other_commands_say_what_one_does_next(
+    line: str, purposes: list[str], trained: tuple[Path, subprocess.CompletedProcess[str]], tmp_path: Path
+) -> None:
+    process = run(*shlex.split(line.format(run=trained[0])), cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    steps = steps_of(process.stderr)
+    assert list(steps) == purposes
+    for purpose in set(purposes) - {"have it on one page"}:
+        paste(steps[purpose], tmp_path)
+
+
+def test_commands_are_quoted_and_aligned(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", str(BIN))
+    say_next(to_see(Path("-my run"), "--task", "my task.py:MINE"), to_watch(Path("it's")))
+    shown, said = capsys.readouterr()
+    assert shown == ""
+    assert said.splitlines() == [
+        "to see it:            sarah-view './-my run' --task 'my task.py:MINE'",
+        "to watch its curves:  tensorboard --logdir 'it'\"'\"'s'",
+    ]
+    monkeypatch.setenv("PATH", "/nowhere")
+    monkeypatch.setattr("sys.argv", [str(BIN / "sarah-train")])
+    say_next(to_see(Path("run")))
+    assert capsys.readouterr().err == f"to see it:  {BIN / 'sarah-view'} run\n"
+
+
+def test_a_video_takes_the_place_of_a_viewer_that_is_not_installed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(next_steps, "find_spec", lambda name: None)
+    assert to_see("balance") == ("see it", ("sarah-video", "balance", "--out", "episode.gif"))
+
+
+def test_options_that_another_command_has_not_are_left_out() -> None:
+    line = "--json run --episodes 5 --engine mujoco --forces 1 2 --no-randomisation --first_seed=3 --episode.payload 5"
+    words = passed_on(line.split(), "run", "json", "episodes", "forces", "first-seed")
+    assert words == ["run", "--engine", "mujoco", "--no-randomisation", "--episode.payload", "5"]
