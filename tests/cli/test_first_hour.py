@@ -123,7 +123,7 @@ def test_extend_a_training(trained: Path) -> None:
 def test_lengthen_and_resume_an_operation(tmp_path: Path) -> None:
     """With Ctrl-C while it goes on; what it prints then is what one types next."""
     windows = "--settle-seconds 0.5 --measure-seconds 0.5 --fall-seconds 1"
-    shown = typed(f"sarah-operate --minutes 0.1 --run-dir mine {windows} {' '.join(COARSE)}", tmp_path)
+    shown = typed(f"sarah-operate --minutes 0.1 --out mine {windows} {' '.join(COARSE)}", tmp_path)
     assert "left with   P1 = " in shown
     first = (tmp_path / "mine/windows.csv").read_text()
     interrupted = stopped("sarah-operate --resume mine --minutes 0.3 --compare-frozen", tmp_path)

@@ -113,7 +113,7 @@ def test_a_longer_session_is_the_one_that_was_meant_so(operated: Path) -> None:
     assert "extending 0.2 to 0.3 min: the first 0.2 stay as they are" in more.stdout
     assert (folder / "longer/windows.csv").read_text().startswith((operated / "windows.csv").read_text())
     line = ["--change", "0.1: payload=5", "--seed", "2", "--episode.randomisation.actuator-bandwidth", "12", *QUICK]
-    whole = run("sarah-operate", *line, "--minutes", "0.3", "--extended-from", "0.2", "--run-dir", "whole", cwd=folder)
+    whole = run("sarah-operate", *line, "--minutes", "0.3", "--extended-from", "0.2", "--out", "whole", cwd=folder)
     assert whole.returncode == 0, whole.stderr
     for name in (*BYTES, "session.yaml"):
         assert (folder / "longer" / name).read_bytes() == (folder / "whole" / name).read_bytes(), name
@@ -143,7 +143,7 @@ def test_only_a_finished_session_is_extended(answer: Callable[[str], str], opera
 
 def test_a_session_is_compared_with_the_same_robot_without_learning(tmp_path: Path) -> None:
     """It says before that it takes as long again."""
-    process = run("sarah-operate", "--minutes", "0.1", *QUICK, "--compare-frozen", "--run-dir", "mine", cwd=tmp_path)
+    process = run("sarah-operate", "--minutes", "0.1", *QUICK, "--compare-frozen", "--out", "mine", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     said, _, summary = process.stdout.partition("left with")
     assert "without learning, which takes as long again, into mine/frozen" in said

@@ -223,7 +223,7 @@ def test_the_robot_that_is_described_is_that_of_the_subject(subject: str, ran: C
 
 
 def test_a_session_goes_on_with_windows_falls_and_pushes_as_there(subjects: Path, ran: Callable[[str], Ran]) -> None:
-    ran(f"sarah-operate session {SHORT} --settle-seconds 0.9 --run-dir out")
+    ran(f"sarah-operate session {SHORT} --settle-seconds 0.9 --out out")
     before, after = (SessionFolder.open(path).spec().config for path in (subjects / "session", Path("out")))
     assert after == dataclasses.replace(before, minutes=0.1, settle_seconds=0.9)
 
