@@ -54,7 +54,7 @@ class Episode(RunningRobot):
         super().__init__(config, seed, build, conditions)
         self._first = self._last = self.simulation.torso_state()
         self._gait = GaitRecord(config.physics.control_rate)
-        self._motion = MotionRecord(config.physics.control_rate)
+        self._motion = MotionRecord(config.physics.control_rate, config.scale.time)
         self._ticks = 0
         self._return = 0.0
         seconds = config.time_limit - STAND_SECONDS

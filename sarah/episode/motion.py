@@ -14,8 +14,10 @@ import numpy as np
 from sarah.robot.reading import ACTUATED_JOINTS, Vector
 
 CHATTER_BAND = (20.0, 50.0)
-"""Frequencies between which motion counts as vibration, in Hz: above the gait's harmonics, and the same at all control
-rates from 100 Hz on."""
+"""Frequencies between which motion of the default robot counts as vibration, in Hz: above the gait's harmonics, and the
+same at all control rates from 100 Hz on."""
+HIGHEST_SLOWEST = 40.0
+"""Highest frequency at which the band of a small robot begins, in Hz."""
 SEGMENT_SECONDS = 0.5
 """Length of the segments that spectra are averaged over, in s."""
 IS_HIP = np.array([not name.endswith("leg_length") for name in ACTUATED_JOINTS])
@@ -26,10 +28,13 @@ class MotionRecord:
     """Record of one episode's torso acceleration and actuators.
 
     :param control_rate: control ticks per second
+    :param time_scale: ratio of the robot's times to those of the default robot; a small one steps at higher frequencies
     """
 
-    def __init__(self, control_rate: int) -> None:
+    def __init__(self, control_rate: int, time_scale: float = 1.0) -> None:
         self._control_rate = control_rate
+        slowest, quickest = CHATTER_BAND
+        self._band = (min(slowest / time_scale, HIGHEST_SLOWEST), quickest)
         self._accelerations: list[Vector] = []
         self._speeds: list[Sequence[float]] = []
         self._efforts: list[Sequence[float]] = []
@@ -68,7 +73,7 @@ class MotionRecord:
     @property
     def vibration(self) -> float:
         """Mean square of the torso's acceleration from 20 to 50 Hz, all axes together, in m^2/s^4; 0 below 0.5 s."""
-        return power_within(np.array(self._accelerations), self._control_rate, CHATTER_BAND)
+        return power_within(np.array(self._accelerations), self._control_rate, self._band)
 
     def metrics(self) -> dict[str, Any]:
         """Metrics of :class:`~sarah.episode.result.EpisodeResult` that follow from the motion."""

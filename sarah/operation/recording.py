@@ -8,6 +8,7 @@ from sarah.control.pattern_generator import Phase
 from sarah.episode.motion import MotionRecord
 from sarah.episode.result import EpisodeResult
 from sarah.episode.running_robot import RunningRobot
+from sarah.episode.settings import EpisodeConfig
 from sarah.episode.trace import Trace
 from sarah.operation.window import Window, WindowRecord
 from sarah.robot.reading import Vector
@@ -16,12 +17,12 @@ from sarah.robot.reading import Vector
 class Recording:
     """Everything that an episode records and a window does not: trace, clearance, vibration and effort.
 
-    :param control_rate: control ticks per second
+    :param robot: settings of the robot
     """
 
-    def __init__(self, control_rate: int) -> None:
-        self._motion = MotionRecord(control_rate)
-        self._dt = 1.0 / control_rate
+    def __init__(self, robot: EpisodeConfig) -> None:
+        self._motion = MotionRecord(robot.physics.control_rate, robot.scale.time)
+        self._dt = robot.physics.control_dt
         self._rows: list[dict[str, Any]] = []
         self._record: WindowRecord
 

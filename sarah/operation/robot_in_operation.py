@@ -86,7 +86,7 @@ class RobotInOperation:
         :return: it as the result of an episode, with a trace
         """
         changes = self.config.changes_by(self.seconds)
-        recording = Recording(self.config.robot_after(changes).physics.control_rate)
+        recording = Recording(self.config.robot_after(changes))
         return recording.result(self.run(window.parameters, recording))
 
     def skip(self, window: Window) -> None:

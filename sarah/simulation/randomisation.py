@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from sarah.errors import ConfigurationError, check_fields, check_types, to_ranges
 from sarah.robot.description import GROUPS
@@ -44,7 +44,8 @@ class Randomisation:
     gives none; those of sensors are what datasheets of small inertial units and load cells promise, before calibration.
     A pair is a uniform range; one number, or equal ends, fix the value.
 
-    :param enabled: whether to randomise; if not, the robot is as designed, and the seed draws push and terrain only
+    :param enabled: whether to randomise; if not, the robot is as designed, with the quickest servos of the range, and
+        the seed draws push and terrain only
     :param friction: range of the Coulomb friction coefficient between sole and floor
     :param mass_deviation: largest relative deviation of each link's mass and inertia
     :param mass_offset: largest offset of the torso's centre of mass along each of its axes, in m
@@ -161,10 +162,10 @@ def draw_conditions(ranges: Randomisation, seed: int) -> Conditions:
 
     :param ranges: ranges to draw from
     :param seed: seed of the episode; the same seed draws the same conditions
-    :return: the draw; with the randomisation off, the robot as designed with perfect sensors
+    :return: the draw; with the randomisation off, the robot as designed with perfect sensors and the quickest servos
     """
     if not ranges.enabled:
-        return NOMINAL
+        return replace(NOMINAL, actuator_bandwidth=ranges.actuator_bandwidth[1])
     # Each quantity takes a fixed number of draws, so that changing one range leaves the others' draws alone.
     generator = random.Random(seed)
     return Conditions(

@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 
 import pytest
-from laboratory import NEEDS_PYBULLET
+from laboratory import NEEDS_PYBULLET, need
 from terminal import BIN, COARSE, run
 
 from sarah.simulation.engines import default_engine
@@ -118,6 +118,49 @@ def test_an_own_algorithm_in_a_race(tmp_path: Path) -> None:
 
 def test_extend_a_training(trained: Path) -> None:
     assert "extending 20 to 30 episodes" in typed("sarah-train --resume run --simulations 30", trained)
+
+
+def test_a_robot_of_other_masses(tmp_path: Path) -> None:
+    robot = "--episode.dimensions torso_mass 12 thigh_mass 6"
+    shown = typed(f"sarah-describe {robot}", tmp_path)
+    assert re.search(r"mass +36 kg\n", shown) and (tmp_path / "sarah_robot.png").exists()
+    typed(f"sarah-train --episodes 3 --out mine {robot} {' '.join(QUICK)}", tmp_path)
+    assert "dimensions torso_mass 12, thigh_mass 6" in typed("sarah-eval mine --episodes 1", tmp_path)
+
+
+def test_servos_and_sensors_of_mine_through_both_trainings(tmp_path: Path) -> None:
+    need("mujoco")
+    mine = "--engine mujoco --episode.randomisation.actuator-bandwidth 15 --episode.randomisation.delay-seconds 0.03"
+    rate = "--episode.physics.control-rate 200 --episode.time-limit 1.5"
+    typed(f"sarah-train --episodes 3 --out first {mine} {rate}", tmp_path)
+    shown = typed(
+        "sarah-train --task balance --from first --episodes 3 --out second --episode.time-limit 1.5", tmp_path
+    )
+    assert "from first: P1 to P5 and all settings of its episodes, but\n  push newtons 100 to 125" in shown
+    settings = (tmp_path / "second/config.yaml").read_text()
+    for setting in (
+        "engine: mujoco",
+        "delay_seconds: 0.03",
+        "control_rate: 200",
+        "bandwidth:\n    - 15.0\n    - 15.0\n",
+    ):
+        assert setting in settings
+    shown = typed("sarah-eval second --episodes 1", tmp_path)
+    assert "in mujoco" in shown and "randomisation.delay_seconds 0.03" in shown
+
+
+@NEEDS_PYBULLET
+def test_slope_bumps_and_a_push_in_one_picture(tmp_path: Path) -> None:
+    ground = "--episode.terrain.slope-degrees 4 --episode.terrain.roughness 0.01"
+    push = "--episode.push.newtons 100 --episode.push.at-seconds 1.2 --episode.time-limit 2"
+    typed(f"sarah-video balance --out all.gif {ground} {push} --seconds 1.2 1.3", tmp_path)
+    assert (tmp_path / "all.gif").stat().st_size > 5000
+
+
+def test_a_loop_of_ones_own_on_a_robot_is_a_page_of_the_documentation() -> None:
+    """tests/test_docs.py runs it, with the standard library alone."""
+    page = (Path(__file__).parents[2] / "docs/how_to/real_robot.md").read_text()
+    assert "PatternGenerator(" in page and ".tick(" in page and "parameters.json" in page
 
 
 def test_lengthen_and_resume_an_operation(tmp_path: Path) -> None:

@@ -1,0 +1,52 @@
+"""Robots of other sizes do what the default one does, on another scale of time."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from laboratory import need
+
+from sarah.episode.episode import simulate
+from sarah.episode.parameter_sets import PARAMETER_SETS
+from sarah.episode.result import EpisodeResult
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.robot.dimensions import SCALED, default_dimensions
+from sarah.simulation.engines import Engine
+
+PARAMETERS = PARAMETER_SETS["stepping"].spec.parameters
+ANGLES = ("abduction_limit", "flexion_limit", "ankle_up_limit", "ankle_down_limit")
+
+
+def alike(length: float, mass: float) -> dict[str, float]:
+    """Dimensions of a robot that is like the default one, by ratios of lengths and masses."""
+    return {
+        name: value * (mass if name.endswith("_mass") else length)
+        for name, value in default_dimensions().items()
+        if name not in ANGLES and name not in SCALED
+    }
+
+
+def stepping(engine: Engine, length: float = 1.0, mass: float = 1.0) -> EpisodeResult:
+    """A robot of some size without errors of the sensors, for as many steps as any other."""
+    time = math.sqrt(length)
+    config = EpisodeConfig(
+        engine=engine,
+        dimensions=alike(length, mass),
+        step_frequency=3.0 / time,
+        time_limit=1.0 + 12.0 * time,
+    )
+    config = replace(config, randomisation=replace(config.randomisation, enabled=False))
+    return simulate(EpisodeSpec(PARAMETERS, 0, config=config))
+
+
+@pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
+@pytest.mark.parametrize(("length", "mass"), [(0.3125, 4 / 30), (1.25, 2.0)])
+def test_a_robot_alike_steps_alike(length: float, mass: float, engine: Engine) -> None:
+    """The control rate stays, which is all that is not alike."""
+    need(engine)
+    default, other = stepping(engine), stepping(engine, length, mass)
+    assert other.survived and other.score == pytest.approx(default.score, abs=0.05)
+    assert other.steps_per_second * math.sqrt(length) == pytest.approx(default.steps_per_second, rel=0.12)
+    assert other.sole_clearance / length == pytest.approx(default.sole_clearance, rel=0.25)
+    assert other.shifts_by_sensors > 0.9 and other.lifts_by_sensors > 0.9
