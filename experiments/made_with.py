@@ -12,7 +12,6 @@ import hashlib
 import json
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import astuple
 from functools import lru_cache
 from typing import Any, get_args
 from xml.etree import ElementTree
@@ -37,6 +36,8 @@ PROBES = {"stepping": PAPER_STEPPING, "balance": (0.9, 0.1, 0.1, 0.1)}
 """Parameters by task; the rest of the episode is the project's own standard."""
 PROBE_STEPPING = (0.41, 0.52, 0.62, 1.17, 1.37)
 """P1 to P5 of the balance task, whatever the package ships: other parameters make no result stale."""
+WITHOUT_EFFECT = {"landing_rate": 1.0}
+"""Values of the controller's constants that are as if there were no such constant."""
 
 
 @lru_cache
@@ -47,10 +48,14 @@ def made_with() -> dict[str, Any]:
     """
     return {
         "physics": {name: short_hash(values) for name, values in _physics().items()},
-        "controller": short_hash(astuple(ControllerConstants())),
+        "controller": short_hash(_controller()),
         "robot": short_hash(canonical(describe_robot().urdf)),
         "probe": {f"{task}, {engine}": outcome(task, engine) for task in PROBES for engine in installed_engines()},
     }
+
+
+def _controller() -> tuple[float, ...]:
+    return tuple(value for name, value in vars(ControllerConstants()).items() if value != WITHOUT_EFFECT.get(name))
 
 
 def differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:

@@ -206,8 +206,8 @@ PROTECTIONS = (
     ),
     Protection(
         "robot dimensions are checked",
-        "robot/description.py",
-        "if name not in allowed:",
+        "robot/dimensions.py",
+        "if name not in known:",
         "if False:",
         "test_bad_dimensions_are_refused_by_name",
     ),
