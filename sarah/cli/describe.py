@@ -10,6 +10,7 @@ from typing import Annotated
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options, with_engine
+from sarah.cli.next_steps import passed_on, say_next
 from sarah.cli.options import named_task, run_command
 from sarah.cli.subjects import episode_of
 from sarah.episode.tasks import STEPPING
@@ -67,3 +68,5 @@ def _describe(arguments: Sequence[str]) -> None:
     draw_dimensions(robot, all_dimensions(config.dimensions), picture)
     print(picture)
     print(urdf)
+    if options.subject is None:
+        say_next(("train it", ("sarah-train", *passed_on(arguments, "", "out"))))
