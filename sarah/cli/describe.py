@@ -9,11 +9,15 @@ from typing import Annotated
 
 import tyro
 
-from sarah.cli.episode_options import EpisodeOptions, parse_episode_options, with_engine
+from sarah.cli.episode_options import EpisodeOptions, given_options, parse_episode_options, with_engine
 from sarah.cli.next_steps import passed_on, say_next
 from sarah.cli.options import named_task, run_command
 from sarah.cli.subjects import episode_of
+from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import STEPPING
+from sarah.errors import ConfigurationError
+from sarah.runs.config import TrainingConfig
+from sarah.runs.config_files import read_config
 
 COMMAND = "sarah-describe"
 NAME = "sarah_robot"
@@ -32,12 +36,14 @@ class DescribeOptions(EpisodeOptions):
 
     :param subject: whose robot to show: run folder, numbers separated by commas, or the name of shipped parameters; by
         default the default robot
+    :param config: YAML file of settings whose robot to show, as sarah-train takes it
     :param out: folder for drawing and URDF
     """
 
     subject: Annotated[
-        str | None, tyro.conf.Positional, tyro.conf.arg(metavar="RUN|NUMBERS|NAME", help_behavior_hint="(optional)")
+        str | None, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]", help_behavior_hint="(optional)")
     ] = None
+    config: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     out: Annotated[Path, tyro.conf.arg(metavar="DIR", help_behavior_hint="(default: the current folder)")] = Path(".")
 
 
@@ -47,7 +53,14 @@ def main() -> None:
 
 
 def _describe(arguments: Sequence[str]) -> None:
-    options = parse_episode_options(COMMAND, arguments, DescribeOptions())
+    given = given_options(arguments, "config")
+
+    def settings(own: EpisodeConfig, _: str | None) -> EpisodeConfig:
+        return read_config(TrainingConfig, Path(given["config"])).episode if "config" in given else own
+
+    options = parse_episode_options(COMMAND, arguments, DescribeOptions(), adapted=settings)
+    if options.config is not None and options.subject is not None:
+        raise ConfigurationError("give --config or a subject, not both")
     task = named_task(options.task)
     if options.subject is not None:
         task = episode_of(options.subject, None, task).spec.task

@@ -211,18 +211,19 @@ def with_given_engine(episode: EpisodeConfig, given: Mapping[str, str]) -> Episo
     return with_engine(episode, engine if engine in get_args(Engine) else None)  # the real parser reports others
 
 
-def for_given_robot(episode: ConfigType, arguments: Sequence[str]) -> ConfigType:
+def for_given_robot(episode: ConfigType, arguments: Sequence[str], usual: EpisodeConfig | None = None) -> ConfigType:
     """Episode settings for the robot whose dimensions a command was given: much goes with its length and its mass.
 
     :param episode: settings of episodes
     :param arguments: arguments of the command
+    :param usual: settings from which those that were set by hand differ, and stay; by default none was
     :raises DescriptionError: if there is no such dimension, or if it is not near its default
     """
     try:
         given = named_numbers(dimension_words(arguments))
     except ValueError:  # the real parser says so
         return episode
-    return episode.for_robot({**episode.dimensions, **given}) if given else episode
+    return episode.for_robot({**episode.dimensions, **given}, usual) if given else episode
 
 
 def with_given_directions(episode: EpisodeConfig, given: Mapping[str, str]) -> EpisodeConfig:

@@ -33,7 +33,7 @@ NOT_OF_VIEW = ("robustness", "terrain", "out", "forces", "episodes", "first-seed
 """Options that the viewer has not."""
 LARGEST_SEED = 2**32 - 1
 MOST_EPISODES = 1_000_000
-SMALLEST_FORCE, LARGEST_FORCE = 1.0, 10_000.0
+SMALLEST_FORCE, LARGEST_FORCE = 0.01, 10_000.0
 """Range of the forces of pushes, in N."""
 REPLACED = {
     "terrain": ("--episode.terrain.", "--episode.push.", "--episode.time-limit"),

@@ -141,7 +141,7 @@ def _train(arguments: Sequence[str]) -> None:
         pushed = f", {pushed_words(config.episode)}" if isinstance(config.episode, PushedConfig) else ""
         what = f"{config.algo} on {config.task.name}{pushed}"
         print(f"training {what}: {config.episodes} episodes into {run.path}", flush=True)
-        if config.task.reward is equation_2 and (hint := frequency_hint(config.episode)):
+        if options.from_run is None and config.task.reward is equation_2 and (hint := frequency_hint(config.episode)):
             print(hint, file=sys.stderr)
         if options.from_run is not None and isinstance(config.episode, BalanceConfig):
             say_differences(options.from_run, config.episode)
@@ -223,7 +223,7 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
     episode = with_given_engine(episode, given)
     check_episode_options(arguments, episode)
     if first is None:  # what a folder has recorded stays as it is
-        episode = for_given_robot(episode, arguments)
+        episode = for_given_robot(episode, arguments, None if file is None else training.task.episode)
     if file is None and training.task is BALANCE:
         episode = with_given_directions(episode, given)
     return TrainOptions(dataclasses.replace(training, episode=episode))

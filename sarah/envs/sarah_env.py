@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
@@ -59,6 +60,8 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         self.observation_space = gymnasium.spaces.Box(-OBSERVATION_BOUND, OBSERVATION_BOUND, (16,), np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(self.task.parameters),), np.float32)
         config = self.task.episode if config is None else self.task.checked_config(config, True)
+        if isinstance(dimensions := settings.get("dimensions"), Mapping):
+            config = config.for_robot({**config.dimensions, **dimensions}, self.task.episode)
         self.config = from_mapping(config, settings)
         self.render_mode = checked_render_mode(render_mode, self.metadata["render_modes"])
         self._episode: Episode | None = None

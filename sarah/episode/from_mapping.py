@@ -43,6 +43,23 @@ def from_mapping(default: ConfigType, content: Any, key: str = "") -> ConfigType
     return dataclasses.replace(default, **values)  # type: ignore[type-var]  # a dataclass
 
 
+def changed_alone(config: ConfigType, content: Any, key: str = "") -> ConfigType:
+    """Change some settings that were recorded; another dimension changes the robot, and no other setting.
+
+    :param config: settings of episodes
+    :param content: new values by name
+    :param key: prefix of the names in messages
+    :raises ConfigurationError: naming key and value, if a value is not allowed
+    """
+    given = content.get("dimensions") if isinstance(content, Mapping) else None
+    if not isinstance(given, Mapping):
+        return from_mapping(config, content, key)
+    rest = {name: value for name, value in content.items() if name != "dimensions"}
+    changed: Any = from_mapping(config, rest, key)
+    dimensions = _converted(Mapping[str, float], given, f"{key}dimensions")
+    return dataclasses.replace(changed, dimensions={**changed.dimensions, **dimensions})
+
+
 def convert_fields(config: Any, key: str = "") -> None:
     """Convert the fields of settings to their types, while they are made; YAML and keywords come converted already.
 

@@ -16,8 +16,8 @@ from sarah.robot.reading import ACTUATED_JOINTS, Vector
 CHATTER_BAND = (20.0, 50.0)
 """Frequencies between which motion of the default robot counts as vibration, in Hz: above the gait's harmonics, and the
 same at all control rates from 100 Hz on."""
-HIGHEST_SLOWEST = 40.0
-"""Highest frequency at which the band of a small robot begins, in Hz."""
+HIGHEST_SLOWEST = 0.8
+"""Highest share of the largest frequency that is recorded at which the band of a small robot begins."""
 SEGMENT_SECONDS = 0.5
 """Length of the segments that spectra are averaged over, in s."""
 IS_HIP = np.array([not name.endswith("leg_length") for name in ACTUATED_JOINTS])
@@ -34,7 +34,7 @@ class MotionRecord:
     def __init__(self, control_rate: int, time_scale: float = 1.0) -> None:
         self._control_rate = control_rate
         slowest, quickest = CHATTER_BAND
-        self._band = (min(slowest / time_scale, HIGHEST_SLOWEST), quickest)
+        self._band = (min(slowest / time_scale, HIGHEST_SLOWEST * min(quickest, control_rate / 2)), quickest)
         self._accelerations: list[Vector] = []
         self._speeds: list[Sequence[float]] = []
         self._efforts: list[Sequence[float]] = []

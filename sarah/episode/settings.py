@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any, TypeVar, get_args
 
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
@@ -43,6 +43,7 @@ OF_DEFAULT_ROBOT: dict[str, Any] = {
 }
 """Defaults of the settings that go with the length and the mass of the robot."""
 ConfigType = TypeVar("ConfigType", bound="EpisodeConfig")
+SettingsType = TypeVar("SettingsType")
 
 
 @dataclass(frozen=True)
@@ -121,14 +122,21 @@ class EpisodeConfig:
         """Size of the robot as ratios to that of the default robot."""
         return scale_of(self.dimensions)
 
-    def for_robot(self: ConfigType, dimensions: Mapping[str, float]) -> ConfigType:
-        """Settings for a robot of other dimensions: what goes with length and mass goes with the ratio of both robots.
+    def for_robot(self: ConfigType, dimensions: Mapping[str, float], usual: EpisodeConfig | None = None) -> ConfigType:
+        """Settings for a robot of other dimensions: what goes with length and mass follows, by the ratio of both.
 
         :param dimensions: dimensions of the robot that differ from their defaults
+        :param usual: settings from which those that were set by hand differ: they stay; by default all settings follow
         """
-        dimensions = check_dimensions(dimensions)
-        ratio = scale_of(dimensions).over(self.scale)
-        return replace(ratio.scaled(self), dimensions=dimensions, physics=self.physics.at_scale(ratio))
+        dimensions, usual = check_dimensions(dimensions), usual or self
+        before, after = (usual._at(scale_of(robot), self) for robot in (self.dimensions, dimensions))
+        return replace(_following(self, before, after), dimensions=dimensions)
+
+    def _at(self, scale: Scale, other: EpisodeConfig) -> EpisodeConfig:
+        """These settings for a robot of a size, in the engine and at the control rate of others."""
+        physics = physics_for(other.engine, self.physics, self.scale).at_control_rate(other.physics.control_rate)
+        ratio = scale.over(self.scale)
+        return replace(ratio.scaled(self), engine=other.engine, physics=physics.at_scale(ratio))
 
     def check_for_training(self) -> None:
         """Refuse settings with which there is nothing to learn.
@@ -146,3 +154,16 @@ class EpisodeConfig:
             robot = self.for_robot({**self.dimensions, **given})
         dependent = {name: value for name, value in vars(robot).items() if value != getattr(self, name)}
         return {**dependent, "physics": physics_for(content.get("engine", self.engine), robot.physics, robot.scale)}
+
+
+def _following(config: SettingsType, before: Any, after: Any) -> SettingsType:
+    """Settings that take the values of others wherever they had those from before."""
+    values = {}
+    for item in fields(config):  # type: ignore[arg-type]  # a dataclass
+        if hasattr(before, item.name):
+            value, was, becomes = (getattr(settings, item.name) for settings in (config, before, after))
+            if is_dataclass(value) and type(value) is type(was):
+                values[item.name] = _following(value, was, becomes)
+            else:
+                values[item.name] = becomes if value == was else value
+    return replace(config, **values)  # type: ignore[type-var]  # a dataclass

@@ -11,7 +11,7 @@ from typing import Any
 from sarah.control.hip_law import BalanceParameters
 from sarah.control.parameters import BALANCE_PARAMETERS, STEPPING_PARAMETERS
 from sarah.control.pattern_generator import SteppingParameters
-from sarah.episode.from_mapping import convert_fields, from_mapping
+from sarah.episode.from_mapping import changed_alone, convert_fields
 from sarah.episode.push import Push, PushedConfig
 from sarah.episode.shipped import shipped_parameters
 from sarah.episode.tasks.task import checked_values
@@ -151,7 +151,7 @@ class OperationConfig:
         :param changes: number of changes that have been made
         """
         merged: PushedConfig = functools.reduce(
-            from_mapping, [change.settings for change in self.changes[:changes]], self.robot
+            changed_alone, [change.settings for change in self.changes[:changes]], self.robot
         )
         return merged
 

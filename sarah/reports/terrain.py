@@ -20,7 +20,7 @@ from sarah.episode.tasks import Task
 from sarah.episode.workers import Workers
 from sarah.reports.robustness import push_of_table, rounded, wilson_interval
 from sarah.robot.scale import Scale
-from sarah.simulation.terrain import Terrain
+from sarah.simulation.terrain import LARGEST_ROUGHNESS, Terrain
 
 SLOPES = (2.0, 4.0, 6.0, 8.0)
 """Slopes, in degrees."""
@@ -104,7 +104,10 @@ def situations(scale: Scale) -> Iterator[Situation]:
     for force in (0.0, rounded(PUSH_NEWTONS * scale.factor("N"))):
         yield Situation("slope", 0.0, "", force)
         yield from (Situation("slope", slope, uphill, force) for uphill, slope in product(UPHILL, SLOPES))
-        yield from (Situation("roughness", rounded(scale.length * height), "", force) for height in ROUGHNESSES)
+        yield from (
+            Situation("roughness", min(LARGEST_ROUGHNESS, rounded(scale.length * height)), "", force)
+            for height in ROUGHNESSES
+        )
         yield from (Situation("friction", friction, "", force) for friction in FRICTIONS)
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
-from sarah.episode.from_mapping import from_mapping
+from sarah.episode.from_mapping import changed_alone, from_mapping
 from sarah.episode.tasks import Task
 from sarah.errors import ConfigurationError, SarahError
 from sarah.files import read_text, replace_text
@@ -49,7 +49,7 @@ def read_config(config_type: type[ConfigType], path: Path, task: Task[Any] | Non
 
 
 def read_section(default: ConfigType, path: Path, name: str) -> ConfigType:
-    """Change settings by one section of a YAML file, which :func:`read_config` has read without a mistake.
+    """Change recorded settings by one section of a YAML file, which :func:`read_config` has read without a mistake.
 
     :param default: settings whose values stay where the section names no others, a dataclass
     :param path: path of the file
@@ -58,7 +58,7 @@ def read_section(default: ConfigType, path: Path, name: str) -> ConfigType:
     """
     section = _read(path).get(name, {})
     with _naming(path):
-        return from_mapping(default, section, f"{name}.")
+        return changed_alone(default, section, f"{name}.")
 
 
 def _read(path: Path) -> Any:

@@ -29,7 +29,7 @@ def changed_settings(task: Task[Any], config: EpisodeConfig) -> Iterator[str]:
     of_size: EpisodeConfig = task.episode.for_robot(config.dimensions)
     usual = replace(of_size, engine=config.engine, dimensions=task.episode.dimensions)
     if isinstance(config, PushedConfig) and not isinstance(usual, PushedConfig):
-        usual = PushedConfig(**vars(usual), push=NOBODY)
+        usual = PushedConfig(**vars(usual), push=config.scale.scaled(NOBODY))
     before = settings_by_key(usual)
     for name, value in settings_by_key(config).items():
         if name not in SAID_BY_THEMSELVES and value != before.get(name):
@@ -44,8 +44,16 @@ def differences(config: EpisodeConfig, subject: EpisodeConfig) -> Iterator[str]:
     """
     here, there = _by_name(config, subject), _by_name(subject, config)
     for name in here | there:
-        if name != "stepping" and here.get(name) != there.get(name):
-            yield f"{name} {_text(here.get(name))} instead of {_text(there.get(name))}"
+        value, other = here.get(name), there.get(name)
+        if name != "stepping" and value != other:
+            if isinstance(value, Mapping) and isinstance(other, Mapping):  # dimensions
+                value, other = _only_here(value, other), _only_here(other, value)
+            yield f"{name} {_text(value)} instead of {_text(other)}"
+
+
+def _only_here(values: Mapping[str, Any], others: Mapping[str, Any]) -> dict[str, Any]:
+    """Values that others lack, or have otherwise."""
+    return {name: value for name, value in values.items() if others.get(name) != value}
 
 
 def _by_name(config: EpisodeConfig, other: EpisodeConfig) -> dict[str, Any]:

@@ -15,6 +15,7 @@ import csv
 import io
 import json
 from collections.abc import Iterable, Mapping
+from dataclasses import asdict
 from pathlib import Path
 
 from sarah.errors import RunFolderError
@@ -175,7 +176,9 @@ class SessionFolder:
 
         :param parameters: P1 to P5 and V1 to V4
         """
-        content = {"parameters": dict(zip(NAMES, parameters, strict=True))}
+        config = self.spec().config
+        controller = config.robot_after(len(config.changes)).controller
+        content = {"parameters": dict(zip(NAMES, parameters, strict=True)), "controller": asdict(controller)}
         replace_text(self._parameters_path, json.dumps(content, indent=2) + "\n")
 
     def parameters(self) -> Parameters:

@@ -12,7 +12,10 @@ from sarah.robot.scale import DIGITS, Scale
 SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE = 50, 1000
 FASTEST_PHYSICS_RATE = 20_000
 MOST_SOLVER_ITERATIONS = 10_000
-LARGEST_ADDED_INERTIA = 1.0
+LARGEST_ADDED_INERTIA = 100.0
+LITTLE_PAIR = 0.05
+"""Share of a pair of physics steps in a control tick that a robot of another size does without. Steps come in pairs, so
+that the control rate can be doubled."""
 
 PhysicsType = TypeVar("PhysicsType", bound="Physics")
 
@@ -41,7 +44,8 @@ class Physics:
             object.__setattr__(self, name, value)
         if self.rate % self.control_rate:
             raise ConfigurationError(
-                f"physics.rate must be a multiple of the control rate, {self.control_rate} Hz, not {self.rate!r}"
+                f"physics.rate must be a multiple of the control rate, {self.control_rate} Hz, such as "
+                f"{-(-self.rate // self.control_rate) * self.control_rate}, not {self.rate!r}"
             )
 
     def at_control_rate(self: PhysicsType, control_rate: int) -> PhysicsType:
@@ -58,8 +62,10 @@ class Physics:
 
         :param scale: size of the robot as ratios to that of the robot which this physics is for
         """
-        ticks = round(self.rate * scale.factor("per second") / self.control_rate, DIGITS)
-        return replace(scale.scaled(self), rate=self.control_rate * max(1, math.ceil(ticks)))
+        if scale.length == 1.0:
+            return scale.scaled(self)
+        pairs = round(self.rate * scale.factor("per second") / (2 * self.control_rate), DIGITS)
+        return replace(scale.scaled(self), rate=2 * self.control_rate * max(1, math.ceil(pairs - LITTLE_PAIR)))
 
     @property
     def control_dt(self) -> float:

@@ -26,8 +26,9 @@ CONTACT_SECONDS = 0.0015
 physics step instead; with the same share at every rate, coarse steps would make the floor soft. With 1 ms a standing
 robot creeps at 1 kHz."""
 CONTACT_MARGIN = 0.0003
-"""Distance at which the solver begins to consider a contact of the default robot, in m. With 2 mm, coarse steps damp
-the rocking more. PyBullet's 0.02 also costs time for feet in the air."""
+"""Distance at which the solver begins to consider a contact, in m, for a shape of 0.1 m or so: Bullet takes it in
+proportion to the shape's size. With 2 mm, coarse steps damp the rocking more. PyBullet's 0.02 also costs time for feet
+in the air."""
 
 
 class PyBulletSimulator(HoldsWorld):
@@ -58,7 +59,6 @@ class PyBulletSimulator(HoldsWorld):
         self._dt = physics.control_dt
         self._ground = conditions.ground
         self._substeps = physics.rate // physics.control_rate
-        self._contact_margin = CONTACT_MARGIN * robot.scale.length
         self._world = PyBulletWorld()
         self.client = self._world.client
         try:
@@ -236,7 +236,7 @@ class PyBulletSimulator(HoldsWorld):
         """Simulate one control tick."""
         self._velocity_before = self._torso.velocity
         # Any code may have changed it since the last tick, because Bullet has one for all worlds of a process.
-        pybullet.setPhysicsEngineParameter(contactBreakingThreshold=self._contact_margin, physicsClientId=self.client)
+        pybullet.setPhysicsEngineParameter(contactBreakingThreshold=CONTACT_MARGIN, physicsClientId=self.client)
         pybullet.stepSimulation(physicsClientId=self.client)
         self.time += self._dt
         self.look()

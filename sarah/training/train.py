@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 from tqdm import tqdm
@@ -118,6 +118,7 @@ def _write_parameters(learned: Learned, config: TrainingConfig, run: RunFolder) 
             "diverged": learned.diverged,
             "parameters": dict(zip(config.task.parameter_names, learned.parameters, strict=True)),
             "stepping": getattr(config.episode, "stepping", None),
+            "controller": asdict(config.episode.controller),
             "evaluation": evaluation.summary(),
             "baseline": baseline and baseline.summary(),
             "chatters": baseline and evaluation.chatters(baseline),

@@ -8,6 +8,7 @@ from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.episode.push import Push, PushedConfig
 from sarah.episode.reward import frequency_hint, natural_step_frequency
 from sarah.episode.settings import EpisodeConfig
+from sarah.operation.settings import Change, OperationConfig
 from sarah.robot.description import describe_robot
 from sarah.robot.dimensions import SCALED, default_dimensions, scale_of
 from sarah.robot.scale import Scale
@@ -72,12 +73,26 @@ def test_what_is_given_stays() -> None:
     assert dataclasses.replace(config, payload=1.0).controller == own
 
 
-def test_settings_for_another_robot_go_with_the_ratio_of_both() -> None:
+def test_settings_go_with_the_ratio_of_both_robots() -> None:
     settings = PushedConfig(payload=3.0, controller=dataclasses.replace(STANDARD_CONSTANTS, pad_threshold=60.0))
     small = settings.for_robot(alike(0.25, 0.1))
     assert (small.payload, small.controller.pad_threshold) == pytest.approx((0.3, 6.0))
     assert small.for_robot(alike(1.0, 1.0)).controller.pad_threshold == pytest.approx(60.0)
-    assert settings.for_robot({"torso_width": 0.3}).controller is settings.controller
+    assert settings.for_robot({"torso_width": 0.3}).controller == settings.controller
+
+
+def test_what_was_set_by_hand_stays_for_another_robot() -> None:
+    """It differs from the usual settings, and no chain of robots changes the rest."""
+    usual = PushedConfig()
+    by_hand = dataclasses.replace(usual, controller=dataclasses.replace(STANDARD_CONSTANTS, pad_threshold=5.0))
+    small = by_hand.for_robot(alike(0.25, 0.1), usual)
+    assert small.controller.pad_threshold == 5.0 and small.controller.fall_rate == pytest.approx(8.0)
+    assert by_hand.for_robot({"thigh_length": 0.3}, usual).for_robot({}, usual) == by_hand
+
+
+def test_a_dimension_that_changes_in_operation_leaves_the_controller() -> None:
+    config = OperationConfig(changes=(Change(0.1, {"dimensions": {"torso_mass": 16.0}}),))
+    assert config.robot_after(1) == dataclasses.replace(config.robot, dimensions={"torso_mass": 16.0})
 
 
 def test_another_engine_gets_the_inertia_of_the_robots_size() -> None:

@@ -46,9 +46,9 @@ def test_episodes_take_settings_as_their_engine_can() -> None:
     assert EpisodeConfig(engine="pybullet", physics=Physics()).physics == PHYSICS["standard"]
 
 
-@pytest.mark.parametrize("inertia", [-0.001, 1.1, float("nan")])
+@pytest.mark.parametrize("inertia", [-0.001, 101.0, float("nan")])
 def test_an_inertia_that_no_plate_has_is_refused(inertia: float) -> None:
-    with pytest.raises(ConfigurationError, match=r"physics.added_plate_inertia must be between 0 and 1 kg m\^2"):
+    with pytest.raises(ConfigurationError, match=r"physics.added_plate_inertia must be between 0 and 100 kg m\^2"):
         PyBulletPhysics(added_plate_inertia=inertia)
 
 
