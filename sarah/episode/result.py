@@ -62,7 +62,7 @@ class EpisodeResult:
     score: float = _metric(
         "score",
         "",
-        "return over its ceiling; 1 is standing height, start position and three steps per second all along",
+        "return over its ceiling; 1 is standing height, start position and the rewarded step frequency all along",
         *("median", "mean", "std", "min"),
         group="episode",
         shown=(1.0, 3, ""),

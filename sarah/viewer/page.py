@@ -95,7 +95,10 @@ class Page:
         with gui.add_folder("Hips"):
             self._balance = self._add_sliders(BALANCE)
         with gui.add_folder("Push"):
-            self._newtons = gui.add_slider("Force (N)", min=0.0, max=LARGEST_PUSH, step=5.0, initial_value=75.0)
+            mass = self._chosen.spec.config.scale.mass
+            self._newtons = gui.add_slider(
+                "Force (N)", min=0.0, max=LARGEST_PUSH * mass, step=5.0 * mass, initial_value=75.0 * mass
+            )
             self._degrees = gui.add_slider(
                 "Direction (°)", min=0.0, max=360.0, step=5.0, initial_value=0.0, hint="0 right, 90 forward, 180 left"
             )
@@ -211,7 +214,7 @@ class Page:
                 _set(slider, value)
         _set(self._seed, scenario.seed)
         if scenario.push.newtons > 0.0:
-            _set_up_to(self._newtons, scenario.push.newtons, LARGEST_PUSH)
+            _set_up_to(self._newtons, scenario.push.newtons, LARGEST_PUSH * scenario.config.scale.mass)
             _set(self._degrees, scenario.push.degrees)
         conditions = conditions_of(scenario.spec().config, scenario.seed)
         _set_up_to(self._slope, scenario.terrain.slope_degrees[0], LARGEST_SLOPE)

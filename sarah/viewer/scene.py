@@ -137,7 +137,9 @@ class RobotScene:
             self._torso.position, self._torso.wxyz = trace.position[tick], np.array([w, x, y, z])
             self._robot.update_cfg(np.concatenate([trace.joints[tick], trace.ankles[tick]])[self._order])
             for bar, load in zip(self._loads, trace.pressures[tick], strict=True):
-                bar.scale = (1.0, 1.0, max(METRES_PER_NEWTON_OF_LOAD * float(load), 0.001))
+                scale = self.robot.scale
+                height = METRES_PER_NEWTON_OF_LOAD * scale.length / scale.mass * float(load)
+                bar.scale = (1.0, 1.0, max(height, 0.001))
             self._show_stance(trace, tick)
             self._show_push(trace, tick)
 

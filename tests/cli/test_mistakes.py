@@ -67,7 +67,7 @@ MISTAKES = {
         (f"{GIVEN} --episode.terrain.slope-degrees 5 2", "terrain.slope_degrees must be between 0 and 45 degrees"),
         (f"{GIVEN} --episode.terrain.slope 5", "did you mean --episode.terrain.slope-degrees?"),
         (f"{PUSHED} --episode.push.sagittal-share 2", "push.sagittal_share must be between 0 and 1, not 2.0"),
-        (f"{GIVEN} --forces 0 50", "forces must be between 1 and 10000 N, not 0.0"),
+        (f"{GIVEN} --forces 0 50", "forces must be between 0.01 and 10000 N, not 0.0"),
         (
             f"{GIVEN} --robustness --out x",
             "--robustness needs parameters of task 'balance', and these are of 'stepping'",

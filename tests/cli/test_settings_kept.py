@@ -144,7 +144,7 @@ def ran(
     level = [terrain.Situation("slope", 0.0, "", newtons) for newtons in (0.0, 75.0)]
     monkeypatch.setattr(terrain, "situations", lambda scale: level)
     for module, name in DRAWN:  # which would take most of the time
-        monkeypatch.setattr(module, name, lambda *arguments: found.drawn.extend(arguments) or [])
+        monkeypatch.setattr(module, name, lambda *arguments: found.drawn.extend(arguments) or [Path("drawn.png")])
 
     def run(line: str) -> Ran:
         command, *arguments = shlex.split(line)
@@ -170,19 +170,22 @@ SHORT = "--minutes 0.1 --learner none"
     ("line", "others"),
     [
         *((f"sarah-eval {subject} --episodes 1", set()) for subject in ("first", "second", "session")),
-        *((f"sarah-video {subject} out.gif --seconds 1 1.05", set()) for subject in ("first", "second", "session")),
-        *((f"sarah-view {subject} --export out.html", set()) for subject in ("first", "second", "session")),
-        ("sarah-view first --export out.html --which best", set()),
+        *(
+            (f"sarah-video {subject} --out out.gif --seconds 1 1.05", set())
+            for subject in ("first", "second", "session")
+        ),
+        *((f"sarah-view {subject} --out out.html", set()) for subject in ("first", "second", "session")),
+        ("sarah-view first --out out.html --which best", set()),
         *((f"sarah-report {run} --out out.html --episodes 1 --seconds 1 1.05", set()) for run in ("first", "second")),
         *((f"sarah-figures {run} --out out", set()) for run in ("first", "second")),
         *(
             (f"sarah-transfer {subject} --out out --episodes 1", {"engine", "physics.added_plate_inertia"})
             for subject in ("first", "second", "session")
         ),
-        ("sarah-eval second --robustness out --forces 25 --episodes 1", {*PUSH, "time_limit"}),
+        ("sarah-eval second --robustness --out out --forces 25 --episodes 1", {*PUSH, "time_limit"}),
         *(
             (
-                f"sarah-eval {subject} --terrain out --episodes 1",
+                f"sarah-eval {subject} --terrain --out out --episodes 1",
                 {*PUSH, *GROUND, "terrain.friction_right", "time_limit"},
             )
             for subject in ("first", "second")

@@ -96,11 +96,14 @@ def test_what_a_task_and_an_engine_have_of_their_own_is_read(tmp_path: Path) -> 
         ("episode: {time_limit: 1}", "time_limit must be above the 1 s of standing, not 1.0"),
         ("episode: {engine: mujco}", "engine 'mujco', did you mean 'mujoco'?"),
         ("episode: {reward_form: printd}", "unknown episode.reward_form 'printd', did you mean 'printed'"),
-        ("episode: {physics: {rate: 333}}", "physics.rate must be a multiple of the control rate, 100 Hz, not 333"),
+        (
+            "episode: {physics: {rate: 333}}",
+            "physics.rate must be a multiple of the control rate, 100 Hz, such as 400, not 333",
+        ),
         ("episode: {physics: {solver_iterations: 0}}", "physics.solver_iterations must be between 1 and 10000, not 0"),
         (
             "episode: {engine: pybullet, physics: {added_plate_inertia: -1}}",
-            "added_plate_inertia must be between 0 and 1 kg m^2, not -1",
+            "added_plate_inertia must be between 0 and 100 kg m^2, not -1",
         ),
         (
             "episode: {randomisation: {friction: [0.9]}}",

@@ -43,8 +43,8 @@ def test_nothing_is_told_of_what_is_as_usual(trace: Trace) -> None:
     [
         ({"payload": 5.0}, ["payload 5"]),
         (
-            {"dimensions": {"hip_offset": 0.2, "sole_half_width": 0.06}},
-            ["dimensions hip_offset 0.2, sole_half_width 0.06"],
+            {"dimensions": {"torso_width": 0.3, "sole_half_width": 0.06}},
+            ["dimensions torso_width 0.3, sole_half_width 0.06"],
         ),
         ({"stepping": (0.4, 1.3, 0.1, 1.0, 1.0)}, ["P1 to P5 0.40, 1.30, 0.10, 1.00, 1.00"]),
         ({"terrain": Terrain(friction_left=0.2)}, ["terrain.friction_left 0.2"]),

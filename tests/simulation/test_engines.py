@@ -122,7 +122,7 @@ def test_physics_that_diverges_ends_the_episode_and_writes_no_file(
     [
         ("train", ["--engine", "mujoco"]),
         ("eval", ["0.4,1.3,0.1,1,1", "--engine", "mujoco"]),
-        ("compare", ["race", "--engine", "mujoco"]),
+        ("compare", ["--out", "race", "--engine", "mujoco"]),
         pytest.param("transfer", ["run"], marks=NEEDS_PYBULLET),
     ],
 )
@@ -176,7 +176,7 @@ def test_without_pybullet_mujoco_is_the_default_and_a_training_says_so(mujoco_en
     [
         ("train", ["--engine", "pybullet"], "engine 'pybullet' needs"),
         ("train", ["--pictures", "1"], "pictures of the robot need"),
-        ("video", ["0.4,1.3,0.1,1,1", "a.gif"], "pictures of the robot need"),
+        ("video", ["0.4,1.3,0.1,1,1", "--out", "a.gif"], "pictures of the robot need"),
         ("transfer", ["run"], "engine 'pybullet' needs"),
     ],
 )
