@@ -4,27 +4,16 @@ import math
 from dataclasses import replace
 
 import pytest
-from laboratory import need
+from laboratory import alike, need
 
 from sarah.episode.episode import simulate
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.result import EpisodeResult
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.robot.dimensions import SCALED, default_dimensions
 from sarah.simulation.engines import Engine
 
 PARAMETERS = PARAMETER_SETS["stepping"].spec.parameters
-ANGLES = ("abduction_limit", "flexion_limit", "ankle_up_limit", "ankle_down_limit")
-
-
-def alike(length: float, mass: float) -> dict[str, float]:
-    """Dimensions of a robot that is like the default one, by ratios of lengths and masses."""
-    return {
-        name: value * (mass if name.endswith("_mass") else length)
-        for name, value in default_dimensions().items()
-        if name not in ANGLES and name not in SCALED
-    }
 
 
 def stepping(engine: Engine, length: float = 1.0, mass: float = 1.0) -> EpisodeResult:

@@ -3,6 +3,7 @@
 import dataclasses
 
 import pytest
+from laboratory import alike
 
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.episode.push import Push, PushedConfig
@@ -10,19 +11,8 @@ from sarah.episode.reward import frequency_hint, natural_step_frequency
 from sarah.episode.settings import EpisodeConfig
 from sarah.operation.settings import Change, OperationConfig
 from sarah.robot.description import describe_robot
-from sarah.robot.dimensions import SCALED, default_dimensions, scale_of
+from sarah.robot.dimensions import scale_of
 from sarah.robot.scale import Scale
-
-ANGLES = ("abduction_limit", "flexion_limit", "ankle_up_limit", "ankle_down_limit")
-
-
-def alike(length: float, mass: float) -> dict[str, float]:
-    """Dimensions of a robot that is like the default one, by ratios of lengths and masses."""
-    return {
-        name: value * (mass if name.endswith("_mass") else length)
-        for name, value in default_dimensions().items()
-        if name not in ANGLES and name not in SCALED
-    }
 
 
 def test_scale_is_that_of_height_mass_and_width() -> None:
