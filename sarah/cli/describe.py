@@ -9,7 +9,13 @@ from typing import Annotated
 
 import tyro
 
-from sarah.cli.episode_options import EpisodeOptions, given_options, parse_episode_options, with_engine
+from sarah.cli.episode_options import (
+    EpisodeOptions,
+    for_given_robot,
+    given_options,
+    parse_episode_options,
+    with_engine,
+)
 from sarah.cli.next_steps import passed_on, say_next
 from sarah.cli.options import named_task, run_command
 from sarah.cli.subjects import episode_of
@@ -56,7 +62,10 @@ def _describe(arguments: Sequence[str]) -> None:
     given = given_options(arguments, "config")
 
     def settings(own: EpisodeConfig, _: str | None) -> EpisodeConfig:
-        return read_config(TrainingConfig, Path(given["config"])).episode if "config" in given else own
+        if "config" not in given:
+            return own
+        of_file = read_config(TrainingConfig, Path(given["config"]))
+        return for_given_robot(of_file.episode, arguments, of_file.task.episode)
 
     options = parse_episode_options(COMMAND, arguments, DescribeOptions(), adapted=settings)
     if options.config is not None and options.subject is not None:

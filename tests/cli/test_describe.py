@@ -1,5 +1,6 @@
 """``sarah-describe``, as a user runs it."""
 
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -94,3 +95,12 @@ def test_it_needs_neither_an_engine_nor_a_learner(tmp_path: Path) -> None:
 )
 def test_a_mistake_is_one_line_and_writes_nothing(answer: Callable[[str], str], arguments: str, message: str) -> None:
     assert message in answer(f"sarah-describe {arguments}")
+
+
+def test_a_file_and_an_option_describe_one_robot(tmp_path: Path) -> None:
+    """What the file sets by hand stays, whatever the option changes."""
+    (tmp_path / "mine.yaml").write_text("episode: {dimensions: {thigh_length: 0.2}, controller: {pad_threshold: 5}}\n")
+    process = run("sarah-describe", "--config", "mine.yaml", "--episode.dimensions", "torso_mass", "23", cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    assert re.search(r"thigh_length +0.2 .*\n.*torso_mass +23 |torso_mass +23 .*\n.*thigh_length +0.2 ", process.stdout)
+    assert re.search(r"controller.pad-threshold +5 +30 +the rule gives 45\n", process.stdout)
