@@ -33,6 +33,7 @@ from experiments.lateral_limit import LateralLimit
 from experiments.naf_preset import NafPreset
 from experiments.observed_reward import ObservedReward
 from experiments.operation import Operation
+from experiments.other_sizes import OtherSizes, Robot
 from experiments.physics import FinenessAnywhere, FinenessInConditions
 from experiments.race import Race
 from experiments.rank_replay import RankReplay
@@ -92,6 +93,18 @@ TABLE: dict[str, Maker] = {
         "Does the robot learn to step, and where do P1 to P5 settle?",
         FirstTraining(),
         {**TRAINED, "seeds": 1, "episodes": 2, "reference_episodes": 1},
+    ),
+    "other_sizes": Maker(
+        "Do robots of other sizes learn by the same commands?",
+        OtherSizes(),
+        {
+            **SHORT,
+            "robots": (Robot(4.0, 0.2, 5.4),),
+            "engines": ("mujoco",),
+            "seeds": 1,
+            "budgets": (5, 5),
+            "episodes": 1,
+        },
     ),
     "second_training": Maker(
         "Does the robot learn to come back after a push, and where do V1 to V4 settle?",

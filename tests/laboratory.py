@@ -15,7 +15,6 @@ import pytest
 
 from sarah.episode.result import EpisodeResult
 from sarah.robot.description import PLATES
-from sarah.robot.dimensions import SCALED, default_dimensions
 from sarah.robot.reading import SensorReading, Side, Vector
 from sarah.simulation.engines import is_installed
 from sarah.simulation.physics import PHYSICS, Physics
@@ -48,8 +47,6 @@ WAYS: dict[str, Callable[[Any], Any]] = {
     "pickle": lambda value: pickle.loads(pickle.dumps(value)),
 }
 """Ways to copy an object."""
-ANGLES = ("abduction_limit", "flexion_limit", "ankle_up_limit", "ankle_down_limit")
-"""Dimensions that no robot of another size has otherwise."""
 NEEDS_PYBULLET = pytest.mark.skipif(not is_installed("pybullet"), reason="needs pybullet")
 
 
@@ -231,15 +228,6 @@ def laboratory(engine: str) -> Laboratory:
     """An engine's laboratory; a test of an engine that is not installed is skipped."""
     need(engine)
     return BulletLaboratory() if engine == "pybullet" else MujocoLaboratory()
-
-
-def alike(length: float, mass: float) -> dict[str, float]:
-    """Dimensions of a robot that is like the default one, by ratios of lengths and masses."""
-    return {
-        name: value * (mass if name.endswith("_mass") else length)
-        for name, value in default_dimensions().items()
-        if name not in ANGLES and name not in SCALED
-    }
 
 
 def need(engine: str) -> None:

@@ -112,3 +112,17 @@ def all_dimensions(dimensions: Mapping[str, float]) -> dict[str, float]:
     scale, known = scale_of(dimensions), known_dimensions()
     scaled = {name: known[name].default * scale.factor(known[name].unit) for name in SCALED}
     return {**default_dimensions(), **scaled, **dimensions}
+
+
+def dimensions_alike(length: float, mass: float) -> dict[str, float]:
+    """Dimensions of a robot that is like the default one; what follows from its size is left out.
+
+    :param length: ratio of all lengths to those of the default robot
+    :param mass: ratio of all masses to those of the default robot
+    """
+    scale = Scale(length, mass, length)
+    return {
+        name: dimension.default * scale.factor(dimension.unit)
+        for name, dimension in known_dimensions().items()
+        if name not in SCALED and dimension.unit != "rad"
+    }

@@ -4,13 +4,14 @@ import math
 from dataclasses import replace
 
 import pytest
-from laboratory import alike, need
+from laboratory import need
 
 from sarah.episode.episode import simulate
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.result import EpisodeResult
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
+from sarah.robot.dimensions import dimensions_alike
 from sarah.simulation.engines import Engine
 
 PARAMETERS = PARAMETER_SETS["stepping"].spec.parameters
@@ -21,7 +22,7 @@ def stepping(engine: Engine, length: float = 1.0, mass: float = 1.0) -> EpisodeR
     time = math.sqrt(length)
     config = EpisodeConfig(
         engine=engine,
-        dimensions=alike(length, mass),
+        dimensions=dimensions_alike(length, mass),
         step_frequency=3.0 / time,
         time_limit=1.0 + 12.0 * time,
     )

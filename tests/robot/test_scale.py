@@ -3,7 +3,6 @@
 import dataclasses
 
 import pytest
-from laboratory import alike
 
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.episode.push import Push, PushedConfig
@@ -11,13 +10,13 @@ from sarah.episode.reward import frequency_hint, natural_step_frequency
 from sarah.episode.settings import EpisodeConfig
 from sarah.operation.settings import Change, OperationConfig
 from sarah.robot.description import describe_robot
-from sarah.robot.dimensions import scale_of
+from sarah.robot.dimensions import dimensions_alike, scale_of
 from sarah.robot.scale import Scale
 
 
 def test_scale_is_that_of_height_mass_and_width() -> None:
     assert scale_of({}) == Scale() == describe_robot().scale
-    assert scale_of(alike(0.25, 0.1)) == Scale(0.25, 0.1, 0.25)
+    assert scale_of(dimensions_alike(0.25, 0.1)) == Scale(0.25, 0.1, 0.25)
     assert scale_of({"thigh_length": 0.33 + 0.84}) == Scale(length=2.0)
     assert scale_of({"torso_mass": 23.0}) == Scale(mass=1.5)
     assert scale_of({"hip_offset": 0.26}) == Scale(width=2.0)
@@ -25,7 +24,7 @@ def test_scale_is_that_of_height_mass_and_width() -> None:
 
 @pytest.mark.parametrize(("length", "mass"), [(1.0, 1.0), (0.3125, 0.1333), (1.7, 4.1)])
 def test_the_urdf_has_the_scale_of_its_dimensions(length: float, mass: float) -> None:
-    dimensions = alike(length, mass)
+    dimensions = dimensions_alike(length, mass)
     assert describe_robot(dimensions).scale == pytest.approx(scale_of(dimensions))
 
 
@@ -40,7 +39,7 @@ def test_quantities_go_by_their_units() -> None:
 
 def test_what_goes_with_the_size_does() -> None:
     """A quarter of the length halves all times, and doubles all rates."""
-    config = PushedConfig(dimensions=alike(0.25, 0.1))
+    config = PushedConfig(dimensions=dimensions_alike(0.25, 0.1))
     controller, drawn = config.controller, config.randomisation
     lengths = (controller.shift_extension, controller.lift_retraction, drawn.mass_offset, config.least_clearance)
     assert lengths == pytest.approx((0.002, 0.0075, 0.0025, 0.0025))
@@ -57,17 +56,17 @@ def test_what_goes_with_the_size_does() -> None:
 
 def test_what_is_given_stays() -> None:
     own = ControllerConstants(pad_threshold=5.0)
-    config = PushedConfig(dimensions=alike(0.25, 0.1), controller=own, push=Push(newtons=(7.0, 7.0)))
+    config = PushedConfig(dimensions=dimensions_alike(0.25, 0.1), controller=own, push=Push(newtons=(7.0, 7.0)))
     assert config.controller == own and config.push == Push(newtons=(7.0, 7.0))
-    assert describe_robot({**alike(0.25, 0.1), "leg_effort": 150.0}).efforts["left_leg_length"] == 150.0
+    assert describe_robot({**dimensions_alike(0.25, 0.1), "leg_effort": 150.0}).efforts["left_leg_length"] == 150.0
     assert dataclasses.replace(config, payload=1.0).controller == own
 
 
 def test_settings_go_with_the_ratio_of_both_robots() -> None:
     settings = PushedConfig(payload=3.0, controller=dataclasses.replace(STANDARD_CONSTANTS, pad_threshold=60.0))
-    small = settings.for_robot(alike(0.25, 0.1))
+    small = settings.for_robot(dimensions_alike(0.25, 0.1))
     assert (small.payload, small.controller.pad_threshold) == pytest.approx((0.3, 6.0))
-    assert small.for_robot(alike(1.0, 1.0)).controller.pad_threshold == pytest.approx(60.0)
+    assert small.for_robot(dimensions_alike(1.0, 1.0)).controller.pad_threshold == pytest.approx(60.0)
     assert settings.for_robot({"torso_width": 0.3}).controller == settings.controller
 
 
@@ -75,7 +74,7 @@ def test_what_was_set_by_hand_stays_for_another_robot() -> None:
     """It differs from the usual settings, and no chain of robots changes the rest."""
     usual = PushedConfig()
     by_hand = dataclasses.replace(usual, controller=dataclasses.replace(STANDARD_CONSTANTS, pad_threshold=5.0))
-    small = by_hand.for_robot(alike(0.25, 0.1), usual)
+    small = by_hand.for_robot(dimensions_alike(0.25, 0.1), usual)
     assert small.controller.pad_threshold == 5.0 and small.controller.fall_rate == pytest.approx(8.0)
     assert by_hand.for_robot({"thigh_length": 0.3}, usual).for_robot({}, usual) == by_hand
 
@@ -87,13 +86,13 @@ def test_a_dimension_that_changes_in_operation_leaves_the_controller() -> None:
 
 def test_another_engine_gets_the_inertia_of_the_robots_size() -> None:
     for engine in ("pybullet", "mujoco"):
-        config = EpisodeConfig(dimensions=alike(0.25, 0.1), engine=engine)  # type: ignore[arg-type]
+        config = EpisodeConfig(dimensions=dimensions_alike(0.25, 0.1), engine=engine)  # type: ignore[arg-type]
         there = dataclasses.replace(config, engine="pybullet")
         assert there.physics.added_plate_inertia == pytest.approx(0.003 * 0.00625)  # type: ignore[attr-defined]
 
 
 def test_a_robot_whose_own_step_frequency_is_not_rewarded_is_told() -> None:
-    small = EpisodeConfig(dimensions=alike(0.25, 0.1))
+    small = EpisodeConfig(dimensions=dimensions_alike(0.25, 0.1))
     assert natural_step_frequency(EpisodeConfig()) == 3.0 and frequency_hint(EpisodeConfig()) is None
     assert natural_step_frequency(small) == pytest.approx(6.0)
     assert "--episode.step-frequency 6 suits it" in str(frequency_hint(small))
