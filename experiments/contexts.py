@@ -195,7 +195,7 @@ def run(ground: Ground, seed: int, choose: Callable[[np.ndarray], tuple[float, .
     """
     episode = Episode(ground.config, seed, ground.task)
     try:
-        return episode.run(ground.with_error(choose(observation_from(episode.stand())))).score
+        return episode.run(ground.with_error(choose(observation_from(episode.stand(), ground.config.scale)))).score
     finally:
         episode.close()
 

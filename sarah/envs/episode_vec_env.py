@@ -134,14 +134,14 @@ class EpisodeVecEnv(HoldsWorld, VecEnv):
         """Wait for the observation of the next episode; after the last episode the observation stays."""
         if self._waiting:
             _, reading = self._waiting[0]
-            self._observation = observation_from(reading())
+            self._observation = observation_from(reading(), self._config.scale)
 
     def _oldest_outcome(self) -> tuple[float, dict[str, Any]]:
         spec, following, observation, action, job = self._running.popleft()
         result, reading, following_reading = job.result()
         if following is not None:
             self._waiting.append((following, lambda: following_reading))
-        transition = (observation, action, observation_from(reading))
+        transition = (observation, action, observation_from(reading, self._config.scale))
         if abs(result.episode_return) > LARGEST_RETURN:
             raise LearningError(
                 f"a return of {result.episode_return:g} is too large for an agent, which computes in 32-bit numbers: "

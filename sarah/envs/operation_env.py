@@ -132,4 +132,4 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
 
     def _observe(self, window: Window) -> np.ndarray:
         shares = to_shares(window.parameters).astype(np.float32)
-        return np.concatenate([observation_from(window.felt), 2.0 * shares - 1.0])
+        return np.concatenate([observation_from(window.felt, self.config.robot.scale), 2.0 * shares - 1.0])

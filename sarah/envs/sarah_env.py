@@ -17,14 +17,21 @@ from sarah.episode.tasks import Task, disturbances_of, task_named
 from sarah.errors import ConfigurationError, SimulationError, shortened, unknown_name
 from sarah.number import is_number, plain
 from sarah.robot.reading import SensorReading
+from sarah.robot.scale import Scale
 from sarah.simulation.simulator import GRAVITY
 
 if TYPE_CHECKING:
     from sarah.simulation.renderer import Renderer
 
 OBSERVATION_BOUND = 5.0
-OBSERVATION_SCALES = (*(GRAVITY,) * 3, *(1.0,) * 3, *(100.0,) * 4, *(1.0,) * 4, *(0.1,) * 2)
-"""Divisor of each of the 16 signals, in its SI unit, which makes it of order 1."""
+OBSERVED = (
+    *((GRAVITY, "m/s^2"),) * 3,
+    *((1.0, "rad/s"),) * 3,
+    *((100.0, "N"),) * 4,
+    *((1.0, "rad"),) * 4,
+    *((0.1, "m"),) * 2,
+)
+"""Divisor of each of the 16 signals, which makes it of order 1, and its unit. It goes with the robot's size."""
 ROUNDING = 2.0**-15
 """Distance beyond an end of [-1, 1] that roundings of 32-bit numbers explain: a wrapper that scales a narrow range far
 from 0 adds some hundred units in the last place."""
@@ -34,10 +41,10 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
     """An environment in which an agent chooses the task's parameters once, and the episode's return is the reward.
 
     ``reset`` lets the robot stand for one second. ``step`` runs the pattern generator to the episode's end and always
-    terminates. The observation is the 16 sensor signals after standing, each divided by its ``OBSERVATION_SCALES`` and
-    clipped to [-5, 5]. The action is P1 to P5, or V1 to V4, with the box of the parameters scaled to [-1, 1]. ``info``
-    contains the episode's ``seed``, and after the step the ``parameters``, the ``result``, an
-    :class:`~sarah.episode.result.EpisodeResult`, and the ``disturbances``, unless the task names none.
+    terminates. The observation is the 16 sensor signals after standing, each divided by its number in ``OBSERVED``,
+    which goes with the robot's size, and clipped to [-5, 5]. The action is P1 to P5, or V1 to V4, with the box of the
+    parameters scaled to [-1, 1]. ``info`` contains the episode's ``seed``, and after the step the ``parameters``, the
+    ``result``, an :class:`~sarah.episode.result.EpisodeResult`, and the ``disturbances``, unless the task names none.
 
     :param task: task, or the name of one of this package: ``"stepping"`` to choose P1 to P5, ``"balance"`` to choose
         V1 to V4 and be pushed
@@ -84,7 +91,7 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         self._seed, self._parameters = draw_seed(self.np_random), None
         self._episode = Episode(self.config, self._seed, self.task)
         self._is_over = False
-        return observation_from(self._episode.stand()), {"seed": self._seed}
+        return observation_from(self._episode.stand(), self.config.scale), {"seed": self._seed}
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """Run the pattern generator to the episode's end.
@@ -101,7 +108,7 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         disturbances = disturbances_of(EpisodeSpec(parameters, self._seed, self.task, self.config))
         if disturbances is not None:
             info["disturbances"] = disturbances
-        return observation_from(self._episode.last_reading), result.episode_return, True, False, info
+        return observation_from(self._episode.last_reading, self.config.scale), result.episode_return, True, False, info
 
     def render(self) -> np.ndarray | None:
         """Draw the robot as it stands now, on the ground of its episode.
@@ -162,16 +169,17 @@ def draw_seed(generator: np.random.Generator) -> int:
     return int(generator.integers(FIRST_TRAINING_SEED, 2**32))
 
 
-def observation_from(reading: SensorReading) -> np.ndarray:
+def observation_from(reading: SensorReading, scale: Scale) -> np.ndarray:
     """Scale 16 sensor signals to an observation.
 
     :param reading: sensor reading, in SI units
+    :param scale: size of the robot
     :return: float32 array of shape (16,), of order 1
     """
     signals = (*reading.acceleration, *reading.angular_rate, *reading.pressures, *reading.joints)
     if not reading.is_finite:
         raise SimulationError(f"an observation must be finite, not {reading!r}")
-    scaled = np.array(signals) / OBSERVATION_SCALES
+    scaled = np.array(signals) / scale.all_scaled(OBSERVED)
     return np.clip(scaled, -OBSERVATION_BOUND, OBSERVATION_BOUND).astype(np.float32)
 
 

@@ -17,6 +17,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.operation.odometry import LegOdometry
 from sarah.operation.settings import Parameters
 from sarah.robot.reading import GRAVITY, SensorReading
+from sarah.robot.scale import Scale
 from sarah.simulation.simulator import TorsoState
 
 FELT = (
@@ -29,9 +30,10 @@ FELT = (
 )
 """Names of what the robot felt in a window, in order: means and deviations of the six inertial signals, mean durations
 of the phases, mean distances of the joints from their targets, mean loads of the feet, and steps per second."""
-_INERTIAL_SCALES = (*(GRAVITY,) * 3, *(1.0,) * 3)
-FELT_SCALES = (*_INERTIAL_SCALES, *_INERTIAL_SCALES, *(0.5,) * 3, *(0.1,) * 2, 0.01, *(150.0,) * 2, 3.0)
-"""Value of each in its SI unit that makes it of order 1."""
+_INERTIAL = (*((GRAVITY, "m/s^2"),) * 3, *((1.0, "rad/s"),) * 3)
+_LAGS = ((0.1, "rad"), (0.1, "rad"), (0.01, "m"))
+FELT_SIZES = (*_INERTIAL, *_INERTIAL, *((0.5, "s"),) * 3, *_LAGS, *((150.0, "N"),) * 2, (3.0, "1/s"))
+"""Value of each that makes it of order 1, and its unit. It goes with the robot's size."""
 LARGEST = 5.0
 """Bound to which a scaled value is clipped."""
 
@@ -188,11 +190,12 @@ class WindowRecord:
         return tuple(round(float(value), 12) for value in values)
 
 
-def observation_from(felt: Sequence[float]) -> np.ndarray:
+def observation_from(felt: Sequence[float], scale: Scale) -> np.ndarray:
     """Scale what a robot felt to an observation.
 
     :param felt: values in the order of :data:`FELT`, in SI units
+    :param scale: size of the robot
     :return: float32 array of the same length, of order 1, clipped to [-5, 5]
     """
-    scaled = np.array(felt) / FELT_SCALES
+    scaled = np.array(felt) / scale.all_scaled(FELT_SIZES)
     return np.clip(np.where(np.isfinite(scaled), scaled, 0.0), -LARGEST, LARGEST).astype(np.float32)

@@ -13,6 +13,7 @@ width^2 / height.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import fields, replace
 from typing import Any, NamedTuple, TypeVar
 
@@ -96,6 +97,13 @@ class Scale(NamedTuple):
             return self.width**2 / self.length
         length_power, mass_power = POWERS[unit]
         return float(self.length**length_power * self.mass**mass_power)
+
+    def all_scaled(self, quantities: Sequence[tuple[float, str]]) -> tuple[float, ...]:
+        """Quantities of a robot of this scale.
+
+        :param quantities: value of the default robot and unit of each
+        """
+        return tuple(value * self.factor(unit) for value, unit in quantities)
 
     def scaled(self, settings: Settings) -> Settings:
         """Settings of a robot of this scale that is like the one they are for.

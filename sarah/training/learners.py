@@ -207,7 +207,7 @@ def nominal_observation(config: TrainingConfig) -> np.ndarray:
     nominal = dataclasses.replace(config.episode, randomisation=Randomisation(enabled=False))
     episode = Episode(nominal, 0, config.task)
     try:
-        return observation_from(episode.stand())
+        return observation_from(episode.stand(), nominal.scale)
     finally:
         episode.close()
 

@@ -24,6 +24,7 @@ from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, Task, disturbances_of
 from sarah.errors import ConfigurationError, SimulationError
 from sarah.robot.reading import SensorReading
+from sarah.robot.scale import Scale
 from sarah.simulation.engines import is_installed
 from sarah.simulation.mujoco_simulator import MujocoSimulator
 from sarah.simulation.push_arrow import PUSH
@@ -312,4 +313,4 @@ def test_render_shows_the_floor_alone_if_the_state_is_nan(monkeypatch: pytest.Mo
 def test_observations_that_cannot_be_are_named() -> None:
     reading = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (75.0,) * 4, (math.nan,) * 6)  # type: ignore[arg-type]
     with pytest.raises(SimulationError, match=r"an observation must be finite, not .*nan"):
-        observation_from(reading)
+        observation_from(reading, Scale())

@@ -68,4 +68,4 @@ def test_extreme_but_legal_configurations_give_numbers(config: BalanceConfig, v:
     for name, value in result.fields().items():
         for number in value if isinstance(value, tuple) else (value,):
             assert isinstance(number, str) or math.isfinite(number), name
-    assert (abs(observation_from(begin_episode(spec))) <= 10.0).all()
+    assert (abs(observation_from(begin_episode(spec), spec.config.scale)) <= 10.0).all()

@@ -13,6 +13,7 @@ from sarah.episode.evaluation import Evaluation
 from sarah.episode.settings import EpisodeConfig
 from sarah.errors import SimulationError
 from sarah.robot.reading import SensorReading
+from sarah.robot.scale import Scale
 from sarah.simulation.simulator import TorsoState
 
 STANDING = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (75.0,) * 4, (0.0,) * 6)  # type: ignore[arg-type]
@@ -49,12 +50,14 @@ def test_a_diverging_simulation_ends_as_diverged_with_a_finite_reward(
     parts: dict[str, object], seconds: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     episode = spoilt(seconds, parts, monkeypatch)
-    observation = observation_from(episode.stand())
+    observation = observation_from(episode.stand(), Scale())
     result = episode.run((0.4, 1.3, 0.1, 1.0, 1.0))
     episode.close()
     assert result.termination == "diverged" and 0.0 <= result.episode_return < 1.0
     assert result.duration <= max(seconds, 1.0) + 0.05
-    assert all(map(math.isfinite, (*observation, *observation_from(episode.last_reading), *result.final_position)))
+    assert all(
+        map(math.isfinite, (*observation, *observation_from(episode.last_reading, Scale()), *result.final_position))
+    )
     assert Evaluation((result, RESULT)).diverged == 1
 
 

@@ -6,13 +6,16 @@ from dataclasses import replace
 import pytest
 from laboratory import need
 
+from sarah.envs.sarah_env import observation_from
 from sarah.episode.episode import simulate
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.result import EpisodeResult
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
+from sarah.episode.workers import begin_episode
 from sarah.robot.dimensions import dimensions_alike
 from sarah.simulation.engines import Engine
+from sarah.simulation.randomisation import Randomisation
 
 PARAMETERS = PARAMETER_SETS["stepping"].spec.parameters
 
@@ -40,3 +43,11 @@ def test_a_robot_alike_steps_alike(length: float, mass: float, engine: Engine) -
     assert other.steps_per_second * math.sqrt(length) == pytest.approx(default.steps_per_second, rel=0.12)
     assert other.sole_clearance / length == pytest.approx(default.sole_clearance, rel=0.25)
     assert other.shifts_by_sensors > 0.9 and other.lifts_by_sensors > 0.9
+
+
+def test_what_an_agent_sees_of_a_robot_alike_is_alike() -> None:
+    seen = []
+    for length, mass in ((1.0, 1.0), (0.3125, 4 / 30), (4.0, 20.0)):
+        config = EpisodeConfig(dimensions=dimensions_alike(length, mass), randomisation=Randomisation(enabled=False))
+        seen.append(observation_from(begin_episode(EpisodeSpec(PARAMETERS, 0, config=config)), config.scale))
+    assert all(other == pytest.approx(seen[0], abs=0.1) for other in seen[1:])
