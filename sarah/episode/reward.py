@@ -62,6 +62,8 @@ def equation_2(tick: Tick, config: EpisodeConfig) -> float:
 def natural_step_frequency(config: EpisodeConfig) -> float:
     """Steps per second of a robot that rocks by itself, as a pendulum of its height: 3 for the default robot.
 
+    Its width does not count: a robot that stands wider rocks farther in the same time, with P1 and P2 in proportion.
+
     :param config: settings of the episodes, whose shortest phases are an upper bound
     """
     phases = 3 * config.controller.minimum_phase_seconds  # SHIFT, LIFT and LAND

@@ -11,7 +11,7 @@ from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.reward import HALF_WIDTH, STEP_FREQUENCY, RewardForm
 from sarah.errors import ConfigurationError, check_range, check_types, unknown_name
 from sarah.number import is_number, plain
-from sarah.robot.dimensions import check_dimensions, scale_of
+from sarah.robot.dimensions import check_dimensions, scale_of, unscaled_dimensions
 from sarah.robot.scale import Scale
 from sarah.simulation.engines import Engine, default_engine
 from sarah.simulation.physics import PHYSICS, Physics, physics_for
@@ -42,6 +42,10 @@ OF_DEFAULT_ROBOT: dict[str, Any] = {
     "least_clearance": LEAST_CLEARANCE,
 }
 """Defaults of the settings that go with the length and the mass of the robot."""
+WRITTEN_BEFORE = {"physics", "engine", "randomisation", "terrain", "controller", "payload", "time_limit", "reward_form"}
+"""All that versions wrote down, beside dimensions, in which nothing went with a robot's size."""
+WRITTEN_SINCE = {"step_frequency", "reward_half_width", "box_half_width", "least_clearance"}
+"""What files have that were written since."""
 ConfigType = TypeVar("ConfigType", bound="EpisodeConfig")
 SettingsType = TypeVar("SettingsType")
 
@@ -147,11 +151,17 @@ class EpisodeConfig:
     def dependent_defaults(self, content: Mapping[str, Any]) -> dict[str, Any]:
         """Values of fields that depend on other fields: the physics on its engine, and much on the robot's size.
 
+        Where a version that knew no sizes wrote all of its settings down, its robot has what it was simulated with.
+
         :param content: new values of some fields, as a file gives them
         """
         given, robot = content.get("dimensions"), self
         if isinstance(given, Mapping) and all(is_number(plain(value)) for value in given.values()):
-            robot = self.for_robot({**self.dimensions, **given})
+            dimensions = {**self.dimensions, **given}
+            if content.keys() >= WRITTEN_BEFORE and WRITTEN_SINCE.isdisjoint(content):
+                robot = replace(self, dimensions=unscaled_dimensions(dimensions))
+            else:
+                robot = self.for_robot(dimensions)
         dependent = {name: value for name, value in vars(robot).items() if value != getattr(self, name)}
         return {**dependent, "physics": physics_for(content.get("engine", self.engine), robot.physics, robot.scale)}
 

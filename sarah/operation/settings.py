@@ -124,7 +124,10 @@ class OperationConfig:
                     f"not {robot.push.duration!r}"
                 )
             if robot.terrain.roughness != (0.0, 0.0):
-                raise ConfigurationError("terrain.roughness must be 0 in an operation: bumps end 0.7 m from the start")
+                reach = robot.terrain.reach
+                raise ConfigurationError(
+                    f"terrain.roughness must be 0 in an operation: bumps end {reach:g} m from the start"
+                )
 
     @property
     def stages(self) -> tuple[float, ...]:

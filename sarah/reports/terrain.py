@@ -69,7 +69,9 @@ class Situation:
         :param config: settings of which time limit and ground are replaced, and force, time and sagittal share of the
             push
         """
-        changes: dict[str, Any] = {"terrain": self.terrain, "time_limit": TIME_LIMIT}
+        usual = config.scale.scaled(Terrain())
+        terrain = dataclasses.replace(self.terrain, cell=usual.cell, reach=usual.reach)
+        changes: dict[str, Any] = {"terrain": terrain, "time_limit": TIME_LIMIT}
         if not (task.has_push or self.newtons):
             return task.config_of(config, **changes)
         push = config.push if isinstance(config, PushedConfig) else config.scale.scaled(Push())

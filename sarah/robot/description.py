@@ -239,10 +239,6 @@ def _read_off(urdf: str, model: Any) -> RobotDescription:
             sides = (x - half[0], x + half[0], y - half[1], y + half[1], z - half[2])
             undersides.append(Underside(*map(float, sides)))
     height = -min(z - radius for _, _, z in standing_soles)
-    if any(underside.height < -height for underside in undersides):
-        raise DescriptionError(
-            "the foot plates must lie above the soles: raise hinge_height or make the plates thinner"
-        )
     masses = {name: float(link.inertial.mass) for name, link in model.link_map.items()}
     limits = {name: (joint.limit.lower, joint.limit.upper) for name, joint in model.joint_map.items()}
     efforts = {name: joint.limit.effort for name, joint in model.joint_map.items()}

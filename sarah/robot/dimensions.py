@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from sarah.errors import DescriptionError, shortened, unknown_name
 from sarah.number import is_number, plain
-from sarah.robot.scale import Scale
+from sarah.robot.scale import DIGITS, Scale
 
 LARGEST_FACTOR = {"mass": 100.0}
 """Largest factor by which a dimension may differ from its default, by the end of its name: beyond it, somebody has
@@ -73,7 +73,8 @@ def check_dimensions(dimensions: Mapping[str, Any]) -> dict[str, float]:
 
     :param dimensions: values by name, in SI units, as a user gave them
     :return: the same, in floats
-    :raises DescriptionError: for an unknown name, or a value that is not a number near the default
+    :raises DescriptionError: for an unknown name, a value that is not a number near the default, or feet in one place
+        or through the floor
     """
     known = known_dimensions()
     checked = {}
@@ -88,7 +89,30 @@ def check_dimensions(dimensions: Mapping[str, Any]) -> dict[str, float]:
                 f"{shortened(value)} (default: {default:g} {unit}; {meaning})"
             )
         checked[str(name)] = float(value)
+    _check_feet({**default_dimensions(), **checked})
     return checked
+
+
+def _check_feet(robot: Mapping[str, float]) -> None:
+    """Refuse feet that overlap, and foot plates that do not lie above the soles.
+
+    :param robot: values of all dimensions
+    """
+    half_width, radius, thickness = robot["sole_half_width"], robot["contact_radius"], robot["plate_thickness"]
+    for name, least, of_what, otherwise in (
+        (
+            "hip_offset",
+            half_width + radius,
+            f"sole_half_width {half_width:g} + contact_radius {radius:g}",
+            "feet overlap",
+        ),
+        ("hinge_height", 1.5 * thickness, f"1.5 times plate_thickness {thickness:g}", "foot plates reach the floor"),
+    ):
+        if robot[name] < round(least, DIGITS):
+            raise DescriptionError(
+                f"robot dimension {name!r} must be at least {least:g} m, which is {of_what}, not {robot[name]:g}: the "
+                f"{otherwise}"
+            )
 
 
 def scale_of(dimensions: Mapping[str, float]) -> Scale:
@@ -112,6 +136,16 @@ def all_dimensions(dimensions: Mapping[str, float]) -> dict[str, float]:
     scale, known = scale_of(dimensions), known_dimensions()
     scaled = {name: known[name].default * scale.factor(known[name].unit) for name in SCALED}
     return {**default_dimensions(), **scaled, **dimensions}
+
+
+def unscaled_dimensions(dimensions: Mapping[str, float]) -> dict[str, float]:
+    """Dimensions of a robot whose efforts and ankle damping do not go with its size.
+
+    :param dimensions: values of some of :func:`default_dimensions`
+    """
+    if scale_of(dimensions) == Scale():
+        return dict(dimensions)
+    return {**{name: known_dimensions()[name].default for name in SCALED}, **dimensions}
 
 
 def dimensions_alike(length: float, mass: float) -> dict[str, float]:

@@ -85,7 +85,8 @@ def told_settings(spec: EpisodeSpec) -> list[str]:
     stepping = getattr(config, "stepping", None)
     is_usual = stepping == getattr(usual, "stepping", None)
     legs = [] if stepping is None or is_usual else [f"P1 to P5 {', '.join(f'{value:.2f}' for value in stepping)}"]
-    drawn = replace(config, terrain=_drawn(config.terrain, usual.terrain, spec.seed))
+    terrain = _drawn(config.terrain, config.scale.scaled(usual.terrain), spec.seed)
+    drawn = replace(config, terrain=terrain)
     changed = [words for words in changed_settings(spec.task, drawn) if not words.startswith("push.")]
     return [*engine, *legs, *changed]
 
@@ -99,9 +100,11 @@ def _drawn(ranges: Terrain, usual: Terrain, seed: int) -> Terrain:
     elif "slope_degrees" in names:
         names.add("direction_degrees")
     if drawn.roughness == (0.0, 0.0):
-        names.discard("cell")
+        names -= {"cell", "reach"}
     values = {name: getattr(drawn, name) for name in names}
-    return replace(usual, **{name: value and (float(f"{value[0]:.3g}"),) * 2 for name, value in values.items()})
+    ranges_of_drawn = {name: value for name, value in values.items() if isinstance(value, tuple)}
+    rounded = {name: (float(f"{value:.3g}"),) * 2 for name, (value, _) in ranges_of_drawn.items()}
+    return replace(usual, **{**values, **rounded})
 
 
 def _text(value: Any) -> str:

@@ -13,7 +13,7 @@ import mujoco
 from sarah.errors import SimulationError
 from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, Side
-from sarah.simulation.terrain import LARGEST_ROUGHNESS, REACH
+from sarah.simulation.terrain import LARGEST_REACH, LARGEST_ROUGHNESS
 from sarah.simulation.world import check_arithmetic
 
 CONTACT_STEPS = 0.5
@@ -131,7 +131,8 @@ def _compiled(urdf: str, time_scale: float, rate: int, solver_iterations: int, n
     for geom in spec.geoms:
         geom.contype = geom.conaffinity = 0
     if nodes:
-        size = (2 * REACH, 2 * REACH, 2 * LARGEST_ROUGHNESS, LARGEST_ROUGHNESS)  # half of both sides; over and under 0
+        # Half of both sides, which an episode makes shorter; over and under 0.
+        size = (2 * LARGEST_REACH, 2 * LARGEST_REACH, 2 * LARGEST_ROUGHNESS, LARGEST_ROUGHNESS)
         spec.add_hfield(name="floor", nrow=nodes, ncol=nodes, size=size, userdata=[0.0] * nodes**2)
         floor = spec.worldbody.add_geom(name="floor", type=mujoco.mjtGeom.mjGEOM_HFIELD, hfieldname="floor")
         floor.pos = (0.0, 0.0, -LARGEST_ROUGHNESS)

@@ -6,24 +6,28 @@ import math
 import random
 from dataclasses import dataclass
 
-from sarah.errors import check_fields, to_ranges
+from sarah.errors import ConfigurationError, check_fields, to_ranges
 from sarah.robot.reading import GRAVITY, Vector
 from sarah.simulation.ground import Ground
 from sarah.simulation.simulator import LEVEL_GRAVITY
 
 LARGEST_ROUGHNESS = 0.05
 """Largest height of bumps, in m."""
-REACH = 0.7
-"""Distance from the start, to each side, up to which rough ground reaches, in m, to within half a cell."""
+LARGEST_REACH = 10.0
+"""Largest distance from the start up to which rough ground reaches, in m."""
+MOST_CELLS = 50.0
+"""Largest number of cells from the start to where rough ground ends: an episode begins with making them."""
 PLAUSIBLE = {
     "slope_degrees": (0.0, 45.0, "degrees"),
     "direction_degrees": (0.0, 720.0, "degrees"),
     "roughness": (0.0, LARGEST_ROUGHNESS, "m"),
-    "cell": (0.02, 0.1, "m"),
+    "cell": (0.002, 1.0, "m"),
 }
 """Lowest value, highest value and unit of each setting. On more than 45 degrees the robot has fallen at once."""
 PLAUSIBLE_FRICTION = {side: (0.0, 5.0, "") for side in ("friction_left", "friction_right")}
 """The same for settings that may be ``None``."""
+PLAUSIBLE_REACH = {"reach": (0.05, LARGEST_REACH, "m")}
+"""The same for the setting that is no range."""
 
 
 @dataclass(frozen=True)
@@ -38,16 +42,17 @@ class Terrain:
     :param slope_degrees: uniform range of the slope, in degrees; 0 is level ground
     :param direction_degrees: uniform range of the direction that leads uphill, in degrees: 0 to the robot's right, 90
         forward
-    :param roughness: uniform range of the largest bumps' height over and under the mean plane, in m; 0 is even ground.
-        Rough ground ends 0.7 m from the start
+    :param roughness: uniform range of the largest bumps' height over and under the mean plane, in m; 0 is even ground
     :param cell: uniform range of the distance between neighbouring bumps, in m
+    :param reach: distance from the start, to each side, at which rough ground ends, in m, to within half a cell; at most 50
+        cells
     :param friction_left: uniform range of the friction coefficient under the left foot; by default that of the
         randomisation
     :param friction_right: uniform range of the friction coefficient under the right foot; by default that of the
         randomisation
     """
 
-    UNITS = {"roughness": "m"}
+    UNITS = {"roughness": "m", "cell": "m", "reach": "m"}
 
     slope_degrees: tuple[float, float] = (0.0, 0.0)
     direction_degrees: tuple[float, float] = (0.0, 360.0)
@@ -55,12 +60,18 @@ class Terrain:
     cell: tuple[float, float] = (0.05, 0.05)
     friction_left: tuple[float, float] | None = None
     friction_right: tuple[float, float] | None = None
+    reach: float = 0.7
 
     def __post_init__(self) -> None:
         """Refuse ground that nobody stands on."""
         to_ranges(self, *PLAUSIBLE, *PLAUSIBLE_FRICTION)
         given = {name: limits for name, limits in PLAUSIBLE_FRICTION.items() if getattr(self, name) is not None}
-        check_fields("terrain", self, PLAUSIBLE | given)
+        check_fields("terrain", self, PLAUSIBLE | PLAUSIBLE_REACH | given)
+        farthest = MOST_CELLS * self.cell[0]
+        if self.reach > farthest:
+            raise ConfigurationError(
+                f"terrain.reach must be at most {MOST_CELLS:g} times terrain.cell, {farthest:g} m, not {self.reach:g}"
+            )
 
 
 def draw_terrain(ranges: Terrain, seed: int) -> Terrain:
@@ -81,6 +92,7 @@ def draw_terrain(ranges: Terrain, seed: int) -> Terrain:
         direction_degrees=_single(slope.uniform(*ranges.direction_degrees)),
         roughness=_single(bumps.uniform(*ranges.roughness)),
         cell=_single(bumps.uniform(*ranges.cell)),
+        reach=ranges.reach,
         **{name: _single(low + shares[name] * (high - low)) for name, (low, high) in given.items()},
     )
 
@@ -100,7 +112,7 @@ def draw_ground(ranges: Terrain, seed: int) -> Ground:
     (roughness, _), (cell, _) = drawn.roughness, drawn.cell
     if roughness == 0.0:
         return Ground(_gravity_on(drawn), (frictions[0], frictions[1]))
-    count = 2 * round(REACH / cell) + 1
+    count = 2 * round(drawn.reach / cell) + 1
     nodes = random.Random(f"bumps {seed}")
     heights = tuple(tuple(roughness * nodes.uniform(-1.0, 1.0) for _ in range(count)) for _ in range(count))
     return Ground(_gravity_on(drawn), (frictions[0], frictions[1]), heights, cell)

@@ -90,7 +90,7 @@ def test_it_needs_neither_an_engine_nor_a_learner(tmp_path: Path) -> None:
             "--episode.dimensions thigh_length 9",
             "'thigh_length' must be a number between 0.033 and 3.3 m, not 9.0 (default: 0.33 m; distance from",
         ),
-        ("--episode.dimensions hinge_height 0.005", "the foot plates must lie above the soles"),
+        ("--episode.dimensions hinge_height 0.005", "'hinge_height' must be at least 0.015 m"),
     ],
 )
 def test_a_mistake_is_one_line_and_writes_nothing(answer: Callable[[str], str], arguments: str, message: str) -> None:

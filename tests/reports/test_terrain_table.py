@@ -17,6 +17,7 @@ from sarah.episode.tasks import BALANCE, STEPPING
 from sarah.episode.workers import Workers
 from sarah.reports import robustness, terrain, terrain_figure
 from sarah.reports.terrain import OnTerrain, Situation, as_markdown, situations, try_terrain
+from sarah.robot.dimensions import dimensions_alike
 from sarah.robot.scale import Scale
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
@@ -44,6 +45,12 @@ def test_a_situation_changes_ground_push_and_time_limit_only(task: Any) -> None:
     free = Situation("friction", 0.25, "", 0.0).config(task, own)
     assert not isinstance(free, PushedConfig) or free.push.newtons == (0.0, 0.0)
     assert (free.engine, free.randomisation) == (own.engine, own.randomisation)
+
+
+def test_bumps_of_the_table_lie_closer_for_a_small_robot() -> None:
+    small = EpisodeConfig(dimensions=dimensions_alike(0.5, 0.2))
+    ground = Situation("roughness", 0.005, "", 0.0).config(STEPPING, small).terrain
+    assert ground == Terrain(roughness=0.005, cell=0.025, reach=0.35)  # type: ignore[arg-type]  # one number fixes it
 
 
 def test_every_situation_meets_the_same_seeds(monkeypatch: pytest.MonkeyPatch) -> None:

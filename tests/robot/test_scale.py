@@ -44,6 +44,7 @@ def test_what_goes_with_the_size_does() -> None:
     lengths = (controller.shift_extension, controller.lift_retraction, drawn.mass_offset, config.least_clearance)
     assert lengths == pytest.approx((0.002, 0.0075, 0.0025, 0.0025))
     assert (config.reward_half_width, config.box_half_width) == pytest.approx((0.125, 0.0625))
+    assert (*config.terrain.cell, config.terrain.reach) == pytest.approx((0.0125, 0.0125, 0.175))
     assert (controller.time_out_seconds, controller.tilt_time_constant) == pytest.approx((0.25, 0.05))
     assert (controller.landing_rate, controller.rate_scale, controller.fall_rate) == pytest.approx((2.0, 0.02, 8.0))
     assert controller.pad_threshold == pytest.approx(3.0)

@@ -12,7 +12,8 @@ from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BalanceConfig
 from sarah.errors import ConfigurationError
-from sarah.operation.settings import Change
+from sarah.operation.settings import Change, OperationConfig
+from sarah.robot.description import describe_robot
 from sarah.runs.agent_settings import NAFSettings
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import read_config, write_config
@@ -46,6 +47,27 @@ def test_what_a_file_does_not_name_keeps_its_default(tmp_path: Path) -> None:
     assert config.episode.engine == default_engine()
     path.write_text("")
     assert read_config(TrainingConfig, path) == TrainingConfig()
+
+
+BEFORE_SIZES = (
+    "{physics: {rate: 400}, engine: mujoco, randomisation: {mass_deviation: 0.02}, terrain: {roughness: [0.0, 0.0]}, "
+    "controller: {pad_threshold: 30.0}, payload: 0.0, dimensions: {thigh_length: 0.2, shank_length: 0.2}, "
+    "time_limit: 20.0, reward_form: symmetric}\n"
+)
+"""Settings of a robot of another size as a version wrote them in which nothing went with the size."""
+
+
+def test_files_from_before_settings_went_with_the_size_keep_the_robot_they_were_written_of(tmp_path: Path) -> None:
+    path = tmp_path / "config.yaml"
+    path.write_text(f"episode: {BEFORE_SIZES}")
+    training = read_config(TrainingConfig, path).episode
+    path.write_text(f"config: {{robot: {BEFORE_SIZES}}}")
+    session = read_config(SessionSpec, path).config.robot
+    for read, usual in ((training, EpisodeConfig()), (session, OperationConfig().robot)):
+        assert describe_robot(read.dimensions).efforts == describe_robot().efforts
+        drawn = dataclasses.replace(usual.randomisation, mass_deviation=0.02)
+        own = {"engine": "mujoco", "randomisation": drawn, "dimensions": read.dimensions, "time_limit": 20.0}
+        assert read == dataclasses.replace(usual, **own)
 
 
 def test_what_a_task_and_an_engine_have_of_their_own_is_read(tmp_path: Path) -> None:

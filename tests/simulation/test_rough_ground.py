@@ -12,9 +12,11 @@ from laboratory import BuildSimulation, Laboratory, laboratory, need
 
 from sarah.episode.episode import Episode
 from sarah.episode.push import Push
+from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.errors import ConfigurationError
 from sarah.robot.description import describe_robot
+from sarah.robot.dimensions import dimensions_alike
 from sarah.robot.reading import Side, Vector
 from sarah.simulation.build import simulator_of
 from sarah.simulation.ground import LEVEL, Ground
@@ -100,6 +102,18 @@ def test_a_robot_too_wide_for_the_bumps_is_refused() -> None:
     assert LEVEL.lift(wide) == 0.0
     with pytest.raises(ConfigurationError, match=r"bumps reach 0\.70 m from the start, and this robot's feet 0\.8"):
         draw_ground(ROUGH, 0).lift(wide)
+
+
+@pytest.mark.parametrize("length", [0.3, 1.0, 4.0])
+def test_bumps_are_alike_for_robots_alike(length: float) -> None:
+    """Robots that reach the edge of their box are still on them."""
+    config = EpisodeConfig(dimensions=dimensions_alike(length, 1.0))
+    terrain = dataclasses.replace(config.terrain, roughness=(0.01 * length,) * 2)
+    ground, default = draw_ground(terrain, 2), draw_ground(ROUGH, 2)
+    assert np.array(ground.heights) == pytest.approx(length * np.array(default.heights))
+    robot = describe_robot(config.dimensions)
+    feet = max(abs(end) for *rectangle, _ in robot.undersides for end in rectangle)
+    assert feet + config.box_half_width < ground.reach == pytest.approx(length * default.reach)
 
 
 @settings(max_examples=30)
@@ -279,7 +293,8 @@ def test_frictions_are_drawn_for_each_foot() -> None:
         ({"roughness": 0.06}, r"terrain\.roughness must be between 0 and 0\.05 m"),
         ({"roughness": (0.01, 0.005)}, r"terrain\.roughness .* in rising order"),
         ({"slope_degrees": 10**400}, r"terrain\.slope_degrees must be between 0 and 45 degrees"),
-        ({"cell": 0.01}, r"terrain\.cell must be between 0\.02 and 0\.1 m"),
+        ({"cell": 0.001}, r"terrain\.cell must be between 0\.002 and 1 m"),
+        ({"cell": 0.01}, r"terrain\.reach must be at most 50 times terrain\.cell, 0\.5 m, not 0\.7"),
         ({"friction_left": -0.1}, r"terrain\.friction_left must be between 0 and 5"),
         ({"friction_right": "ice"}, r"terrain\.friction_right must be between 0 and 5"),
     ],
