@@ -44,8 +44,8 @@ class Terrain:
         forward
     :param roughness: uniform range of the largest bumps' height over and under the mean plane, in m; 0 is even ground
     :param cell: uniform range of the distance between neighbouring bumps, in m
-    :param reach: distance from the start, to each side, at which rough ground ends, in m, to within half a cell; at most 50
-        cells
+    :param reach: distance from the start, to each side, at which rough ground ends, in m, to within half a cell; up to
+        50 cells
     :param friction_left: uniform range of the friction coefficient under the left foot; by default that of the
         randomisation
     :param friction_right: uniform range of the friction coefficient under the right foot; by default that of the
