@@ -23,7 +23,10 @@ html_static_path = ["_static"]
 html_css_files = ["tables.css"]
 html_title = f"sarah {release}"
 # Other pages include the former, reference/api.md leads past the last.
-INCLUDED = ("commands", "dimensions", "examples", "metrics", "parameters", "rates", "settings", "signals", "targets")
+INCLUDED = (
+    *("commands", "defaults", "dimensions", "examples", "metrics"),
+    *("parameters", "rates", "settings", "signals", "targets"),
+)
 exclude_patterns = [*(f"reference/generated/{name}.md" for name in INCLUDED), "reference/generated/modules.rst"]
 html_show_copyright = False
 myst_heading_anchors = 3

@@ -65,6 +65,25 @@ def test_links_lead_to_files(page: str) -> None:
     assert not missing
 
 
+def headings_of(page: Path) -> set[str]:
+    """Anchors of a page's headings, as they lie in the repository."""
+    text = re.sub(r"```.*?```", "", page.read_text(), flags=re.DOTALL)
+    headings = re.findall(r"^#+ (.+)$", re.sub(r"\[(.+?)\]\(.+?\)", r"\1", text), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}
+
+
+def test_links_lead_to_headings() -> None:
+    pages = [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("docs/*/*.md")]
+    links = [(page, *link) for page in pages for link in re.findall(r"\]\(([^)#\s:]*)#([^)\s]+)\)", page.read_text())]
+    assert links
+    dead = [
+        (page, anchor)
+        for page, file, anchor in links
+        if anchor not in headings_of(page.parent / file if file else page)
+    ]
+    assert dead == []
+
+
 def test_tutorials_and_guides_show_every_command() -> None:
     commands = re.findall(r"^    (sarah-\w+) =", (ROOT / "setup.cfg").read_text(), re.MULTILINE)
     pages = [*ROOT.glob("docs/tutorials/*.md"), *ROOT.glob("docs/how_to/*.md")]

@@ -51,13 +51,10 @@ def settings_page() -> Iterator[str]:
         yield from section(title, "episode.", names, {"default": task.episode})
         own = {name: getattr(task.episode, name) for name in vars(task.episode) if not hasattr(EpisodeConfig(), name)}
         yield from groups("episode.", own)
-    yield from command_defaults()
 
 
-def command_defaults() -> Iterator[str]:
+def defaults_page() -> Iterator[str]:
     """A table of the settings that ``sarah-train`` and ``sarah-compare`` begin with in place of a task's own."""
-    yield "## The commands' defaults\n"
-    yield "`sarah-train` without `--config` and `sarah-compare` begin with these settings:\n"
     rows = []
     for task in TASKS.values():
         own, of_commands = settings_by_key(TrainingConfig(task)), settings_by_key(default_training(task))
@@ -329,6 +326,7 @@ def shown(value: Any) -> str:
 PAGES = {
     "dimensions": dimensions_page,
     "settings": settings_page,
+    "defaults": defaults_page,
     "parameters": parameters_page,
     "metrics": metrics_page,
     "examples": examples_page,

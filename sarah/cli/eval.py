@@ -107,7 +107,8 @@ def _evaluate(arguments: Sequence[str]) -> None:
     former = {option: f"{option} --out" for option in ("--robustness", "--terrain")}
     arguments = with_out(COMMAND, arguments, former)
     options = parse_episode_options(COMMAND, arguments, EvalOptions())
-    spec, algorithm = _subject(options)
+    own, algorithm = _subject(options)
+    spec = options.applied_to(own)
     _check_replaced_options(options, arguments)
     if options.robustness and spec.task is not BALANCE:
         raise ConfigurationError(
@@ -145,7 +146,7 @@ def _evaluate(arguments: Sequence[str]) -> None:
         content["endings"] = [result.termination for result in evaluation.results]
         print(json_format.dumps(content))
     else:
-        for label, text in rows_of(options.subject, spec, options.seeds, evaluation, baseline):
+        for label, text in rows_of(options.subject, own.config, spec, options.seeds, evaluation, baseline):
             print(f"{label:17}{text}")
     check_output()
     if not options.json:
@@ -153,17 +154,17 @@ def _evaluate(arguments: Sequence[str]) -> None:
 
 
 def _next_steps(options: EvalOptions, arguments: Sequence[str]) -> Iterator[Step]:
-    yield to_see(options.subject, *passed_on(arguments, options.subject, *NOT_OF_VIEW))
+    first = ("--seed", str(options.first_seed))
+    yield to_see(options.subject, *passed_on(arguments, options.subject, *NOT_OF_VIEW), *first)
     if Path(options.subject).is_dir() and not is_session(Path(options.subject)):
         yield to_report(options.subject, *([] if options.task is None else ["--task", options.task]))
 
 
 def _subject(options: EvalOptions) -> tuple[EpisodeSpec, str | None]:
-    """Episode to evaluate, on any seed, and the algorithm that learned its parameters."""
+    """Episode of what is evaluated, on any seed, and the algorithm that learned its parameters."""
     task = named_task(options.task)
     algorithm = learner_of(options.subject, task)
-    spec = episode_of(options.subject, None, task).spec
-    return options.applied_to(spec), algorithm
+    return episode_of(options.subject, None, task).spec, algorithm
 
 
 def _show_robustness(
@@ -205,7 +206,8 @@ def _check_replaced_options(options: EvalOptions, arguments: Sequence[str]) -> N
     for table, replaced in REPLACED.items():
         mistaken = [option for option in given if option.startswith(replaced)]
         if getattr(options, table) and mistaken:
-            raise ConfigurationError(f"--{table} has pushes and a time limit of its own: leave {mistaken[0]} out")
+            own = "pushes and a time limit" if table == "robustness" else "ground, pushes and a time limit"
+            raise ConfigurationError(f"--{table} has {own} of its own: leave {mistaken[0]} out")
 
 
 def _show_terrain(spec: EpisodeSpec, options: EvalOptions, workers: Workers, command: str) -> None:

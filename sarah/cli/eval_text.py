@@ -27,18 +27,24 @@ Row = tuple[str, str]
 
 
 def rows_of(
-    subject: str, spec: EpisodeSpec, seeds: range, evaluation: Evaluation, baseline: Evaluation | None
+    subject: str,
+    own: EpisodeConfig,
+    spec: EpisodeSpec,
+    seeds: range,
+    evaluation: Evaluation,
+    baseline: Evaluation | None,
 ) -> Iterator[Row]:
     """Labels and texts of the rows.
 
     :param subject: what was evaluated, as it was given
-    :param spec: an episode of it
+    :param own: settings of its episodes
+    :param spec: an episode of it, as the options change it
     :param seeds: seeds of the episodes
     :param evaluation: the episodes
     :param baseline: same episodes with the task's neutral parameters, if it has some
     """
     yield from _subject_rows(subject, spec)
-    settings = ", ".join(changed_settings(spec.task, spec.config))
+    settings = ", ".join(changed_settings(spec.task, spec.config, own))
     if settings:
         yield "settings", settings
     span = f"{seeds[0]}" if len(seeds) == 1 else f"{seeds[0]} to {seeds[-1]}"

@@ -20,20 +20,29 @@ MOST_PUSHES = 3
 """Largest number of pushes that are named."""
 
 
-def changed_settings(task: Task[Any], config: EpisodeConfig) -> Iterator[str]:
+def changed_settings(task: Task[Any], config: EpisodeConfig, subject: EpisodeConfig | None = None) -> Iterator[str]:
     """Settings that are not those of the task in the same engine and for a robot of that size, with their values.
 
     :param task: task of the episodes
     :param config: settings of the episodes
+    :param subject: settings of what they are made of; where those are special and not kept, both values are given
     """
+    usual, there = _usual(task, config), settings_by_key(subject or config)
+    usual_there = _usual(task, subject or config)
+    for name, value in settings_by_key(config).items():
+        other = there.get(name, value)
+        is_replaced = value != other != usual_there.get(name)
+        if name not in SAID_BY_THEMSELVES and (value != usual.get(name) or is_replaced):
+            yield f"{name} {_text(value)}{f' instead of {_text(other)}' if is_replaced else ''}"
+
+
+def _usual(task: Task[Any], config: EpisodeConfig) -> dict[str, Any]:
+    """Settings of a task by name, in the engine of others and for a robot of that size."""
     of_size: EpisodeConfig = task.episode.for_robot(config.dimensions)
     usual = replace(of_size, engine=config.engine, dimensions=task.episode.dimensions)
     if isinstance(config, PushedConfig) and not isinstance(usual, PushedConfig):
         usual = PushedConfig(**vars(usual), push=config.scale.scaled(NOBODY))
-    before = settings_by_key(usual)
-    for name, value in settings_by_key(config).items():
-        if name not in SAID_BY_THEMSELVES and value != before.get(name):
-            yield f"{name} {_text(value)}"
+    return settings_by_key(usual)
 
 
 def differences(config: EpisodeConfig, subject: EpisodeConfig) -> Iterator[str]:

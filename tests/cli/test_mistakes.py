@@ -85,7 +85,7 @@ MISTAKES = {
         (f"{GIVEN} --json --terrain --out x", "--terrain prints a table, not JSON: leave --json out"),
         (
             f"{GIVEN} --terrain --out x --episode.terrain.roughness 0.01",
-            "of its own: leave --episode.terrain.roughness out",
+            "--terrain has ground, pushes and a time limit of its own: leave --episode.terrain.roughness out",
         ),
         (f"{GIVEN} --episode.terrain.roughness 10", "terrain.roughness must be between 0 and 0.05 m, not 10.0"),
         (f"{GIVEN} --episode.terrain.friction-left ice", "must be one number, or two for a range, not ice"),

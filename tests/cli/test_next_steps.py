@@ -10,6 +10,7 @@ from terminal import BIN, SHORT, run
 
 from sarah.cli import next_steps
 from sarah.cli.next_steps import passed_on, say_next, to_see, to_watch
+from sarah.episode.spec import FIRST_EVALUATION_SEED
 
 ENDING = {"sarah-view": ("--out", "page.html"), "sarah-eval": ("--episodes", "1")}
 """Options with which a suggested command soon ends."""
@@ -49,10 +50,10 @@ def test_a_training_can_be_seen_tested_and_watched(
     assert paste(steps["watch its curves"], folder.parent) == ""
 
 
-def test_what_was_evaluated_is_seen_under_the_same_conditions(tmp_path: Path) -> None:
+def test_an_episode_that_was_evaluated_is_seen_under_the_same_conditions(tmp_path: Path) -> None:
     line = ("0.4,1.3,0.1,1,1", "--episodes", "1", "--episode.time-limit", "1.5", "--episode.payload", "3")
     steps = steps_of(run("sarah-eval", *line, cwd=tmp_path).stderr)
-    assert steps == {"see it": ["sarah-view", line[0], *line[3:]]}
+    assert steps == {"see it": ["sarah-view", line[0], *line[3:], "--seed", str(FIRST_EVALUATION_SEED)]}
     assert paste(steps["see it"], tmp_path) == "page.html\n"
 
 

@@ -84,7 +84,6 @@ def subjects(tmp_path_factory: pytest.TempPathFactory) -> Path:
     session = SessionFolder.create(folder / "session", SessionSpec((*LEGS, *HIPS), "none", 0, operation))
     session.write_windows([Window(0, 0.0, 2.1, 0, (*LEGS, *HIPS), 0.5, 0.5, False, (0.0,) * len(FELT))])
     session.write_parameters((*LEGS, *HIPS))
-    return folder
     for config in (first, second):
         usual = settings_by_key(type(config)())
         left = {key for key, value in settings_by_key(config).items() if value == usual.get(key)}
@@ -218,6 +217,12 @@ def test_what_is_simulated_has_the_settings_of_the_subject_and_others_are_said(
         assert changed <= others
         for key in changed - {"push.newtons"}:  # which the table itself has
             assert (there[key] if key == "engine" else key) in found.printed
+
+
+def test_an_evaluation_says_what_an_option_puts_back_to_the_usual(ran: Callable[[str], Ran]) -> None:
+    own, usual = odd(STEPPING.episode).randomisation.delay_seconds, STEPPING.episode.randomisation.delay_seconds
+    printed = ran(f"sarah-eval first --episodes 1 --episode.randomisation.delay-seconds {usual}").printed
+    assert f"randomisation.delay_seconds {usual:g} instead of {own:g}" in printed
 
 
 @pytest.mark.parametrize("subject", ["first", "second", "session"])
