@@ -150,7 +150,7 @@ def check_fields(key: str, config: object, plausible: Mapping[str, tuple[float, 
     """
     for name, limits in plausible.items():
         key_of_field, value = f"{key}.{name}", getattr(config, name)
-        is_range = str(type(config).__dataclass_fields__[name].type).startswith("tuple[")  # type: ignore[attr-defined]
+        is_range = "tuple[" in str(type(config).__dataclass_fields__[name].type)  # type: ignore[attr-defined]
         checked = (
             check_ends(key_of_field, value, *limits) if is_range else float(check_range(key_of_field, value, *limits))
         )

@@ -18,7 +18,7 @@ from sarah.cli.former_names import with_out
 from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import Interruption
 from sarah.cli.next_steps import say_next, to_see, to_test, to_watch
-from sarah.cli.operated import say_differences, settings_in_operation, times_of_session
+from sarah.cli.operated import OperatedConfig, say_differences, settings_in_operation, times_of_session
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episode_of, is_shipped
 from sarah.episode.push import NOBODY, PushedConfig
@@ -198,7 +198,7 @@ def _spec_of(options: OperateOptions) -> SessionSpec:
     any_pushed = EpisodeSpec(STEPPING.baseline, 0, STEPPING, options.episode)
     robot = options.applied_to(any_pushed).config
     config = OperationConfig(
-        robot=robot if isinstance(robot, PushedConfig) else PushedConfig(**vars(robot), push=NOBODY),
+        robot=robot.as_pushed() if isinstance(robot, OperatedConfig) else PushedConfig(**vars(robot), push=NOBODY),
         minutes=options.minutes,
         settle_seconds=options.settle_seconds,
         measure_seconds=options.measure_seconds,

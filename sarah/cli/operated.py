@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from sarah.episode.push import PushedConfig
+import tyro
+
+from sarah.episode.push import Push, PushedConfig
+from sarah.episode.reward import RewardForm
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import TASKS
@@ -14,7 +18,26 @@ from sarah.operation.settings import SOFT_PUSHES
 from sarah.sessions import is_session
 
 
-def settings_in_operation(config: EpisodeConfig, subject: str | None) -> PushedConfig:
+@dataclass(frozen=True)
+class RegularPush(Push):
+    """A push whose time is not drawn, and no option."""
+
+    at_seconds: Annotated[tuple[float, float], tyro.conf.Suppress] = Push.at_seconds
+
+
+@dataclass(frozen=True)
+class OperatedConfig(PushedConfig):
+    """Settings whose options leave out what has no effect in an operation."""
+
+    time_limit: Annotated[float, tyro.conf.Suppress] = PushedConfig.time_limit
+    reward_form: Annotated[RewardForm, tyro.conf.Suppress] = PushedConfig.reward_form
+
+    def as_pushed(self) -> PushedConfig:
+        """The same settings, as a session holds them."""
+        return PushedConfig(**{**vars(self), "push": Push(**vars(self.push))})
+
+
+def settings_in_operation(config: EpisodeConfig, subject: str | None) -> OperatedConfig:
     """Settings of a robot in operation: those of the subject, with soft pushes, unless they are a session's own.
 
     :param config: settings of the subject's episodes
@@ -23,7 +46,7 @@ def settings_in_operation(config: EpisodeConfig, subject: str | None) -> PushedC
     shared = {item.name: getattr(config, item.name) for item in dataclasses.fields(EpisodeConfig)}
     is_own = subject is not None and is_session(Path(subject))
     push = config.push if is_own and isinstance(config, PushedConfig) else config.scale.scaled(SOFT_PUSHES)
-    return PushedConfig(**shared, push=push)
+    return OperatedConfig(**shared, push=RegularPush(**vars(push)))
 
 
 def times_of_session(path: Path) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """What the commands say of themselves."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -7,6 +8,7 @@ from pathlib import Path
 import pytest
 from terminal import run_afresh
 
+from sarah.cli import operate
 from sarah.runs.agent_settings import AGENT_SETTINGS
 
 
@@ -71,3 +73,14 @@ def test_help_loads_nothing_slow(command: str) -> None:
     )
     process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert process.stderr == "" and process.returncode == 0
+
+
+def test_help_lists_no_option_that_is_refused(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.argv", ["sarah-operate", "--help"])
+    with pytest.raises(SystemExit):
+        operate.main()
+    listed = set(re.findall(r"--episode[\w.-]+", capsys.readouterr().out))
+    assert {"--episode.push.newtons", "--episode.payload"} <= listed
+    assert listed.isdisjoint(operate.WITHOUT_EFFECT)
