@@ -115,7 +115,7 @@ def _caption(spec: EpisodeSpec, result: EpisodeResult, is_alone: bool) -> str:
     names = spec.task.parameter_names
     learned = ", ".join(f"{name} {value:.2f}" for name, value in zip(names, spec.parameters, strict=True))
     ending = ending_words(result.termination)
-    about = f"{spec.task.name}: {learned}   ·   seed {spec.seed}   ·   score {result.score:.2f}, {ending}"
+    about = f"{spec.task.name}: {learned}\nseed {spec.seed}, score {result.score:.2f}, {ending}"
     assert result.trace is not None
     told = [*([] if is_alone else ["from standing, not as the window was"]), *told_of(spec, result.trace)]
     return "\n".join([about, ", ".join(told)] if told else [about])

@@ -25,7 +25,7 @@ OUTLINE: dict[str, Any] = {"stroke_width": 2, "stroke_fill": "white"}
 """Outline of words that may stand before the robot."""
 LABEL_OFFSET = np.array((0.26, 0.20, 0.0))
 """Position of the arrow's label from the torso's centre: to the right, upward and ahead in the picture, in m."""
-MOST_LINES = 6
+MOST_LINES = 8
 """Largest number of a caption's lines, above which it would reach the strip of phases."""
 STRIP_SECONDS = 2.0
 """Length of the past that the strip of phases shows, in s."""
@@ -36,7 +36,7 @@ class Overlay:
 
     :param trace: trace of the episode
     :param view: view of the camera
-    :param caption: text below the robot, of any length
+    :param caption: text in the lower left corner, of any length
     :param caption_end: pixels from the picture's left edge at which the caption must end
     :param scale: size of the robot
     """

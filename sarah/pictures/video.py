@@ -65,15 +65,14 @@ def frames(
     :param trace: trace of the episode
     :param robot: robot of the episode
     :param times: simulated times of the frames, in s
-    :param caption: text below the robot
+    :param caption: text in the lower left corner
     :param ground: ground of the episode
     :return: RGB pictures of 1024 x 576 pixels
     """
     renderer = Renderer(robot, SAMPLES)
     try:
         camera, feet_camera = cameras(trace, robot, renderer, ground)
-        caption_end = WIDTH - FEET_WIDTH - 2 * FEET_MARGIN
-        overlay = Overlay(trace, View(WIDTH, HEIGHT, camera), caption, caption_end, robot.scale)
+        overlay = Overlay(trace, View(WIDTH, HEIGHT, camera), caption, TEXT_WIDTH, robot.scale)
         for time in times:
             tick = trace.tick_at(time)
             pose = _pose(trace, tick)

@@ -18,6 +18,8 @@ SAID_BY_THEMSELVES = {"engine", "push.newtons", "stepping"}
 """Settings that are named in any case, or in other words."""
 MOST_PUSHES = 3
 """Largest number of pushes that are named."""
+MOST_DIMENSIONS = 3
+"""Largest number of dimensions that are named beside a picture."""
 
 
 def changed_settings(task: Task[Any], config: EpisodeConfig, subject: EpisodeConfig | None = None) -> Iterator[str]:
@@ -97,6 +99,8 @@ def told_settings(spec: EpisodeSpec) -> list[str]:
     terrain = _drawn(config.terrain, config.scale.scaled(usual.terrain), spec.seed)
     drawn = replace(config, terrain=terrain)
     changed = [words for words in changed_settings(spec.task, drawn) if not words.startswith("push.")]
+    if (count := len(config.dimensions)) > MOST_DIMENSIONS:
+        changed = [f"{count} dimensions of its own" if words.startswith("dimensions ") else words for words in changed]
     return [*engine, *legs, *changed]
 
 

@@ -14,7 +14,7 @@ from PIL import Image
 from sarah.episode.trace import Trace
 from sarah.pictures.overlay import arrow
 from sarah.pictures.robot_figure import draw_robot
-from sarah.pictures.video import FEET_HEIGHT, FEET_MARGIN, FEET_WIDTH, HEIGHT, WIDTH, cameras, frames
+from sarah.pictures.video import FEET_HEIGHT, FEET_WIDTH, HEIGHT, TEXT_WIDTH, WIDTH, cameras, frames
 from sarah.robot.description import RobotDescription, describe_robot
 from sarah.robot.reading import Vector
 from sarah.simulation.renderer import Renderer
@@ -163,13 +163,13 @@ def test_no_arrow_and_no_label_touches_the_edge(dimensions: dict[str, float]) ->
         "one\ntwo\nthree",
     ],
 )
-def test_long_captions_stay_clear_of_edges_and_of_the_feet(caption: str) -> None:
+def test_long_captions_stay_clear_of_edges_of_the_robot_and_of_the_phases(caption: str) -> None:
     robot = describe_robot()
     trace = still(robot, np.zeros(3))
     (with_caption,), (without,) = (frames(trace, robot, (0.0,), text) for text in (caption, ""))
     rows, columns = np.nonzero((np.asarray(with_caption) != np.asarray(without)).any(axis=-1))
-    assert rows.min() > 0.75 * HEIGHT and rows.max() < HEIGHT - 5
-    assert columns.min() > 5 and columns.max() < WIDTH - FEET_WIDTH - FEET_MARGIN - 5
+    assert rows.min() > 0.72 * HEIGHT and rows.max() < HEIGHT - 5
+    assert columns.min() > 5 and columns.max() < TEXT_WIDTH
 
 
 @pytest.mark.parametrize("dimensions", [{"thigh_length": 3.3}, {"torso_height": 0.03, "shank_length": 0.031}], ids=str)

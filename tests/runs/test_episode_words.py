@@ -10,6 +10,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.trace import Trace
+from sarah.robot.dimensions import dimensions_alike
 from sarah.runs.episode_words import told_of
 from sarah.simulation.terrain import Terrain, draw_terrain
 
@@ -46,6 +47,7 @@ def test_nothing_is_told_of_what_is_as_usual(trace: Trace) -> None:
             {"dimensions": {"torso_width": 0.3, "sole_half_width": 0.06}},
             ["dimensions torso_width 0.3, sole_half_width 0.06"],
         ),
+        ({"dimensions": dimensions_alike(1.1, 1.0)}, ["24 dimensions of its own"]),
         ({"stepping": (0.4, 1.3, 0.1, 1.0, 1.0)}, ["P1 to P5 0.40, 1.30, 0.10, 1.00, 1.00"]),
         ({"terrain": Terrain(friction_left=0.2)}, ["terrain.friction_left 0.2"]),
         ({"terrain": Terrain(direction_degrees=90.0)}, []),  # level ground has no direction
