@@ -26,6 +26,8 @@ from sarah.episode.tasks import BALANCE, BalanceConfig, load_task
 from sarah.robot.description import describe_robot
 from sarah.robot.reading import ACTUATED_JOINTS
 from sarah.runs.agent_settings import AGENT_SETTINGS
+from sarah.runs.config import TrainingConfig
+from sarah.runs.config_files import read_config
 from sarah.simulation.build import simulator_of
 from sarah.simulation.engines import is_installed
 from sarah.simulation.randomisation import NOMINAL, Randomisation
@@ -122,6 +124,14 @@ def test_the_tasks_of_the_tutorial_run(tmp_path: Path, monkeypatch: pytest.Monke
     names: dict[str, Any] = {}
     exec(environment if is_installed("pybullet") else environment.replace("pybullet", "mujoco"), names)
     assert names["env"].unwrapped.config.time_limit == 10.0
+
+
+def test_the_page_writes_a_robot_like_the_default_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    exec(blocks("how_to/robot.md")[0], {})
+    robot = read_config(TrainingConfig, Path("mine.yaml")).episode
+    assert robot.dimensions["thigh_length"] + robot.dimensions["shank_length"] == pytest.approx(0.2)
+    assert 30.0 * robot.scale.mass == pytest.approx(4.0)
 
 
 class Clock:

@@ -57,7 +57,8 @@ class EvalOptions(EpisodeOptions):
     :param forces: forces of the pushes of --robustness, in N; by default 25 to 150 N for the default robot, and as
         much of its weight for another
     :param terrain: whether to write a table and a picture of score, steps and survival on slopes, bumps and slippery
-        ground, for 10 s without a push, and with one of 75 N at 2 to 4 s. --episodes is the number on each ground
+        ground, for 10 s without a push, and with one of 75 N for 30 kg at 2 to 4 s. --episodes is the number on each
+        ground
     :param out: folder for the table and the picture of --robustness or --terrain
     :param episodes: number of episodes
     :param first_seed: seed of the first episode; the others follow. No training has seen the default: trainings draw

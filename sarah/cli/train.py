@@ -65,8 +65,9 @@ class TrainOptions:
     episodes (episodes.csv), the agent (model.zip) and the curves that TensorBoard shows.
 
     Most robots survive the paper's pushes without learning. So by default --task balance pushes harder, in shorter
-    episodes. The paper's settings are --episode.push.newtons 0 100 --episode.push.sagittal-share 0
-    --episode.time-limit 30, and those of a file of --config that names no others, unless --from is given.
+    episodes. The paper's settings, for its robot of 30 kg, are --episode.push.newtons 0 100
+    --episode.push.sagittal-share 0 --episode.time-limit 30, and those of a file of --config that names no others,
+    unless --from is given.
 
     :param training: settings of the training
     :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine

@@ -42,7 +42,7 @@ class Push:
 
     It acts horizontally on the torso's centre, with constant force.
 
-    :param newtons: uniform range of the force, in N; the paper pushed with up to 100 N
+    :param newtons: uniform range of the force, in N; the paper pushed its 30 kg with up to 100 N
     :param degrees: uniform range of the direction, in degrees: 0 pushes to the robot's right, 90 forward
     :param at_seconds: uniform range of the simulated time at which it begins, in s; the paper pushed after the first
         second
