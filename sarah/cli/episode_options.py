@@ -17,8 +17,9 @@ from typing import Annotated, Any, TypeVar, get_args
 
 import tyro
 
-from sarah.cli.options import dimension_words, named_numbers, named_task, parse_options
+from sarah.cli.options import dimension_words, named_task, parse_options
 from sarah.cli.subjects import episode_of, is_shipped, is_there
+from sarah.cli.value_rules import named_numbers
 from sarah.episode.push import NOBODY, PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec

@@ -10,18 +10,19 @@ import itertools
 import os
 import re
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from difflib import get_close_matches
-from typing import Any, NoReturn, TypeVar, get_args, get_type_hints
+from typing import Any, NoReturn, TypeVar, get_type_hints
 
 import tyro
 
+from sarah.cli.value_rules import REGISTRY
 from sarah.episode.push import PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import Task, load_task
 from sarah.errors import ConfigurationError, SarahError, unknown_name
 from sarah.files import is_text
-from sarah.number import NUMBER, is_number, number, whole_number
+from sarah.number import NUMBER
 from sarah.simulation.engines import default_engine
 from sarah.streams import check_output, keep_streams, say_lost_output
 
@@ -46,78 +47,6 @@ PYTHON_WORDS = {
     r"^Error parsing [\w.]+: ": "",
 }
 """Python's messages about bad values, and the messages that a user gets instead."""
-
-
-def _task_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
-    """How tyro reads a task from the command line, and shows one."""
-    if Task not in (info.type, info.type_origin):
-        return None
-    return tyro.constructors.PrimitiveConstructorSpec(
-        nargs=1,
-        metavar="TASK",
-        instance_from_str=lambda words: load_task(words[0]),
-        is_instance=lambda value: isinstance(value, Task),
-        str_from_instance=lambda task: [task.reference],
-    )
-
-
-def _range_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
-    """How tyro shows a range, of which one number may stand for both ends."""
-    if info.type_origin is not tuple or get_args(info.type) != (float, float):
-        return None
-    return tyro.constructors.PrimitiveConstructorSpec(
-        nargs=2,
-        metavar="FLOAT [FLOAT]",
-        instance_from_str=lambda words: tuple(map(number, words)),
-        is_instance=lambda value: isinstance(value, tuple) and len(value) == 2,
-        str_from_instance=lambda ends: list(map(str, ends)),
-    )
-
-
-def _number_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
-    """How tyro reads a number: tyro itself takes Python's spellings, such as ``0100`` and ``1_000``."""
-    if info.type not in (int, float):
-        return None
-    return tyro.constructors.PrimitiveConstructorSpec(
-        nargs=1,
-        metavar="INT" if info.type is int else "FLOAT",
-        instance_from_str=lambda words: (whole_number if info.type is int else number)(words[0]),
-        is_instance=lambda value: is_number(value) and (info.type is float or isinstance(value, int)),
-        str_from_instance=lambda value: [str(value)],
-    )
-
-
-def _dimensions_rule(
-    info: tyro.constructors.PrimitiveTypeInfo,
-) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
-    """How tyro reads dimensions: names and numbers in turn, also where some differ from their defaults already."""
-    if info.type_origin is not Mapping:
-        return None
-    return tyro.constructors.PrimitiveConstructorSpec(
-        nargs="*",
-        metavar="NAME FLOAT",
-        instance_from_str=named_numbers,
-        is_instance=lambda value: isinstance(value, Mapping),
-        str_from_instance=lambda given: [word for name, value in given.items() for word in (name, f"{value:g}")],
-    )
-
-
-def named_numbers(words: Sequence[str]) -> dict[str, float]:
-    """Numbers by name, from words that are names and numbers in turn.
-
-    :param words: the words
-    :raises ValueError: if one of the numbers is none, or missing
-    """
-    if len(words) % 2:
-        raise ValueError(f"must be names and numbers in turn, and {words[-1]!r} has no number")
-    return {name: number(word) for name, word in zip(words[::2], words[1::2], strict=True)}
-
-
-_REGISTRY = tyro.constructors.ConstructorRegistry()
-_REGISTRY.primitive_rule(_dimensions_rule)
-_REGISTRY.primitive_rule(_number_rule)
-_REGISTRY.primitive_rule(_task_rule)
-_REGISTRY.primitive_rule(_range_rule)
 
 
 def named_task(reference: str | None) -> Task[Any] | None:
@@ -231,7 +160,7 @@ def parse_options(
     :param arguments: arguments after the command's name
     :param default: options with their default values
     """
-    parse = functools.partial(tyro.cli, options_type, prog=command, default=default, registry=_REGISTRY)
+    parse = functools.partial(tyro.cli, options_type, prog=command, default=default, registry=REGISTRY)
     errors = io.StringIO()
     try:
         with contextlib.redirect_stderr(errors):
