@@ -9,7 +9,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
@@ -29,10 +29,11 @@ from sarah.cli.interruption import Interruption
 from sarah.cli.next_steps import say_next, to_see, to_test, to_watch
 from sarah.cli.options import named_task, parse_options, pushed_words, run_command, say_engine
 from sarah.cli.subjects import check_of_training
+from sarah.cli.train_text import say_learned
 from sarah.cli.training_defaults import default_training
 from sarah.episode.push import PushedConfig
 from sarah.episode.reward import equation_2, frequency_hint
-from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, Task, load_task
+from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, load_task
 from sarah.errors import (
     ConfigurationError,
     ResumeError,
@@ -148,7 +149,7 @@ def _train(arguments: Sequence[str]) -> None:
             say_differences(options.from_run, config.episode)
         named = given_options(arguments, "task") if config.task.file is not None else {}
         learned = _learned(config, run, workers, " ".join(f" --task {quoted(task)}" for task in named.values()))
-    _summarise(config.task, learned, run.path)
+    say_learned(config.task, learned, run.path)
     typed = [word for value in named.values() for word in ("--task", value)]
     say_next(to_see(run.path, *typed), to_test(run.path, *typed), to_watch(run.path))
 
@@ -272,34 +273,3 @@ def _check_agent_options(arguments: Sequence[str], training: TrainingConfig) -> 
     for argument in arguments:
         if argument.startswith("--agent.") and (message := unknown_option(training.algo, argument.partition("=")[0])):
             raise ConfigurationError(message)
-
-
-def _summarise(task: Task[Any], learned: Learned, path: Path) -> None:
-    from sarah.episode.accuracy import physics_warning
-    from sarah.runs.run_folder import RunFolder
-    from sarah.training.warm_up import describe_warm_up
-
-    config = RunFolder.open(path).config()
-    evaluation, baseline = learned.evaluation, learned.baseline
-    named = zip(task.parameter_names, learned.parameters, strict=True)
-    print("\nlearned     " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
-    print(f"warm-up     {describe_warm_up(config)}")
-    neutral = "the baseline (V = 0)" if task is BALANCE else "neutral parameters"
-    compared = [("", evaluation), *([] if baseline is None else [(f" for {neutral}", baseline)])]
-    scores = ", ".join(f"{one.mean('score'):.3f}{name}" for name, one in compared)
-    print(f"score       {scores} (mean of {evaluation.episodes} unseen seeds; 1 is the ceiling)")
-    print(f"steps       {evaluation.mean('steps_per_second'):.2f} per second")
-    print("survival    " + ", ".join(f"{one.survival_rate:.0%}{name}" for name, one in compared))
-    shifts, lifts = evaluation.mean("shifts_by_sensors"), evaluation.mean("lifts_by_sensors")
-    clearance = 1000 * evaluation.mean("sole_clearance")
-    print(f"by sensors  {shifts:.0%} of shifts, {lifts:.0%} of lifts; sole clearance {clearance:.0f} mm")
-    if learned.diverged:
-        print(f"diverged    {learned.diverged} episodes: their simulation gave no finite state")
-    if task.must_step and not evaluation.is_gait:
-        print("            no valid gait: the robot steps to a clock, or does not lift its feet")
-    if baseline is not None and evaluation.chatters(baseline):
-        print("            the hips chatter: no real actuator could follow that")
-    warning = physics_warning(task, learned.parameters, config.episode)
-    if warning is not None:
-        print(f"physics     {warning}")
-    print(f"run folder  {path}")

@@ -1,0 +1,48 @@
+"""What ``sarah-train`` prints in the end."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sarah.episode.tasks import BALANCE, Task
+
+if TYPE_CHECKING:
+    from sarah.training.train import Learned
+
+
+def say_learned(task: Task[Any], learned: Learned, path: Path) -> None:
+    """Print what a training has learned, and how good it is.
+
+    :param task: task of the training
+    :param learned: what was learned
+    :param path: path of the run folder
+    """
+    from sarah.episode.accuracy import physics_warning
+    from sarah.runs.run_folder import RunFolder
+    from sarah.training.warm_up import describe_warm_up
+
+    config = RunFolder.open(path).config()
+    evaluation, baseline = learned.evaluation, learned.baseline
+    named = zip(task.parameter_names, learned.parameters, strict=True)
+    print("\nlearned     " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
+    print(f"warm-up     {describe_warm_up(config)}")
+    neutral = "the baseline (V = 0)" if task is BALANCE else "neutral parameters"
+    compared = [("", evaluation), *([] if baseline is None else [(f" for {neutral}", baseline)])]
+    scores = ", ".join(f"{one.mean('score'):.3f}{name}" for name, one in compared)
+    print(f"score       {scores} (mean of {evaluation.episodes} unseen seeds; 1 is the ceiling)")
+    print(f"steps       {evaluation.mean('steps_per_second'):.2f} per second")
+    print("survival    " + ", ".join(f"{one.survival_rate:.0%}{name}" for name, one in compared))
+    shifts, lifts = evaluation.mean("shifts_by_sensors"), evaluation.mean("lifts_by_sensors")
+    clearance = 1000 * evaluation.mean("sole_clearance")
+    print(f"by sensors  {shifts:.0%} of shifts, {lifts:.0%} of lifts; sole clearance {clearance:.0f} mm")
+    if learned.diverged:
+        print(f"diverged    {learned.diverged} episodes: their simulation gave no finite state")
+    if task.must_step and not evaluation.is_gait:
+        print("            no valid gait: the robot steps to a clock, or does not lift its feet")
+    if baseline is not None and evaluation.chatters(baseline):
+        print("            the hips chatter: no real actuator could follow that")
+    warning = physics_warning(task, learned.parameters, config.episode)
+    if warning is not None:
+        print(f"physics     {warning}")
+    print(f"run folder  {path}")
