@@ -171,10 +171,11 @@ def _check_learns(options: OperateOptions, spec: SessionSpec) -> None:
 def _parsed(arguments: Sequence[str]) -> OperateOptions:
     """Options of the command; a session that it begins with has times of its own."""
     options = parse_episode_options(COMMAND, arguments, OperateOptions(), adapted=settings_in_operation)
-    if not is_session(Path(options.subject)):
-        return options
-    usual = dataclasses.replace(OperateOptions(), **times_of_session(Path(options.subject)))
-    return parse_episode_options(COMMAND, arguments, usual, adapted=settings_in_operation)
+    if is_session(Path(options.subject)):
+        usual = dataclasses.replace(OperateOptions(), **times_of_session(Path(options.subject)))
+        options = parse_episode_options(COMMAND, arguments, usual, adapted=settings_in_operation)
+    assert isinstance(options.episode, OperatedConfig)
+    return dataclasses.replace(options, episode=options.episode.as_pushed())
 
 
 def _check_alone(arguments: Sequence[str]) -> dict[str, str]:
@@ -198,7 +199,7 @@ def _spec_of(options: OperateOptions) -> SessionSpec:
     any_pushed = EpisodeSpec(STEPPING.baseline, 0, STEPPING, options.episode)
     robot = options.applied_to(any_pushed).config
     config = OperationConfig(
-        robot=robot.as_pushed() if isinstance(robot, OperatedConfig) else PushedConfig(**vars(robot), push=NOBODY),
+        robot=robot if isinstance(robot, PushedConfig) else PushedConfig(**vars(robot), push=NOBODY),
         minutes=options.minutes,
         settle_seconds=options.settle_seconds,
         measure_seconds=options.measure_seconds,

@@ -47,7 +47,6 @@ def test_nothing_is_told_of_what_is_as_usual(trace: Trace) -> None:
             {"dimensions": {"torso_width": 0.3, "sole_half_width": 0.06}},
             ["dimensions torso_width 0.3, sole_half_width 0.06"],
         ),
-        ({"dimensions": dimensions_alike(1.1, 1.0)}, ["24 dimensions of its own"]),
         ({"stepping": (0.4, 1.3, 0.1, 1.0, 1.0)}, ["P1 to P5 0.40, 1.30, 0.10, 1.00, 1.00"]),
         ({"terrain": Terrain(friction_left=0.2)}, ["terrain.friction_left 0.2"]),
         ({"terrain": Terrain(direction_degrees=90.0)}, []),  # level ground has no direction
@@ -58,6 +57,12 @@ def test_nothing_is_told_of_what_is_as_usual(trace: Trace) -> None:
 def test_settings_that_differ_are_told(settings: dict[str, object], told: list[str], trace: Trace) -> None:
     changed = dataclasses.replace(USUAL, config=dataclasses.replace(USUAL.config, **settings))
     assert told_of(changed, still(trace)) == told
+
+
+def test_many_dimensions_are_counted(trace: Trace) -> None:
+    dimensions = dimensions_alike(1.1, 1.0)
+    robot = dataclasses.replace(USUAL, config=USUAL.config.for_robot(dimensions))
+    assert told_of(robot, still(trace)) == [f"{len(dimensions)} dimensions of its own"]
 
 
 def test_the_ground_is_told_as_the_seed_draws_it(trace: Trace) -> None:
