@@ -18,8 +18,8 @@ from sarah.pictures.colours import LEFT, PHASE_COLOURS, RIGHT
 from sarah.pictures.style import COLUMN_WIDTH, own_style, save, times
 
 THRESHOLD = "#A51417"
-WEIGHTS_SHOWN = 2.4
-"""Upper end of the axis of loads, in weights of the robot: the impact of a landing exceeds it by far."""
+MEDIANS_SHOWN = 3.0
+"""Upper end of the axis of loads, in medians of their sum: the impact of a landing exceeds it by far."""
 AFTER_SECONDS = 8.0
 """Simulated time after which a cycle is chosen, in s: by then the gait has settled."""
 
@@ -71,7 +71,7 @@ def draw_gait_cycle(
         rate.set_ylabel("rate\n(rad/s)")
         pads = trace.pressures[rows]
         _both(load, time, pads[:, :2].sum(axis=1), pads[:, 2:].sum(axis=1))
-        load.set_ylim(0.0, WEIGHTS_SHOWN * float(np.median(pads.sum(axis=1))))
+        load.set_ylim(0.0, MEDIANS_SHOWN * float(np.median(pads.sum(axis=1))))
         load.set_ylabel("pad load\n(N)")
         joints = trace.joints[rows]
         _both(length, time, 1000 * joints[:, 4], 1000 * joints[:, 5])

@@ -47,7 +47,8 @@ class Overlay:
         self._view = view
         self._unit = view.height / LINES_OF_TEXT
         self._scale = scale
-        self._caption = wrapped(caption, _font(0.85 * self._unit), caption_end - 1.5 * self._unit)
+        width = caption_end - 1.5 * self._unit - OUTLINE["stroke_width"]
+        self._caption = wrapped(caption, _font(0.85 * self._unit), width)
 
     def draw(self, picture: Image.Image, tick: int) -> None:
         """Draw over a frame.
