@@ -161,7 +161,7 @@ def ran(
 
 
 PUSH = {"push", *(f"push.{name}" for name in ("newtons", "degrees", "at_seconds", "duration", "sagittal_share"))}
-GROUND = {f"terrain.{name}" for name in ("slope_degrees", "direction_degrees", "cell", "friction_left")}
+GROUND = {f"terrain.{name}" for name in ("slope_degrees", "direction_degrees", "cell", "reach", "friction_left")}
 SHORT = "--minutes 0.1 --learner none"
 
 
