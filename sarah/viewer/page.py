@@ -185,7 +185,7 @@ class Page:
 
     def _change_ground(self, **values: float) -> None:
         with self._lock:
-            ranges = {name: (value, value) for name, value in values.items()}
+            ranges: dict[str, Any] = {name: (value, value) for name, value in values.items()}
             self._change({"terrain": replace(self._wanted.terrain, **ranges)})
 
     def _push_now(self) -> None:
