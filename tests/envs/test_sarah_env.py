@@ -25,11 +25,12 @@ from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, Task, disturba
 from sarah.errors import ConfigurationError, SimulationError
 from sarah.robot.reading import SensorReading
 from sarah.robot.scale import Scale
+from sarah.scenery.camera import STANDARD_CAMERA
+from sarah.scenery.floor import floor
+from sarah.scenery.push_arrow import PUSH
 from sarah.simulation.engines import is_installed
 from sarah.simulation.mujoco_simulator import MujocoSimulator
-from sarah.simulation.push_arrow import PUSH
 from sarah.simulation.randomisation import Randomisation
-from sarah.simulation.scenery import STANDARD_CAMERA, floor
 from sarah.simulation.simulator import TorsoState
 from sarah.simulation.terrain import Terrain, draw_ground
 

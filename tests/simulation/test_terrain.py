@@ -7,7 +7,7 @@ import pytest
 from laboratory import BuildSimulation, Laboratory
 
 from sarah.errors import ConfigurationError
-from sarah.simulation.ground import LEVEL
+from sarah.scenery.ground import LEVEL
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
 from sarah.simulation.randomisation import Conditions
 from sarah.simulation.simulator import GRAVITY, Simulator
