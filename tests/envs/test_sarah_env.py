@@ -21,7 +21,8 @@ from sarah.envs.sarah_env import SarahEnv, observation_from, parameters_from
 from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
-from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, Task, disturbances_of
+from sarah.episode.task_answers import disturbances_of
+from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, Task
 from sarah.errors import ConfigurationError, SimulationError
 from sarah.robot.reading import SensorReading
 from sarah.robot.scale import Scale
