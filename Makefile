@@ -68,7 +68,7 @@ bench: install  ## how fast it is: simulation, workers, learner, viewer; minutes
 
 endurance: install  ## kills, faults and long runs; half an hour
 	@for name in $(ENDURANCE); do $(BIN)/python -m experiments $$name --out build/endurance || exit 1; done
-	$(BIN)/python -m tests.endurance.stable_baselines3_tests
+	$(BIN)/python -m experiments.endurance.stable_baselines3_tests
 
 mutants: install  ## do the tests see changes to core files? each must kill nine of ten; half an hour
 	$(BIN)/python -m experiments mutants --out build/mutants

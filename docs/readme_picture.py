@@ -23,9 +23,9 @@ from sarah.pictures.colours import PUSH
 from sarah.pictures.overlay import INK
 from sarah.robot.description import ANKLE_JOINTS, describe_robot
 from sarah.robot.reading import ACTUATED_JOINTS
-from sarah.simulation.push_arrow import METRES_PER_NEWTON
+from sarah.scenery.camera import Camera, View
+from sarah.scenery.push_arrow import METRES_PER_NEWTON
 from sarah.simulation.renderer import Renderer
-from sarah.simulation.scenery import Camera, View
 
 OUT = Path(__file__).parent / "push_recovery.gif"
 SHIPPED = PARAMETER_SETS["balance"].spec

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from experiments.record import Row
@@ -31,6 +31,28 @@ class OnWorkers:
     """
 
     workers: int = os.cpu_count() or 1
+
+
+@dataclass(frozen=True)
+class Maker:
+    """What makes a result.
+
+    :param question: sentence that its rows answer
+    :param experiment: the experiment in its full size
+    :param quick: options that differ in a size that takes seconds, and shows only that the experiment runs
+    :param of_robot: whether its rows depend on physics, controller and robot, whose fingerprint is then kept
+    """
+
+    question: str
+    experiment: Experiment
+    quick: Mapping[str, Any] = field(default_factory=dict)
+    of_robot: bool = True
+
+    @property
+    def quick_experiment(self) -> Experiment:
+        """The experiment in a size that takes seconds, in this process."""
+        here = {"workers": 0} if isinstance(self.experiment, OnWorkers) else {}
+        return dataclasses.replace(self.experiment, **here, **self.quick)  # type: ignore[type-var]
 
 
 def settings_of(task: str, newtons: tuple[float, float], **shared: Any) -> EpisodeConfig:

@@ -16,7 +16,7 @@ from sarah.episode.workers import Executor
 from sarah.files import replace_text
 from sarah.training.recommendation import Parameters
 
-EPISODES_CODE = ("control", "episode", "robot", "simulation", "urdf")
+EPISODES_CODE = ("control", "episode", "robot", "scenery", "simulation", "urdf")
 """Parts of sarah that an outcome depends on."""
 KEPT_TOGETHER = 20
 """Number of episodes after which their outcomes are kept: an interrupted judge goes on from there."""

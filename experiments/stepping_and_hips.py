@@ -18,9 +18,9 @@ from sarah.episode.push import Push
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.episode.workers import Workers
+from sarah.robot.reading import GRAVITY
 from sarah.simulation.engines import Engine
 from sarah.simulation.randomisation import Randomisation
-from sarah.simulation.simulator import GRAVITY
 
 STEPPING = (
     PAPER_STEPPING,

@@ -2,26 +2,17 @@
 
 from __future__ import annotations
 
-import dataclasses
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
-from benchmarks.decisions import Decisions
-from benchmarks.engines_speed import EnginesSpeed
-from benchmarks.physics_speed import PhysicsSpeed
-from benchmarks.terrain_speed import TerrainSpeed
-from benchmarks.throughput import Throughput
-from benchmarks.updates import Updates
-from benchmarks.viewer import Viewer
+from experiments.benchmarks.table import BENCHMARKS
 from experiments.box_limit import BoxLimit
 from experiments.ceiling import Ceiling
 from experiments.clock import Clock
 from experiments.conditions import Conditions
 from experiments.contexts import Contexts
+from experiments.endurance.table import ENDURANCE
 from experiments.engines import Engines
-from experiments.experiment import Experiment, OnWorkers
+from experiments.experiment import Maker
 from experiments.first_training import FirstTraining
 from experiments.flexion_laws import FlexionLaws
 from experiments.goal_tasks import GoalTasks
@@ -52,35 +43,6 @@ from experiments.slots_cost import SlotsCost
 from experiments.standard_tasks import NAF_VARIANTS, StandardTask
 from experiments.stepping_and_hips import SteppingAndHips
 from experiments.transfer import TransferBetweenEngines
-from tests.endurance.killed_workers import KilledWorkers
-from tests.endurance.kills import Kills
-from tests.endurance.long_run import LongProcess, LongTraining
-from tests.endurance.mutants import Mutants
-from tests.endurance.protections import Protections
-from tests.endurance.resume import Resume
-
-
-@dataclass(frozen=True)
-class Maker:
-    """What makes a result.
-
-    :param question: sentence that its rows answer
-    :param experiment: the experiment in its full size
-    :param quick: options that differ in a size that takes seconds, and shows only that the experiment runs
-    :param of_robot: whether its rows depend on physics, controller and robot, whose fingerprint is then kept
-    """
-
-    question: str
-    experiment: Experiment
-    quick: Mapping[str, Any] = field(default_factory=dict)
-    of_robot: bool = True
-
-    @property
-    def quick_experiment(self) -> Experiment:
-        """The experiment in a size that takes seconds, in this process."""
-        here = {"workers": 0} if isinstance(self.experiment, OnWorkers) else {}
-        return dataclasses.replace(self.experiment, **here, **self.quick)  # type: ignore[type-var]
-
 
 SHORT = {"time_limit": 2.0}
 TRAINED = {**SHORT, "budget": 5}
@@ -341,91 +303,7 @@ TABLE: dict[str, Maker] = {
         Engines(),
         {**SHORT, "seeds": 1},
     ),
-    # Timings.
-    "physics_speed": Maker(
-        "How fast is each setting of the physics?",
-        PhysicsSpeed(),
-        {"time_limit": 1.2},
-        of_robot=False,
-    ),
-    "terrain_speed": Maker(
-        "What does rough ground cost in time?",
-        TerrainSpeed(),
-        {"episodes": 1, "time_limit": 1.2},
-        of_robot=False,
-    ),
-    "engines_speed": Maker(
-        "How many times as fast is an episode in MuJoCo?",
-        EnginesSpeed(),
-        {**SHORT, "rounds": 2},
-        of_robot=False,
-    ),
-    "throughput": Maker(
-        "How fast are episodes simulated, and where does the time go?",
-        Throughput(),
-        {**SHORT, "rounds": 1, "trainings": 1, "budget": 5},
-        of_robot=False,
-    ),
-    "updates": Maker(
-        "How many updates per second does NAF make, and TD3?",
-        Updates(),
-        {"updates": 2, "rounds": 1, "batch_size": 8},
-        of_robot=False,
-    ),
-    "decisions": Maker(
-        "How long does a training think between two episodes?",
-        Decisions(),
-        {"episodes": (10,), "rounds": 1},
-        of_robot=False,
-    ),
-    "viewer": Maker(
-        "How fast is the viewer?",
-        Viewer(),
-        {"rounds": 1, "seconds": 1.0},
-        of_robot=False,
-    ),
-    # Endurance.
-    "kills": Maker(
-        "Does a training that is killed at random moments end as without?",
-        Kills(),
-        {"kills": 1},
-        of_robot=False,
-    ),
-    "killed_workers": Maker(
-        "What do killed workers cost a training?",
-        KilledWorkers(),
-        {"budget": 8, "seconds_between_kills": 20.0},
-        of_robot=False,
-    ),
-    "resume": Maker(
-        "What does it cost to resume a training?",
-        Resume(),
-        {"algorithms": ("cma-es",), "budget": 5},
-        of_robot=False,
-    ),
-    "long_process": Maker(
-        "Do many episodes in one process stay flat in memory and open files?",
-        LongProcess(),
-        {"episodes": 10},
-        of_robot=False,
-    ),
-    "long_training": Maker(
-        "Does a long training with two workers stay flat in memory and open files?",
-        LongTraining(),
-        {"budget": 8},
-        of_robot=False,
-    ),
-    "protections": Maker(
-        "Does a test fail when a protection is taken out?",
-        Protections(),
-        {"count": 1},
-        of_robot=False,
-    ),
-    "mutants": Maker(
-        "How many changes to core files do the tests of their package see?",
-        Mutants(),
-        {"files": "sarah/episode/reward.py", "count": 2},
-        of_robot=False,
-    ),
+    **BENCHMARKS,
+    **ENDURANCE,
 }
 """What makes each result, by its name."""

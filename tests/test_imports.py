@@ -65,5 +65,18 @@ def test_imports_keep_to_their_contracts() -> None:
     assert "0 broken" in process.stdout
 
 
+def test_no_module_imports_the_package_that_imports_it() -> None:
+    """A circle that import-linter does not see: it compares modules beside each other."""
+    grimp = pytest.importorskip("grimp", reason="import-linter is not installed")
+    graph = grimp.build_graph("experiments", "sarah", cache_dir=None)
+    circles = [
+        (module, package)
+        for module in graph.modules
+        for package in graph.find_modules_directly_imported_by(module)
+        if module.startswith(f"{package}.") and graph.chain_exists(importer=package, imported=module)
+    ]
+    assert circles == []
+
+
 def test_a_shell_completes_the_public_names() -> None:
     assert set(sarah.__all__) <= set(dir(sarah))

@@ -16,7 +16,8 @@ from sarah.episode.push import PushedConfig, draw_push
 from sarah.episode.result import METRICS
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, Task, controller_of
+from sarah.episode.task_answers import controller_of
+from sarah.episode.tasks import BALANCE, Task
 from sarah.reports.markdown import plain_text
 from sarah.runs.episode_words import changed_settings, differences
 

@@ -23,7 +23,8 @@ from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episode_of, is_shipped
 from sarah.episode.push import NOBODY, PushedConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, STEPPING, controller_of
+from sarah.episode.task_answers import controller_of
+from sarah.episode.tasks import BALANCE, STEPPING
 from sarah.errors import (
     ConfigurationError,
     ResumeError,

@@ -21,7 +21,8 @@ from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices
 from sarah.envs.sarah_env import SarahEnv, draw_seed, observation_from, parameters_from
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import Task, disturbances_of
+from sarah.episode.task_answers import disturbances_of
+from sarah.episode.tasks import Task
 from sarah.episode.workers import Executor, Job, begin_episode, executor_of, finish_episode
 from sarah.errors import ConfigurationError, LearningError, check_whole
 from sarah.robot.reading import SensorReading

@@ -13,12 +13,12 @@ from sarah.episode.episode import Episode
 from sarah.episode.from_mapping import from_mapping
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
-from sarah.episode.tasks import Task, disturbances_of, task_named
+from sarah.episode.task_answers import disturbances_of
+from sarah.episode.tasks import Task, task_named
 from sarah.errors import ConfigurationError, SimulationError, shortened, unknown_name
 from sarah.number import is_number, plain
-from sarah.robot.reading import SensorReading
+from sarah.robot.reading import GRAVITY, SensorReading
 from sarah.robot.scale import Scale
-from sarah.simulation.simulator import GRAVITY
 
 if TYPE_CHECKING:
     from sarah.simulation.renderer import Renderer

@@ -1,4 +1,4 @@
 """One episode as a pure function of its specification, and workers that simulate many episodes.
 
-It may import errors, files, versions, robot, control and simulation.
+It may import errors, files, versions, robot, scenery, control and simulation.
 """

@@ -6,7 +6,8 @@ from typing import Any
 
 from sarah.control.hip_law import LOCKED_HIPS
 from sarah.episode.settings import EpisodeConfig
-from sarah.episode.tasks import Task, controller_of
+from sarah.episode.task_answers import controller_of
+from sarah.episode.tasks import Task
 from sarah.simulation.physics import PHYSICS
 
 LOW_P1 = 0.1

@@ -7,21 +7,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import Any
 
+from sarah.episode.push import DrawnPush
 from sarah.robot.description import GROUPS
 from sarah.simulation.randomisation import draw_conditions
 from sarah.simulation.terrain import draw_terrain
 
-if TYPE_CHECKING:
-    from sarah.episode.push import DrawnPush
-    from sarah.episode.spec import EpisodeSpec
 
-
-def drawn_disturbances(spec: EpisodeSpec) -> tuple[float, ...]:
+def drawn_disturbances(spec: Any) -> tuple[float, ...]:
     """Disturbances of an episode whose settings and seed draw them. Bumps and errors of sensors are left out.
 
-    :param spec: specification of the episode
+    :param spec: specification of the episode, an :class:`~sarah.episode.spec.EpisodeSpec`
     :return: 14 numbers: force of the push in N, sine and cosine of its direction, and time at which it begins in s;
         friction coefficient, the mean of both feet; bandwidth of the servos, per second; slope in degrees times cosine
         and sine of the direction uphill; mass of each group of links, as a factor; offset of the torso's centre of mass

@@ -14,7 +14,8 @@ from sarah.episode.reward import highest_return
 from sarah.episode.running_robot import RunningRobot
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import STEPPING, Task, controller_of, ending_of, push_of, reward_of
+from sarah.episode.task_answers import controller_of, ending_of, push_of, reward_of
+from sarah.episode.tasks import STEPPING, Task
 from sarah.episode.tick import Tick
 from sarah.episode.trace import Trace
 from sarah.errors import check_type

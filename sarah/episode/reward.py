@@ -2,18 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from sarah.episode.settings import HALF_WIDTH, STEP_FREQUENCY, EpisodeConfig, RewardForm
+from sarah.episode.tick import Tick
 
-if TYPE_CHECKING:
-    from sarah.episode.settings import EpisodeConfig
-    from sarah.episode.tick import Tick
-
-RewardForm = Literal["symmetric", "printed"]
-
-HALF_WIDTH = 0.5
-"""Displacement of the default robot from its start at which the reward is zero, in m."""
-STEP_FREQUENCY = 3.0
-"""Rewarded number of steps per second; both are the paper's."""
 LITTLE_LOST = 0.9
 """Share of the reward that a robot's natural step frequency should have at least."""
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
-from typing import Any, TypeVar, get_args
+from typing import Any, Literal, TypeVar, get_args
 
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.pattern_generator import STAND_SECONDS
-from sarah.episode.reward import HALF_WIDTH, STEP_FREQUENCY, RewardForm
 from sarah.errors import ConfigurationError, check_range, check_types, unknown_name
 from sarah.number import is_number, plain
 from sarah.robot.dimensions import check_dimensions, scale_of, unscaled_dimensions
@@ -18,6 +17,11 @@ from sarah.simulation.physics import PHYSICS, Physics, physics_for
 from sarah.simulation.randomisation import Randomisation
 from sarah.simulation.terrain import Terrain
 
+RewardForm = Literal["symmetric", "printed"]
+HALF_WIDTH = 0.5
+"""Displacement of the default robot from its start at which the reward is zero, in m."""
+STEP_FREQUENCY = 3.0
+"""Rewarded number of steps per second; both are the paper's."""
 LONGEST_EPISODE = 3600.0
 """Longest time limit of an episode, in s."""
 BOX_HALF_WIDTH = 0.25

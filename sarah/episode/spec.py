@@ -10,7 +10,7 @@ from sarah.episode.tasks import STEPPING, Task, task_named
 from sarah.errors import ConfigurationError, shortened
 from sarah.number import plain
 from sarah.robot.description import RobotDescription, describe_robot
-from sarah.simulation.ground import Ground
+from sarah.scenery.ground import Ground
 from sarah.simulation.terrain import draw_ground
 
 FIRST_TRAINING_SEED = 2**31

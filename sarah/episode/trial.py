@@ -8,7 +8,8 @@ from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import Task, disturbances_of
+from sarah.episode.task_answers import disturbances_of
+from sarah.episode.tasks import Task
 from sarah.errors import TaskError
 
 TRIED_SEEDS = 20

@@ -18,6 +18,7 @@ from sarah.episode.cluster import RemoteJob, connect, start
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import is_portable
 from sarah.errors import ConfigurationError, check_whole, shortened
 from sarah.robot.reading import SensorReading
 from sarah.simulation.world import HoldsWorld
@@ -105,7 +106,7 @@ def close_waiting_episodes() -> None:
 
 
 def _key(spec: EpisodeSpec) -> tuple[Any, ...]:
-    return (spec.task.identity, 0 if spec.task.is_portable else id(spec.task), spec.seed, repr(spec.config))
+    return (spec.task.identity, 0 if is_portable(spec.task) else id(spec.task), spec.seed, repr(spec.config))
 
 
 _EPISODES = (begin_episode, finish_episode, simulate)
@@ -213,7 +214,7 @@ class Workers(HoldsWorld, Executor):
         if self.client is None:
             return _LocalJob(function, *subjects)
         for subject in subjects:
-            if isinstance(subject, EpisodeSpec) and not subject.task.is_portable:
+            if isinstance(subject, EpisodeSpec) and not is_portable(subject.task):
                 raise ConfigurationError(
                     f"task {subject.task.name!r} is not that of a file, so worker processes cannot have it: put it "
                     "into one, and use sarah.load_task"

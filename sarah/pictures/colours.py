@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from zlib import crc32
 
-from sarah.simulation.push_arrow import PUSH as PUSH
+from sarah.scenery.push_arrow import PUSH as PUSH
 
 LEFT, RIGHT = "#0072B2", "#D55E00"
 """Colours of the legs, as in the robot's visual shapes."""

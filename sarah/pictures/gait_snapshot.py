@@ -13,7 +13,8 @@ from PIL import Image
 from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import Task, controller_of
+from sarah.episode.task_answers import controller_of
+from sarah.episode.tasks import Task
 from sarah.errors import ConfigurationError, SimulationError
 from sarah.pictures.gait_figure import draw_gait_cycle
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video

@@ -17,8 +17,8 @@ from sarah.episode.trace import Trace
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.robot.reading import Side, Vector
 from sarah.robot.scale import Scale
-from sarah.simulation.push_arrow import LINES_OF_TEXT, STANDARD, arrow, draw_arrow
-from sarah.simulation.scenery import View
+from sarah.scenery.camera import View
+from sarah.scenery.push_arrow import LINES_OF_TEXT, STANDARD, arrow, draw_arrow
 
 INK, PALE_INK = "#1B1F24", "#5A6470"
 OUTLINE: dict[str, Any] = {"stroke_width": 2, "stroke_fill": "white"}

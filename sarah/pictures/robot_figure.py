@@ -17,8 +17,8 @@ from sarah.pictures.link_shapes import points_around
 from sarah.pictures.style import COLUMN_WIDTH, own_style, save
 from sarah.robot.description import ANKLE_JOINTS, GROUPS, JOINT_AXES, JOINT_TYPES, RobotDescription
 from sarah.robot.standing import model_of
+from sarah.scenery.camera import Camera, View
 from sarah.simulation.renderer import Renderer
-from sarah.simulation.scenery import Camera, View
 
 CAMERA = Camera(height=0.46, distance=2.3, yaw=152.0, pitch=-9.0)
 HEIGHT = 1.3 * COLUMN_WIDTH

@@ -18,10 +18,10 @@ from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.pictures.overlay import Overlay
 from sarah.robot.description import ANKLE_JOINTS, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, Vector
-from sarah.simulation.ground import LEVEL, Ground
-from sarah.simulation.push_arrow import arrow
+from sarah.scenery.camera import Camera, View
+from sarah.scenery.ground import LEVEL, Ground
+from sarah.scenery.push_arrow import arrow
 from sarah.simulation.renderer import Renderer
-from sarah.simulation.scenery import Camera, View
 
 SUFFIXES = (".mp4", ".gif")
 WIDTH, HEIGHT = 1024, 576

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from sarah.episode.episode import simulate
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import controller_of
+from sarah.episode.task_answers import controller_of
 from sarah.errors import ConfigurationError
 from sarah.pictures.gait_figure import draw_gait_cycle
 from sarah.pictures.robot_figure import draw_robot

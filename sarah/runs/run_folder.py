@@ -27,7 +27,7 @@ from typing import Any
 
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import Task
+from sarah.episode.tasks import Task, is_portable
 from sarah.errors import ConfigurationError, RunFolderError, shortened
 from sarah.files import check_name, quoted, read_lines, read_text, replace_text, write_command
 from sarah.formats import read_json
@@ -94,7 +94,7 @@ class RunFolder:
         :raises RunFolderError: if the folder is not empty or cannot be written
         :raises ConfigurationError: if the task is that of a script, which the folder could not record
         """
-        if not config.task.is_portable:
+        if not is_portable(config.task):
             raise ConfigurationError(
                 f"a run folder records tasks of files: put {config.task.name!r} into one, and use sarah.load_task"
             )

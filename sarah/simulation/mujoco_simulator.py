@@ -13,7 +13,7 @@ import numpy as np
 from sarah.errors import SimulationError
 from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Side, Vector
-from sarah.simulation.ground import Ground
+from sarah.scenery.ground import Ground
 from sarah.simulation.mujoco_model import WITHOUT_WARNINGS, check_callbacks, model_of, sole_name
 from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.randomisation import NOMINAL, Conditions

@@ -14,7 +14,7 @@ from itertools import product
 from sarah.errors import SimulationError
 from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Side, Vector
-from sarah.simulation.ground import Ground
+from sarah.scenery.ground import Ground
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
 from sarah.simulation.pybullet_world import PyBulletWorld, pybullet
 from sarah.simulation.randomisation import NOMINAL, Conditions

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from sarah.errors import ConfigurationError, check_fields, check_types, to_ranges
 from sarah.robot.description import GROUPS
 from sarah.robot.reading import Side, Vector
-from sarah.simulation.ground import LEVEL, Ground
+from sarah.scenery.ground import LEVEL, Ground
 
 LINKS = tuple(link for group in GROUPS.values() for link in group)
 PLAUSIBLE = {

@@ -12,11 +12,12 @@ from PIL import Image, ImageDraw
 from sarah.errors import ConfigurationError
 from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, Side, Vector
-from sarah.simulation.bumps import LIGHT
+from sarah.scenery.bumps import LIGHT
+from sarah.scenery.camera import STANDARD_CAMERA, Camera, View
+from sarah.scenery.floor import floor, shaded
+from sarah.scenery.push_arrow import arrow, draw_arrow
 from sarah.simulation.engines import INSTALLATION, is_installed
-from sarah.simulation.push_arrow import arrow, draw_arrow
 from sarah.simulation.pybullet_world import PyBulletWorld, pybullet
-from sarah.simulation.scenery import STANDARD_CAMERA, Camera, View, floor, shaded
 from sarah.simulation.simulator import Simulator
 from sarah.simulation.world import HoldsWorld
 

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
-from sarah.robot.reading import GRAVITY, SensorReading, Side, Vector
+from sarah.robot.reading import SensorReading, Side, Vector
+from sarah.scenery.ground import LEVEL_GRAVITY, Ground
 
-if TYPE_CHECKING:
-    from sarah.simulation.ground import Ground
-
-LEVEL_GRAVITY = (0.0, 0.0, -GRAVITY)
-"""Acceleration of gravity on level ground, in the world's frame, in m/s^2."""
 LARGEST_STATE = 1e3
 """Largest state of a torso, in any SI unit: a larger one means that the simulation diverges."""
 

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 
 from sarah.errors import ConfigurationError, check_fields, to_ranges
 from sarah.robot.reading import GRAVITY, Vector
-from sarah.simulation.ground import Ground
-from sarah.simulation.simulator import LEVEL_GRAVITY
+from sarah.scenery.ground import LEVEL_GRAVITY, Ground
 
 LARGEST_ROUGHNESS = 0.05
 """Largest height of bumps, in m."""

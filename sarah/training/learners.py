@@ -26,7 +26,8 @@ from sarah.envs.sarah_env import draw_seed, observation_from, parameters_from
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import Task, disturbances_of
+from sarah.episode.task_answers import disturbances_of
+from sarah.episode.tasks import Task
 from sarah.episode.workers import Executor, Job
 from sarah.errors import ConfigurationError
 from sarah.files import replacing

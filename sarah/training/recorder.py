@@ -15,7 +15,7 @@ from tqdm import tqdm
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.result import METRICS, EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import disturbances_of
+from sarah.episode.task_answers import disturbances_of
 from sarah.errors import LearningError
 from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal

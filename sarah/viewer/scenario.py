@@ -8,7 +8,8 @@ from typing import Any
 
 from sarah.episode.push import Push
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, TASKS, BalanceConfig, Task, controller_of, push_of
+from sarah.episode.task_answers import controller_of, push_of
+from sarah.episode.tasks import BALANCE, TASKS, BalanceConfig, Task
 from sarah.simulation.terrain import Terrain, draw_terrain
 
 

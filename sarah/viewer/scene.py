@@ -21,10 +21,10 @@ from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.robot.description import ANKLE_JOINTS, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, Vector
 from sarah.robot.scale import Scale
-from sarah.simulation.bumps import mesh
-from sarah.simulation.ground import LEVEL, Ground
-from sarah.simulation.push_arrow import STANDARD, arrow_length
-from sarah.simulation.scenery import Camera, View
+from sarah.scenery.bumps import mesh
+from sarah.scenery.camera import Camera, View
+from sarah.scenery.ground import LEVEL, Ground
+from sarah.scenery.push_arrow import STANDARD, arrow_length
 
 Colour = tuple[int, int, int]
 

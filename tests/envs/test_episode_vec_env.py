@@ -13,7 +13,8 @@ from sarah.envs.sarah_env import parameters_from
 from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
-from sarah.episode.tasks import STEPPING, disturbances_of
+from sarah.episode.task_answers import disturbances_of
+from sarah.episode.tasks import STEPPING
 from sarah.episode.workers import Job, Outcome, Workers, begin_episode
 from sarah.errors import ConfigurationError, LearningError
 from sarah.training.replay import LateRankReplayBuffer

@@ -21,15 +21,17 @@ from sarah.envs.sarah_env import SarahEnv, observation_from, parameters_from
 from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
-from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, Task, disturbances_of
+from sarah.episode.task_answers import disturbances_of
+from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, Task
 from sarah.errors import ConfigurationError, SimulationError
 from sarah.robot.reading import SensorReading
 from sarah.robot.scale import Scale
+from sarah.scenery.camera import STANDARD_CAMERA
+from sarah.scenery.floor import floor
+from sarah.scenery.push_arrow import PUSH
 from sarah.simulation.engines import is_installed
 from sarah.simulation.mujoco_simulator import MujocoSimulator
-from sarah.simulation.push_arrow import PUSH
 from sarah.simulation.randomisation import Randomisation
-from sarah.simulation.scenery import STANDARD_CAMERA, floor
 from sarah.simulation.simulator import TorsoState
 from sarah.simulation.terrain import Terrain, draw_ground
 

@@ -9,13 +9,13 @@ import pytest
 
 import sarah
 from sarah.episode.running_robot import conditions_of
-from sarah.episode.tasks import TASKS, disturbances_of
+from sarah.episode.task_answers import disturbances_of
+from sarah.episode.tasks import TASKS
 from sarah.episode.trial import try_task
 from sarah.errors import SarahError, TaskError
 from sarah.robot.description import GROUPS
-from sarah.robot.reading import Side
+from sarah.robot.reading import GRAVITY, Side
 from sarah.simulation.randomisation import Randomisation
-from sarah.simulation.simulator import GRAVITY
 
 UNEVEN = sarah.Terrain(slope_degrees=(2.0, 6.0), roughness=0.01, friction_left=(0.5, 0.6), friction_right=(0.2, 0.3))
 SHORT = sarah.EpisodeConfig(time_limit=3.0)

@@ -13,8 +13,8 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.robot.description import RobotDescription
+from sarah.scenery.ground import LEVEL
 from sarah.simulation.engines import Engine
-from sarah.simulation.ground import LEVEL
 from sarah.simulation.physics import Physics
 from sarah.simulation.randomisation import Conditions, Randomisation
 from sarah.simulation.simulator import TorsoState

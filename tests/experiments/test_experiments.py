@@ -9,10 +9,10 @@ from laboratory import need
 
 from experiments import record
 from experiments.__main__ import main, makes_the_result, mark_stale
+from experiments.endurance.protections import PROTECTIONS, Protection
 from experiments.made_with import made_with
 from experiments.table import TABLE
 from sarah.errors import ConfigurationError
-from tests.endurance.protections import PROTECTIONS, Protection
 
 LONG = {
     "killed_workers",

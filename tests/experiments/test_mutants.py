@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.endurance import mutants
-from tests.endurance.mutants_tested import EXPLAINED, SUBJECTS, Subject
+from experiments.endurance import mutants
+from experiments.endurance.mutants_tested import EXPLAINED, SUBJECTS, Subject
 
 CODE = "def half(x):\n    return x / 2.5\n"
 SUBJECT = Subject("half.py", "test_half.py")

@@ -7,8 +7,9 @@ import pytest
 from laboratory import need
 
 from sarah.robot.description import GROUPS, RobotDescription, describe_robot
+from sarah.scenery.camera import STANDARD_CAMERA, Camera, View
+from sarah.scenery.floor import floor
 from sarah.simulation.renderer import Renderer
-from sarah.simulation.scenery import STANDARD_CAMERA, Camera, View, floor
 from sarah.simulation.terrain import Terrain, draw_ground
 
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)

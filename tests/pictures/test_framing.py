@@ -17,8 +17,9 @@ from sarah.pictures.robot_figure import draw_robot
 from sarah.pictures.video import FEET_HEIGHT, FEET_WIDTH, HEIGHT, TEXT_WIDTH, WIDTH, cameras, frames
 from sarah.robot.description import RobotDescription, describe_robot
 from sarah.robot.reading import Vector
+from sarah.scenery.camera import STANDARD_CAMERA, View
+from sarah.scenery.floor import floor
 from sarah.simulation.renderer import Renderer
-from sarah.simulation.scenery import STANDARD_CAMERA, View, floor
 
 pytestmark = NEEDS_PYBULLET
 

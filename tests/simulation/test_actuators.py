@@ -6,11 +6,11 @@ import pytest
 from laboratory import BuildSimulation, Laboratory
 
 from sarah.robot.description import describe_robot
-from sarah.robot.reading import ACTUATED_JOINTS, Side
+from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, Side
 from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import PHYSICS, PyBulletPhysics
 from sarah.simulation.randomisation import NOMINAL
-from sarah.simulation.simulator import GRAVITY, rotate_to_body
+from sarah.simulation.simulator import rotate_to_body
 
 SECOND = PHYSICS["standard"].control_rate
 

@@ -18,8 +18,8 @@ from sarah.errors import ConfigurationError
 from sarah.robot.description import describe_robot
 from sarah.robot.dimensions import dimensions_alike
 from sarah.robot.reading import Side, Vector
+from sarah.scenery.ground import LEVEL, Ground
 from sarah.simulation.build import simulator_of
-from sarah.simulation.ground import LEVEL, Ground
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import Conditions
 from sarah.simulation.simulator import Simulator

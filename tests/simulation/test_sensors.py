@@ -11,12 +11,12 @@ from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
 from sarah.robot.description import describe_robot
 from sarah.robot.filters import LowPass
-from sarah.robot.reading import SensorReading
+from sarah.robot.reading import GRAVITY, SensorReading
 from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import NOMINAL, SensorConditions
 from sarah.simulation.sensors import ImperfectSensors
-from sarah.simulation.simulator import GRAVITY, TorsoState, rotate_to_body, specific_force
+from sarah.simulation.simulator import TorsoState, rotate_to_body, specific_force
 
 DT = 0.01
 TRUTH = SensorReading(

@@ -7,13 +7,13 @@ import pytest
 from laboratory import NEEDS_PYBULLET, BuildSimulation, Laboratory
 
 from sarah.robot.description import ANKLE_JOINTS, GROUPS, PLATES, describe_robot
-from sarah.robot.reading import Side
+from sarah.robot.reading import GRAVITY, Side
 from sarah.simulation.physics import PHYSICS, PyBulletPhysics
 from sarah.simulation.pybullet_simulator import PyBulletSimulator
 from sarah.simulation.pybullet_world import pybullet
 from sarah.simulation.randomisation import LINKS, NOMINAL, Conditions
 from sarah.simulation.renderer import Renderer
-from sarah.simulation.simulator import GRAVITY, Simulator, rotate_to_body
+from sarah.simulation.simulator import Simulator, rotate_to_body
 
 SECOND = PHYSICS["standard"].control_rate
 

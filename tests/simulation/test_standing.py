@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from laboratory import BuildSimulation
 
+from sarah.robot.reading import GRAVITY
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import Randomisation, draw_conditions
-from sarah.simulation.simulator import GRAVITY, Simulator
+from sarah.simulation.simulator import Simulator
 from sarah.simulation.terrain import Terrain, draw_ground
 
 SECOND = PHYSICS["standard"].control_rate

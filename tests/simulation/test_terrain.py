@@ -7,10 +7,11 @@ import pytest
 from laboratory import BuildSimulation, Laboratory
 
 from sarah.errors import ConfigurationError
-from sarah.simulation.ground import LEVEL
+from sarah.robot.reading import GRAVITY
+from sarah.scenery.ground import LEVEL
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
 from sarah.simulation.randomisation import Conditions
-from sarah.simulation.simulator import GRAVITY, Simulator
+from sarah.simulation.simulator import Simulator
 from sarah.simulation.terrain import Terrain, draw_ground
 
 SECOND = PHYSICS["standard"].control_rate

@@ -10,7 +10,8 @@ from sarah.agents.corrections import corrected
 from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, disturbances_of
+from sarah.episode.task_answers import disturbances_of
+from sarah.episode.tasks import BALANCE
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics

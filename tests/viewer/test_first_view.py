@@ -10,7 +10,7 @@ import yourdfpy
 
 from sarah.robot.description import describe_robot
 from sarah.runs.run_episodes import episode_of_parameters
-from sarah.simulation.scenery import View
+from sarah.scenery.camera import View
 from sarah.viewer.page import Page
 from sarah.viewer.scene import FIRST_CAMERA, WINDOW, arrow, first_camera, status_place
 from sarah.viewer.server import serving

@@ -11,7 +11,8 @@ from sarah.episode.episode import simulate
 from sarah.episode.push import DrawnPush, Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, push_of
+from sarah.episode.task_answers import push_of
+from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
 from sarah.errors import ConfigurationError, RunFolderError
 from sarah.runs.run_episodes import choose_episode, episodes_of_run
 from sarah.runs.run_folder import RunFolder

@@ -4,10 +4,11 @@ A task may import errors, robot, control, and from the episode its settings, pus
 ending, reward, tick and shipped parameters.
 """
 
+import copyreg
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from sarah.episode.tasks.asking import controller_of, disturbances_of, ending_of, push_of, reward_of
 from sarah.episode.tasks.balance import BALANCE, BalanceConfig
 from sarah.episode.tasks.stepping import STEPPING
 from sarah.episode.tasks.task import Task, TaskFile
@@ -52,6 +53,25 @@ def load_task(reference: str) -> Task[Any]:
     return task_named(reference)
 
 
+def is_portable(task: Task[Any]) -> bool:
+    """Whether any process can have the same task: it is this package's, or a file's; a script's own is not.
+
+    :param task: the task
+    """
+    return task.file is not None or TASKS.get(task.name) is task
+
+
+def _pickled(task: Task[Any]) -> tuple[Any, tuple[Any, ...]]:
+    """What makes the same task: its name in this package, or the text of its file. Workers need nothing else."""
+    if task.file is not None:
+        return task_of_text, (task.file.name, task.file.attribute, task.file.text)
+    if is_portable(task):
+        return task_named, (task.name,)
+    return Task, tuple(getattr(task, item.name) for item in fields(task))
+
+
+copyreg.pickle(Task, _pickled)
+
 __all__ = [
     "BALANCE",
     "SETTINGS_TYPES",
@@ -60,12 +80,8 @@ __all__ = [
     "BalanceConfig",
     "Task",
     "TaskFile",
-    "controller_of",
-    "disturbances_of",
-    "ending_of",
+    "is_portable",
     "load_task",
-    "push_of",
-    "reward_of",
     "task_named",
     "task_of_text",
 ]

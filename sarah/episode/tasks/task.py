@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
 
 from sarah.control.hip_law import BalanceParameters
 from sarah.control.parameters import Parameter
@@ -20,9 +20,6 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tick import Tick
 from sarah.errors import ConfigurationError, shortened
 from sarah.number import is_number, plain
-
-if TYPE_CHECKING:
-    from sarah.episode.spec import EpisodeSpec
 
 ConfigType = TypeVar("ConfigType", bound=EpisodeConfig)
 ControllerParameters = tuple[SteppingParameters, BalanceParameters | None]
@@ -116,7 +113,7 @@ class Task(Generic[ConfigType]):
     ending: Callable[[Tick, Any], str | None] = paper_ending
     must_step: bool = True
     draw_push: Callable[[Any, int], DrawnPush | None] = push_of_settings
-    disturbances: Callable[[EpisodeSpec], Sequence[float]] | None = drawn_disturbances
+    disturbances: Callable[[Any], Sequence[float]] | None = drawn_disturbances
     file: TaskFile | None = None
 
     def __post_init__(self) -> None:
@@ -160,23 +157,6 @@ class Task(Generic[ConfigType]):
     def __repr__(self) -> str:
         """Name and origin, in short."""
         return f"Task({self.identity})"
-
-    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        """Pickle a task of this package by its name, and one of a file by its text: workers need nothing else."""
-        from sarah.episode import tasks  # which imports this module
-
-        if self.file is not None:
-            return tasks.task_of_text, (self.file.name, self.file.attribute, self.file.text)
-        if self.is_portable:
-            return tasks.task_named, (self.name,)
-        return type(self), tuple(getattr(self, item.name) for item in fields(self))
-
-    @property
-    def is_portable(self) -> bool:
-        """Whether any process can have the same task: it is this package's, or a file's; a script's own is not."""
-        from sarah.episode.tasks import TASKS  # which imports this module
-
-        return self.file is not None or TASKS.get(self.name) is self
 
     @property
     def reference(self) -> str:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from PIL import Image, ImageDraw
 
-from sarah.simulation.ground import Ground
-
-if TYPE_CHECKING:
-    from sarah.simulation.scenery import View
+from sarah.scenery.camera import View
+from sarah.scenery.ground import Ground
 
 LIGHT = (-1.5, 2.5, 3.0)
 """Direction towards the light in pictures, in the world's frame."""

@@ -88,7 +88,7 @@ PROTECTIONS = (
     Protection(
         "workers refuse the task of a script",
         "episode/workers.py",
-        "not subject.task.is_portable:",
+        "not is_portable(subject.task):",
         "False:",
         "test_workers_refuse_the_task_of_a_script",
     ),

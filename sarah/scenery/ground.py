@@ -8,9 +8,10 @@ from itertools import product
 
 from sarah.errors import ConfigurationError
 from sarah.robot.description import RobotDescription
-from sarah.robot.reading import Side, Vector
-from sarah.simulation.simulator import LEVEL_GRAVITY
+from sarah.robot.reading import GRAVITY, Side, Vector
 
+LEVEL_GRAVITY = (0.0, 0.0, -GRAVITY)
+"""Acceleration of gravity on level ground, in the world's frame, in m/s^2."""
 BALL_SAMPLES = 8
 """Number of samples of the surface from under a ball's centre to its edge."""
 

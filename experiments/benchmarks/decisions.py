@@ -20,7 +20,8 @@ from experiments.record import Row
 from sarah.agents import PRESETS, SmoothedReplayBuffer
 from sarah.agents.smoothed_buffer import ADDITIONS_PER_CHOICE
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import STEPPING, disturbances_of
+from sarah.episode.task_answers import disturbances_of
+from sarah.episode.tasks import STEPPING
 from sarah.training.recommendation import Tried
 from sarah.training.recorder import EPISODES_PER_RECOMMENDATION
 

@@ -6,7 +6,7 @@ import numpy as np
 from PIL import ImageDraw
 
 from sarah.robot.scale import Scale
-from sarah.simulation.scenery import View
+from sarah.scenery.camera import View
 
 PUSH = "#8C2B8F"
 """Colour of a push."""

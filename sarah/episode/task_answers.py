@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sarah.control.hip_law import BalanceParameters
 from sarah.control.pattern_generator import SteppingParameters
 from sarah.episode.ending import is_ending
 from sarah.episode.push import DrawnPush
 from sarah.episode.settings import EpisodeConfig
-from sarah.episode.tasks.task import ControllerParameters, Task
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import Task
+from sarah.episode.tasks.task import ControllerParameters
 from sarah.episode.tasks.task_file import mistake
 from sarah.episode.tick import Tick
 from sarah.errors import SarahError, TaskError, shortened
 from sarah.number import is_finite, plain
-
-if TYPE_CHECKING:
-    from sarah.episode.spec import EpisodeSpec
 
 ENDINGS_OF_EPISODES = ("time_limit", "diverged")
 """Endings that no task can claim: the episode itself finds them."""

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import psutil
 
+from experiments.endurance.worker_processes import worker_processes
 from experiments.record import Row
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import simulate
@@ -24,7 +25,6 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
 from sarah.training.train import train
-from tests.endurance.worker_processes import worker_processes
 
 SHORT = EpisodeConfig(time_limit=1.3, physics=Physics(rate=100, solver_iterations=5))
 LOOK_SECONDS = 0.2

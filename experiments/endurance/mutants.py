@@ -19,8 +19,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from experiments.endurance.mutants_tested import EXCLUDED, EXPLAINED, SUBJECTS, Subject
 from experiments.record import ROOT, Row
-from tests.endurance.mutants_tested import EXCLUDED, EXPLAINED, SUBJECTS, Subject
 
 LEAST_KILLED_PERCENT = 90.0
 """Percentage of each file's mutants that its tests have to kill."""
@@ -125,7 +125,7 @@ def mutations_of(subject: Subject, tree: Path) -> list[Any]:
     from cosmic_ray.plugins import OPERATOR_PROVIDERS
     from cosmic_ray.work_db import use_db
 
-    from tests.endurance.mutation_operators import OPERATORS
+    from experiments.endurance.mutation_operators import OPERATORS
 
     OPERATOR_PROVIDERS["sarah"] = OPERATORS
     with use_db(tree / "session.sqlite") as session:

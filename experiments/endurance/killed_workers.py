@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from experiments.endurance.worker_processes import worker_processes
 from experiments.record import Row
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.spec import EpisodeSpec
@@ -17,7 +18,6 @@ from sarah.episode.workers import Workers
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.training.train import train
-from tests.endurance.worker_processes import worker_processes
 
 WORKERS = 2
 

@@ -1,0 +1,1 @@
+"""Timings: how fast simulation, workers, learner and viewer are."""

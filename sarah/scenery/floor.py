@@ -1,0 +1,91 @@
+"""The floor in pictures: its tiles, its bumps, and the feet's shadows on it."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFilter
+
+from sarah.scenery.bumps import mesh, over
+from sarah.scenery.camera import Camera, View
+
+TILE = 0.25
+"""Length of the floor's tiles, in m; a torso that moves by one tile from its start has left the episode's box."""
+LIGHT_TILE, DARK_TILE = np.array((243.0, 245.0, 247.0)), np.array((214.0, 221.0, 229.0))
+SKY = np.array((252.0, 252.0, 253.0))
+FADING_DISTANCE = 3.0
+"""Distance from the camera over which the floor fades to 1/e into the sky, in m; larger for cameras far away."""
+FADING_SHARE = 1.3
+"""Least fading distance, as a multiple of the camera's distance."""
+SHADOW = 0.45
+"""Share of the light that a shadow takes."""
+SHADOW_BLUR = 0.004
+"""Blur of the shadows, as a share of the picture's height."""
+SAMPLES = 2
+"""Samples of the floor along each side of a pixel."""
+
+
+@lru_cache(maxsize=4)
+def floor(width: int, height: int, camera: Camera) -> np.ndarray:
+    """Draw the tiled floor, which fades into the sky.
+
+    :param width: width of the picture, in pixels
+    :param height: height of the picture, in pixels
+    :param camera: place and direction of the camera
+    :return: uint8 array of shape (height, width, 3) that must not be changed
+    """
+    view = View(width, height, camera)
+    right = ((np.arange(SAMPLES * width) + 0.5) / SAMPLES - width / 2) / view.focal_length
+    up = (height / 2 - (np.arange(SAMPLES * height) + 0.5) / SAMPLES)[:, None] / view.focal_length
+    ray_x, ray_y, ray_z = (right * view.axes[0, i] + up * view.axes[1, i] + view.axes[2, i] for i in range(3))
+    length = view.position[2] / np.maximum(-ray_z, 1e-6)  # length of the ray down to the floor
+    x, y = length * ray_x, length * ray_y
+    nearness, is_dark = _tiles(x + view.position[0], y + view.position[1], view, camera)
+    shape = (height, SAMPLES, width, SAMPLES)
+    light, dark = ((nearness * tile).reshape(shape).mean(axis=(1, 3))[..., None] for tile in (1.0 - is_dark, is_dark))
+    picture = _coloured(light, dark).astype(np.uint8)
+    if camera.ground.is_rough:
+        nodes, triangles = mesh(camera.ground)
+        x, y, _ = nodes[triangles].mean(axis=1).T
+        nearness, is_dark = (values[:, None] for values in _tiles(x, y, view, camera))
+        picture = over(picture, view, camera.ground, _coloured(nearness * (1.0 - is_dark), nearness * is_dark), SAMPLES)
+    picture.flags.writeable = False
+    return picture
+
+
+def _tiles(x: np.ndarray, y: np.ndarray, view: View, camera: Camera) -> tuple[np.ndarray, np.ndarray]:
+    """Visibility of places of the floor, from 0 to 1, and whether they are on dark tiles."""
+    distance = (x - view.position[0]) ** 2 + (y - view.position[1]) ** 2
+    nearness = np.exp(-distance / max(FADING_DISTANCE, FADING_SHARE * camera.distance) ** 2)
+    return nearness, (np.floor(x / TILE) + np.floor(y / TILE)) % 2
+
+
+def _coloured(light: np.ndarray, dark: np.ndarray) -> np.ndarray:
+    """Colours of the floor where light and dark tiles have these shares of a pixel, and the sky the rest."""
+    colours: np.ndarray = SKY + light * (LIGHT_TILE - SKY) + dark * (DARK_TILE - SKY)
+    return colours
+
+
+def shaded(picture: np.ndarray, outlines: list[np.ndarray]) -> np.ndarray:
+    """Darken the parts of a picture that lie in shadow.
+
+    :param picture: uint8 array of shape (height, width, 3)
+    :param outlines: outlines of the shadows, in pixels, each of shape (corners, 2)
+    :return: uint8 array of the same shape
+    """
+    height, width, _ = picture.shape
+    blur = SHADOW_BLUR * height
+    corners = np.concatenate(outlines)
+    left, top = np.clip(np.floor(corners.min(axis=0) - 3 * blur), 0, (width, height)).astype(int)
+    right, bottom = np.clip(np.ceil(corners.max(axis=0) + 3 * blur), 0, (width, height)).astype(int)
+    if left >= right or top >= bottom:
+        return picture
+    mask = Image.new("L", (right - left, bottom - top))
+    draw = ImageDraw.Draw(mask)
+    for outline in outlines:
+        draw.polygon([tuple(corner) for corner in outline - (left, top)], fill=round(255 * SHADOW))
+    light = 255 - np.asarray(mask.filter(ImageFilter.GaussianBlur(blur)), dtype=np.uint16)
+    dark = picture.copy()
+    dark[top:bottom, left:right] = dark[top:bottom, left:right] * light[..., None] // 255
+    return dark
