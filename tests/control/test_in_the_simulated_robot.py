@@ -66,7 +66,7 @@ def test_no_push_that_the_robot_survives_is_taken_for_a_fall(engine: str) -> Non
         episode.run((V.V1, V.V2, V.V3, V.V4))
         episode.close()
         survived += episode.termination == "time_limit"
-        assert not episode.generator.has_fallen or episode.termination != "time_limit"
+        assert not episode.robot.generator.has_fallen or episode.termination != "time_limit"
     assert survived >= 5
 
 
@@ -82,12 +82,12 @@ def test_a_jump_of_v2_while_the_robot_steps_is_no_push(engine: str, v2: float) -
         episode.start((1.0, 0.0, 1.0, 0.0))
         for _ in range(200 + 7 * seed):
             episode.tick()
-        episode.generator.set_parameters(balance=BalanceParameters(1.0, v2, 1.0, 0.0))
+        episode.robot.generator.set_parameters(balance=BalanceParameters(1.0, v2, 1.0, 0.0))
         while episode.termination is None:
             episode.tick()
         result = episode.result()
         episode.close()
-        assert result.survived and not episode.generator.has_fallen
+        assert result.survived and not episode.robot.generator.has_fallen
         assert result.steps_per_second > 2.0 and result.shifts_by_sensors > 0.8
 
 
@@ -115,14 +115,14 @@ def test_zeros_of_the_joints_may_be_as_far_off_as_the_page_says(offsets: tuple[f
     terminations = {}
     for added in (offsets, (0.0, 0.0, 0.05, 0.05)):
         episode = Episode(config, 1000, BALANCE)
-        read = episode.simulation.read
+        read = episode.robot.simulation.read
 
         def askew(read: Callable[[], SensorReading] = read, added: tuple[float, ...] = added) -> SensorReading:
             seen = read()
             shifted = [joint + offset for joint, offset in zip(seen.joints, (*added, 0.0, 0.0), strict=True)]
             return seen._replace(joints=tuple(shifted))  # type: ignore[arg-type]  # there are six
 
-        episode.simulation.read = askew  # type: ignore[method-assign]
+        episode.robot.simulation.read = askew  # type: ignore[method-assign]
         episode.stand()
         terminations[added] = episode.run(spec.parameters).termination
         episode.close()

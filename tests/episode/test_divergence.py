@@ -26,11 +26,11 @@ def spoilt(
     """An episode in which what the engine returns is replaced from some time on."""
     episode = Episode(EpisodeConfig(time_limit=3.0), 0, record_trace=record_trace)
     for name, value in parts.items():
-        original = getattr(episode.simulation, name)
+        original = getattr(episode.robot.simulation, name)
         monkeypatch.setattr(
-            episode.simulation,
+            episode.robot.simulation,
             name,
-            lambda original=original, value=value: value if episode.simulation.time > seconds else original(),
+            lambda original=original, value=value: value if episode.robot.simulation.time > seconds else original(),
         )
     return episode
 
@@ -56,7 +56,7 @@ def test_a_diverging_simulation_ends_as_diverged_with_a_finite_reward(
     assert result.termination == "diverged" and 0.0 <= result.episode_return < 1.0
     assert result.duration <= max(seconds, 1.0) + 0.05
     assert all(
-        map(math.isfinite, (*observation, *observation_from(episode.last_reading, Scale()), *result.final_position))
+        map(math.isfinite, (*observation, *observation_from(episode.robot.last_reading, Scale()), *result.final_position))
     )
     assert Evaluation((result, RESULT)).diverged == 1
 

@@ -123,7 +123,7 @@ def test_words_of_an_own_ending_are_its_name() -> None:
 def test_diverging_physics_ends_with_a_finite_return(monkeypatch: pytest.MonkeyPatch) -> None:
     episode = Episode(SHORT, seed=0)
     episode.stand()
-    healthy = episode.simulation.torso_state
+    healthy = episode.robot.simulation.torso_state
     calls = 0
 
     def diverging() -> TorsoState:
@@ -132,7 +132,7 @@ def test_diverging_physics_ends_with_a_finite_return(monkeypatch: pytest.MonkeyP
         state = healthy()
         return state._replace(position=(float("nan"),) * 3) if calls > 100 else state
 
-    monkeypatch.setattr(episode.simulation, "torso_state", diverging)
+    monkeypatch.setattr(episode.robot.simulation, "torso_state", diverging)
     result = episode.run(PAPER_STEPPING)
     episode.close()
     assert result.termination == "diverged" and not result.survived

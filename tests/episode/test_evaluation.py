@@ -19,13 +19,13 @@ def shaken_by(amplitude: float) -> Evaluation:
     episode = Episode(SHORT, 0)
     episode.stand()
     episode.start(PAPER_STEPPING)
-    send = episode.simulation.set_targets
+    send = episode.robot.simulation.set_targets
 
     def shaken(targets: tuple[float, ...]) -> None:
-        flexion = amplitude if round(episode.simulation.time / CONTROL_DT) % 2 else -amplitude
+        flexion = amplitude if round(episode.robot.simulation.time / CONTROL_DT) % 2 else -amplitude
         send((*targets[:2], flexion, flexion, *targets[4:]))
 
-    episode.simulation.set_targets = shaken  # type: ignore[method-assign]
+    episode.robot.simulation.set_targets = shaken  # type: ignore[method-assign]
     while episode.termination is None:
         episode.tick()
     episode.close()

@@ -110,7 +110,7 @@ def test_physics_that_diverges_ends_the_episode_and_writes_no_file(
     episode.stand()
     episode.start(PAPER_STEPPING)
     while episode.termination is None:
-        episode.simulation.push((1e300, 0.0, 0.0))
+        episode.robot.simulation.push((1e300, 0.0, 0.0))
         episode.tick()
     assert episode.termination == "diverged" and math.isfinite(episode.result().score)
     episode.close()

@@ -197,7 +197,7 @@ def test_feet_of_a_robot_that_is_pushed_stay_on_the_bumps(lab: Laboratory, seed:
     episode.start((0.7, 0.4, 0.7, -0.4))
     while episode.termination is None:
         episode.tick()
-        assert min(episode.simulation.sole_height(side) for side in Side) > -RADIUS
+        assert min(episode.robot.simulation.sole_height(side) for side in Side) > -RADIUS
     episode.close()
 
 
