@@ -33,7 +33,7 @@ class Return:
 
 
 class Recording:
-    """Observer of gait, motion and, if it is wanted, every control tick.
+    """:class:`~sarah.episode.running_robot.Observer` of gait, motion and, if it is wanted, every control tick.
 
     :param robot: robot that it begins to observe
     :param begin: time of the first tick, in s
@@ -59,22 +59,14 @@ class Recording:
         return self._begin + self.ticks * self._dt
 
     def sensed(self, robot: RunningRobot) -> None:
-        """Record motion and efforts, and the height of a foot that swings.
-
-        :param robot: robot that runs
-        """
+        """Record motion and efforts, and the height of a foot that swings."""
         simulation, generator = robot.simulation, robot.generator
         self._motion.tick(robot.truth.acceleration, *simulation.actuator_motion())
         if generator.phase in (Phase.LIFT, Phase.LAND):
             self.gait.swing(simulation.sole_height(generator.swing))
 
     def decided(self, robot: RunningRobot, change: PhaseChange | None, force: Vector | None) -> None:
-        """Record the end of a phase, and a row of the trace.
-
-        :param robot: robot that runs
-        :param change: end of a phase in this tick
-        :param force: force of a push in this tick, in N
-        """
+        """Record the end of a phase, and a row of the trace."""
         if change is not None:
             self.gait.phase_change(self.ticks, change)
         if self._rows is not None:

@@ -70,7 +70,7 @@ def begin_episode(spec: EpisodeSpec) -> SensorReading:
     _waiting[_key(spec)] = episode
     if len(_waiting) > MOST_WAITING:
         _waiting.popitem(last=False)[1].close()
-    return episode.last_reading
+    return episode.robot.last_reading
 
 
 def finish_episode(spec: EpisodeSpec, following: EpisodeSpec | None = None) -> Outcome:

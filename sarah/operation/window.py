@@ -85,7 +85,7 @@ class Window:
 
 
 class WindowRecord:
-    """Observer of one window: what the robot feels, and what it is worth.
+    """:class:`~sarah.episode.running_robot.Observer` of one window: what the robot feels, and what it is worth.
 
     :param robot: robot that runs
     :param settle: ticks that are not measured
@@ -115,10 +115,7 @@ class WindowRecord:
         self._phase_began = 0
 
     def sensed(self, robot: RunningRobot) -> None:
-        """Record what the robot feels, and how far its joints are from their targets.
-
-        :param robot: robot that runs
-        """
+        """Record what the robot feels, and how far its joints are from their targets."""
         reading = robot.last_reading
         self._odometry.tick(reading)
         if self._ticks >= self._settle:
@@ -129,12 +126,7 @@ class WindowRecord:
             self._lags.append([abs(target - joint) for target, joint in zip(targets, reading.joints, strict=True)])
 
     def decided(self, robot: RunningRobot, change: PhaseChange | None, force: Vector | None) -> None:
-        """Record the end of a phase.
-
-        :param robot: robot that runs
-        :param change: end of a phase in this tick
-        :param force: force of a push in this tick, in N
-        """
+        """Record the end of a phase."""
         if change is not None:
             self._gait.phase_change(self._ticks, change)
             if change.ended in self._phases and self._ticks >= self._settle:

@@ -47,10 +47,9 @@ def test_stepping_by_the_fastest_time_outs_is_told_apart_and_does_not_pay(parame
 
 
 def test_standing_lasts_one_second() -> None:
-    episode = Episode(SHORT, seed=0)
-    episode.stand()
-    assert episode.robot.simulation.time == pytest.approx(STAND_SECONDS)
-    episode.close()
+    with Episode(SHORT, seed=0) as episode:
+        episode.stand()
+        assert episode.robot.simulation.time == pytest.approx(STAND_SECONDS)
 
 
 def test_episode_runs_at_another_control_rate() -> None:
