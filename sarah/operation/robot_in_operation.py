@@ -161,7 +161,8 @@ class RobotInOperation:
             fell=fell,
             felt=record.felt(),
         )
-        return window, recording and recording.result(robot, robot.termination or "time_limit")
+        termination = robot.termination or "time_limit"
+        return window, None if recording is None else recording.result(robot, termination)
 
     def _force(self, push: Push, tick: int, dt: float) -> Vector | None:
         """Force of the push during a tick, in N, if there is one then.
