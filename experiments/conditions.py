@@ -91,12 +91,9 @@ def simulate(
     if situation.angular_rate_bias is not None:
         x, y = (sign * situation.angular_rate_bias for sign in SIGNS[index % len(SIGNS)])
         sensors = replace(sensors, angular_rate_bias=(x, y, sensors.angular_rate_bias[2]))
-    episode = Episode(config, seed, task, conditions=replace(conditions, sensors=sensors))
-    try:
+    with Episode(config, seed, task, conditions=replace(conditions, sensors=sensors)) as episode:
         episode.stand()
         return episode.run(HIPS[hips])
-    finally:
-        episode.close()
 
 
 @dataclass(frozen=True)

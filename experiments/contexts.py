@@ -193,11 +193,8 @@ def run(ground: Ground, seed: int, choose: Callable[[np.ndarray], tuple[float, .
     :param choose: function that chooses V1 to V4
     :return: the score
     """
-    episode = Episode(ground.config, seed, ground.task)
-    try:
+    with Episode(ground.config, seed, ground.task) as episode:
         return episode.run(ground.with_error(choose(observation_from(episode.stand(), ground.config.scale)))).score
-    finally:
-        episode.close()
 
 
 def learn(options: Contexts, of: str, controller: str, seed: int) -> Policy:

@@ -77,14 +77,12 @@ def simulate(law: str, v3: float, seed: int, config: BalanceConfig) -> EpisodeRe
     :param seed: seed of the episode
     :param config: settings of the episode
     """
-    episode = Episode(config, seed, BALANCE)
-    try:
+    with Episode(config, seed, BALANCE) as episode:
         if law in SCALES:
-            episode.generator.hips = SwingLegFlexion(law, episode.generator, config.physics.control_dt)
+            generator = episode.robot.generator
+            generator.hips = SwingLegFlexion(law, generator, config.physics.control_dt)
         episode.stand()
         return episode.run((1.0, 0.0, v3, 0.0))
-    finally:
-        episode.close()
 
 
 @dataclass(frozen=True)

@@ -143,21 +143,19 @@ def simulate(controller: str, index: int, newtons: float, time_limit: float) -> 
     config = BALANCE.config_of(
         LEARNED.config, push=push, engine="pybullet", time_limit=time_limit, controller=constants
     )
-    episode, lacking = Episode(config, FIRST_EVALUATION_SEED + index, BALANCE), math.nan
-    assert isinstance(config, BalanceConfig) and episode.push is not None
-    assert isinstance(episode.simulation, PyBulletSimulator)
-    end = episode.push.begin + episode.push.duration
-    try:
+    lacking = math.nan
+    with Episode(config, FIRST_EVALUATION_SEED + index, BALANCE) as episode:
+        simulation = episode.robot.simulation
+        assert isinstance(config, BalanceConfig) and episode.push is not None
+        assert isinstance(simulation, PyBulletSimulator)
+        end = episode.push.begin + episode.push.duration
         episode.stand()
         episode.start(hips)
         while episode.termination is None:
             episode.tick()
-            if math.isnan(lacking) and episode.simulation.time > end - config.physics.control_dt / 2:
-                edge = outer_edge(episode.simulation, side)
-                lacking = lacking_energy(motions(episode.simulation), edge, side)
+            if math.isnan(lacking) and simulation.time > end - config.physics.control_dt / 2:
+                lacking = lacking_energy(motions(simulation), outer_edge(simulation, side), side)
         return Outcome(lacking, episode.result().survived)
-    finally:
-        episode.close()
 
 
 @dataclass(frozen=True)

@@ -221,17 +221,14 @@ def simulate(name: str, hips: str, seed: int, time_limit: float) -> Outcome:
     fault = FAULTS[name]
     config = BalanceConfig(engine="pybullet", push=Push(newtons=(0.0, 0.0)), time_limit=time_limit)
     config = replace(config, randomisation=replace(config.randomisation, delay_seconds=fault.delay_seconds))
-    episode = Episode(config, seed, BALANCE)
-    try:
+    dt = config.physics.control_dt
+    with Episode(config, seed, BALANCE) as episode:
         episode.stand()
         episode.start(HIPS[hips])
-        dt = config.physics.control_dt
-        generator = BehindFault(episode.generator, fault, FIRST_TICKS + TICKS_LATER * seed, dt)
-        episode.generator = generator  # type: ignore[assignment]  # whatever an episode asks of it, it has
+        generator = BehindFault(episode.robot.generator, fault, FIRST_TICKS + TICKS_LATER * seed, dt)
+        episode.robot.generator = generator  # type: ignore[assignment]  # whatever an episode asks of it, it has
         while episode.termination is None:
             episode.tick()
-    finally:
-        episode.close()
     changes, seconds = generator.changes, generator.since * dt
     return Outcome(
         episode.termination == "time_limit",

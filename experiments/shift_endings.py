@@ -114,19 +114,16 @@ def endings(spec: EpisodeSpec, steady_from: float) -> list[str]:
     :param spec: specification of the episode
     :param steady_from: simulated time from which they count, in s
     """
-    episode = Episode(spec.config, spec.seed, spec.task)
-    try:
-        limits = [episode.robot.limits[joint] for joint in ACTUATED_JOINTS]
+    with Episode.of(spec) as episode:
+        robot = episode.robot
+        limits = [robot.description.limits[joint] for joint in ACTUATED_JOINTS]
         dt, constants = spec.config.physics.control_dt, spec.config.controller
-        generator = Watched(episode.generator.parameters, dt=dt, limits=limits, constants=constants)
-        episode.generator = generator
+        robot.generator = generator = Watched(robot.generator.parameters, dt=dt, limits=limits, constants=constants)
         episode.stand()
         episode.start(spec.parameters)
         first = 0
         while episode.termination is None:
-            if episode.simulation.time < steady_from:
+            if robot.simulation.time < steady_from:
                 first = len(generator.endings)
             episode.tick()
         return generator.endings[first:]
-    finally:
-        episode.close()

@@ -14,7 +14,6 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
@@ -190,11 +189,11 @@ def commands(physics: PyBulletPhysics, limit: float) -> list[Tick]:
     :param limit: time limit, in s
     """
     ticks = []
-    with closing(started(physics, limit)) as episode:
+    with started(physics, limit) as episode:
         while episode.termination is None:
-            swings = episode.generator.phase in (Phase.LIFT, Phase.LAND)
+            swings = episode.robot.generator.phase in (Phase.LIFT, Phase.LAND)
             episode.tick()
-            ticks.append((episode.generator.targets, swings))
+            ticks.append((episode.robot.generator.targets, swings))
     return ticks
 
 
@@ -204,7 +203,7 @@ def closed_loop(physics: PyBulletPhysics, limit: float) -> float:
     :param physics: setting of the physics
     :param limit: time limit, in s
     """
-    with closing(started(physics, limit)) as episode:
+    with started(physics, limit) as episode:
         start = time.perf_counter()
         while episode.termination is None:
             episode.tick()
@@ -220,8 +219,8 @@ def bare_loop(physics: PyBulletPhysics, limit: float, ticks: list[Tick], read: b
     :param ticks: what is commanded
     :param read: whether PyBullet is also asked for what the ticks need, of which nothing is made
     """
-    with closing(started(physics, limit)) as episode:
-        simulation = episode.simulation
+    with started(physics, limit) as episode:
+        simulation = episode.robot.simulation
         assert isinstance(simulation, PyBulletSimulator)
         client, body = simulation.client, simulation.body
         joints = [simulation.links[name] for name in ACTUATED_JOINTS]

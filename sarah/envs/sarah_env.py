@@ -108,7 +108,8 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         disturbances = disturbances_of(EpisodeSpec(parameters, self._seed, self.task, self.config))
         if disturbances is not None:
             info["disturbances"] = disturbances
-        return observation_from(self._episode.last_reading, self.config.scale), result.episode_return, True, False, info
+        observation = observation_from(self._episode.robot.last_reading, self.config.scale)
+        return observation, result.episode_return, True, False, info
 
     def render(self) -> np.ndarray | None:
         """Draw the robot as it stands now, on the ground of its episode.
@@ -124,8 +125,8 @@ class SarahEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         if self._renderer is None:
             from sarah.simulation.renderer import Renderer
 
-            self._renderer = Renderer(self._episode.robot)
-        return self._renderer.draw_simulator(self._episode.simulation, force=self._episode.shown_push())
+            self._renderer = Renderer(self._episode.robot.description)
+        return self._renderer.draw_simulator(self._episode.robot.simulation, force=self._episode.shown_push())
 
     def __getstate__(self) -> dict[str, Any]:
         """State of a copy, without the engine's worlds."""

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from sarah.control.hip_law import LOCKED_HIPS
-from sarah.control.pattern_generator import STAND_SECONDS, Phase
-from sarah.episode.gait import GaitRecord
-from sarah.episode.motion import MotionRecord
+from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.push import PUSH_SHOWN_SECONDS
+from sarah.episode.recording import Recording, Return
 from sarah.episode.result import EpisodeResult
 from sarah.episode.reward import highest_return
 from sarah.episode.running_robot import RunningRobot
@@ -17,16 +14,15 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import controller_of, ending_of, push_of, reward_of
 from sarah.episode.tasks import STEPPING, Task
 from sarah.episode.tick import Tick
-from sarah.episode.trace import Trace
 from sarah.errors import check_type
-from sarah.robot.reading import Vector
+from sarah.robot.reading import SensorReading, Vector
 from sarah.simulation.build import BuildSimulator
 from sarah.simulation.randomisation import Conditions
-from sarah.simulation.simulator import TorsoState
+from sarah.simulation.world import HoldsWorld
 
 
-class Episode(RunningRobot):
-    """A robot in its world: :meth:`stand`, then :meth:`run`, then :meth:`close`.
+class Episode(HoldsWorld):
+    """An episode of a robot: :meth:`stand`, then :meth:`run`. The end of a ``with`` block closes its world.
 
     To observe the robot in between, call :meth:`start` and then :meth:`tick` until :attr:`termination` says how the
     episode ended.
@@ -51,20 +47,51 @@ class Episode(RunningRobot):
         conditions: Conditions | None = None,
     ) -> None:
         self.task = task
+        self.config = config
         self.push = push_of(task, task.checked_config(config, True), seed)
-        super().__init__(config, seed, build, conditions)
-        self._first = self._last = self.simulation.torso_state()
-        self._gait = GaitRecord(config.physics.control_rate)
-        self._motion = MotionRecord(config.physics.control_rate, config.scale.time)
-        self._ticks = 0
-        self._return = 0.0
+        self.robot = RunningRobot(config, seed, build, conditions)
+        """Robot in its world, with what it senses, its controller and its simulation."""
         seconds = config.time_limit - STAND_SECONDS
-        self._highest_return = (
-            highest_return(self.robot.standing_height, seconds, config.reward_half_width)
+        self._return = Return(
+            highest_return(self.robot.description.standing_height, seconds, config.reward_half_width)
             if task.best_reward is None
             else task.best_reward * seconds
         )
-        self._trace: list[dict[str, Any]] | None = [] if record_trace else None
+        self._dt = config.physics.control_dt
+        self._recording = Recording(self.robot, STAND_SECONDS, self._return, record_trace)
+
+    @classmethod
+    def of(cls, spec: EpisodeSpec, record_trace: bool = False) -> Episode:
+        """Make the episode of a specification.
+
+        :param spec: specification, whose parameters are for :meth:`start` or :meth:`run`
+        :param record_trace: whether to record every control tick in a trace
+        :raises ConfigurationError: if it is no specification
+        """
+        check_type("spec", spec, EpisodeSpec)
+        return cls(spec.config, spec.seed, spec.task, record_trace)
+
+    def __enter__(self) -> Episode:
+        """Do nothing: the world is there."""
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        """Close the world."""
+        self.close()
+
+    @property
+    def termination(self) -> str | None:
+        """Way in which the episode ended; ``None`` while it goes on."""
+        return self.robot.termination
+
+    def stand(self) -> SensorReading:
+        """Stand for the first second, which is not recorded.
+
+        :return: the last reading of that second, which an agent acts on
+        """
+        reading = self.robot.stand()
+        self.robot.observers = (self._recording,)
+        return reading
 
     def run(self, parameters: tuple[float, ...]) -> EpisodeResult:
         """Let the pattern generator run until the episode ends.
@@ -73,7 +100,7 @@ class Episode(RunningRobot):
         :return: the result
         """
         self.start(parameters)
-        while self.termination is None:
+        while self.robot.termination is None:
             self.tick()
         return self.result()
 
@@ -83,92 +110,55 @@ class Episode(RunningRobot):
         :param parameters: values of the task's parameters, in order
         """
         stepping, balance = controller_of(self.task, parameters, self.config)
-        self.generator.set_parameters(stepping, balance or LOCKED_HIPS)
+        self.robot.generator.set_parameters(stepping, balance or LOCKED_HIPS)
 
     def tick(self) -> None:
-        """Advance by one control tick: sense, decide, act, simulate and judge."""
-        simulation, generator, gait = self.simulation, self.generator, self._gait
-        reading = self.sense()
-        if self.termination is not None:
-            return
-        self._motion.tick(self.truth.acceleration, *simulation.actuator_motion())
-        if generator.phase in (Phase.LIFT, Phase.LAND):
-            gait.swing(simulation.sole_height(generator.swing))
-        change = generator.tick(reading)
-        if change is not None:
-            gait.phase_change(self._ticks, change)
-        simulation.set_targets(generator.targets)
-        force = self._push_now()
-        if force is not None:
-            simulation.push(force)
-        if self._trace is not None:
-            frequency = gait.steps_per_second(self._ticks + 1)  # as its reward has it
-            score = self._return / self._highest_return
-            self._trace.append(self.trace_row(STAND_SECONDS + self._ticks * self._dt, force, frequency, score))
-        simulation.advance()
-        self._ticks += 1
-        self._judge()
+        """Advance by one control tick, with the push if it is its time, and judge."""
+        self.robot.tick(self._push_within(0.0))
+        if self.robot.termination is None:
+            self._judge()
 
     def result(self) -> EpisodeResult:
         """Result of the episode so far; while the episode goes on, its ``termination`` is empty."""
-        elapsed = self._ticks * self._dt
-        return EpisodeResult(
-            score=self._return / self._highest_return,
-            episode_return=self._return,
-            steps_per_second=self._gait.steps / elapsed if elapsed else 0.0,
-            duration=round(STAND_SECONDS + elapsed, 9),
-            termination=self.termination or "",
-            final_position=self._displacement(self._last),
-            **self._gait.metrics(),
-            **self._motion.metrics(),
-            trace=None if self._trace is None else Trace.of(self._trace),
-        )
-
-    def _push_now(self) -> Vector | None:
-        """Force of the push in N, while it lasts."""
-        if self.push is None:
-            return None
-        since_begin = STAND_SECONDS + self._ticks * self._dt - self.push.begin
-        is_now = -self._dt / 2 <= since_begin < self.push.duration - self._dt / 2
-        return self.push.force if is_now else None
+        return self._recording.result(self.robot, self.termination or "", before=STAND_SECONDS)
 
     def shown_push(self) -> Vector | None:
         """Force of the push that a picture shows now, in N, as :class:`~sarah.episode.trace.Trace` has it."""
-        if self.push is None or not any(self.push.force):
+        force = self._push_within(PUSH_SHOWN_SECONDS)
+        return force if force and any(force) else None
+
+    def close(self) -> None:
+        """Give the physics engine's resources back."""
+        self.robot.close()
+
+    def _push_within(self, shortest: float) -> Vector | None:
+        """Force of the push in N, while it lasts, and for some seconds after its beginning at least."""
+        if self.push is None:
             return None
-        since_begin = STAND_SECONDS + self._ticks * self._dt - self.push.begin
-        is_shown = -self._dt / 2 <= since_begin < max(self.push.duration, PUSH_SHOWN_SECONDS) - self._dt / 2
-        return self.push.force if is_shown else None
+        half_tick = self._dt / 2
+        since_begin = self._recording.time - self.push.begin
+        return self.push.force if -half_tick <= since_begin < max(self.push.duration, shortest) - half_tick else None
 
     def _judge(self) -> None:
         """Add this tick's reward, and check whether the episode ends."""
-        torso = self.simulation.torso_state()
-        if not torso.is_finite:  # the result is that of the last finite state
-            self.termination = "diverged"
-            return
-        self._last = torso
+        robot, recording = self.robot, self._recording
         tick = Tick(
-            STAND_SECONDS + self._ticks * self._dt,
-            self._first.position,
-            torso,
-            self._gait.steps,
-            self._gait.steps_per_second(self._ticks),
-            self.generator.phase,
-            self.generator.stance,
-            self.truth,
-            self.last_reading,
-            self.simulation,
-            self.vertical,
+            recording.time,
+            recording.start,
+            robot.torso,
+            recording.gait.steps,
+            recording.gait.steps_per_second(recording.ticks),
+            robot.generator.phase,
+            robot.generator.stance,
+            robot.truth,
+            robot.last_reading,
+            robot.simulation,
+            robot.vertical,
         )
-        self._return += reward_of(self.task, tick, self.config) * self._dt
-        self.termination = ending_of(self.task, tick, self.config)
-        if self.termination is None and tick.time > self.config.time_limit - self._dt / 2:
-            self.termination = "time_limit"
-
-    def _displacement(self, torso: TorsoState) -> tuple[float, float, float]:
-        """Torso position as in equation 2: x and y from the start, z over the floor, in m."""
-        x, y, z = torso.position
-        return (x - self._first.position[0], y - self._first.position[1], z)
+        self._return.value += reward_of(self.task, tick, self.config) * self._dt
+        robot.termination = ending_of(self.task, tick, self.config)
+        if robot.termination is None and tick.time > self.config.time_limit - self._dt / 2:
+            robot.termination = "time_limit"
 
 
 def simulate(spec: EpisodeSpec, record_trace: bool = False) -> EpisodeResult:
@@ -180,10 +170,6 @@ def simulate(spec: EpisodeSpec, record_trace: bool = False) -> EpisodeResult:
     :raises ConfigurationError: if it is no specification
     :raises SimulationError: if there is nothing to trace, because the simulation diverged while the robot stood
     """
-    check_type("spec", spec, EpisodeSpec)
-    episode = Episode(spec.config, spec.seed, spec.task, record_trace)
-    try:
+    with Episode.of(spec, record_trace) as episode:
         episode.stand()
         return episode.run(spec.parameters)
-    finally:
-        episode.close()

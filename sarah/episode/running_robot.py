@@ -4,19 +4,39 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import Any
+from collections.abc import Sequence
+from typing import Protocol
 
 from sarah.control.parameters import PAPER_STEPPING
-from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, SteppingParameters
+from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, PhaseChange, SteppingParameters
 from sarah.episode.settings import EpisodeConfig
-from sarah.robot.description import ANKLE_JOINTS, describe_robot
+from sarah.robot.description import describe_robot
 from sarah.robot.dimensions import all_dimensions
 from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, SensorReading, Vector
 from sarah.simulation.build import BuildSimulator, simulator_of
 from sarah.simulation.randomisation import Conditions, draw_conditions
 from sarah.simulation.sensors import ImperfectSensors
+from sarah.simulation.simulator import TorsoState
 from sarah.simulation.terrain import draw_ground
 from sarah.simulation.world import HoldsWorld
+
+
+class Observer(Protocol):
+    """Something that records what a robot does, in each tick at the two moments of the loop that count."""
+
+    def sensed(self, robot: RunningRobot) -> None:
+        """Record what the robot feels; phase and targets are those of the tick before.
+
+        :param robot: robot that runs
+        """
+
+    def decided(self, robot: RunningRobot, change: PhaseChange | None, force: Vector | None) -> None:
+        """Record what the robot will do: its new targets are set, and nothing has moved yet.
+
+        :param robot: robot that runs
+        :param change: end of a phase in this tick
+        :param force: force of a push in this tick, in N
+        """
 
 
 class RunningRobot(HoldsWorld):
@@ -31,8 +51,12 @@ class RunningRobot(HoldsWorld):
 
     generator: PatternGenerator
     """Source of the joint targets. It has the paper's parameters until it is given others."""
+    observers: Sequence[Observer]
+    """Records of what it does from the next tick on."""
     termination: str | None
-    """Way in which it ended: ``"diverged"``, or what a subclass finds; ``None`` while it goes on."""
+    """Way in which it ended: ``"diverged"``, or what an episode or a window finds; ``None`` while it goes on."""
+    torso: TorsoState
+    """True state of the torso at the end of the last tick that has not diverged."""
 
     def __init__(
         self,
@@ -42,68 +66,60 @@ class RunningRobot(HoldsWorld):
         conditions: Conditions | None = None,
     ) -> None:
         self.config = config
+        self.observers = ()
         self.termination = None
-        self.robot = describe_robot(config.dimensions)
+        self.description = describe_robot(config.dimensions)
         conditions = conditions or conditions_of(config, seed)
         gravity_x, gravity_y, gravity_z = conditions.ground.gravity
         strength = math.hypot(gravity_x, gravity_y, gravity_z) or GRAVITY
         self.vertical = (-gravity_x / strength, -gravity_y / strength, -gravity_z / strength)
         """Unit vector against gravity, in the world's frame."""
-        self.simulation = (build or simulator_of(config.engine))(self.robot, config.physics, conditions)
+        self.simulation = (build or simulator_of(config.engine))(self.description, config.physics, conditions)
         self.truth = self.last_reading = self.simulation.read()
-        self._dt = config.physics.control_dt
-        limits = [self.robot.limits[joint] for joint in ACTUATED_JOINTS]
+        self.torso = self.simulation.torso_state()
+        dt = config.physics.control_dt
+        limits = [self.description.limits[joint] for joint in ACTUATED_JOINTS]
         stepping = SteppingParameters(*PAPER_STEPPING)
-        self.generator = PatternGenerator(stepping, dt=self._dt, limits=limits, constants=config.controller)
-        self._sensors = ImperfectSensors(conditions.sensors, self._dt)
+        self.generator = PatternGenerator(stepping, dt=dt, limits=limits, constants=config.controller)
+        self._sensors = ImperfectSensors(conditions.sensors, dt)
 
     def stand(self) -> SensorReading:
         """Stand for the first second.
 
         :return: the last reading of that second, which the agent of an episode acts on
         """
-        for _ in range(round(STAND_SECONDS / self._dt)):
-            self.generator.tick(self.sense())
-            self.simulation.advance()
+        for _ in range(round(STAND_SECONDS / self.config.physics.control_dt)):
+            self.tick()
         return self.last_reading
 
-    def sense(self) -> SensorReading:
-        """Read the sensors; if the simulation has diverged, the last finite reading stays."""
-        truth = self.simulation.read()
-        if truth.is_finite:
-            self.truth, self.last_reading = truth, self._sensors(truth)
+    def tick(self, force: Vector | None = None) -> None:
+        """Advance by one control tick: sense, decide and act. Nothing happens once the robot has ended.
+
+        If the simulation diverges, the last finite reading and state stay.
+
+        :param force: force of a push in this tick, in N
+        """
+        generator, simulation = self.generator, self.simulation
+        truth = simulation.read()
+        if not truth.is_finite:
+            self.termination = "diverged"
+        if self.termination is not None:
+            return
+        self.truth, self.last_reading = truth, self._sensors(truth)
+        for observer in self.observers:
+            observer.sensed(self)
+        change = generator.tick(self.last_reading)
+        simulation.set_targets(generator.targets)
+        if force is not None:
+            simulation.push(force)
+        for observer in self.observers:
+            observer.decided(self, change, force)
+        simulation.advance()
+        torso = simulation.torso_state()
+        if torso.is_finite:
+            self.torso = torso
         else:
             self.termination = "diverged"
-        return self.last_reading
-
-    def trace_row(self, time: float, push: Vector | None, steps_per_second: float, score: float) -> dict[str, Any]:
-        """Row of a :class:`~sarah.episode.trace.Trace`, of a tick in which the targets are set.
-
-        :param time: simulated time, in s
-        :param push: force of a push in this tick, in N
-        :param steps_per_second: steps per second in the last 2 s, at the end of the tick
-        :param score: score so far
-        """
-        generator, reading, torso = self.generator, self.last_reading, self.simulation.torso_state()
-        return {
-            "time": time,
-            "position": torso.position,
-            "orientation": torso.orientation,
-            "joints": self.truth.joints,
-            "ankles": self.simulation.joint_positions(ANKLE_JOINTS),
-            "targets": generator.targets,
-            "pressures": reading.pressures,
-            "acceleration": reading.acceleration,
-            "angular_rate": reading.angular_rate,
-            "phase": generator.phase.value,
-            "stance": generator.stance.value,
-            "stable_x": generator.stable_x,
-            "tilt": generator.tilt,
-            "rate": generator.rate,
-            "steps_per_second": steps_per_second,
-            "push": push or (0.0, 0.0, 0.0),
-            "score": score,
-        }
 
     def close(self) -> None:
         """Give the physics engine's resources back."""

@@ -69,8 +69,7 @@ class Tick(NamedTuple):
     @property
     def upright(self) -> float:
         """Cosine of the angle between the torso's axis and gravity's vertical."""
-        (axis_x, axis_y, axis_z), (x, y, z) = self.torso.axis, self.vertical
-        return axis_x * x + axis_y * y + axis_z * z
+        return self.torso.upright(self.vertical)
 
     @property
     def pads(self) -> tuple[float, float, float, float]:

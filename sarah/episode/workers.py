@@ -71,7 +71,7 @@ def begin_episode(spec: EpisodeSpec) -> SensorReading:
     _waiting[_key(spec)] = episode
     if len(_waiting) > MOST_WAITING:
         _waiting.popitem(last=False)[1].close()
-    return episode.last_reading
+    return episode.robot.last_reading
 
 
 def finish_episode(spec: EpisodeSpec, following: EpisodeSpec | None = None) -> Outcome:
@@ -81,16 +81,13 @@ def finish_episode(spec: EpisodeSpec, following: EpisodeSpec | None = None) -> O
     :param following: specification of an episode to let stand afterwards; a separate job would cost the scheduler as
         much as the episode's own
     """
-    episode = _waiting.pop(_key(spec), None) or _standing(spec)
-    try:
+    with _waiting.pop(_key(spec), None) or _standing(spec) as episode:
         result = episode.run(spec.parameters)
-    finally:
-        episode.close()
-    return Outcome(result, episode.last_reading, None if following is None else begin_episode(following))
+    return Outcome(result, episode.robot.last_reading, None if following is None else begin_episode(following))
 
 
 def _standing(spec: EpisodeSpec) -> Episode:
-    episode = Episode(spec.config, spec.seed, spec.task)
+    episode = Episode.of(spec)
     try:
         episode.stand()
     except BaseException:

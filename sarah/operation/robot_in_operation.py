@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import dataclasses
 import random
-from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.ending import LEAST_UPRIGHT
 from sarah.episode.push import Push, draw_push
+from sarah.episode.recording import Recording
 from sarah.episode.result import EpisodeResult
 from sarah.episode.running_robot import RunningRobot, conditions_of
-from sarah.operation.recording import Recording
 from sarah.operation.settings import OperationConfig, Parameters, checked_parameters, controller_parameters
 from sarah.operation.window import Window, WindowRecord
 from sarah.robot.reading import Vector
-from sarah.simulation.simulator import TorsoState
 
 MOST_PUSHES = 2**20
 """Number of pushes of an operation after which those of the next seed would come."""
@@ -62,22 +59,13 @@ class RobotInOperation:
         seconds = self.config.settle_seconds + self.config.measure_seconds
         return max(0.0, 60.0 * minutes - self.seconds) / seconds
 
-    def run(self, parameters: Parameters, recording: Recording | None = None) -> Window:
+    def run(self, parameters: Parameters) -> Window:
         """Run one window, from where the robot is now.
 
         :param parameters: P1 to P5 and V1 to V4
-        :param recording: recording of every tick, if it is wanted
         :raises ConfigurationError: if a parameter is not within its box
         """
-        parameters = checked_parameters(parameters)
-        self._make_changes()
-        if self._robot is None:
-            self._robot = self._standing()
-            for before in self._since_standing:  # known windows, which led to where the robot is now
-                self._run(self._robot, before.parameters, before.begin, before is self._since_standing[0])
-        window = self._run(self._robot, parameters, self.seconds, not self._since_standing, recording)
-        self._count(window)
-        return window
+        return self._run_next(checked_parameters(parameters), False)[0]
 
     def replay(self, window: Window) -> EpisodeResult:
         """Run one window again that is known, and record it.
@@ -85,9 +73,9 @@ class RobotInOperation:
         :param window: next window
         :return: it as the result of an episode, with a trace
         """
-        changes = self.config.changes_by(self.seconds)
-        recording = Recording(self.config.robot_after(changes))
-        return recording.result(self.run(window.parameters, recording))
+        result = self._run_next(window.parameters, True)[1]
+        assert result is not None
+        return result
 
     def skip(self, window: Window) -> None:
         """Go on as after a window that is known.
@@ -131,70 +119,50 @@ class RobotInOperation:
         robot.stand()
         return robot
 
+    def _run_next(self, parameters: Parameters, record: bool) -> tuple[Window, EpisodeResult | None]:
+        self._make_changes()
+        if self._robot is None:
+            self._robot = self._standing()
+            for before in self._since_standing:  # known windows, which led to where the robot is now
+                self._run(self._robot, before.parameters, before.begin, before is self._since_standing[0], False)
+        window, result = self._run(self._robot, parameters, self.seconds, not self._since_standing, record)
+        self._count(window)
+        return window, result
+
     def _run(
-        self,
-        robot: RunningRobot,
-        parameters: Parameters,
-        begin: float,
-        stands: bool,
-        recording: Recording | None = None,
-    ) -> Window:
+        self, robot: RunningRobot, parameters: Parameters, begin: float, stands: bool, record_trace: bool
+    ) -> tuple[Window, EpisodeResult | None]:
         dt = robot.config.physics.control_dt
         settle, measure = round(self.config.settle_seconds / dt), round(self.config.measure_seconds / dt)
         push = self.config.robot_after(self._changes).push
         stood = STAND_SECONDS if stands else 0.0
         first = round((begin + stood) / dt)
-        record = WindowRecord(robot.robot.standing_height, robot.config, settle, measure)
+        record = WindowRecord(robot, settle, measure)
+        recording = Recording(robot, first * dt, record.true) if record_trace else None
+        robot.observers = (record,) if recording is None else (record, recording)
         robot.generator.set_parameters(*controller_parameters(parameters))
-        ticks, fell = 0, False
-        while ticks < settle + measure and not fell:
-            force = self._force(push, first + ticks, dt)
-            tell = None if recording is None else partial(recording.tick, robot, record, (first + ticks) * dt, force)
-            fell = self._tick(robot, record, force, tell)
+        ticks = 0
+        while ticks < settle + measure and robot.termination is None:
+            robot.tick(self._force(push, first + ticks, dt))
+            if robot.termination is None:
+                record.judge(robot.torso)
+                if robot.generator.has_fallen or robot.torso.upright(robot.vertical) < LEAST_UPRIGHT:
+                    robot.termination = "fell"
             ticks += 1
-        seconds = stood + ticks * dt + (self.config.fall_seconds if fell else 0.0)
-        return Window(
+        fell = robot.termination is not None
+        window = Window(
             index=self.windows,
             begin=begin,
-            seconds=round(seconds, 9),
+            seconds=round(stood + ticks * dt + (self.config.fall_seconds if fell else 0.0), 9),
             changes=self._changes,
             parameters=parameters,
-            score=record.score,
-            observed_reward=record.observed_reward,
+            score=record.true.score,
+            observed_reward=record.observed.score,
             fell=fell,
             felt=record.felt(),
         )
-
-    def _tick(
-        self, robot: RunningRobot, record: WindowRecord, force: Vector | None, tell: Callable[[], None] | None
-    ) -> bool:
-        """Advance by one control tick, and return whether the robot has fallen.
-
-        :param robot: robot that runs
-        :param record: record of the window
-        :param force: force of a push in this tick, in N
-        :param tell: function that is called once the targets are set
-        """
-        simulation, generator = robot.simulation, robot.generator
-        before = generator.targets
-        reading = robot.sense()
-        if robot.termination is not None:
-            return True
-        record.sense(reading, before)
-        change = generator.tick(reading)
-        if change is not None:
-            record.phase_change(change)
-        simulation.set_targets(generator.targets)
-        if force is not None:
-            simulation.push(force)
-        if tell is not None:
-            tell()
-        simulation.advance()
-        torso = simulation.torso_state()
-        if not torso.is_finite:
-            return True
-        record.judge(torso)
-        return generator.has_fallen or is_down(torso, robot.vertical)
+        termination = robot.termination or "time_limit"
+        return window, None if recording is None else recording.result(robot, termination)
 
     def _force(self, push: Push, tick: int, dt: float) -> Vector | None:
         """Force of the push during a tick, in N, if there is one then.
@@ -207,12 +175,3 @@ class RobotInOperation:
         if number == 0 or since * dt > push.duration - dt / 2 or push.newtons == (0.0, 0.0):
             return None
         return draw_push(push, self._seed * MOST_PUSHES + number).force
-
-
-def is_down(torso: TorsoState, vertical: Vector) -> bool:
-    """Whether a robot has fallen, by the angle between its axis and gravity's vertical.
-
-    :param torso: true state of the torso
-    :param vertical: unit vector against gravity, in the world's frame
-    """
-    return sum(a * b for a, b in zip(torso.axis, vertical, strict=True)) < LEAST_UPRIGHT

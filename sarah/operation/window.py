@@ -12,11 +12,12 @@ import numpy as np
 
 from sarah.control.pattern_generator import Phase, PhaseChange
 from sarah.episode.gait import GaitRecord
+from sarah.episode.recording import Return
 from sarah.episode.reward import highest_return, reward_rate
-from sarah.episode.settings import EpisodeConfig
+from sarah.episode.running_robot import RunningRobot
 from sarah.operation.odometry import LegOdometry
 from sarah.operation.settings import Parameters
-from sarah.robot.reading import GRAVITY, SensorReading
+from sarah.robot.reading import GRAVITY, Vector
 from sarah.robot.scale import Scale
 from sarah.simulation.simulator import TorsoState
 
@@ -84,26 +85,28 @@ class Window:
 
 
 class WindowRecord:
-    """Record of one window, tick by tick.
+    """:class:`~sarah.episode.running_robot.Observer` of one window: what the robot feels, and what it is worth.
 
-    :param standing_height: height of the torso's centre while the robot stands, in m
-    :param robot: settings of the robot
+    :param robot: robot that runs
     :param settle: ticks that are not measured
     :param measure: ticks that are
     """
 
-    def __init__(self, standing_height: float, robot: EpisodeConfig, settle: int, measure: int) -> None:
-        self.gait = GaitRecord(robot.physics.control_rate)
-        self._dt = robot.physics.control_dt
+    def __init__(self, robot: RunningRobot, settle: int, measure: int) -> None:
+        config, height = robot.config, robot.description.standing_height
+        self._dt = config.physics.control_dt
         self._settle, self._measure = settle, measure
-        self._ceiling = highest_return(standing_height, measure * self._dt, robot.reward_half_width)
-        self._height = standing_height
+        ceiling = highest_return(height, measure * self._dt, config.reward_half_width)
+        self.true, self.observed = Return(ceiling), Return(ceiling)
+        """Equation 2 by the torso's motion since the measurement began, and with the displacement that the legs tell
+        and the height of standing."""
+        self._height = height
         self._reward_rate = partial(
-            reward_rate, half_width=robot.reward_half_width, step_frequency=robot.step_frequency
+            reward_rate, half_width=config.reward_half_width, step_frequency=config.step_frequency
         )
-        self._odometry = LegOdometry(standing_height, self._dt)
+        self._gait = GaitRecord(config.physics.control_rate)
+        self._odometry = LegOdometry(height, self._dt)
         self._ticks = 0
-        self._return = self._observed = 0.0
         self._first: TorsoState | None = None
         self._from = (0.0, 0.0)
         self._readings: list[tuple[float, ...]] = []
@@ -111,28 +114,24 @@ class WindowRecord:
         self._phases: dict[Phase, list[int]] = {Phase.SHIFT: [], Phase.LIFT: [], Phase.LAND: []}
         self._phase_began = 0
 
-    def sense(self, reading: SensorReading, targets: Sequence[float]) -> None:
-        """Record what the robot feels at the beginning of a tick.
-
-        :param reading: sensor reading
-        :param targets: targets of the joints in the tick before
-        """
+    def sensed(self, robot: RunningRobot) -> None:
+        """Record what the robot feels, and how far its joints are from their targets."""
+        reading = robot.last_reading
         self._odometry.tick(reading)
         if self._ticks >= self._settle:
             left_fore, left_hind, right_fore, right_hind = reading.pressures
             loads = (left_fore + left_hind, right_fore + right_hind)
             self._readings.append((*reading.acceleration, *reading.angular_rate, *loads))
+            targets = robot.generator.targets
             self._lags.append([abs(target - joint) for target, joint in zip(targets, reading.joints, strict=True)])
 
-    def phase_change(self, change: PhaseChange) -> None:
-        """Record the end of a phase.
-
-        :param change: phase change that the pattern generator reported in this tick
-        """
-        self.gait.phase_change(self._ticks, change)
-        if change.ended in self._phases and self._ticks >= self._settle:
-            self._phases[change.ended].append(self._ticks - self._phase_began)
-        self._phase_began = self._ticks
+    def decided(self, robot: RunningRobot, change: PhaseChange | None, force: Vector | None) -> None:
+        """Record the end of a phase."""
+        if change is not None:
+            self._gait.phase_change(self._ticks, change)
+            if change.ended in self._phases and self._ticks >= self._settle:
+                self._phases[change.ended].append(self._ticks - self._phase_began)
+            self._phase_began = self._ticks
 
     def judge(self, torso: TorsoState) -> None:
         """Add the reward at the end of a tick: by the true state, and by what the sensors tell.
@@ -144,33 +143,13 @@ class WindowRecord:
             return
         if self._first is None:
             self._first, self._from = torso, (self._odometry.x, self._odometry.y)
-        frequency = self.gait.steps_per_second(self._ticks)
+        frequency = self._gait.steps_per_second(self._ticks)
         (x, y, z), (first_x, first_y, _) = torso.position, self._first.position
-        self._return += self._reward_rate(x - first_x, y - first_y, z, frequency) * self._dt
+        self.true.value += self._reward_rate(x - first_x, y - first_y, z, frequency) * self._dt
         odometry, (from_x, from_y) = self._odometry, self._from
-        self._observed += (
+        self.observed.value += (
             self._reward_rate(odometry.x - from_x, odometry.y - from_y, self._height, frequency) * self._dt
         )
-
-    @property
-    def steps_per_second(self) -> float:
-        """Steps per second in the last 2 s."""
-        return self.gait.steps_per_second(self._ticks)
-
-    @property
-    def window_return(self) -> float:
-        """Equation 2 integrated over the time that was measured, in m^3 s."""
-        return self._return
-
-    @property
-    def score(self) -> float:
-        """Equation 2 over its ceiling; what a fall cut off counts as nothing."""
-        return self._return / self._ceiling
-
-    @property
-    def observed_reward(self) -> float:
-        """The same with the displacement that the legs tell, and the height of standing."""
-        return self._observed / self._ceiling
 
     def felt(self) -> tuple[float, ...]:
         """What the robot felt, in the order of :data:`FELT`; a phase that never ended lasted as long as the window."""
@@ -185,7 +164,7 @@ class WindowRecord:
             *seconds,
             *lags,
             *signals[:, 6:].mean(axis=0),
-            self.steps_per_second,
+            self._gait.steps_per_second(self._ticks),
         )
         return tuple(round(float(value), 12) for value in values)
 

@@ -32,6 +32,14 @@ class TorsoState(NamedTuple):
         x, y, z, w = self.orientation
         return (2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y))
 
+    def upright(self, vertical: Vector) -> float:
+        """Cosine of the angle between the torso's axis and gravity's vertical.
+
+        :param vertical: unit vector against gravity, in the world's frame
+        """
+        (axis_x, axis_y, axis_z), (x, y, z) = self.axis, vertical
+        return axis_x * x + axis_y * y + axis_z * z
+
     @property
     def is_finite(self) -> bool:
         """Whether the state consists of finite numbers that a robot's state can have."""

@@ -206,11 +206,8 @@ def nominal_observation(config: TrainingConfig) -> np.ndarray:
     :param config: settings of the training; the randomisation is left out
     """
     nominal = dataclasses.replace(config.episode, randomisation=Randomisation(enabled=False))
-    episode = Episode(nominal, 0, config.task)
-    try:
+    with Episode(nominal, 0, config.task) as episode:
         return observation_from(episode.stand(), nominal.scale)
-    finally:
-        episode.close()
 
 
 def chosen_parameters(model: OffPolicyAlgorithm, observation: np.ndarray, task: Task) -> Parameters:

@@ -67,8 +67,7 @@ class BackgroundSimulation:
 
     def _simulate(self, spec: EpisodeSpec) -> EpisodeResult | None:
         """Simulate an episode; return ``None`` if there is a newer request."""
-        episode = Episode(spec.config, spec.seed, spec.task, record_trace=True)
-        try:
+        with Episode.of(spec, record_trace=True) as episode:
             episode.stand()
             episode.start(spec.parameters)
             ticks = 0
@@ -78,7 +77,5 @@ class BackgroundSimulation:
                 if ticks % TICKS_BETWEEN_LOOKS == 0:
                     if self._wish is not None:
                         return None
-                    self._progress(episode.simulation.time / spec.config.time_limit)
+                    self._progress(episode.robot.simulation.time / spec.config.time_limit)
             return episode.result()
-        finally:
-            episode.close()

@@ -61,12 +61,11 @@ def test_no_push_that_the_robot_survives_is_taken_for_a_fall(engine: str) -> Non
     survived = 0
     for seed in range(8):
         config = BalanceConfig(engine=engine, push=Push((100.0, 125.0)), time_limit=6.0, stepping=STEPPING)
-        episode = Episode(config, seed, BALANCE)
-        episode.stand()
-        episode.run((V.V1, V.V2, V.V3, V.V4))
-        episode.close()
+        with Episode(config, seed, BALANCE) as episode:
+            episode.stand()
+            episode.run((V.V1, V.V2, V.V3, V.V4))
         survived += episode.termination == "time_limit"
-        assert not episode.generator.has_fallen or episode.termination != "time_limit"
+        assert not episode.robot.generator.has_fallen or episode.termination != "time_limit"
     assert survived >= 5
 
 
@@ -77,17 +76,16 @@ def test_a_jump_of_v2_while_the_robot_steps_is_no_push(engine: str, v2: float) -
     need(engine)
     config = BalanceConfig(engine=engine, push=Push((0.0, 0.0)), time_limit=7.0, stepping=STEPPING)
     for seed in range(8):
-        episode = Episode(config, seed, BALANCE)
-        episode.stand()
-        episode.start((1.0, 0.0, 1.0, 0.0))
-        for _ in range(200 + 7 * seed):
-            episode.tick()
-        episode.generator.set_parameters(balance=BalanceParameters(1.0, v2, 1.0, 0.0))
-        while episode.termination is None:
-            episode.tick()
+        with Episode(config, seed, BALANCE) as episode:
+            episode.stand()
+            episode.start((1.0, 0.0, 1.0, 0.0))
+            for _ in range(200 + 7 * seed):
+                episode.tick()
+            episode.robot.generator.set_parameters(balance=BalanceParameters(1.0, v2, 1.0, 0.0))
+            while episode.termination is None:
+                episode.tick()
         result = episode.result()
-        episode.close()
-        assert result.survived and not episode.generator.has_fallen
+        assert result.survived and not episode.robot.generator.has_fallen
         assert result.steps_per_second > 2.0 and result.shifts_by_sensors > 0.8
 
 
@@ -114,16 +112,15 @@ def test_zeros_of_the_joints_may_be_as_far_off_as_the_page_says(offsets: tuple[f
     config = BALANCE.config_of(spec.config, engine="mujoco", push=Push((0.0, 0.0)), time_limit=13.0)
     terminations = {}
     for added in (offsets, (0.0, 0.0, 0.05, 0.05)):
-        episode = Episode(config, 1000, BALANCE)
-        read = episode.simulation.read
+        with Episode(config, 1000, BALANCE) as episode:
+            read = episode.robot.simulation.read
 
-        def askew(read: Callable[[], SensorReading] = read, added: tuple[float, ...] = added) -> SensorReading:
-            seen = read()
-            shifted = [joint + offset for joint, offset in zip(seen.joints, (*added, 0.0, 0.0), strict=True)]
-            return seen._replace(joints=tuple(shifted))  # type: ignore[arg-type]  # there are six
+            def askew(read: Callable[[], SensorReading] = read, added: tuple[float, ...] = added) -> SensorReading:
+                seen = read()
+                shifted = [joint + offset for joint, offset in zip(seen.joints, (*added, 0.0, 0.0), strict=True)]
+                return seen._replace(joints=tuple(shifted))  # type: ignore[arg-type]  # there are six
 
-        episode.simulation.read = askew  # type: ignore[method-assign]
-        episode.stand()
-        terminations[added] = episode.run(spec.parameters).termination
-        episode.close()
+            episode.robot.simulation.read = askew  # type: ignore[method-assign]
+            episode.stand()
+            terminations[added] = episode.run(spec.parameters).termination
     assert list(terminations.values()) == ["time_limit", "left_box"]

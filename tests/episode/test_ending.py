@@ -121,19 +121,18 @@ def test_words_of_an_own_ending_are_its_name() -> None:
 
 
 def test_diverging_physics_ends_with_a_finite_return(monkeypatch: pytest.MonkeyPatch) -> None:
-    episode = Episode(SHORT, seed=0)
-    episode.stand()
-    healthy = episode.simulation.torso_state
-    calls = 0
+    with Episode(SHORT, seed=0) as episode:
+        episode.stand()
+        healthy = episode.robot.simulation.torso_state
+        calls = 0
 
-    def diverging() -> TorsoState:
-        nonlocal calls
-        calls += 1
-        state = healthy()
-        return state._replace(position=(float("nan"),) * 3) if calls > 100 else state
+        def diverging() -> TorsoState:
+            nonlocal calls
+            calls += 1
+            state = healthy()
+            return state._replace(position=(float("nan"),) * 3) if calls > 100 else state
 
-    monkeypatch.setattr(episode.simulation, "torso_state", diverging)
-    result = episode.run(PAPER_STEPPING)
-    episode.close()
+        monkeypatch.setattr(episode.robot.simulation, "torso_state", diverging)
+        result = episode.run(PAPER_STEPPING)
     assert result.termination == "diverged" and not result.survived
     assert np.isfinite([result.score, result.episode_return, *result.final_position]).all()

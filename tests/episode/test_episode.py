@@ -47,10 +47,9 @@ def test_stepping_by_the_fastest_time_outs_is_told_apart_and_does_not_pay(parame
 
 
 def test_standing_lasts_one_second() -> None:
-    episode = Episode(SHORT, seed=0)
-    episode.stand()
-    assert episode.simulation.time == pytest.approx(STAND_SECONDS)
-    episode.close()
+    with Episode(SHORT, seed=0) as episode:
+        episode.stand()
+        assert episode.robot.simulation.time == pytest.approx(STAND_SECONDS)
 
 
 def test_episode_runs_at_another_control_rate() -> None:
@@ -76,7 +75,7 @@ def test_episode_runs_on_any_simulator() -> None:
     perfect = EpisodeConfig(randomisation=Randomisation(enabled=False))
     episode = Episode(perfect, seed=0, build=NoPhysics)
     reading = episode.stand()
-    assert episode.simulation.time == pytest.approx(1.0) and reading.pressures == (75.0,) * 4
+    assert episode.robot.simulation.time == pytest.approx(1.0) and reading.pressures == (75.0,) * 4
     result = episode.run(PAPER_STEPPING)
     assert result.termination == "no_oscillation" and result.duration == 5.0
     assert result.steps == 0 and result.shifts_by_sensors == 0.0

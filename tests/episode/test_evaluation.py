@@ -16,20 +16,17 @@ SHORT = EpisodeConfig(time_limit=6.0)
 
 def shaken_by(amplitude: float) -> Evaluation:
     """The same episode, with flexions that a controller shakes at half the control rate."""
-    episode = Episode(SHORT, 0)
-    episode.stand()
-    episode.start(PAPER_STEPPING)
-    send = episode.simulation.set_targets
+    with Episode(SHORT, 0) as episode:
+        episode.stand()
+        simulation = episode.robot.simulation
+        send = simulation.set_targets
 
-    def shaken(targets: tuple[float, ...]) -> None:
-        flexion = amplitude if round(episode.simulation.time / CONTROL_DT) % 2 else -amplitude
-        send((*targets[:2], flexion, flexion, *targets[4:]))
+        def shaken(targets: tuple[float, ...]) -> None:
+            flexion = amplitude if round(simulation.time / CONTROL_DT) % 2 else -amplitude
+            send((*targets[:2], flexion, flexion, *targets[4:]))
 
-    episode.simulation.set_targets = shaken  # type: ignore[method-assign]
-    while episode.termination is None:
-        episode.tick()
-    episode.close()
-    return Evaluation((episode.result(),))
+        simulation.set_targets = shaken  # type: ignore[method-assign]
+        return Evaluation((episode.run(PAPER_STEPPING),))
 
 
 def test_chattering_hips_show_as_vibration() -> None:

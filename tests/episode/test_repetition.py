@@ -22,13 +22,10 @@ def test_what_a_process_simulated_before_or_meanwhile_changes_nothing() -> None:
     expected = simulate(spec)
     longer = BalanceConfig(physics=Physics(1000, 10), dimensions={"thigh_length": 0.4}, time_limit=6.0)
     simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.0), seed=5, task="balance", config=longer))
-    episode = Episode(SHORT, seed=4)
-    try:
+    with Episode.of(spec) as episode:
         episode.stand()
         assert simulate(spec) == expected
         assert episode.run(PAPER_STEPPING) == expected
-    finally:
-        episode.close()
 
 
 @pytest.mark.parametrize(

@@ -38,8 +38,8 @@ class Leaning(NoPhysics):
 
 def conditions_of(config: EpisodeConfig, seed: int = 3) -> Conditions:
     episode = Episode(config, seed, build=Leaning)
-    assert isinstance(episode.simulation, Leaning)
-    return episode.simulation.conditions
+    assert isinstance(episode.robot.simulation, Leaning)
+    return episode.robot.simulation.conditions
 
 
 @pytest.mark.parametrize("engine", ["pybullet", "mujoco"])

@@ -106,14 +106,10 @@ def test_physics_that_diverges_ends_the_episode_and_writes_no_file(
     mujoco_engine: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    episode = Episode(SHORT, seed=0)
-    episode.stand()
-    episode.start(PAPER_STEPPING)
-    while episode.termination is None:
-        episode.simulation.push((1e300, 0.0, 0.0))
-        episode.tick()
-    assert episode.termination == "diverged" and math.isfinite(episode.result().score)
-    episode.close()
+    with Episode(SHORT, seed=0) as episode:
+        episode.stand()
+        episode.robot.tick(force=(1e300, 0.0, 0.0))
+        assert episode.termination == "diverged" and math.isfinite(episode.result().score)
     assert not list(tmp_path.iterdir()) and capfd.readouterr() == ("", "")
 
 

@@ -192,13 +192,12 @@ def test_feet_of_a_robot_that_is_pushed_stay_on_the_bumps(lab: Laboratory, seed:
     """At the standard physics; what is less than a sole's thickness is the tilt of a sole between bumps."""
     push = Push((75.0, 75.0), at_seconds=(1.5, 2.0))
     config = BalanceConfig(engine=lab.engine, time_limit=4.0, terrain=ROUGH, push=push)
-    episode = Episode(config, seed, BALANCE)
-    episode.stand()
-    episode.start((0.7, 0.4, 0.7, -0.4))
-    while episode.termination is None:
-        episode.tick()
-        assert min(episode.simulation.sole_height(side) for side in Side) > -RADIUS
-    episode.close()
+    with Episode(config, seed, BALANCE) as episode:
+        episode.stand()
+        episode.start((0.7, 0.4, 0.7, -0.4))
+        while episode.termination is None:
+            episode.tick()
+            assert min(episode.robot.simulation.sole_height(side) for side in Side) > -RADIUS
 
 
 def test_clearance_of_a_foot_is_that_over_its_own_ground(lab: Laboratory, build: BuildSimulation) -> None:

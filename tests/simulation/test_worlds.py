@@ -92,11 +92,10 @@ def test_what_others_do_to_a_pybullet_world_raises(disturbance: str) -> None:
 @NEEDS_PYBULLET
 @pytest.mark.parametrize("disturbance", ["add a box", "disconnect", "occupy"])
 def test_episodes_repeat_whatever_others_did_to_a_kept_client(disturbance: str) -> None:
-    episode = Episode(short("pybullet"), 3)
-    client = episode.simulation.client  # type: ignore[attr-defined]
-    episode.stand()
-    alone = episode.run(STEPPING.baseline)
-    episode.close()
+    with Episode(short("pybullet"), 3) as episode:
+        client = episode.robot.simulation.client  # type: ignore[attr-defined]
+        episode.stand()
+        alone = episode.run(STEPPING.baseline)
     DISTURBANCES[disturbance](client)
     assert simulate(spec("pybullet")) == alone
     if disturbance == "occupy":
@@ -264,7 +263,7 @@ def test_mujocos_warnings_of_other_models_still_come() -> None:
 def test_what_holds_a_world_cannot_be_copied(engine: str, way: str) -> None:
     episode = Episode(short(engine), 0)
     renderer = [Renderer(describe_robot())] if engine == "pybullet" else []
-    for holder in (episode, episode.simulation, *renderer):
+    for holder in (episode, episode.robot, episode.robot.simulation, *renderer):
         with pytest.raises(SimulationError, match=f"^{type(holder).__name__} holds simulated worlds"):
             WAYS[way](holder)
         holder.close()  # type: ignore[attr-defined]
