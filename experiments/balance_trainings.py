@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from experiments.judge import Asked, Condition, Judge
 from experiments.trainings import OfTrainings, kept
-from sarah.control.parameters import BALANCE_PARAMETERS
+from sarah.control.parameters import BALANCE_PARAMETERS, Parameters
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import Push
 from sarah.episode.tasks import BalanceConfig
@@ -22,7 +22,6 @@ from sarah.episode.workers import Executor
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import Engine
-from sarah.training.recommendation import Parameters
 
 BALANCE_NAMES = [parameter.name for parameter in BALANCE_PARAMETERS]
 SHIPPED: Parameters = PARAMETER_SETS["balance"].spec.parameters

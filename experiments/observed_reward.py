@@ -9,6 +9,7 @@ from statistics import mean
 from typing import Any
 
 import numpy as np
+from sarah.operation.shares import from_shares, to_shares
 from scipy.stats import spearmanr
 
 from experiments.experiment import OnWorkers
@@ -16,7 +17,6 @@ from experiments.record import Row
 from sarah.episode.from_mapping import from_mapping
 from sarah.episode.workers import Workers
 from sarah.operation.settings import SHIPPED, OperationConfig, Parameters
-from sarah.operation.shares import from_shares, to_shares
 from sarah.sessions.session import SessionResult, SessionSpec, run_session
 from sarah.simulation.engines import Engine, is_installed
 

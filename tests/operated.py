@@ -6,10 +6,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from sarah.operation.shares import to_shares
 
 from sarah.episode.from_mapping import from_mapping
 from sarah.operation.settings import SHIPPED, OperationConfig, Parameters
-from sarah.operation.shares import to_shares
 from sarah.operation.window import FELT, Window
 
 

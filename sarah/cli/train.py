@@ -178,9 +178,10 @@ def _extended(run: RunFolder, config: TrainingConfig) -> TrainingConfig:
     before = run.config()
     extended = dataclasses.replace(before.extended_to(config.episodes), pictures=config.pictures)
     run.extend(extended)
+    added = extended.episodes - before.episodes
     print(
         f"extending {before.episodes} to {extended.episodes} episodes: what changes in the course of a training, such "
-        f"as NAF's exploration, is from now on as in the last {extended.stage_episodes} of {extended.episodes} episodes"
+        f"as NAF's exploration, is from now on as in the last {added} of {extended.episodes} episodes"
     )
     return extended
 
@@ -276,13 +277,13 @@ def _check_agent_options(arguments: Sequence[str], training: TrainingConfig) -> 
 def _summarise(task: Task[Any], learned: Learned, path: Path) -> None:
     from sarah.episode.accuracy import physics_warning
     from sarah.runs.run_folder import RunFolder
-    from sarah.training.warm_up import describe_warm_up
+    from sarah.training.plan import plan_of
 
     config = RunFolder.open(path).config()
     evaluation, baseline = learned.evaluation, learned.baseline
     named = zip(task.parameter_names, learned.parameters, strict=True)
     print("\nlearned     " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
-    print(f"warm-up     {describe_warm_up(config)}")
+    print(f"warm-up     {plan_of(config).warm_up_words()}")
     neutral = "the baseline (V = 0)" if task is BALANCE else "neutral parameters"
     compared = [("", evaluation), *([] if baseline is None else [(f" for {neutral}", baseline)])]
     scores = ", ".join(f"{one.mean('score'):.3f}{name}" for name, one in compared)

@@ -14,7 +14,7 @@ from sarah.episode.push import Push, draw_push
 from sarah.episode.result import EpisodeResult
 from sarah.episode.running_robot import RunningRobot, conditions_of
 from sarah.operation.recording import Recording
-from sarah.operation.settings import OperationConfig, Parameters, checked_parameters, controller_parameters
+from sarah.operation.settings import BOX, OperationConfig, Parameters, controller_parameters
 from sarah.operation.window import Window, WindowRecord
 from sarah.robot.reading import Vector
 from sarah.simulation.simulator import TorsoState
@@ -69,7 +69,7 @@ class RobotInOperation:
         :param recording: recording of every tick, if it is wanted
         :raises ConfigurationError: if a parameter is not within its box
         """
-        parameters = checked_parameters(parameters)
+        parameters = BOX.checked(parameters)
         self._make_changes()
         if self._robot is None:
             self._robot = self._standing()

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 from operated import quick
+from sarah.operation.shares import to_shares
 from stable_baselines3 import TD3
 from stable_baselines3.common.env_checker import check_env as sb3_check_env
 
@@ -16,7 +17,6 @@ from sarah.envs.operation_env import SarahOperationEnv
 from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError
 from sarah.operation.settings import PARAMETERS, SHIPPED, Change
-from sarah.operation.shares import to_shares
 from sarah.operation.window import FELT
 
 CENTRE = np.zeros(len(PARAMETERS), np.float32)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import torch
 from operated import KEPT, interrupted_after, quick
+from sarah.sessions.learners import LEARNERS
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 from sarah.episode.reward import highest_return
@@ -20,7 +21,6 @@ from sarah.operation.window import Window
 from sarah.robot.description import describe_robot
 from sarah.runs.config_files import read_config
 from sarah.sessions.journal import SessionJournal
-from sarah.sessions.learners import LEARNERS
 from sarah.sessions.operate import operate
 from sarah.sessions.session import SessionResult, SessionSpec, run_session
 from sarah.sessions.session_episodes import episodes_of_session, learned_of_session

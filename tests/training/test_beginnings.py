@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from sarah.training.seeds import seeds_of
 
 from sarah.envs.sarah_env import draw_seed
 from sarah.episode.settings import EpisodeConfig
@@ -17,7 +18,6 @@ from sarah.runs.config import AGENTS, ALGORITHMS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
 from sarah.training import train as training
-from sarah.training.seeds import seeds_of
 from sarah.training.train import train
 
 EPISODE = EpisodeConfig(time_limit=1.2, physics=Physics(rate=50, solver_iterations=5, control_rate=50))

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from sarah.training.seeds import seeds_of
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 import sarah.runs.config
@@ -27,7 +28,6 @@ from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
 from sarah.training import learners as learning
 from sarah.training import train as training
-from sarah.training.seeds import seeds_of
 from sarah.training.train import train
 
 # As coarse as it gets: what is tested does not depend on it.

@@ -5,6 +5,7 @@ import dataclasses
 from pathlib import Path
 
 import pytest
+from sarah.training.warm_up import describe_warm_up, warm_up, warm_up_episodes
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 from sarah.episode.settings import EpisodeConfig
@@ -13,7 +14,6 @@ from sarah.runs.agent_settings import NAFSettings, TD3Settings
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.training.train import train
-from sarah.training.warm_up import describe_warm_up, warm_up, warm_up_episodes
 
 SHORT = EpisodeConfig(time_limit=1.2)
 

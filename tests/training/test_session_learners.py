@@ -5,11 +5,11 @@ import dataclasses
 import numpy as np
 import pytest
 from operated import START, FormulaRobot
+from sarah.operation.shares import from_shares, to_shares
+from sarah.sessions.learners import LEARNERS
 
 from sarah.operation.settings import PARAMETERS, SHIPPED, Parameters
-from sarah.operation.shares import from_shares, to_shares
 from sarah.operation.window import Window
-from sarah.sessions.learners import LEARNERS
 
 TOP = START + 0.15 * np.array([1, -1, 1, 1, -1, 1, -1, 1, -1])
 
