@@ -132,8 +132,8 @@ def network_says(run: RunFolder) -> Parameters:
 
     :param run: run folder of the training
     """
-    from sarah.training.learners import LEARNERS, chosen_parameters, nominal_observation
+    from sarah.training.learners import AGENTS, chosen_parameters, nominal_observation
 
     config = run.config()
-    algorithm, _ = LEARNERS[type(config.agent)]  # type: ignore[index]  # NAF's settings are a learner's
+    algorithm, _ = AGENTS[type(config.agent)]  # type: ignore[index]  # NAF's settings are a learner's
     return chosen_parameters(algorithm.load(run.model_path), nominal_observation(config), config.task)

@@ -100,6 +100,7 @@ class EvolutionStrategy:
         if len(box.parameters) == 1:
             options["maxstd"] = np.inf  # of a single deviation the package cannot bound any
         self._box = box
+        self._first = first
         mean = np.array(box.scaled(box.centre if first is None else first))
         self._strategy = cma.CMAEvolutionStrategy(mean, settings.deviation, options)
         if first is not None:
@@ -117,7 +118,9 @@ class EvolutionStrategy:
         if not self._unasked:
             self._generation, self._losses = self._strategy.ask(), []
             self._unasked.extend(self._generation)
-        return self._box.unscaled(self._unasked.popleft())
+        action = self._unasked.popleft()
+        first, self._first = self._first, None
+        return self._box.unscaled(action) if first is None else first  # the package moves it away from an end
 
     def tell(self, parameters: Parameters, merit: float, fell: bool = False) -> None:
         """Note a merit, and update the distribution once the generation is complete."""

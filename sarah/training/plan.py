@@ -72,9 +72,14 @@ class Stage:
         return min(MOST_TRIALS, self.episodes // BUDGET_PER_TRIAL)
 
     @property
+    def trial_episodes(self) -> int:
+        """Number of episodes of the trials."""
+        return self.trials * EPISODES_PER_TRIAL
+
+    @property
     def learning(self) -> int:
         """Number of episodes that it learns from: those before the trials."""
-        return self.episodes - self.trials * EPISODES_PER_TRIAL
+        return self.episodes - self.trial_episodes
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 from sarah.training.learners import Learner, make_learner
-from sarah.training.plan import EPISODES_PER_TRIAL, Stage, plan_of
+from sarah.training.plan import Stage, plan_of
 from sarah.training.recommendation import is_valid
 from sarah.training.recorder import EpisodeRecorder
 
@@ -143,7 +143,7 @@ def _recommended(
     """
     if not stage.trials:
         return recorder.tried.best(choice)
-    seeds = [draw_seed(generator) for _ in range(EPISODES_PER_TRIAL)]
+    seeds = [draw_seed(generator) for _ in range(stage.trial_episodes // stage.trials)]
     neutral = config.task.neutral
     baseline = None if neutral is None else evaluate(config.task, neutral, config.episode, seeds, workers)
     valid, failed = list[Parameters](), list[Parameters]()

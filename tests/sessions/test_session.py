@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 import torch
 from operated import KEPT, interrupted_after, quick
-from sarah.sessions.learners import LEARNERS
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 from sarah.episode.reward import highest_return
@@ -25,11 +24,12 @@ from sarah.sessions.operate import operate
 from sarah.sessions.session import SessionResult, SessionSpec, run_session
 from sarah.sessions.session_episodes import episodes_of_session, learned_of_session
 from sarah.sessions.session_folder import SessionFolder
+from sarah.training.session_learners import LEARNERS
 
 CONFIG = quick(
     minutes=0.3, robot={"push": {"newtons": 400.0, "duration": 0.3}}, changes=(Change(0.15, {"payload": 2.0}),)
 )
-SPEC = SessionSpec(SHIPPED, "gp", 3, CONFIG)
+SPEC = SessionSpec(SHIPPED, "careful", 3, CONFIG)
 
 
 @pytest.fixture(scope="module")
@@ -223,7 +223,7 @@ def test_a_folder_that_is_not_empty_is_refused(whole: tuple[Path, SessionResult]
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        ("learner: gpp", "unknown learner 'gpp', did you mean 'gp'?"),
+        ("learner: carefull", "unknown learner 'carefull', did you mean 'careful'?"),
         ("config: {minutes: -1}", "operation.minutes must be between"),
         ("config: {changes: [{minute: 1}]}", "config.changes must hold minute and settings"),
         ("config: {changes: [{minute: x, settings: {}}]}", "config.changes.minute must be a number"),
