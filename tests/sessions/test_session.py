@@ -220,6 +220,12 @@ def test_a_folder_that_is_not_empty_is_refused(whole: tuple[Path, SessionResult]
         SessionFolder.open(tmp_path)
 
 
+def test_the_former_name_of_the_careful_learner_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "session.yaml"
+    path.write_text("learner: gp")
+    assert read_config(SessionSpec, path).learner == SessionSpec().learner == "careful"
+
+
 @pytest.mark.parametrize(
     ("content", "words"),
     [
