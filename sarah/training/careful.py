@@ -111,39 +111,31 @@ class CarefulSearch:
         return self._box.at_shares(self._asked)
 
     def tell(self, parameters: Parameters, merit: float, fell: bool = False) -> None:
-        """Learn from what was asked for last."""
-        self._is_told = True
-        self._disappoints = self._add(self._asked, merit, fell)
-        self._has_failed = fell and not self._is_trial and self._asked is not self._first
+        """Learn from what was asked for last, and forget what was before a change.
 
-    def choice(self) -> Parameters:
-        """The best of what was tried."""
-        return self._box.at_shares(self._best()[0] if self._tried else self._first)
-
-    def _add(self, shares: np.ndarray, reward: float, fell: bool) -> bool:
-        """Learn from a window, and forget what was before a change.
-
-        :param shares: parameters of the window, as shares of their ranges
-        :param reward: reward that the robot observed
-        :param fell: whether the robot fell in it
-        :return: whether the reward was so low that the best parameters have to show that the robot is as before
+        After a merit so low that it disappoints, the best parameters have to show that the robot is as before.
         """
-        expected, spread = self._foreseen(shares) if self._tried else (reward, self._settings.noise)
-        surprise = (expected - reward) / spread
-        disappoints = surprise > DISAPPOINTING
+        self._is_told = True
+        self._has_failed = fell and not self._is_trial and self._asked is not self._first
+        expected, spread = self._foreseen(self._asked) if self._tried else (merit, self._settings.noise)
+        surprise = (expected - merit) / spread
+        self._disappoints = surprise > DISAPPOINTING
         counted = min(surprise, SURPRISE_OF_FALL if fell else DISAPPOINTING)
         self._shortfall = max(0.0, self._shortfall + counted - 0.5)
-        self._doubted = self._doubted + 1 if disappoints or self._shortfall > 0.0 else 0
+        self._doubted = self._doubted + 1 if self._disappoints or self._shortfall > 0.0 else 0
         if self._tried:
-            self._errors = [*self._errors[1 - NOISE_WINDOWS :], abs(expected - reward)]
-        self._tried.append(shares)
-        self._rewards.append(reward)
-        self._bounded.append(reward if fell else max(reward, expected - DISAPPOINTING * spread))
+            self._errors = [*self._errors[1 - NOISE_WINDOWS :], abs(expected - merit)]
+        self._tried.append(self._asked)
+        self._rewards.append(merit)
+        self._bounded.append(merit if fell else max(merit, expected - DISAPPOINTING * spread))
         if self._shortfall > self._settings.surprise:
             self._forget()
         del self._tried[:-MOST_WINDOWS], self._rewards[:-MOST_WINDOWS], self._bounded[:-MOST_WINDOWS]
         self._fit()
-        return disappoints
+
+    def choice(self) -> Parameters:
+        """The best of what was tried."""
+        return self._box.at_shares(self._best()[0] if self._tried else self._first)
 
     def _foreseen(self, shares: np.ndarray) -> tuple[float, float]:
         """Mean and standard deviation of a window's reward, as far as they can be known before it."""

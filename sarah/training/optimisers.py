@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -20,44 +21,20 @@ LARGEST_MERIT = 1e100
 """Largest merit by amount that a sampler of Optuna is told: squares of larger ones would overflow."""
 
 
-class Frozen:
-    """No search: it keeps the first parameters, which is what the others are compared with.
-
-    :param first: parameters all along
-    """
-
-    def __init__(self, first: Parameters) -> None:
-        self._first = first
-
-    def ready(self) -> bool:
-        """Always."""
-        return True
-
-    def ask(self, left: float = math.inf) -> Parameters:
-        """The first parameters."""
-        return self._first
-
-    def tell(self, parameters: Parameters, merit: float, fell: bool = False) -> None:
-        """Learn nothing."""
-
-    def choice(self) -> Parameters:
-        """The first parameters."""
-        return self._first
-
-
 class RandomSearch:
     """Parameters drawn uniformly; it chooses the best ones.
 
+    :param settings: Settings of the search, of which there are none
     :param box: ranges of the parameters
     :param seed: seed of the draws
-    :param first: parameters to try first; by default they are drawn as well
+    :param start: how to begin
     """
 
-    def __init__(self, box: Box, seed: int, first: Parameters | None = None) -> None:
+    def __init__(self, settings: AgentSettings, box: Box, seed: int, start: Start) -> None:
         self._box = box
-        self._first = first
+        self._first = start.first
         self._generator = np.random.default_rng(seed)
-        self._best = box.centre if first is None else first
+        self._best = start.first or box.centre
         self._highest = -math.inf
 
     def ready(self) -> bool:
@@ -89,10 +66,10 @@ class EvolutionStrategy:
     :param settings: Settings of the strategy
     :param box: ranges of the parameters
     :param seed: seed of the draws
-    :param first: parameters to try first, and to begin around; by default it begins around the centre of the box
+    :param start: how to begin; without first parameters it begins around the centre of the box
     """
 
-    def __init__(self, settings: EvolutionSettings, box: Box, seed: int, first: Parameters | None = None) -> None:
+    def __init__(self, settings: EvolutionSettings, box: Box, seed: int, start: Start) -> None:
         import cma
 
         # The package takes a seed of 0 for the time of day.
@@ -100,10 +77,10 @@ class EvolutionStrategy:
         if len(box.parameters) == 1:
             options["maxstd"] = np.inf  # of a single deviation the package cannot bound any
         self._box = box
-        self._first = first
-        mean = np.array(box.scaled(box.centre if first is None else first))
+        self._first = start.first
+        mean = np.array(box.scaled(start.first or box.centre))
         self._strategy = cma.CMAEvolutionStrategy(mean, settings.deviation, options)
-        if first is not None:
+        if start.first is not None:
             self._strategy.inject([mean], force=True)
         self._unasked: deque[np.ndarray] = deque()
         self._generation: list[np.ndarray] = []
@@ -138,21 +115,22 @@ class OptunaSearch:
 
     The warm-up is drawn here: the samplers would draw it from the stream that they use again afterwards.
 
-    :param sampler_type: class of the sampler, which chooses after the warm-up
+    :param sampler: name of the sampler's class, which chooses after the warm-up
+    :param settings: Settings of the search, of which there are none
     :param box: ranges of the parameters
     :param seed: seed of the draws
     :param start: how to begin
     """
 
-    def __init__(self, sampler_type: Any, box: Box, seed: int, start: Start) -> None:
+    def __init__(self, sampler: str, settings: AgentSettings, box: Box, seed: int, start: Start) -> None:
         import optuna
 
         # The tries in flight when the warm-up ends have no merit yet, and are not waited for.
-        sampler = sampler_type(seed=seed, n_startup_trials=start.warm_up - start.slots + 1)
+        made = getattr(optuna.samplers, sampler)(seed=seed, n_startup_trials=start.warm_up - start.slots + 1)
         verbosity = optuna.logging.get_verbosity()
         optuna.logging.set_verbosity(optuna.logging.ERROR)
         try:
-            self._study = optuna.create_study(direction="maximize", sampler=sampler)
+            self._study = optuna.create_study(direction="maximize", sampler=made)
         finally:
             optuna.logging.set_verbosity(verbosity)
         self._box = box
@@ -184,31 +162,11 @@ class OptunaSearch:
         return self._box.unscaled(self._study.best_params[name] for name in self._ranges)
 
 
-def _random_search(settings: AgentSettings, box: Box, seed: int, start: Start) -> Search:
-    return RandomSearch(box, seed, start.first)
-
-
-def _evolution_strategy(settings: EvolutionSettings, box: Box, seed: int, start: Start) -> Search:
-    return EvolutionStrategy(settings, box, seed, start.first)
-
-
-def _gaussian_process(settings: AgentSettings, box: Box, seed: int, start: Start) -> Search:
-    from optuna.samplers import GPSampler
-
-    return OptunaSearch(GPSampler, box, seed, start)
-
-
-def _parzen_estimator(settings: AgentSettings, box: Box, seed: int, start: Start) -> Search:
-    from optuna.samplers import TPESampler
-
-    return OptunaSearch(TPESampler, box, seed, start)
-
-
 OPTIMISERS: dict[str, Callable[[Any, Box, int, Start], Search]] = {
-    "cma-es": _evolution_strategy,
-    "gp": _gaussian_process,
-    "tpe": _parzen_estimator,
-    "random": _random_search,
+    "cma-es": EvolutionStrategy,
+    "gp": partial(OptunaSearch, "GPSampler"),
+    "tpe": partial(OptunaSearch, "TPESampler"),
+    "random": RandomSearch,
 }
-"""Functions that make the search of a training, by the algorithm's name: of its settings, the ranges of the parameters,
+"""What makes the search of a training, by the algorithm's name: of its settings, the ranges of the parameters,
 the seed of everything that it draws, and how it begins."""

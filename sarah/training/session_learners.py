@@ -6,8 +6,9 @@ from collections.abc import Callable
 
 from sarah.operation.operation import Operation
 from sarah.operation.settings import BOX, Parameters
-from sarah.runs.agent_settings import EvolutionSettings
-from sarah.training.search import Search
+from sarah.runs.agent_settings import AgentSettings, EvolutionSettings
+from sarah.training.optimisers import EvolutionStrategy, RandomSearch
+from sarah.training.search import Search, Start
 
 AROUND_THE_FIRST = EvolutionSettings(deviation=0.16, population=10)
 """Settings of CMA-ES in a session: a robot in operation is not to leave the parameters that it walks with at once."""
@@ -28,31 +29,27 @@ def operate(robot: Operation, search: Search) -> Parameters:
 
 
 def _none(robot: Operation, first: Parameters, seed: int) -> Parameters:
-    from sarah.training.optimisers import Frozen
-
-    return operate(robot, Frozen(first))
+    while not robot.is_over:
+        robot.run(first)
+    return first
 
 
 def _random(robot: Operation, first: Parameters, seed: int) -> Parameters:
-    from sarah.training.optimisers import RandomSearch
-
-    return operate(robot, RandomSearch(BOX, seed, first))
+    return operate(robot, RandomSearch(AgentSettings(), BOX, seed, Start(first)))
 
 
 def _evolution(robot: Operation, first: Parameters, seed: int) -> Parameters:
-    from sarah.training.optimisers import EvolutionStrategy
-
-    return operate(robot, EvolutionStrategy(AROUND_THE_FIRST, BOX, seed, first))
+    return operate(robot, EvolutionStrategy(AROUND_THE_FIRST, BOX, seed, Start(first)))
 
 
 def _careful(robot: Operation, first: Parameters, seed: int) -> Parameters:
-    from sarah.training.careful import CarefulSearch
+    from sarah.training.careful import CarefulSearch  # slow to import because of scikit-learn
 
     return operate(robot, CarefulSearch(BOX, seed, first))
 
 
 def _naf(robot: Operation, first: Parameters, seed: int) -> Parameters:
-    from sarah.training.session_agent import operate_by_naf
+    from sarah.training.session_agent import operate_by_naf  # slow to import because of torch
 
     return operate_by_naf(robot, first, seed)
 
@@ -65,4 +62,4 @@ LEARNERS: dict[str, Callable[[Operation, Parameters, int], Parameters]] = {
     "random": _random,
 }
 """Functions that operate a robot until its time is over, and return the parameters to leave it with: of the robot, the
-parameters of its first window and a seed. A learner's packages are imported when it begins: others do not need them."""
+parameters of its first window and a seed."""

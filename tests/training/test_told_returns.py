@@ -41,7 +41,7 @@ def test_each_return_is_corrected_by_what_is_known_when_it_is_told(
     monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
     monkeypatch.setattr(Stage, "trials", 2)
     monkeypatch.setattr(Listening, "told", [], raising=False)
-    monkeypatch.setitem(OPTIMISERS, "random", lambda settings, box, seed, start: Listening(box, seed))
+    monkeypatch.setitem(OPTIMISERS, "random", Listening)
     run = RunFolder.create(tmp_path / "run", TrainingConfig("balance", "random", 40, slots=3, episode=EPISODE))
     train(run.config(), run)
     specs = [spec_of(row) for row in run.episodes()][: len(Listening.told)]
