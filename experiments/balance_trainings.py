@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from experiments.judge import Asked, Condition, Judge
 from experiments.trainings import OfTrainings, kept
-from sarah.control.parameters import BALANCE_PARAMETERS
+from sarah.control.parameters import BALANCE_PARAMETERS, Parameters
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import Push
 from sarah.episode.tasks import BalanceConfig
@@ -22,7 +22,6 @@ from sarah.episode.workers import Executor
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import Engine
-from sarah.training.recommendation import Parameters
 
 BALANCE_NAMES = [parameter.name for parameter in BALANCE_PARAMETERS]
 SHIPPED: Parameters = PARAMETER_SETS["balance"].spec.parameters
@@ -133,8 +132,8 @@ def network_says(run: RunFolder) -> Parameters:
 
     :param run: run folder of the training
     """
-    from sarah.training.learners import LEARNERS, chosen_parameters, nominal_observation
+    from sarah.training.learners import AGENTS, chosen_parameters, nominal_observation
 
     config = run.config()
-    algorithm, _ = LEARNERS[type(config.agent)]  # type: ignore[index]  # NAF's settings are a learner's
+    algorithm, _ = AGENTS[type(config.agent)]  # type: ignore[index]  # NAF's settings are a learner's
     return chosen_parameters(algorithm.load(run.model_path), nominal_observation(config), config.task)

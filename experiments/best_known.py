@@ -14,10 +14,9 @@ import numpy as np
 
 from experiments.balance_trainings import CHOOSING_SEED, JUDGING_SEED, SHIPPED, OfSecondTrainings, Training
 from experiments.judge import Asked
-from sarah.control.parameters import BALANCE_PARAMETERS
+from sarah.control.parameters import BALANCE_PARAMETERS, Parameters
 from sarah.episode.workers import Executor
 from sarah.simulation.engines import Engine
-from sarah.training.recommendation import Parameters
 
 DEVIATION = (0.3, 0.8, 0.3, 0.8)
 """Standard deviation of candidates around a known set; what V2 and V4 do shows over longer distances."""

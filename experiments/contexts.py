@@ -250,9 +250,7 @@ def _always(parameters: tuple[float, ...], felt: np.ndarray) -> tuple[float, ...
 
 def _action_of(parameters: tuple[float, ...]) -> np.ndarray:
     """Action that stands for parameters."""
-    return np.array(
-        [2.0 * (value - one.low) / one.width - 1.0 for value, one in zip(parameters, BALANCE.parameters, strict=True)]
-    )
+    return np.array(BALANCE.box.scaled(parameters))
 
 
 def train_naf(grounds: list[Ground], budget: int, seed: int, is_blind: bool) -> Policy:

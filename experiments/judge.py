@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 
 from experiments.trainings import identity
+from sarah.control.parameters import Parameters
 from sarah.episode.evaluation import evaluate
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.workers import Executor
 from sarah.files import replace_text
-from sarah.training.recommendation import Parameters
 
 EPISODES_CODE = ("control", "episode", "robot", "scenery", "simulation", "urdf")
 """Parts of sarah that an outcome depends on."""

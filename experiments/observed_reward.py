@@ -15,8 +15,7 @@ from experiments.experiment import OnWorkers
 from experiments.record import Row
 from sarah.episode.from_mapping import from_mapping
 from sarah.episode.workers import Workers
-from sarah.operation.settings import SHIPPED, OperationConfig, Parameters
-from sarah.operation.shares import from_shares, to_shares
+from sarah.operation.settings import BOX, SHIPPED, OperationConfig, Parameters
 from sarah.sessions.session import SessionResult, SessionSpec, run_session
 from sarah.simulation.engines import Engine, is_installed
 
@@ -63,7 +62,7 @@ def drawn(seed: int) -> Parameters:
     """
     generator = random.Random(f"observed {seed}")
     deviation = DEVIATIONS[seed % len(DEVIATIONS)]
-    return from_shares(to_shares(SHIPPED) + [deviation * generator.gauss(0.0, 1.0) for _ in SHIPPED])
+    return BOX.at_shares(share + deviation * generator.gauss(0.0, 1.0) for share in BOX.shares(SHIPPED))
 
 
 def _compared(sessions: list[SessionResult]) -> Row:

@@ -30,7 +30,7 @@ ROBOTS: dict[str, dict[str, Any]] = {
 }
 """Settings of the robots that do not change, by name."""
 CHANGING = "servos weaken at minute 5"
-LEARNERS = ("none", "gp", "naf", "cma-es", "random")
+LEARNERS = ("none", "careful", "naf", "cma-es", "random")
 SPANS = ((0.0, 3.0), (3.0, 5.0), (5.0, 8.0), (8.0, math.inf))
 """Spans of the time of operation whose means are shown, in min."""
 FIRST_TUNING_SEED = 1000
@@ -75,7 +75,7 @@ class Operation(OnWorkers):
                     yield _row(robot, "best known, frozen", found, frozen) | {"score_of_last_parameters": ""}
 
     def _count(self, learner: str) -> int:
-        return self.seeds if learner in ("none", "gp") else self.other_seeds
+        return self.seeds if learner in ("none", "careful") else self.other_seeds
 
     def _sessions(
         self, workers: Workers, robot: str, learner: str, first: Sequence[Parameters], minutes: float | None = None
@@ -105,7 +105,7 @@ class Operation(OnWorkers):
         """Of what long sessions on other seeds end with, the parameters that do best on these seeds."""
         seeds = range(FIRST_TUNING_SEED, FIRST_TUNING_SEED + self.best_seeds)
         long, short = (self._config(robot, minutes) for minutes in (self.best_minutes, min(2.0, self.best_minutes)))
-        sessions = [workers.submit(run_session, SessionSpec(SHIPPED, "gp", seed, long)) for seed in seeds]
+        sessions = [workers.submit(run_session, SessionSpec(SHIPPED, "careful", seed, long)) for seed in seeds]
         candidates = [SHIPPED, *(job.result().parameters for job in sessions)]
         judged = [
             [workers.submit(run_session, SessionSpec(candidate, "none", seed, short)) for seed in seeds]

@@ -12,10 +12,10 @@ from experiments.best_known import OfBestKnown, best_known
 from experiments.interval import crossed_bootstrap, ratio, with_error
 from experiments.judge import Asked
 from experiments.record import Row, cell
+from sarah.control.parameters import Parameters
 from sarah.episode.tasks import BALANCE
 from sarah.episode.workers import Executor, Workers
 from sarah.simulation.engines import Engine
-from sarah.training.recommendation import Parameters
 
 ENOUGH = 0.95
 """Share of the best known score from which a training counts in ``at_95``."""

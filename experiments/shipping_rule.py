@@ -42,6 +42,7 @@ from experiments.balance_trainings import (
 from experiments.interval import with_error
 from experiments.judge import Asked, Condition, Judge
 from experiments.record import Row
+from sarah.control.parameters import Parameters
 from sarah.episode.push import NOBODY
 from sarah.episode.workers import Workers
 from sarah.reports.uncertainty import standard_error
@@ -49,7 +50,6 @@ from sarah.simulation.engines import Engine
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import Randomisation
 from sarah.simulation.terrain import Terrain
-from sarah.training.recommendation import Parameters
 
 DIGITS = 2
 """Decimals of the shipped values."""

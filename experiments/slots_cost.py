@@ -12,6 +12,7 @@ from sarah.episode.evaluation import evaluate
 from sarah.episode.workers import Workers
 from sarah.runs.agent_settings import NAFSettings
 from sarah.runs.config import TrainingConfig
+from sarah.training.plan import plan_of
 
 WARM_UP = NAFSettings().learning_starts
 """Number of episodes before NAF learns."""
@@ -43,7 +44,7 @@ class SlotsCost(OfTrainings):
                     training = TrainingConfig("stepping", episodes=self.budget, seed=seed, slots=slots, episode=config)
                     run = self.trained(training, workers)
                     scores = [float(row["score"]) for row in run.episodes()]
-                    learning.append(mean(scores[max(WARM_UP, 2 * slots) : self.budget - training.trial_episodes]))
+                    learning.append(mean(scores[max(WARM_UP, 2 * slots) : plan_of(training).stages[0].learning]))
                     evaluation = evaluate("stepping", run.parameters(), config, range(self.episodes), workers)
                     final.append(evaluation.median("score"))
                 yield {

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from sarah.episode.from_mapping import from_mapping
-from sarah.operation.settings import SHIPPED, OperationConfig, Parameters
-from sarah.operation.shares import to_shares
+from sarah.operation.settings import BOX, SHIPPED, OperationConfig, Parameters
 from sarah.operation.window import FELT, Window
 
 
@@ -52,7 +51,7 @@ class FormulaRobot:
         return max(0.0, 60.0 * self.config.minutes - self._seconds) / 6.0
 
     def run(self, parameters: Parameters) -> Window:
-        reward = self._reward(to_shares(parameters), self._seconds / 60.0)
+        reward = self._reward(np.array(BOX.shares(parameters)), self._seconds / 60.0)
         fell = reward < 0.2
         noisy = 0.05 if fell else reward + self._noise * self._generator.standard_normal()
         seconds = 26.0 if fell else 6.0
@@ -77,5 +76,5 @@ class FormulaRobot:
         return sum(found) / len(found)
 
 
-START = to_shares(SHIPPED)
+START = np.array(BOX.shares(SHIPPED))
 """Where learners begin, in shares of the ranges."""

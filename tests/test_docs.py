@@ -17,6 +17,7 @@ import pytest
 from terminal import run
 
 from sarah.control.hip_law import BalanceParameters
+from sarah.control.parameters import Box, Parameter
 from sarah.episode.episode import simulate
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import Push
@@ -31,7 +32,7 @@ from sarah.runs.config_files import read_config
 from sarah.simulation.build import simulator_of
 from sarah.simulation.engines import is_installed
 from sarah.simulation.randomisation import NOMINAL, Randomisation
-from sarah.training.optimisers import Start
+from sarah.training.search import Start
 
 ROOT = Path(__file__).parent.parent
 AS_DESIGNED = Randomisation(enabled=False)
@@ -260,17 +261,18 @@ def test_the_optimiser_of_the_page_keeps_to_the_protocol_and_climbs(monkeypatch:
     monkeypatch.setattr("sarah.training.optimisers.OPTIMISERS", {})
     monkeypatch.setattr("sarah.runs.agent_settings.AGENT_SETTINGS", dict(AGENT_SETTINGS))
     names: dict[str, Any] = {}
+    box = Box((Parameter("wide", -10.0, 10.0, "", "a number", ""),))
     exec(blocks("how_to/algorithm.md")[1], names)
 
     def tried(seed: int) -> list[float]:
-        optimiser = names["OPTIMISERS"]["climber"](names["AGENT_SETTINGS"]["climber"](), 1, seed, Start())
+        search = names["OPTIMISERS"]["climber"](names["AGENT_SETTINGS"]["climber"](), box, seed, Start())
         asked = []
         for _ in range(30):
-            assert optimiser.ready()
-            asked.append(optimiser.ask())
-            optimiser.tell(asked[-1], -abs(asked[-1][0] - 0.8))
-        assert abs(optimiser.choice()[0] - 0.8) < 0.1
-        return [float(action[0]) for action in asked]
+            assert search.ready()
+            asked.append(search.ask())
+            search.tell(asked[-1], -abs(asked[-1][0] - 8.0))
+        assert abs(search.choice()[0] - 8.0) < 1.0
+        return [parameters[0] for parameters in asked]
 
     assert tried(1) == tried(1) != tried(2)
 

@@ -150,7 +150,7 @@ PROTECTIONS = (
     ),
     Protection(
         "weights that are no numbers stop a training",
-        "training/recorder.py",
+        "training/learners.py",
         "if not torch.isfinite(torch.stack(norms)).all():",
         "if False:",
         "test_weights_that_are_not_finite_stop_the_training",

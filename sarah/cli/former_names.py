@@ -1,4 +1,4 @@
-"""Former names of what to write, which commands take for one release more: all of them call it ``--out``."""
+"""Former names, which commands take for one release more. What to write they all call ``--out``."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ def with_out(
         present = (former or {}).get(option.replace("_", "-"))
         if index == bare and not any(word.startswith("-") for word in arguments[: index + 1]):
             words += [OUT, argument]
-            _say(command, argument, OUT, argument)
+            say_present(command, argument, OUT, argument)
         elif present is not None and place and (equals or not place.startswith("-")):
             places.append(place)
             words += [*present.split(), *([value] if equals else [])]
-            _say(command, f"{option} {place}", present, place)
+            say_present(command, f"{option} {place}", present, place)
         else:
             words.append(argument)
     if len(set(places)) > 1:
@@ -43,6 +43,13 @@ def with_out(
     return words
 
 
-def _say(command: str, former: str, present: str, place: str) -> None:
-    instead = f"{present} {quoted(place)}"
+def say_present(command: str, former: str, present: str, value: str) -> None:
+    """Say on standard error what is to be written instead.
+
+    :param command: name of the command
+    :param former: words that were given
+    :param present: option that takes their place
+    :param value: value of the option
+    """
+    instead = f"{present} {quoted(value)}"
     print(f"{command}: say {instead} instead of {former}, which the next release refuses", file=sys.stderr)

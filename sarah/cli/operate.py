@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, given_options, parse_episode_options
-from sarah.cli.former_names import with_out
+from sarah.cli.former_names import say_present, with_out
 from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import Interruption
 from sarah.cli.next_steps import say_next, to_see, to_test, to_watch
@@ -58,7 +58,7 @@ class OperateOptions(EpisodeOptions):
 
     :param subject: run folder of a training or a session, numbers separated by commas (P1 to P5, V1 to V4, or all
         nine), or the name of shipped parameters: what the robot begins with
-    :param learner: ``none``, ``gp`` (careful), ``naf``, ``cma-es`` or ``random``
+    :param learner: ``none``, ``careful``, ``naf``, ``cma-es`` or ``random``
     :param minutes: duration of the operation, in min
     :param seed: seed of robot, world, noise, pushes and learner
     :param settle_seconds: time that a window gives new parameters to settle, in s
@@ -70,7 +70,7 @@ class OperateOptions(EpisodeOptions):
     :param out: folder to write, new or empty; by default a new one, runs/operation/<learner>-s<seed>
     :param resume: folder of an interrupted session to go on with, as it is. A finished session goes on if --minutes is
         more than its duration. Its windows are then those of a session that was as long from the beginning, unless
-        the learner is gp, which tries less shortly before an end
+        the learner is careful, which tries less shortly before an end
     :param extended_from: durations with which the session had ended before it went on, in min, in rising order;
         --resume with more --minutes adds one
     :param compare_frozen: whether to run the same robot again without learning, with the parameters of the beginning
@@ -78,7 +78,7 @@ class OperateOptions(EpisodeOptions):
     """
 
     subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"
-    learner: str = "gp"
+    learner: str = "careful"
     minutes: float = 10.0
     seed: int = 0
     settle_seconds: float = 2.0
@@ -123,9 +123,12 @@ def _operate(arguments: Sequence[str]) -> None:
 def _begun(options: OperateOptions) -> SessionFolder:
     """The folder of a new session."""
     from sarah.runs.run_folder import new_run_path
+    from sarah.sessions.session import FORMER_LEARNERS
     from sarah.sessions.session_folder import SessionFolder
     from sarah.simulation.engines import check_engine
 
+    if present := FORMER_LEARNERS.get(options.learner):
+        say_present(COMMAND, f"--learner {options.learner}", "--learner", present)
     spec = _spec_of(options)
     _check_learns(options, spec)
     for count in range(len(spec.config.changes) + 1):

@@ -180,9 +180,10 @@ def _extended(run: RunFolder, config: TrainingConfig) -> TrainingConfig:
     before = run.config()
     extended = dataclasses.replace(before.extended_to(config.episodes), pictures=config.pictures)
     run.extend(extended)
+    added = extended.episodes - before.episodes
     print(
         f"extending {before.episodes} to {extended.episodes} episodes: what changes in the course of a training, such "
-        f"as NAF's exploration, is from now on as in the last {extended.stage_episodes} of {extended.episodes} episodes"
+        f"as NAF's exploration, is from now on as in the last {added} of {extended.episodes} episodes"
     )
     return extended
 

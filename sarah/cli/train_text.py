@@ -20,13 +20,13 @@ def say_learned(task: Task[Any], learned: Learned, path: Path) -> None:
     """
     from sarah.episode.accuracy import physics_warning
     from sarah.runs.run_folder import RunFolder
-    from sarah.training.warm_up import describe_warm_up
+    from sarah.training.plan import plan_of
 
     config = RunFolder.open(path).config()
     evaluation, baseline = learned.evaluation, learned.baseline
     named = zip(task.parameter_names, learned.parameters, strict=True)
     print("\nlearned     " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
-    print(f"warm-up     {describe_warm_up(config)}")
+    print(f"warm-up     {plan_of(config).warm_up_words()}")
     neutral = "the baseline (V = 0)" if task is BALANCE else "neutral parameters"
     compared = [("", evaluation), *([] if baseline is None else [(f" for {neutral}", baseline)])]
     scores = ", ".join(f"{one.mean('score'):.3f}{name}" for name, one in compared)

@@ -15,14 +15,13 @@ from sarah.errors import ConfigurationError, check_range, shortened
 from sarah.operation.operation import Operation
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import (
+    BOX,
     PARAMETERS,
     SHIPPED,
     OperationConfig,
     Parameters,
     check_effect,
-    checked_parameters,
 )
-from sarah.operation.shares import from_shares, to_shares
 from sarah.operation.window import FELT, LARGEST, Window, observation_from
 
 
@@ -63,7 +62,7 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
             raise ConfigurationError(f"operated must be a robot in operation, not {shortened(operated)}")
         check_effect(settings.get("robot"))
         self.config = from_mapping(config, settings)
-        self.first = checked_parameters(first)
+        self.first = BOX.checked(first)
         self.render_mode = checked_render_mode(render_mode, self.metadata["render_modes"])
         self._reach = float(check_range("reach", reach, 0.0, 1.0))
         size = len(FELT) + len(PARAMETERS)
@@ -118,7 +117,7 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         :param action: one number in [-1, 1] for each parameter
         :raises ConfigurationError: if the action is not finite or out of its box
         """
-        return from_shares(to_shares(self.first) + self._reach * checked_action(action, len(PARAMETERS)))
+        return BOX.at_shares(BOX.shares(self.first) + self._reach * checked_action(action, len(PARAMETERS)))
 
     def __copy__(self) -> SarahOperationEnv:
         """Copy with a robot of its own, as one that both had would run the windows of both."""
@@ -131,5 +130,5 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         self._robot = None
 
     def _observe(self, window: Window) -> np.ndarray:
-        shares = to_shares(window.parameters).astype(np.float32)
+        shares = np.array(BOX.shares(window.parameters), np.float32)
         return np.concatenate([observation_from(window.felt, self.config.robot.scale), 2.0 * shares - 1.0])

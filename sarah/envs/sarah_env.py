@@ -218,6 +218,4 @@ def parameters_from(action: np.ndarray, task: Task) -> tuple[float, ...]:
     :param task: task that owns the parameters
     :raises ConfigurationError: if the action is not finite or out of its box
     """
-    boxes = zip(task.parameters, checked_action(action, len(task.parameters)).tolist(), strict=True)
-    # Rounding may lead beyond an end of a range, to which the task brings it.
-    return task.checked([one.low + one.width * (value + 1.0) / 2.0 for one, value in boxes])
+    return task.box.unscaled(checked_action(action, len(task.parameters)).tolist())

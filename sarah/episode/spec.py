@@ -40,7 +40,7 @@ class EpisodeSpec:
         """Refuse invalid specifications, and convert the parameters to floats."""
         task = task_named(self.task)
         object.__setattr__(self, "task", task)
-        object.__setattr__(self, "parameters", task.checked(self.parameters))
+        object.__setattr__(self, "parameters", task.box.checked(self.parameters))
         object.__setattr__(
             self, "config", task.episode if self.config is None else task.checked_config(self.config, True)
         )

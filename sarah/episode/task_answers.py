@@ -58,7 +58,7 @@ def controller_of(task: Task, parameters: tuple[float, ...], config: EpisodeConf
     :param parameters: values of the task's parameters, in order
     :param config: settings of the episode
     """
-    made = _asked(task, task.controller_parameters, task.checked(parameters), config)
+    made = _asked(task, task.controller_parameters, task.box.checked(parameters), config)
     if isinstance(made, tuple) and len(made) == 2:
         stepping, balance = made
         kinds = isinstance(stepping, SteppingParameters) and isinstance(balance, BalanceParameters | None)

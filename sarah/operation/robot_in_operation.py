@@ -12,7 +12,7 @@ from sarah.episode.push import Push, draw_push
 from sarah.episode.recording import Recording
 from sarah.episode.result import EpisodeResult
 from sarah.episode.running_robot import RunningRobot, conditions_of
-from sarah.operation.settings import OperationConfig, Parameters, checked_parameters, controller_parameters
+from sarah.operation.settings import BOX, OperationConfig, Parameters, controller_parameters
 from sarah.operation.window import Window, WindowRecord
 from sarah.robot.reading import Vector
 
@@ -65,7 +65,7 @@ class RobotInOperation:
         :param parameters: P1 to P5 and V1 to V4
         :raises ConfigurationError: if a parameter is not within its box
         """
-        return self._run_next(checked_parameters(parameters), False)[0]
+        return self._run_next(BOX.checked(parameters), False)[0]
 
     def replay(self, window: Window) -> EpisodeResult:
         """Run one window again that is known, and record it.

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from sarah.control.hip_law import BalanceParameters
-from sarah.control.parameters import BALANCE_PARAMETERS, STEPPING_PARAMETERS
+from sarah.control.parameters import BALANCE_PARAMETERS, STEPPING_PARAMETERS, Box
 from sarah.control.pattern_generator import SteppingParameters
 from sarah.episode.from_mapping import changed_alone, convert_fields
 from sarah.episode.push import Push, PushedConfig
 from sarah.episode.shipped import shipped_parameters
-from sarah.episode.tasks.task import checked_values
 from sarah.errors import (
     ConfigurationError,
     check_extended_from,
@@ -29,6 +28,8 @@ from sarah.robot.description import describe_robot
 
 PARAMETERS = (*STEPPING_PARAMETERS, *BALANCE_PARAMETERS)
 """The nine parameters that can change while the robot runs: P1 to P5 and V1 to V4."""
+BOX = Box(PARAMETERS, decimals=6)
+"""Their ranges together. What a learner chooses is rounded, so that a table shows all of it."""
 Parameters = tuple[float, ...]
 SHIPPED: Parameters = (
     *shipped_parameters("stepping", STEPPING_PARAMETERS),
@@ -191,15 +192,6 @@ def _plain(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {plain(name): _plain(item) for name, item in value.items()}
     return [_plain(item) for item in value] if isinstance(value, (list, tuple)) else value
-
-
-def checked_parameters(values: Sequence[float]) -> Parameters:
-    """Check the nine parameters, and convert them to floats.
-
-    :param values: P1 to P5 and V1 to V4
-    :raises ConfigurationError: naming the first that is missing, or not within its box
-    """
-    return checked_values(PARAMETERS, values, "parameters", "P1 to P5, V1 to V4")
 
 
 def controller_parameters(parameters: Parameters) -> tuple[SteppingParameters, BalanceParameters]:

@@ -12,6 +12,7 @@ from pathlib import Path
 from jinja2 import Environment, StrictUndefined
 from tqdm import tqdm
 
+from sarah.control.parameters import Parameters
 from sarah.episode.episode import simulate
 from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.result import METRICS
@@ -28,7 +29,6 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.episode_words import told_of
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.renderer import check_renderer
-from sarah.training.recommendation import Parameters
 
 PAPER_CAPTIONS = {
     "figure_4_reward_and_frequency": "Return and step frequency of every episode (the paper's Figure 4)",

@@ -13,7 +13,7 @@ from sarah.errors import RunFolderError
 from sarah.number import finite_number
 from sarah.runs.run_episodes import LONGEST_REASON
 from sarah.runs.run_folder import RunFolder
-from sarah.training.warm_up import warm_up
+from sarah.training.plan import plan_of
 
 OUTCOMES = ("return", "steps_per_second", "x", "y")
 """Columns of ``episodes.csv`` that figures of outcomes show."""
@@ -60,9 +60,9 @@ def _curves(algorithm: str, runs: Sequence[RunFolder], task: Task) -> RunCurves:
             raise RunFolderError(f"{run.path} has no episodes to draw")
     shortest = min(len(table["return"]) for table in tables)
     columns = {name: np.array([table[name][:shortest] for table in tables]) for name in names}
-    configs = [run.config() for run in runs]
-    learning = min(shortest, *(config.episodes - config.trial_episodes for config in configs))
-    first = min(learning, max(map(warm_up, configs)))
+    plans = [plan_of(run.config()) for run in runs]
+    learning = min(shortest, *(plan.stages[-1].begin + plan.stages[-1].learning for plan in plans))
+    first = min(learning, max(plan.start.warm_up for plan in plans))
     recommended: dict[str, np.ndarray] = {}
     if len(runs) == 1:
         noted = ("episodes", *task.parameter_names)

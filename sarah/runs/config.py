@@ -19,13 +19,6 @@ from sarah.runs.agent_settings import AGENT_SETTINGS, AgentSettings, LearnerSett
 MOST_EPISODES = 1_000_000
 MOST_SLOTS = 10_000
 
-EPISODES_PER_TRIAL = 5
-"""Number of episodes in which a training tries what it would recommend."""
-BUDGET_PER_TRIAL = 25
-"""Number of episodes of a training for each trial."""
-MOST_TRIALS = 2
-"""Largest number of sets that are tried. Of the valid ones the best expected is recommended."""
-
 ALGORITHMS = tuple(AGENT_SETTINGS)
 AGENTS = tuple(algo for algo, settings in AGENT_SETTINGS.items() if issubclass(settings, LearnerSettings))
 """Algorithms of reinforcement learning, with networks."""
@@ -106,32 +99,12 @@ class TrainingConfig:
         """Budgets at which the training ends, or has ended before it was extended."""
         return (*self.extended_from, self.episodes)
 
-    @property
-    def stage_episodes(self) -> int:
-        """Number of episodes since the training was extended, or since it began."""
-        return self.episodes - (self.extended_from[-1] if self.extended_from else 0)
-
-    @property
-    def trials(self) -> int:
-        """Number of times that the budget allows to try what is recommended, at its end."""
-        return min(MOST_TRIALS, self.stage_episodes // BUDGET_PER_TRIAL)
-
-    def by_stage(self) -> tuple[TrainingConfig, ...]:
-        """The training as it was begun, and then as every extension made it."""
-        ends = range(len(self.stages))
-        return tuple(replace(self, episodes=self.stages[i], extended_from=self.stages[:i]) for i in ends)
-
     def extended_to(self, episodes: int) -> TrainingConfig:
         """The training with a larger budget: it goes on from where it ended.
 
         :param episodes: the larger budget, earlier episodes included
         """
         return replace(self, episodes=episodes, extended_from=self.stages)
-
-    @property
-    def trial_episodes(self) -> int:
-        """Number of episodes that try what is recommended, which are the last of the budget."""
-        return self.trials * EPISODES_PER_TRIAL
 
 
 TrainingConfig.__doc__ = (  # the help of the commands and the page of settings read it

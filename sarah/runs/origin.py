@@ -6,6 +6,7 @@ All other rows depend on it, so a training in which one of these differs would n
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -63,7 +64,8 @@ def check_first_row(path: Path, first: bytes, config: TrainingConfig) -> None:
 
 
 def _origin_of(config: TrainingConfig) -> dict[str, Any]:
-    settings = settings_by_key(config.by_stage()[0])  # the journal has a row for each extension
+    begun = replace(config, episodes=config.stages[0], extended_from=())  # the journal has a row for each extension
+    settings = settings_by_key(begun)
     for name in ("pictures", "extended_from"):  # pictures change no result
         del settings[name]
     return {**settings, **versions()}

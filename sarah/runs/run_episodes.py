@@ -96,7 +96,7 @@ def episode_of_parameters(parameters: Sequence[float], task: Task[Any] | None = 
     all_of_both = len(STEPPING.parameters) + len(BALANCE.parameters)
     takes_both = task in (None, BALANCE)
     if takes_both and len(parameters) == all_of_both:
-        stepping = STEPPING.checked(parameters[: len(STEPPING.parameters)])
+        stepping = STEPPING.box.checked(parameters[: len(STEPPING.parameters)])
         label = f"P and V = {', '.join(f'{value:g}' for value in parameters)} · seed 0"
         config = BALANCE.config_of(BALANCE.episode, stepping=stepping)
         spec = EpisodeSpec(tuple(parameters[len(stepping) :]), 0, BALANCE, config)

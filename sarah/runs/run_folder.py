@@ -283,7 +283,7 @@ class RunFolder:
             if set(learned) != set(names):
                 found = shortened(", ".join(map(str, learned)))
                 raise ValueError(f"it names {found} instead of {', '.join(names)}")
-            return task.checked([learned[name] for name in names])
+            return task.box.checked([learned[name] for name in names])
         except OSError as error:
             raise _unreadable(self._parameters_path, error) from error
         except (ValueError, KeyError, TypeError) as error:

@@ -1,6 +1,6 @@
 """Sessions: a robot in operation whose parameters a learner renews, from what the robot itself feels.
 
-It may import all but reports, the viewer, training and the commands.
+It may import all but reports, the viewer and the commands.
 """
 
 from __future__ import annotations

@@ -8,13 +8,15 @@ from dataclasses import dataclass, field, replace
 from sarah.episode.from_mapping import convert_fields
 from sarah.errors import ConfigurationError, check_type, check_whole, unknown_name
 from sarah.operation.robot_in_operation import RobotInOperation
-from sarah.operation.settings import SHIPPED, OperationConfig, Parameters, checked_parameters
+from sarah.operation.settings import BOX, SHIPPED, OperationConfig, Parameters
 from sarah.operation.window import Window
 from sarah.process import apart
-from sarah.sessions.learners import LEARNERS
 from sarah.sessions.watched import WatchedRobot
+from sarah.training.session_learners import LEARNERS
 
 LARGEST_SEED = 2**31 - 1
+FORMER_LEARNERS = {"gp": "careful"}
+"""Names of learners by their former ones, which are read for one release more."""
 
 
 @dataclass(frozen=True)
@@ -22,21 +24,22 @@ class SessionSpec:
     """The specification of a session: everything that its result depends on.
 
     :param parameters: P1 to P5 and V1 to V4 that the robot begins with
-    :param learner: name of the learner, one of :data:`~sarah.sessions.learners.LEARNERS`
+    :param learner: name of the learner, one of :data:`~sarah.training.session_learners.LEARNERS`
     :param seed: seed of robot, world, noise, pushes and learner; a whole number, not negative
     :param config: settings of the operation
     :raises ConfigurationError: naming what is not allowed
     """
 
     parameters: Parameters = SHIPPED
-    learner: str = "gp"
+    learner: str = "careful"
     seed: int = 0
     config: OperationConfig = field(default_factory=OperationConfig)
 
     def __post_init__(self) -> None:
         """Convert values to their types, and refuse invalid specifications."""
         convert_fields(self)
-        checked_parameters(self.parameters)
+        BOX.checked(self.parameters)
+        object.__setattr__(self, "learner", FORMER_LEARNERS.get(self.learner, self.learner))
         if self.learner not in LEARNERS:
             raise ConfigurationError(unknown_name("learner", str(self.learner), LEARNERS))
         object.__setattr__(self, "seed", check_whole("seed", self.seed, 0, LARGEST_SEED))
@@ -93,7 +96,6 @@ def run_session(
     :raises ResumeError: if the learner asks for other parameters than a known window has
     """
     check_type("spec", spec, SessionSpec)
-    learner = LEARNERS[spec.learner](spec.parameters, spec.seed)
     with apart() as outside:
 
         def watch_outside(window: Window) -> None:
@@ -102,7 +104,7 @@ def run_session(
 
         robot = WatchedRobot(RobotInOperation(spec.config, spec.seed), known, watch_outside)
         try:
-            parameters = learner.operate(robot)
+            parameters = LEARNERS[spec.learner](robot, spec.parameters, spec.seed)
         finally:
             robot.close()
     return SessionResult(tuple(robot.windows), parameters)

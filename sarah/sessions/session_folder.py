@@ -22,7 +22,7 @@ from sarah.errors import RunFolderError
 from sarah.files import check_name, quoted, read_lines, read_text, replace_text, write_command
 from sarah.formats import read_json
 from sarah.number import finite_number, whole_number
-from sarah.operation.settings import PARAMETERS, Parameters, checked_parameters
+from sarah.operation.settings import BOX, PARAMETERS, Parameters
 from sarah.operation.window import FELT, Window
 from sarah.runs.config_files import read_config, write_config
 from sarah.runs.run_episodes import LONGEST_REASON
@@ -196,7 +196,7 @@ class SessionFolder:
         """Parameters that the robot was left with; ``None`` if there are none, or if the file is damaged."""
         try:
             values = read_json(read_text(self._parameters_path))["parameters"]
-            return checked_parameters([values[name] for name in NAMES])
+            return BOX.checked([values[name] for name in NAMES])
         except (OSError, ValueError, KeyError, TypeError):
             return None
 
@@ -216,7 +216,7 @@ def _window(row: Mapping[str, str]) -> Window:
         begin=finite_number(row["begin"]),
         seconds=finite_number(row["seconds"]),
         changes=whole_number(row["changes"]),
-        parameters=checked_parameters([finite_number(row[name]) for name in NAMES]),
+        parameters=BOX.checked([finite_number(row[name]) for name in NAMES]),
         score=finite_number(row["score"]),
         observed_reward=finite_number(row["observed_reward"]),
         fell=row["fell"] == "1",

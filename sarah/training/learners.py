@@ -1,4 +1,4 @@
-"""How parameters are learned: by an agent of stable-baselines3's kind, or by a black-box optimiser.
+"""The learners of trainings: agents of stable-baselines3's kind, and searches.
 
 All learn from corrected returns, without what known disturbances explain of them.
 """
@@ -12,6 +12,8 @@ from typing import Any, Protocol
 
 import numpy as np
 import torch
+from stable_baselines3.common.base_class import BaseAlgorithm
+from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.noise import NormalActionNoise
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from stable_baselines3.common.utils import LinearSchedule
@@ -21,6 +23,7 @@ from torch import nn
 from sarah.agents import LocalNAF
 from sarah.agents.arguments import checked_disturbances
 from sarah.agents.corrections import corrected
+from sarah.control.parameters import Parameters
 from sarah.envs.episode_vec_env import EpisodeVecEnv
 from sarah.envs.sarah_env import draw_seed, observation_from, parameters_from
 from sarah.episode.episode import Episode, simulate
@@ -29,7 +32,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import disturbances_of
 from sarah.episode.tasks import Task
 from sarah.episode.workers import Executor, Job
-from sarah.errors import ConfigurationError
+from sarah.errors import ConfigurationError, LearningError
 from sarah.files import replacing
 from sarah.runs.agent_settings import (
     AgentSettings,
@@ -43,12 +46,10 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.randomisation import Randomisation
 from sarah.training.beginnings import BeginningDDPG, BeginningSAC, BeginningTD3
-from sarah.training.optimisers import OPTIMISERS, Start
-from sarah.training.recommendation import Parameters
-from sarah.training.recorder import EpisodeRecorder, check_weights
+from sarah.training.optimisers import OPTIMISERS
+from sarah.training.plan import Plan
+from sarah.training.recorder import EpisodeRecorder
 from sarah.training.replay import LateRankReplayBuffer, LateSmoothedReplayBuffer
-from sarah.training.seeds import seeds_of
-from sarah.training.warm_up import begins_at_centre, warm_up
 
 SCHEDULED_SHARE = 0.8
 """Share of a training after which what NAF's settings change in its course has its last value."""
@@ -58,75 +59,99 @@ ACTIVATIONS = {"tanh": nn.Tanh, "relu": nn.ReLU, "sigmoid": nn.Sigmoid}
 
 
 class Learner(Protocol):
-    """Something that learns a task's parameters from episodes, and can go on."""
+    """What learns a task's parameters from episodes, and can go on."""
 
-    def learn(self, episodes: int) -> Parameters:
-        """Learn from more episodes.
+    def learn(self, episodes: int) -> None:
+        """Learn from more episodes, and have each recorded.
 
         :param episodes: number of episodes
-        :return: what the algorithm itself would choose now
         """
 
+    def choice(self) -> Parameters:
+        """The parameters that the algorithm itself would choose now."""
 
-def make_learner(config: TrainingConfig, run: RunFolder, recorder: EpisodeRecorder, workers: Executor) -> Learner:
-    """Make what the configuration names.
 
-    :param config: settings of the training
+def make_learner(plan: Plan, run: RunFolder, recorder: EpisodeRecorder, workers: Executor) -> Learner:
+    """Make the learner that a training's settings name.
+
+    :param plan: plan of the training
     :param run: run folder, in which an agent is saved
     :param recorder: recorder of the episodes
-    :param workers: who simulates
+    :param workers: executor that simulates
     """
-    if config.algo in OPTIMISERS:
-        return _Search(config, recorder, workers)
-    return _Agent(config, run, recorder, workers)
+    if plan.config.algo in OPTIMISERS:
+        return _Searching(plan, recorder, workers)
+    return _Agent(plan, run, recorder, workers)
 
 
-class _Agent:
-    """An agent of stable-baselines3's kind."""
+class _Agent(BaseCallback):
+    """An agent of stable-baselines3's kind, which calls back for every step."""
 
-    def __init__(self, config: TrainingConfig, run: RunFolder, recorder: EpisodeRecorder, workers: Executor) -> None:
-        self._config, self._run, self._recorder = config, run, recorder
-        self._env = EpisodeVecEnv(config.task, config.episode, 0, config.slots, workers)
-        self._model = make_agent(config, self._env)
-        self._model.set_logger(recorder.log)
-        self._nominal = nominal_observation(config)
+    def __init__(self, plan: Plan, run: RunFolder, recorder: EpisodeRecorder, workers: Executor) -> None:
+        super().__init__()
+        self._config, self._run, self._recorder = plan.config, run, recorder
+        self._env = EpisodeVecEnv(plan.config.task, plan.config.episode, 0, plan.config.slots, workers)
+        self._agent = make_agent(plan, self._env)
+        self._agent.set_logger(recorder.log)
+        self._nominal = nominal_observation(plan.config)
 
-    def learn(self, episodes: int) -> Parameters:
+    def learn(self, episodes: int) -> None:
         """Learn, and save the agent. When it goes on, its schedules are those of all its episodes together."""
-        model = self._model
-        self._recorder.choose = lambda: chosen_parameters(model, self._nominal, self._config.task)
         self._env.episodes = episodes
-        model.set_env(self._env)  # which is reset for the new episodes
+        self._agent.set_env(self._env)  # which is reset for the new episodes
         # The recorder logs every episode; stable-baselines3's own averages are left out.
-        model.learn(
+        self._agent.learn(
             episodes + self._config.slots - 1,
-            callback=self._recorder,
+            callback=self,
             log_interval=None,  # type: ignore[arg-type]
             reset_num_timesteps=False,
         )
-        check_weights(model)
+        check_weights(self._agent)
         with replacing(self._run.model_path) as file:
-            model.save(file)  # type: ignore[arg-type]  # any file will do
-        return self._recorder.choose()
+            self._agent.save(file)  # type: ignore[arg-type]  # any file will do
+
+    def choice(self) -> Parameters:
+        """What the agent does before the robot as designed."""
+        return chosen_parameters(self._agent, self._nominal, self._config.task)
+
+    def _on_rollout_start(self) -> None:
+        check_weights(self._agent)
+
+    def _on_step(self) -> bool:
+        for info in self.locals["infos"]:
+            if info["transition"] is not None:  # the first steps only fill the slots
+                self._recorder.record(info["spec"], info["result"], self.choice)
+        return True
 
 
-def make_agent(config: TrainingConfig, env: VecEnv) -> OffPolicyAlgorithm:
-    """Make the reinforcement learner that a configuration names, with its settings.
+def check_weights(model: BaseAlgorithm) -> None:
+    """Stop a training whose agent cannot learn any more.
 
-    :param config: settings of the training
+    :param model: agent to check
+    :raises LearningError: if one of its weights is not finite
+    """
+    norms = torch._foreach_norm(list(model.policy.parameters()))
+    if not torch.isfinite(torch.stack(norms)).all():
+        raise LearningError(
+            f"the agent's weights are no longer finite after {model.num_timesteps} episodes: it cannot learn any more"
+        )
+
+
+def make_agent(plan: Plan, env: VecEnv) -> OffPolicyAlgorithm:
+    """Make the agent that a training's settings name.
+
+    :param plan: plan of the training
     :param env: environment to learn from
     """
-    settings = config.agent
+    settings, task, seeds = plan.config.agent, plan.config.task, plan.seeds
     assert isinstance(settings, LearnerSettings)
     check_device(settings)
     # All algorithms of stable-baselines3's kind take these under the same names.
     common = {item.name: getattr(settings, item.name) for item in dataclasses.fields(LearnerSettings)}
-    common["learning_starts"] = warm_up(config)
+    common["learning_starts"] = plan.start.warm_up
     common["replay_buffer_class"] = LateRankReplayBuffer
-    algorithm, own_arguments = LEARNERS[type(settings)]
-    task = config.task
-    own = own_arguments(settings, task) | {"first_action_centre": begins_at_centre(task)}
-    seeds = seeds_of(config.seed)
+    algorithm, own_arguments = AGENTS[type(settings)]
+    own = own_arguments(settings, task) | {"first_action_centre": plan.start.first is not None}
     model = algorithm("MlpPolicy", env, seed=seeds.algorithm, **(common | own))
     # stable-baselines3 seeds everything alike: torch and numpy then draw the same bits, as do warm-up and episodes.
     np.random.seed(seeds.exploration)
@@ -191,13 +216,13 @@ def _sac_arguments(settings: SACSettings, task: Task) -> dict[str, Any]:
     )
 
 
-LEARNERS: dict[type[LearnerSettings], tuple[type[OffPolicyAlgorithm], Callable[[Any, Task], dict[str, Any]]]] = {
+AGENTS: dict[type[LearnerSettings], tuple[type[OffPolicyAlgorithm], Callable[[Any, Task], dict[str, Any]]]] = {
     NAFSettings: (LocalNAF, _naf_arguments),
     TD3Settings: (BeginningTD3, _td3_arguments),
     SACSettings: (BeginningSAC, _sac_arguments),
     DDPGSettings: (BeginningDDPG, _ddpg_arguments),
 }
-"""Class of every kind of settings' algorithm, and what makes its arguments beyond those that all share."""
+"""Class of the agent of every kind of settings, and what makes its arguments beyond those that all share."""
 
 
 def nominal_observation(config: TrainingConfig) -> np.ndarray:
@@ -221,39 +246,38 @@ def chosen_parameters(model: OffPolicyAlgorithm, observation: np.ndarray, task: 
     return parameters_from(action, task)
 
 
-class _Search:
-    """A black-box optimiser, which tries parameters, as many in flight as there are slots."""
+class _Searching:
+    """A search that tries parameters, as many in flight as there are slots."""
 
-    def __init__(self, config: TrainingConfig, recorder: EpisodeRecorder, workers: Executor) -> None:
-        self._config, self._recorder, self._workers = config, recorder, workers
-        seeds, dimensions = seeds_of(config.seed), len(config.task.parameter_names)
-        start = Start(begins_at_centre(config.task), warm_up(config), config.slots)
-        self._optimiser = OPTIMISERS[config.algo](config.agent, dimensions, seeds.algorithm, start)
-        self._generator = np.random.default_rng(seeds.episodes)
-        self._running: deque[tuple[np.ndarray, EpisodeSpec, Job]] = deque()
+    def __init__(self, plan: Plan, recorder: EpisodeRecorder, workers: Executor) -> None:
+        config = self._config = plan.config
+        self._recorder, self._workers = recorder, workers
+        self._search = OPTIMISERS[config.algo](config.agent, config.task.box, plan.seeds.algorithm, plan.start)
+        self._generator = np.random.default_rng(plan.seeds.episodes)
+        self._running: deque[tuple[EpisodeSpec, Job]] = deque()
         self._returns: list[float] = []
         self._disturbances: list[np.ndarray] = []
 
-    def learn(self, episodes: int) -> Parameters:
+    def learn(self, episodes: int) -> None:
         """Try parameters, and learn from the returns."""
-        config, optimiser = self._config, self._optimiser
-        self._recorder.choose = lambda: parameters_from(optimiser.choice(), config.task)
+        config = self._config
         for _ in range(episodes):
-            while len(self._running) == config.slots or not optimiser.ready():
+            while len(self._running) == config.slots or not self._search.ready():
                 self._tell_oldest()
-            action = optimiser.ask()
-            parameters = parameters_from(action, config.task)
-            spec = EpisodeSpec(parameters, draw_seed(self._generator), config.task, config.episode)
-            self._running.append((action, spec, self._workers.submit(simulate, spec)))
+            spec = EpisodeSpec(self._search.ask(), draw_seed(self._generator), config.task, config.episode)
+            self._running.append((spec, self._workers.submit(simulate, spec)))
         while self._running:
             self._tell_oldest()
-        return self._recorder.choose()
+
+    def choice(self) -> Parameters:
+        """What the search would choose."""
+        return self._search.choice()
 
     def _tell_oldest(self) -> None:
-        action, spec, job = self._running.popleft()
+        spec, job = self._running.popleft()
         result = job.result()
-        self._optimiser.tell(action, self._corrected_return(spec, result))
-        self._recorder.record(spec, result)
+        self._search.tell(spec.parameters, self._corrected_return(spec, result))
+        self._recorder.record(spec, result, self.choice)
 
     def _corrected_return(self, spec: EpisodeSpec, result: EpisodeResult) -> float:
         """Return without what the episode's disturbances explain of it, by all episodes so far."""

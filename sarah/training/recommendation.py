@@ -15,13 +15,12 @@ import numpy as np
 
 from sarah.agents.corrections import corrected
 from sarah.agents.gaussian_process import GaussianProcess
+from sarah.control.parameters import Parameters
 from sarah.episode.evaluation import SMALLEST_SENSOR_SHARE, Evaluation
 from sarah.episode.result import EpisodeResult
 from sarah.episode.settings import LEAST_CLEARANCE
 from sarah.episode.tasks import Task
 from sarah.errors import LearningError
-
-Parameters = tuple[float, ...]
 
 LARGEST_MERIT = 1e100
 """Largest merit by amount: larger ones, of a reward of your own, would overflow."""
@@ -55,9 +54,8 @@ class Tried:
 
     def __init__(self, task: Task) -> None:
         self._reference = task.reference
-        self._low = np.array([parameter.low for parameter in task.parameters])
-        self._widths = np.array([parameter.width for parameter in task.parameters])
-        self._places: list[np.ndarray] = []
+        self._box = task.box
+        self._places: list[Parameters] = []
         self._merits: list[float] = []
         self._disturbances: list[Sequence[float]] = []
 
@@ -79,7 +77,7 @@ class Tried:
                 f"{self._reference}: disturbances must be as many numbers in every episode, "
                 f"{len(self._disturbances[0])}, not {len(numbers)}"
             )
-        self._places.append(self._place_of(parameters))
+        self._places.append(self._box.scaled(parameters))
         self._merits.append(min(LARGEST_MERIT, max(-LARGEST_MERIT, merit)))
         self._disturbances.append(numbers)
 
@@ -90,25 +88,20 @@ class Tried:
         :param failed: parameters that failed when they were tried, whose surroundings are avoided
         :return: the best parameters; the choice if nothing is known
         """
-        avoided = np.array([self._place_of(parameters) for parameters in failed])
-        best = self._expectation().best(self._place_of(choice)[None], avoided)
-        return tuple((self._low + (best + 1.0) / 2.0 * self._widths).tolist())
+        avoided = np.array([self._box.scaled(parameters) for parameters in failed])
+        begin = np.array([self._box.scaled(choice)])
+        return self._box.unscaled(self._expectation().best(begin, avoided))
 
     def best_of(self, candidates: Sequence[Parameters]) -> Parameters:
         """Choose those of some parameters of which the highest merit is expected.
 
         :param candidates: parameters to choose among, the first one among equals
         """
-        expected = self._expectation().expected(np.array([self._place_of(candidate) for candidate in candidates]))
+        expected = self._expectation().expected(np.array([self._box.scaled(candidate) for candidate in candidates]))
         return candidates[int(np.argmax(expected))]
 
-    def _place_of(self, parameters: Parameters) -> np.ndarray:
-        """Parameters scaled to [-1, 1]."""
-        place: np.ndarray = 2.0 * (np.array(parameters) - self._low) / self._widths - 1.0
-        return place
-
     def _expectation(self) -> GaussianProcess:
-        places = np.array(self._places).reshape(len(self), len(self._widths))
+        places = np.array(self._places).reshape(len(self), len(self._box.parameters))
         return GaussianProcess(places, corrected(np.array(self._merits), np.array(self._disturbances)))
 
 

@@ -6,29 +6,25 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, NoReturn
 
-import torch
-from stable_baselines3.common.base_class import BaseAlgorithm
-from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import KVWriter, Logger
 from tqdm import tqdm
 
+from sarah.control.parameters import Parameters
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.result import METRICS, EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import disturbances_of
-from sarah.errors import LearningError
-from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 from sarah.training.learning_curves import LEARNED, CurveWriter, kept_pictures, summary_of
-from sarah.training.recommendation import Parameters, Tried, merit
-from sarah.training.warm_up import warm_up_episodes
+from sarah.training.plan import Plan
+from sarah.training.recommendation import Tried, merit
 
 EPISODES_PER_RECOMMENDATION = 5
 """Number of episodes after which the recommendation is recorded again."""
 
 
-class EpisodeRecorder(BaseCallback):
+class EpisodeRecorder:
     """Writes every episode to ``episodes.csv`` and to the learning curves.
 
     While a resumed training replays the episodes of its journal, nothing is written. When it goes on, all files are
@@ -36,7 +32,7 @@ class EpisodeRecorder(BaseCallback):
     again.
 
     :param run: run folder of the training
-    :param config: settings of the training
+    :param plan: plan of the training
     :param journal: journal of the training
     :param progress: progress bar, which every episode moves on
     """
@@ -47,18 +43,13 @@ class EpisodeRecorder(BaseCallback):
     """Parameters, merit and disturbances of every episode so far."""
     diverged: int
     """Number of episodes so far that diverged."""
-    choose: Callable[[], Parameters] | None
-    """Function that returns the parameters that the algorithm itself would choose now. While it is set, the
-    recommendation is recorded in ``recommendations.csv``."""
 
-    def __init__(self, run: RunFolder, config: TrainingConfig, journal: Journal, progress: tqdm[NoReturn]) -> None:
-        super().__init__()
+    def __init__(self, run: RunFolder, plan: Plan, journal: Journal, progress: tqdm[NoReturn]) -> None:
         self.log = Logger(folder=None, output_formats=[_LoggerOutput(self)])
         self.diverged = 0
-        self.choose = None
-        self._config = config
-        self._task = config.task
-        self._warm_up = warm_up_episodes(config)
+        self._config = plan.config
+        self._task = plan.config.task
+        self._warm_up = plan.warm_up_episodes
         self.tried = Tried(self._task)
         self._run = run
         self._journal = journal
@@ -67,20 +58,12 @@ class EpisodeRecorder(BaseCallback):
         self._kept = kept_pictures(run)  # before the old curves are removed
         self._held: list[Callable[[], None]] = []
 
-    def _on_rollout_start(self) -> None:
-        check_weights(self.model)
-
-    def _on_step(self) -> bool:
-        for info in self.locals["infos"]:
-            if info["transition"] is not None:  # the first steps only fill the slots
-                self.record(info["spec"], info["result"])
-        return True
-
-    def record(self, spec: EpisodeSpec, result: EpisodeResult) -> None:
-        """Write one episode.
+    def record(self, spec: EpisodeSpec, result: EpisodeResult, choice: Callable[[], Parameters] | None = None) -> None:
+        """Write one episode, and from time to time what is recommended.
 
         :param spec: specification of the episode
         :param result: result of the episode
+        :param choice: function that returns what the algorithm itself would choose now; ``None`` for a trial
         """
         index = len(self.tried)
         self._write(partial(self._run.append_episode, index, spec, result))
@@ -97,20 +80,20 @@ class EpisodeRecorder(BaseCallback):
                 self.log.record(f"{metric.group}/{name}", getattr(result, name))
         for name, value in zip(self._task.parameter_names, spec.parameters, strict=True):
             self.log.record(f"parameters/{name}", value)
-        if self.choose is not None:
-            self._record_recommendation(self.choose, len(self.tried))
+        if choice is not None:
+            self._record_recommendation(choice, len(self.tried))
         self.log.dump(len(self.tried))
         self._progress.set_postfix(score=f"{result.score:.2f}", refresh=False)
         self._progress.update()
 
-    def _record_recommendation(self, choose: Callable[[], Parameters], episodes: int) -> None:
+    def _record_recommendation(self, choice: Callable[[], Parameters], episodes: int) -> None:
         """Record the recommendation, and draw it, after the numbers of episodes that are set for each."""
         interval = self._config.pictures
         noted = episodes % EPISODES_PER_RECOMMENDATION == 0
         drawn = episodes in self._kept or (interval and episodes % interval == 0)
         if not noted and not drawn:
             return
-        recommended = self.tried.best(choose())
+        recommended = self.tried.best(choice())
         if noted:
             named = dict(zip(self._task.parameter_names, recommended, strict=True))
             self._write(partial(self._run.append_recommendation, episodes, named))
@@ -188,16 +171,3 @@ class _LoggerOutput(KVWriter):
     def write(self, key_values: dict[str, Any], key_excluded: dict[str, tuple[str, ...]], step: int = 0) -> None:
         # The logger empties both dictionaries when this returns, so they are copied.
         self._recorder.write_curves(dict(key_values), dict(key_excluded), step)
-
-
-def check_weights(model: BaseAlgorithm) -> None:
-    """Stop a training whose agent cannot learn any more.
-
-    :param model: agent to check
-    :raises LearningError: if one of its weights is not finite
-    """
-    norms = torch._foreach_norm(list(model.policy.parameters()))
-    if not torch.isfinite(torch.stack(norms)).all():
-        raise LearningError(
-            f"the agent's weights are no longer finite after {model.num_timesteps} episodes: it cannot learn any more"
-        )

@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from tqdm import tqdm
 
+from sarah.control.parameters import Parameters
 from sarah.envs.sarah_env import draw_seed
 from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.spec import EpisodeSpec
@@ -19,9 +20,9 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 from sarah.training.learners import Learner, make_learner
-from sarah.training.recommendation import Parameters, is_valid
+from sarah.training.plan import Stage, plan_of
+from sarah.training.recommendation import is_valid
 from sarah.training.recorder import EpisodeRecorder
-from sarah.training.seeds import seeds_of
 
 SUMMARY_EPISODES = 10
 """Number of episodes on unseen seeds in the final evaluation."""
@@ -71,32 +72,33 @@ def train(
 
 
 def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_bar: bool) -> Learned:
-    generator = np.random.default_rng(seeds_of(config.seed).trials)
+    plan = plan_of(config)
+    generator = np.random.default_rng(plan.seeds.trials)
     with (
         tqdm(total=config.episodes, unit=" episodes", disable=not progress_bar or sys.stderr is None) as progress,
-        EpisodeRecorder(run, config, journal, progress) as recorder,
+        EpisodeRecorder(run, plan, journal, progress) as recorder,
     ):
-        learner = make_learner(config, run, recorder, journal)
-        for stage in config.by_stage():
-            if stage.extended_from:
-                journal.extend(stage.episodes)
-            choice = _choice(learner, stage)
-            recorder.choose = None
-            parameters = _recommended(choice, stage, recorder, generator, journal)
-            learned = _evaluated(parameters, stage, recorder, journal)
+        learner = make_learner(plan, run, recorder, journal)
+        for stage in plan.stages:
+            if stage.begin:
+                journal.extend(stage.end)
+            choice = _choice(learner, stage, config.algo)
+            parameters = _recommended(choice, stage, config, recorder, generator, journal)
+            learned = _evaluated(parameters, config, recorder, journal)
         recorder.finish(learned.evaluation)
     _write_parameters(learned, config, run)
     return learned
 
 
-def _choice(learner: Learner, stage: TrainingConfig) -> Parameters:
+def _choice(learner: Learner, stage: Stage, algo: str) -> Parameters:
     """Learn, and return what the algorithm would choose. Many a library fails at numbers that it was not made for."""
     try:
-        return learner.learn(stage.stage_episodes - stage.trial_episodes)
+        learner.learn(stage.learning)
+        return learner.choice()
     except SarahError:
         raise
     except (ValueError, RuntimeError, ArithmeticError, AssertionError, LookupError, Warning) as error:
-        raise LearningError(f"{stage.algo} cannot go on: {one_line(error)}") from error
+        raise LearningError(f"{algo} cannot go on: {one_line(error)}") from error
 
 
 def _evaluated(parameters: Parameters, config: TrainingConfig, recorder: EpisodeRecorder, workers: Executor) -> Learned:
@@ -128,6 +130,7 @@ def _write_parameters(learned: Learned, config: TrainingConfig, run: RunFolder) 
 
 def _recommended(
     choice: Parameters,
+    stage: Stage,
     config: TrainingConfig,
     recorder: EpisodeRecorder,
     generator: np.random.Generator,
@@ -138,13 +141,13 @@ def _recommended(
     All trials meet the same seeds. Whether hips chatter is judged against the neutral parameters on these seeds too;
     the summary's stay unseen. If all trials fail, the best of them is returned, and the summary says what it lacks.
     """
-    if not config.trials:
+    if not stage.trials:
         return recorder.tried.best(choice)
-    seeds = [draw_seed(generator) for _ in range(config.trial_episodes // config.trials)]
+    seeds = [draw_seed(generator) for _ in range(stage.trial_episodes // stage.trials)]
     neutral = config.task.neutral
     baseline = None if neutral is None else evaluate(config.task, neutral, config.episode, seeds, workers)
     valid, failed = list[Parameters](), list[Parameters]()
-    for _ in range(config.trials):
+    for _ in range(stage.trials):
         candidate = recorder.tried.best(choice, failed)
         specs = [EpisodeSpec(candidate, seed, config.task, config.episode) for seed in seeds]
         results = tuple(workers.simulate_all(specs))

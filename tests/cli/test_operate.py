@@ -14,6 +14,8 @@ from pathlib import Path
 import pytest
 from terminal import run
 
+from sarah.cli.operate import main
+
 QUICK = ("--settle-seconds", "0.5", "--measure-seconds", "0.5", "--fall-seconds", "1")
 BYTES = ("windows.csv", "parameters.json", "journal.jsonl")
 
@@ -46,7 +48,8 @@ def test_other_commands_take_its_folder(operated: Path) -> None:
     assert process.returncode == 0, process.stderr
     found = json.loads(process.stdout)
     left = json.loads((operated / "parameters.json").read_text())["parameters"]
-    assert found["algorithm"] == "gp" and found["parameters"] == {name: left[name] for name in ("V1", "V2", "V3", "V4")}
+    assert found["algorithm"] == "careful"
+    assert found["parameters"] == {name: left[name] for name in ("V1", "V2", "V3", "V4")}
     again = run("sarah-operate", "mine", "--minutes", "0.1", *QUICK, "--learner", "none", cwd=operated.parent)
     assert again.returncode == 0, again.stderr
     first = (operated.parent / "runs/operation/none-s0/windows.csv").read_text().splitlines()[1].split(",")
@@ -186,7 +189,7 @@ def test_a_session_that_cannot_go_on_does_not_recommend_to_go_on(operated: Path,
     ("line", "words"),
     [
         ("sarah-operate --push-seconds 0.5 --episode.push.duration 5", "push.duration must be at most the 0.5 s"),
-        ("sarah-operate --learner gpp", "unknown learner 'gpp', did you mean 'gp'?"),
+        ("sarah-operate --learner careles", "unknown learner 'careles', did you mean 'careful'?"),
         ("sarah-operate --minutes 0", "minutes must be between 0.1 and 600 min, not 0.0"),
         ("sarah-operate --change 5", 'change must be a minute and a setting, such as "5: '),
         ("sarah-operate --change '5: pay_load=3'", "unknown key 'pay_load', did you mean 'payload'?"),
@@ -212,3 +215,14 @@ def test_a_session_that_cannot_go_on_does_not_recommend_to_go_on(operated: Path,
 )
 def test_mistakes_get_one_line(answer: Callable[[str], str], line: str, words: str) -> None:
     assert words in answer(line)
+
+
+def test_the_former_name_of_the_careful_learner_is_taken(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.argv", ["sarah-operate", "--learner", "gp", "--seed", "-1"])
+    with pytest.raises(SystemExit):
+        main()
+    said, error = capsys.readouterr().err.splitlines()
+    assert said == "sarah-operate: say --learner careful instead of --learner gp, which the next release refuses"
+    assert "seed must be between 0 and" in error

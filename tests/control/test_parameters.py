@@ -4,10 +4,12 @@ import dataclasses
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from sarah.control.constants import STANDARD_CONSTANTS
 from sarah.control.hip_law import BalanceParameters
-from sarah.control.parameters import BALANCE_PARAMETERS, PAPER_STEPPING, STEPPING_PARAMETERS
+from sarah.control.parameters import BALANCE_PARAMETERS, PAPER_STEPPING, STEPPING_PARAMETERS, Box, Parameter
 from sarah.control.pattern_generator import Phase, PhaseChange, SteppingParameters
 
 
@@ -28,6 +30,28 @@ def test_labels_and_descriptions_name_the_unit_if_there_is_one() -> None:
     p1, p4 = STEPPING_PARAMETERS[0], STEPPING_PARAMETERS[3]
     assert p1.label == "P1 (rad/s)" and p1.description == f"{p1.meaning}, in rad/s"
     assert p4.label == "P4" and p4.description == p4.meaning
+
+
+ODD = Box((*BALANCE_PARAMETERS, Parameter("odd", 0.1, 0.7, "", "a range", "")))
+
+
+def test_the_ends_and_the_centre_of_a_box_are_those_of_an_action() -> None:
+    assert ODD.unscaled([-1.0] * 5) == (-2.0, -2.0, -2.0, -2.0, 0.1)
+    assert ODD.unscaled([1.0] * 5) == (2.0, 2.0, 2.0, 2.0, 0.7)
+    assert ODD.centre == pytest.approx((0.0, 0.0, 0.0, 0.0, 0.4))
+
+
+def test_what_lies_outside_comes_to_the_nearer_end() -> None:
+    assert ODD.unscaled([-3.0, 3.0, 0.0, -1.1, 1.1]) == ODD.unscaled([-1.0, 1.0, 0.0, -1.0, 1.0])
+    assert ODD.at_shares([-1.0, 2.0, 0.5, 0.0, 1.5]) == ODD.at_shares([0.0, 1.0, 0.5, 0.0, 1.0])
+
+
+@given(st.tuples(*[st.floats(-2.0, 2.0)] * 4, st.floats(0.1, 0.7)))
+def test_values_are_their_actions_and_their_shares(values: tuple[float, ...]) -> None:
+    assert ODD.unscaled(ODD.scaled(values)) == pytest.approx(values, abs=1e-12)
+    assert ODD.at_shares(ODD.shares(values)) == pytest.approx(values, abs=1e-12)
+    rounded = Box(ODD.parameters, decimals=3).at_shares(ODD.shares(values))
+    assert rounded == tuple(round(value, 3) for value in rounded) == pytest.approx(values, abs=5.1e-4)
 
 
 @pytest.mark.parametrize(

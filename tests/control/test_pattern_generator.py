@@ -264,7 +264,7 @@ def test_legs_push_lift_and_straighten_at_the_leg_speed() -> None:
 )
 def test_parameters_out_of_their_box_are_refused(values: tuple[float, ...], message: str) -> None:
     with pytest.raises(ConfigurationError, match=message):
-        STEPPING.checked(values)
+        STEPPING.box.checked(values)
 
 
 @given(

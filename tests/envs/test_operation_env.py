@@ -15,8 +15,7 @@ from sarah.agents import NAF
 from sarah.envs.operation_env import SarahOperationEnv
 from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError
-from sarah.operation.settings import PARAMETERS, SHIPPED, Change
-from sarah.operation.shares import to_shares
+from sarah.operation.settings import BOX, PARAMETERS, SHIPPED, Change
 from sarah.operation.window import FELT
 
 CENTRE = np.zeros(len(PARAMETERS), np.float32)
@@ -58,13 +57,13 @@ def test_a_step_is_a_window_and_its_reward_is_what_the_robot_observes() -> None:
     env = SarahOperationEnv(quick(minutes=0.2))
     observation, info = env.reset(seed=1)
     assert info["window"].parameters == SHIPPED
-    assert observation[len(FELT) :] == pytest.approx(2.0 * to_shares(SHIPPED) - 1.0)
+    assert observation[len(FELT) :] == pytest.approx(BOX.scaled(SHIPPED))
     _, reward, terminated, truncated, info = env.step(CENTRE)
     assert reward == info["window"].observed_reward and info["window"].index == 1
     assert info["window"].parameters == SHIPPED and not terminated and not truncated
     action = np.full(9, 0.4, np.float32)
     _, _, _, _, info = env.step(action)
-    assert to_shares(info["window"].parameters) == pytest.approx(np.minimum(to_shares(SHIPPED) + 0.1, 1.0))
+    assert BOX.shares(info["window"].parameters) == pytest.approx(np.minimum(np.array(BOX.shares(SHIPPED)) + 0.1, 1.0))
     env.close()
 
 

@@ -229,12 +229,12 @@ def test_the_ends_of_an_action_are_the_ends_of_the_range(low: float, high: float
     task = dataclasses.replace(STEPPING, parameters=(Parameter("odd", low, high, "", "a range", ""),), baseline=(low,))
     assert parameters_from(np.array([-1.0]), task) == (low,)
     assert parameters_from(np.array([1.0]), task)[0] <= high
-    assert task.checked(parameters_from(np.array([1.0]), task))[0] == pytest.approx(high)
+    assert task.box.checked(parameters_from(np.array([1.0]), task))[0] == pytest.approx(high)
     for end in (low, high):  # a 32-bit number is the end that it stands for
         for value in (np.float32(end), float(np.float32(end))):
-            assert low <= task.checked((value,))[0] <= high
+            assert low <= task.box.checked((value,))[0] <= high
     with pytest.raises(ConfigurationError, match="parameter odd must be between"):
-        task.checked((high + 1e-5,))
+        task.box.checked((high + 1e-5,))
 
 
 def test_a_robot_that_diverges_while_it_stands_ends_its_episode(monkeypatch: pytest.MonkeyPatch) -> None:

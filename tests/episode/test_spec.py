@@ -36,7 +36,7 @@ def test_a_spec_does_not_follow_what_it_was_made_of() -> None:
 def test_parameters_that_cannot_be_are_named(value: object) -> None:
     with pytest.raises(ConfigurationError, match=r"parameter P4 must be between 0 and 2, not"):
         EpisodeSpec((1.0, 1.0, 1.0, value, 1.0), 0)  # type: ignore[arg-type]
-    assert STEPPING.checked((0, 2, 1, 1, 1)) == (0.0, 2.0, 1.0, 1.0, 1.0)
+    assert STEPPING.box.checked((0, 2, 1, 1, 1)) == (0.0, 2.0, 1.0, 1.0, 1.0)
 
 
 @pytest.mark.parametrize(

@@ -57,12 +57,12 @@ def test_every_parameter_has_a_box_a_meaning_and_what_the_paper_says(task: Task)
         assert parameter.meaning and parameter.paper
         assert parameter.unit in parameter.label and parameter.unit in parameter.description
     lows, highs = ([getattr(parameter, end) for parameter in task.parameters] for end in ("low", "high"))
-    assert task.checked(lows) == tuple(lows) and task.checked(highs) == tuple(highs)
+    assert task.box.checked(lows) == tuple(lows) and task.box.checked(highs) == tuple(highs)
     for index, parameter in enumerate(task.parameters):
         for value in (parameter.low - 0.001, parameter.high + 0.001, math.nan):
             values = [*task.baseline[:index], value, *task.baseline[index + 1 :]]
             with pytest.raises(ConfigurationError, match=rf"{parameter.name} must be between"):
-                task.checked(values)
+                task.box.checked(values)
 
 
 def test_boxes_are_the_papers_signs_and_ours() -> None:

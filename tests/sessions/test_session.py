@@ -20,16 +20,16 @@ from sarah.operation.window import Window
 from sarah.robot.description import describe_robot
 from sarah.runs.config_files import read_config
 from sarah.sessions.journal import SessionJournal
-from sarah.sessions.learners import LEARNERS
 from sarah.sessions.operate import operate
 from sarah.sessions.session import SessionResult, SessionSpec, run_session
 from sarah.sessions.session_episodes import episodes_of_session, learned_of_session
 from sarah.sessions.session_folder import SessionFolder
+from sarah.training.session_learners import LEARNERS
 
 CONFIG = quick(
     minutes=0.3, robot={"push": {"newtons": 400.0, "duration": 0.3}}, changes=(Change(0.15, {"payload": 2.0}),)
 )
-SPEC = SessionSpec(SHIPPED, "gp", 3, CONFIG)
+SPEC = SessionSpec(SHIPPED, "careful", 3, CONFIG)
 
 
 @pytest.fixture(scope="module")
@@ -220,10 +220,16 @@ def test_a_folder_that_is_not_empty_is_refused(whole: tuple[Path, SessionResult]
         SessionFolder.open(tmp_path)
 
 
+def test_the_former_name_of_the_careful_learner_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "session.yaml"
+    path.write_text("learner: gp")
+    assert read_config(SessionSpec, path).learner == SessionSpec().learner == "careful"
+
+
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        ("learner: gpp", "unknown learner 'gpp', did you mean 'gp'?"),
+        ("learner: carefull", "unknown learner 'carefull', did you mean 'careful'?"),
         ("config: {minutes: -1}", "operation.minutes must be between"),
         ("config: {changes: [{minute: 1}]}", "config.changes must hold minute and settings"),
         ("config: {changes: [{minute: x, settings: {}}]}", "config.changes.minute must be a number"),

@@ -17,7 +17,7 @@ from sarah.runs.config import AGENTS, ALGORITHMS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
 from sarah.training import train as training
-from sarah.training.seeds import seeds_of
+from sarah.training.plan import Stage, seeds_of
 from sarah.training.train import train
 
 EPISODE = EpisodeConfig(time_limit=1.2, physics=Physics(rate=50, solver_iterations=5, control_rate=50))
@@ -44,8 +44,8 @@ def trained(path: Path, config: TrainingConfig) -> tuple[np.ndarray, list[int], 
     """Actions within -1 and 1 and seeds of a training's episodes, and all episodes that it has simulated."""
     run, recording = RunFolder.create(path, config), Recording()
     train(config, run, recording)
-    rows, parameters = list(run.episodes()), TASKS[config.task.name].parameters
-    actions = [[2 * (float(row[one.name]) - one.low) / one.width - 1 for one in parameters] for row in rows]
+    rows, box = list(run.episodes()), TASKS[config.task.name].box
+    actions = [box.scaled([float(row[name]) for name in box.names]) for row in rows]
     return np.array(actions), [int(row["seed"]) for row in rows], recording.specs
 
 
@@ -77,7 +77,7 @@ def test_a_training_has_a_seed_of_its_own_for_each_stream() -> None:
 
 
 def test_trials_come_before_any_seed_of_the_summary_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(TrainingConfig, "trials", 2)
+    monkeypatch.setattr(Stage, "trials", 2)
     assert BALANCE.neutral is not None
     config = TrainingConfig("balance", "random", episodes=16, slots=1, episode=BALANCE.config_of(EPISODE))
     _, seeds, specs = trained(tmp_path / "run", config)
@@ -92,7 +92,7 @@ def test_trials_come_before_any_seed_of_the_summary_is_seen(tmp_path: Path, monk
 def test_without_neutral_parameters_nothing_is_simulated_for_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(TrainingConfig, "trials", 2)
+    monkeypatch.setattr(Stage, "trials", 2)
     assert STEPPING.neutral is None
     _, _, specs = trained(tmp_path / "run", TrainingConfig(algo="random", episodes=16, slots=1, episode=EPISODE))
     assert len(specs) == 16 + 2

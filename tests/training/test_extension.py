@@ -10,6 +10,7 @@ from terminal import COARSE, run, tree
 
 from sarah.errors import ConfigurationError
 from sarah.runs.config import TrainingConfig
+from sarah.training.plan import plan_of
 
 SHORT = ("--episode.time-limit", "1.5", *COARSE, "--seed", "1")
 
@@ -96,8 +97,7 @@ def test_only_a_finished_training_of_the_same_settings_is_extended(tmp_path: Pat
 
 def test_stages_rise() -> None:
     config = TrainingConfig(episodes=200, extended_from=(60, 100))
-    assert [stage.episodes for stage in config.by_stage()] == [60, 100, 200]
-    assert [stage.stage_episodes for stage in config.by_stage()] == [60, 40, 100]
+    assert [(stage.end, stage.episodes) for stage in plan_of(config).stages] == [(60, 60), (100, 40), (200, 100)]
     assert config.extended_to(300).stages == (60, 100, 200, 300)
     for extended_from in ((200,), (100, 60), (0,)):
         with pytest.raises(ConfigurationError, match="extended_from must be in rising order and below episodes"):

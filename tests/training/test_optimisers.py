@@ -1,4 +1,4 @@
-"""Black-box optimisers: asked and told in turn, with episodes in flight."""
+"""The searches of trainings: asked and told in turn, with episodes in flight."""
 
 import warnings
 from collections.abc import Callable
@@ -7,8 +7,10 @@ import numpy as np
 import optuna
 import pytest
 
+from sarah.control.parameters import Box, Parameter, Parameters
 from sarah.runs.agent_settings import AgentSettings, EvolutionSettings, settings_of
-from sarah.training.optimisers import OPTIMISERS, Optimiser, Start
+from sarah.training.optimisers import OPTIMISERS
+from sarah.training.search import Search, Start
 
 BEST = np.array([0.3, -0.4])
 
@@ -16,88 +18,93 @@ BEST = np.array([0.3, -0.4])
 PLAIN = Start()
 
 
-def make_optimiser(algo: str, settings: AgentSettings, dimensions: int, seed: int, start: Start = PLAIN) -> Optimiser:
-    """An optimiser of the table."""
-    return OPTIMISERS[algo](settings, dimensions, seed, start)
+def box_of(dimensions: int) -> Box:
+    """A box of parameters between 0 and 4."""
+    return Box(tuple(Parameter(f"p{index}", 0.0, 4.0, "", "a number", "") for index in range(dimensions)))
 
 
-def episode(action: np.ndarray) -> float:
-    return 1.0 - float(np.square(action - BEST).sum())
+def make_search(algo: str, settings: AgentSettings, dimensions: int, seed: int, start: Start = PLAIN) -> Search:
+    """A search of the table."""
+    return OPTIMISERS[algo](settings, box_of(dimensions), seed, start)
 
 
-def tried(algo: str, seed: int, episodes: int = 40, in_flight: int = 3) -> tuple[list[np.ndarray], np.ndarray]:
-    """Actions tried, and the choice in the end."""
-    optimiser = make_optimiser(algo, settings_of(algo)(), 2, seed)
-    actions: list[np.ndarray] = []
+def episode(parameters: Parameters) -> float:
+    return 1.0 - float(np.square(np.array(parameters) / 2.0 - 1.0 - BEST).sum())
+
+
+def tried(algo: str, seed: int, episodes: int = 40, in_flight: int = 3) -> tuple[list[Parameters], Parameters]:
+    """Parameters tried, and the choice in the end."""
+    search = make_search(algo, settings_of(algo)(), 2, seed)
+    asked: list[Parameters] = []
     told = 0
     while told < episodes:
-        if len(actions) < episodes and len(actions) - told < in_flight and optimiser.ready():
-            actions.append(optimiser.ask())
+        if len(asked) < episodes and len(asked) - told < in_flight and search.ready():
+            asked.append(search.ask())
         else:
-            optimiser.tell(actions[told], episode(actions[told]))
+            search.tell(asked[told], episode(asked[told]))
             told += 1
-    return actions, optimiser.choice()
+    return asked, search.choice()
 
 
 @pytest.mark.parametrize("algo", OPTIMISERS)
-def test_optimisers_find_what_is_good_within_the_box(algo: str) -> None:
-    actions, choice = tried(algo, seed=1)
-    assert (np.abs(actions) <= 1.0).all() and choice.shape == (2,)
+def test_searches_find_what_is_good_within_the_box(algo: str) -> None:
+    asked, choice = tried(algo, seed=1)
+    assert all(box_of(2).checked(parameters) == parameters for parameters in (*asked, choice))
     assert episode(choice) > 0.9
     if algo != "random":
-        late, early = (np.median([episode(action) for action in part]) for part in (actions[30:], actions[:10]))
+        late, early = (np.median([episode(parameters) for parameters in part]) for part in (asked[30:], asked[:10]))
         assert late > early
 
 
 @pytest.mark.parametrize("algo", OPTIMISERS)
-def test_optimisers_repeat_with_their_seed(algo: str) -> None:
-    first, second, other = (np.array(tried(algo, seed, episodes=16)[0]) for seed in (1, 1, 2))
-    assert np.array_equal(first, second) and not np.array_equal(first, other)
+def test_searches_repeat_with_their_seed(algo: str) -> None:
+    first, second, other = (tried(algo, seed, episodes=16)[0] for seed in (1, 1, 2))
+    assert first == second != other
 
 
 @pytest.mark.parametrize("population", [2, 8, 13])
 def test_a_generation_is_told_before_the_next_is_asked_for(population: int) -> None:
-    optimiser = make_optimiser("cma-es", EvolutionSettings(population=population), 2, 0)
+    search = make_search("cma-es", EvolutionSettings(population=population), 2, 0)
     generation = []
-    while optimiser.ready():
-        generation.append(optimiser.ask())
+    while search.ready():
+        generation.append(search.ask())
     assert len(generation) == population
-    for action in generation:
-        assert not optimiser.ready()
-        optimiser.tell(action, episode(action))
-    assert optimiser.ready()
+    for parameters in generation:
+        assert not search.ready()
+        search.tell(parameters, episode(parameters))
+    assert search.ready()
 
 
 def test_the_first_generation_of_cma_es_has_the_deviation_that_is_set() -> None:
     for deviation in (0.05, 0.2):
-        optimiser = make_optimiser("cma-es", EvolutionSettings(deviation=deviation, population=500), 4, 0)
-        actions = np.array([optimiser.ask() for _ in range(500)])
+        search = make_search("cma-es", EvolutionSettings(deviation=deviation, population=500), 4, 0)
+        actions = np.array([box_of(4).scaled(search.ask()) for _ in range(500)])
         assert actions.std() == pytest.approx(deviation, rel=0.05)
 
 
+@pytest.mark.parametrize("first", [(2.0,) * 4, (0.0, 1.0, 2.5, 4.0)])
 @pytest.mark.parametrize("algo", OPTIMISERS)
-def test_the_first_action_is_the_centre_if_it_is_to_be(algo: str) -> None:
-    optimiser = make_optimiser(algo, settings_of(algo)(), 4, 5, Start(at_centre=True))
-    first, second = optimiser.ask(), optimiser.ask()
-    assert not first.any() and second.any()
-    assert make_optimiser(algo, settings_of(algo)(), 4, 5).ask().any()
+def test_the_first_parameters_are_those_that_are_given(algo: str, first: Parameters) -> None:
+    search = make_search(algo, settings_of(algo)(), 4, 5, Start(first))
+    assert search.ask() == pytest.approx(first) != search.ask()
+    assert make_search(algo, settings_of(algo)(), 4, 5).ask() != pytest.approx(first)
 
 
 @pytest.mark.parametrize("slots", [1, 4])
 @pytest.mark.parametrize("algo", ["gp", "tpe"])
 def test_a_model_chooses_from_the_end_of_the_warm_up_on(algo: str, slots: int) -> None:
-    """Its choices follow from the returns, and the actions of the warm-up do not."""
+    """Its choices follow from the returns, and the parameters of the warm-up do not."""
     warm_up = 8
 
-    def asked(sign: float) -> list[list[float]]:
-        optimiser = make_optimiser(algo, settings_of(algo)(), 2, 3, Start(warm_up=warm_up, slots=slots))
-        actions: list[np.ndarray] = []
+    def asked(sign: float) -> list[Parameters]:
+        search = make_search(algo, settings_of(algo)(), 2, 3, Start(warm_up=warm_up, slots=slots))
+        tries: list[Parameters] = []
         for index in range(warm_up + 1):
             if index >= slots:
-                action = actions[index - slots]
-                optimiser.tell(action, sign * episode(action))
-            actions.append(optimiser.ask())
-        return [action.tolist() for action in actions]
+                oldest = tries[index - slots]
+                search.tell(oldest, sign * episode(oldest))
+            tries.append(search.ask())
+        return tries
 
     good, bad = asked(1.0), asked(-1.0)
     assert good[:warm_up] == bad[:warm_up] and good[warm_up] != bad[warm_up]
@@ -107,21 +114,25 @@ def test_a_model_chooses_from_the_end_of_the_warm_up_on(algo: str, slots: int) -
 @pytest.mark.parametrize("algo", OPTIMISERS)
 def test_any_returns_are_learned_from(algo: str, dimensions: int) -> None:
     """Two values, all equal, and as large as a float can be."""
-    returns: list[Callable[[np.ndarray], float]] = [lambda x: float(x[0] > 0.0), lambda x: 0.0, lambda x: 1e300 * x[0]]
-    for episode_return in returns:
-        optimiser = make_optimiser(algo, settings_of(algo)(), dimensions, 0)
+    returns: list[Callable[[Parameters], float]] = [
+        lambda x: float(x[0] > 2.0),
+        lambda x: 0.0,
+        lambda x: 1e300 * (x[0] - 2.0),
+    ]
+    for return_of in returns:
+        search = make_search(algo, settings_of(algo)(), dimensions, 0)
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             for _ in range(17):
-                optimiser.tell(action := optimiser.ask(), episode_return(action))
-        assert (np.abs(optimiser.choice()) <= 1.0).all()
+                search.tell(parameters := search.ask(), return_of(parameters))
+        assert box_of(dimensions).checked(search.choice())
 
 
 def test_optuna_says_as_much_as_before() -> None:
     before = optuna.logging.get_verbosity()
     try:
         optuna.logging.set_verbosity(optuna.logging.WARNING)
-        make_optimiser("tpe", settings_of("tpe")(), 2, 0)
+        make_search("tpe", settings_of("tpe")(), 2, 0)
         assert optuna.logging.get_verbosity() == optuna.logging.WARNING
     finally:
         optuna.logging.set_verbosity(before)

@@ -10,11 +10,12 @@ from hypothesis import strategies as st
 from laboratory import RESULT
 
 from sarah.agents.gaussian_process import DISTINCT
+from sarah.control.parameters import Parameters
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.tasks import STEPPING, Task
 from sarah.errors import LearningError
-from sarah.runs.config import TrainingConfig
-from sarah.training.recommendation import Parameters, Tried, is_valid, merit
+from sarah.training.plan import Stage
+from sarah.training.recommendation import Tried, is_valid, merit
 
 CHOICE = (1.0, 1.0, 1.0, 1.0, 1.0)
 WIDTH = 2.0
@@ -106,7 +107,7 @@ def test_distances_are_shares_of_the_box() -> None:
 
 @given(st.lists(st.tuples(st.tuples(*[st.floats(0, 2)] * 5), st.floats(0, 1)), max_size=20))
 def test_whatever_was_tried_what_is_best_can_be_simulated(tried: Tries) -> None:
-    assert STEPPING.checked(after(tried).best(CHOICE)) == after(tried).best(CHOICE)
+    assert STEPPING.box.checked(after(tried).best(CHOICE)) == after(tried).best(CHOICE)
 
 
 def random_episodes(count: int) -> Tries:
@@ -149,7 +150,7 @@ def test_what_is_no_gait_has_less_merit() -> None:
 
 
 def test_a_small_budget_affords_no_trial() -> None:
-    budgets = {count: TrainingConfig(episodes=count).trial_episodes for count in (1, 24, 25, 49, 50, 1000)}
+    budgets = {end: Stage(0, end).trial_episodes for end in (1, 24, 25, 49, 50, 1000)}
     assert budgets == {1: 0, 24: 0, 25: 5, 49: 5, 50: 10, 1000: 10}
 
 

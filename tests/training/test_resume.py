@@ -12,7 +12,6 @@ from typing import Any
 import pytest
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
-import sarah.runs.config
 from sarah.agents import corrections
 from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
@@ -26,8 +25,9 @@ from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
 from sarah.training import learners as learning
+from sarah.training import plan
 from sarah.training import train as training
-from sarah.training.seeds import seeds_of
+from sarah.training.plan import Stage, seeds_of
 from sarah.training.train import train
 
 # As coarse as it gets: what is tested does not depend on it.
@@ -38,8 +38,8 @@ EPISODE = EpisodeConfig(time_limit=1.2, physics=Physics(rate=50, solver_iteratio
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
     """A training with two trials, that corrects returns early, and evaluates on two seeds."""
     monkeypatch.setattr(corrections, "FEWEST_EPISODES", 8)
-    monkeypatch.setattr(TrainingConfig, "trials", 2)
-    monkeypatch.setattr(sarah.runs.config, "EPISODES_PER_TRIAL", 2)
+    monkeypatch.setattr(Stage, "trials", 2)
+    monkeypatch.setattr(plan, "EPISODES_PER_TRIAL", 2)
     monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
 
 
@@ -166,7 +166,7 @@ def test_a_training_that_does_not_repeat_is_not_resumed(whole: RunFolder, tmp_pa
         train(whole.config(), begun, interrupted=interrupted_after(20))
     before = {path.name: path.read_bytes() for path in begun.path.iterdir()}
     with pytest.MonkeyPatch.context() as another_processor:
-        another_processor.setattr(learning, "seeds_of", lambda seed: seeds_of(seed + 1))
+        another_processor.setattr(plan, "seeds_of", lambda seed: seeds_of(seed + 1))
         with pytest.raises(ResumeError, match="cannot be resumed here: it does not repeat"):
             train(whole.config(), begun)
     assert {path.name: path.read_bytes() for path in begun.path.iterdir()} == before

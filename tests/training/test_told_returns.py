@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from sarah.agents.corrections import corrected
+from sarah.control.parameters import Parameters
 from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
@@ -17,6 +18,7 @@ from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
 from sarah.training import train as training
 from sarah.training.optimisers import OPTIMISERS, RandomSearch
+from sarah.training.plan import Stage
 from sarah.training.train import train
 
 EPISODE = BALANCE.config_of(
@@ -29,18 +31,18 @@ class Listening(RandomSearch):
 
     told: list[float]
 
-    def tell(self, action: np.ndarray, episode_return: float) -> None:
-        self.told.append(episode_return)
-        super().tell(action, episode_return)
+    def tell(self, parameters: Parameters, merit: float, fell: bool = False) -> None:
+        self.told.append(merit)
+        super().tell(parameters, merit, fell)
 
 
 def test_each_return_is_corrected_by_what_is_known_when_it_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
-    monkeypatch.setattr(TrainingConfig, "trials", 2)
+    monkeypatch.setattr(Stage, "trials", 2)
     monkeypatch.setattr(Listening, "told", [], raising=False)
-    monkeypatch.setitem(OPTIMISERS, "random", lambda settings, dimensions, seed, start: Listening(dimensions, seed))
+    monkeypatch.setitem(OPTIMISERS, "random", Listening)
     run = RunFolder.create(tmp_path / "run", TrainingConfig("balance", "random", 40, slots=3, episode=EPISODE))
     train(run.config(), run)
     specs = [spec_of(row) for row in run.episodes()][: len(Listening.told)]

@@ -29,6 +29,7 @@ from sarah.runs.agent_settings import settings_of
 from sarah.runs.config import OPTIMISERS, TrainingConfig
 from sarah.runs.run_folder import RunFolder, new_run_path
 from sarah.training.optimisers import RandomSearch
+from sarah.training.plan import Stage
 from sarah.training.recommendation import Tried, merit
 from sarah.training.train import SUMMARY_EPISODES, train
 
@@ -214,7 +215,7 @@ def test_trainings_of_neighbouring_seeds_share_no_episode(tmp_path: Path) -> Non
 
 
 def test_what_is_recommended_has_been_tried_within_the_budget(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(TrainingConfig, "trials", 2)
+    monkeypatch.setattr(Stage, "trials", 2)
     config = TrainingConfig(episodes=16, slots=1, episode=SHORT.episode)
     run = RunFolder.create(tmp_path / "run", config)
     parameters = train(config, run).parameters
@@ -227,7 +228,7 @@ def test_what_is_recommended_has_been_tried_within_the_budget(tmp_path: Path, mo
 
 
 def test_what_fails_its_trial_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(TrainingConfig, "trials", 2)
+    monkeypatch.setattr(Stage, "trials", 2)
     verdicts = iter((False, True))
     monkeypatch.setattr("sarah.training.train.is_valid", lambda *judged: next(verdicts))
     run = RunFolder.create(tmp_path / "run", TrainingConfig(episodes=16, slots=1, episode=SHORT.episode))

@@ -12,8 +12,8 @@ from sarah.episode.tasks import BALANCE
 from sarah.runs.agent_settings import NAFSettings, TD3Settings
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
+from sarah.training.plan import plan_of
 from sarah.training.train import train
-from sarah.training.warm_up import describe_warm_up, warm_up, warm_up_episodes
 
 SHORT = EpisodeConfig(time_limit=1.2)
 
@@ -48,7 +48,7 @@ def rows(run: RunFolder) -> list[dict[str, str]]:
     ],
 )
 def test_the_warm_up_is_said_in_words(config: TrainingConfig, words: str) -> None:
-    assert describe_warm_up(config) == words
+    assert plan_of(config).warm_up_words() == words
 
 
 def test_curves_say_which_episodes_were_random(tmp_path: Path) -> None:
@@ -60,7 +60,8 @@ def test_curves_say_which_episodes_were_random(tmp_path: Path) -> None:
         run = trained(tmp_path / str(noise), config)
         columns.append([row["P1"] for row in run.episodes()])
         marks = [float(row["train/is_warm_up"]) for row in rows(run)]
-        assert marks == [1.0] * warm_up(config) + [0.0] * (12 - warm_up(config))
+        warm_up = plan_of(config).start.warm_up
+        assert marks == [1.0] * warm_up + [0.0] * (12 - warm_up)
         events = EventAccumulator(str(run.path)).Reload()
         assert [event.value for event in events.Scalars("train/is_warm_up")] == marks
     alike = [one == other for one, other in zip(*columns, strict=True)]
@@ -69,5 +70,5 @@ def test_curves_say_which_episodes_were_random(tmp_path: Path) -> None:
 
 def test_a_strategy_without_warm_up_has_no_random_episodes(tmp_path: Path) -> None:
     config = TrainingConfig(algo="cma-es", episodes=5, episode=SHORT)
-    assert warm_up_episodes(config) == 0
+    assert plan_of(config).warm_up_episodes == 0
     assert {float(row["train/is_warm_up"]) for row in rows(trained(tmp_path / "run", config))} == {0.0}

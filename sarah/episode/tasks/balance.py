@@ -30,7 +30,7 @@ class BalanceConfig(PushedConfig):
     def __post_init__(self) -> None:
         """Refuse settings that cannot be simulated, and P1 to P5 out of their box."""
         super().__post_init__()
-        object.__setattr__(self, "stepping", STEPPING.checked(self.stepping, "stepping"))
+        object.__setattr__(self, "stepping", STEPPING.box.checked(self.stepping, "stepping"))
 
 
 def _controller_parameters(chosen: tuple[float, ...], config: BalanceConfig) -> ControllerParameters:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from sarah.control.hip_law import BalanceParameters
-from sarah.control.parameters import Parameter
+from sarah.control.parameters import Box, Parameter
 from sarah.control.pattern_generator import SteppingParameters
 from sarah.episode.disturbances import drawn_disturbances
 from sarah.episode.ending import paper_ending
@@ -32,8 +32,6 @@ LARGEST = 1e6
 """Largest end of a parameter's range."""
 NARROW = 2.0**-20
 """Width of a range in which 32-bit numbers tell hardly any values apart, as a share of the larger end."""
-ROUNDING = 2.0**-22
-"""Distance beyond an end of a range that comes from a 32-bit number, as a share of the larger end."""
 
 
 def _is_plain(text: object) -> bool:
@@ -147,9 +145,9 @@ class Task(Generic[ConfigType]):
                 raise ConfigurationError(f"ends of parameter {name} are too near to each other to learn it: {ends}")
         if not names:
             raise ConfigurationError(f"task {self.name!r} needs at least one parameter")
-        object.__setattr__(self, "baseline", self.checked(self.baseline, "baseline"))
+        object.__setattr__(self, "baseline", self.box.checked(self.baseline, "baseline"))
         if self.neutral is not None:
-            object.__setattr__(self, "neutral", self.checked(self.neutral, "neutral"))
+            object.__setattr__(self, "neutral", self.box.checked(self.neutral, "neutral"))
         object.__setattr__(self, "best_reward", plain(self.best_reward))
         if self.best_reward is not None and not (is_number(self.best_reward) and 0.0 < self.best_reward <= LARGEST):
             raise ConfigurationError(f"best_reward must be above 0, not {shortened(self.best_reward)}")
@@ -169,24 +167,19 @@ class Task(Generic[ConfigType]):
         return self.name if self.file is None else f"{self.file.attribute} ({self.file.digest})"
 
     @property
+    def box(self) -> Box:
+        """Ranges of the parameters together."""
+        return Box(self.parameters)
+
+    @property
     def parameter_names(self) -> tuple[str, ...]:
         """Names of the parameters, in order."""
-        return tuple(parameter.name for parameter in self.parameters)
+        return self.box.names
 
     @property
     def has_push(self) -> bool:
         """Whether the episodes have a push."""
         return isinstance(self.episode, PushedConfig) or self.draw_push is not push_of_settings
-
-    def checked(self, values: Sequence[float], name: str = "parameters") -> tuple[float, ...]:
-        """Check one value for every parameter, and convert them to floats within the parameters' ranges.
-
-        :param values: values in the order of :attr:`parameters`
-        :param name: name of the values in messages
-        :raises ConfigurationError: naming the first value that is not a number within its range
-        """
-        names = self.parameter_names
-        return checked_values(self.parameters, values, name, f"{names[0]} to {names[-1]}")
 
     def checked_config(self, config: EpisodeConfig, may_be_pushed: bool = False) -> EpisodeConfig:
         """Check that settings are of this task's type, and return them.
@@ -211,29 +204,3 @@ class Task(Generic[ConfigType]):
         own = vars(self.episode.for_robot(config.dimensions))
         shared = {name: getattr(config, name) for name in own if hasattr(config, name)}
         return type(self.episode)(**{**own, **shared, **changes})
-
-
-def checked_values(parameters: Sequence[Parameter], values: Any, name: str, span: str) -> tuple[float, ...]:
-    """Check one value for every parameter, and convert them to floats within the parameters' ranges.
-
-    A value that lies beyond an end by the rounding of a 32-bit number comes to that end.
-
-    :param parameters: parameters that the values are of
-    :param values: values in the same order
-    :param name: name of the values in messages
-    :param span: names of the parameters in messages
-    :raises ConfigurationError: naming the first value that is not a number within its range
-    """
-    values = plain(values)
-    is_list = isinstance(values, (list, tuple))  # a set has no order
-    if not is_list or len(values) != len(parameters):
-        found = len(values) if is_list else shortened(values)
-        raise ConfigurationError(f"{name} must be {len(parameters)} numbers ({span}), not {found}")
-    checked = []
-    for one, value in zip(parameters, values, strict=True):
-        slack, given = ROUNDING * max(abs(one.low), abs(one.high)), plain(value)
-        if not is_number(given) or not one.low - slack <= given <= one.high + slack:
-            ends = f"{one.low:.15g} and {one.high:.15g}"
-            raise ConfigurationError(f"parameter {one.name} must be between {ends}, not {shortened(value)}")
-        checked.append(min(max(float(given), one.low), one.high))
-    return tuple(checked)

@@ -1,7 +1,12 @@
-"""A learner that is careful: a local Gaussian process, and trials that it believes to be safe and worth their price."""
+"""A search that is careful: a local Gaussian process, and trials that it believes to be safe and worth their price.
+
+Its process is not the one of :mod:`sarah.agents.gaussian_process`, which chooses length and noise by the rewards: here
+both are fixed, so that the first windows do not mislead it about what is safe.
+"""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,13 +14,11 @@ from scipy.stats import norm
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
 
-from sarah.operation.operation import Operation
-from sarah.operation.settings import Parameters
-from sarah.operation.shares import from_shares, to_shares
+from sarah.control.parameters import Box, Parameters
 
 
 @dataclass(frozen=True)
-class GaussianProcessSettings:
+class CarefulSettings:
     """Settings of the Gaussian process and of its caution. Lengths and steps are shares of each parameter's range.
 
     :param length: length over which the reward changes
@@ -60,7 +63,7 @@ MOST_WINDOWS = 500
 """Number of windows that are remembered: the last ones. The time that a choice takes grows with its third power."""
 
 
-class LocalGaussianProcess:
+class CarefulSearch:
     """Tries parameters near the best so far, by what a Gaussian process expects of them (Berkenkamp et al. 2016).
 
     A trial must be safe: its reward's lower bound is not far below the reward of the parameters it began with. And it
@@ -70,65 +73,69 @@ class LocalGaussianProcess:
     cumulative sum, Page 1954). What was learned before is then forgotten. A robot that falls with the best parameters
     gets the first ones.
 
-    :param first: parameters to begin with
+    :param box: ranges of the parameters
     :param seed: seed of the draws
+    :param first: parameters to begin with
     :param settings: lengths, deviations and caution
     """
 
-    def __init__(
-        self, first: Parameters, seed: int, settings: GaussianProcessSettings = GaussianProcessSettings()
-    ) -> None:
+    def __init__(self, box: Box, seed: int, first: Parameters, settings: CarefulSettings = CarefulSettings()) -> None:
+        self._box = box
         self._settings = settings
         self._generator = np.random.default_rng([seed, len(first)])
         kernel = ConstantKernel(settings.deviation**2) * Matern(settings.length, nu=2.5)
         self._model = GaussianProcessRegressor(kernel + WhiteKernel(settings.noise**2), optimizer=None)
         self._mean = 0.0
-        self._first = self._start = to_shares(first)
+        self._first = self._start = self._asked = np.array(box.shares(first))
         self._tried: list[np.ndarray] = []
         self._rewards: list[float] = []
         self._bounded: list[float] = []
         self._errors: list[float] = []
         self._shortfall = 0.0
         self._doubted = 0
+        self._is_told, self._is_trial, self._disappoints, self._has_failed = True, False, False, False
 
-    def operate(self, robot: Operation) -> Parameters:
-        """Try, and run on with the best."""
-        shares, is_trial = self._first, False
-        while not robot.is_over:
-            window = robot.run(from_shares(shares))
-            disappoints = self._add(shares, window.observed_reward, window.fell)
-            if window.fell and not is_trial and shares is not self._first:  # nothing that is known carries it
-                shares = self._first
-                continue
-            trial = None if disappoints else self._trial(max(0.0, robot.windows_left - 1.0))
-            is_trial = trial is not None
-            shares = self._best()[0] if trial is None else trial
-        return from_shares(self._best()[0])
+    def ready(self) -> bool:
+        """Not while parameters are being tried: the next ones depend on their reward."""
+        return self._is_told
 
-    def _add(self, shares: np.ndarray, reward: float, fell: bool) -> bool:
-        """Learn from a window, and forget what was before a change.
+    def ask(self, left: float = math.inf) -> Parameters:
+        """A trial if there is one, or else the best parameters; the first ones where those have let the robot fall."""
+        self._is_told = self._is_trial = False
+        if self._has_failed or not self._tried:
+            self._asked = self._first
+        elif self._disappoints or (trial := self._trial(max(0.0, left - 1.0))) is None:
+            self._asked = self._best()[0]
+        else:
+            self._asked, self._is_trial = trial, True
+        return self._box.at_shares(self._asked)
 
-        :param shares: parameters of the window
-        :param reward: reward that the robot observed
-        :param fell: whether the robot fell in it
-        :return: whether the reward was so low that the best parameters have to show that the robot is as before
+    def tell(self, parameters: Parameters, merit: float, fell: bool = False) -> None:
+        """Learn from what was asked for last, and forget what was before a change.
+
+        After a merit so low that it disappoints, the best parameters have to show that the robot is as before.
         """
-        expected, spread = self._foreseen(shares) if self._tried else (reward, self._settings.noise)
-        surprise = (expected - reward) / spread
-        disappoints = surprise > DISAPPOINTING
+        self._is_told = True
+        self._has_failed = fell and not self._is_trial and self._asked is not self._first
+        expected, spread = self._foreseen(self._asked) if self._tried else (merit, self._settings.noise)
+        surprise = (expected - merit) / spread
+        self._disappoints = surprise > DISAPPOINTING
         counted = min(surprise, SURPRISE_OF_FALL if fell else DISAPPOINTING)
         self._shortfall = max(0.0, self._shortfall + counted - 0.5)
-        self._doubted = self._doubted + 1 if disappoints or self._shortfall > 0.0 else 0
+        self._doubted = self._doubted + 1 if self._disappoints or self._shortfall > 0.0 else 0
         if self._tried:
-            self._errors = [*self._errors[1 - NOISE_WINDOWS :], abs(expected - reward)]
-        self._tried.append(shares)
-        self._rewards.append(reward)
-        self._bounded.append(reward if fell else max(reward, expected - DISAPPOINTING * spread))
+            self._errors = [*self._errors[1 - NOISE_WINDOWS :], abs(expected - merit)]
+        self._tried.append(self._asked)
+        self._rewards.append(merit)
+        self._bounded.append(merit if fell else max(merit, expected - DISAPPOINTING * spread))
         if self._shortfall > self._settings.surprise:
             self._forget()
         del self._tried[:-MOST_WINDOWS], self._rewards[:-MOST_WINDOWS], self._bounded[:-MOST_WINDOWS]
         self._fit()
-        return disappoints
+
+    def choice(self) -> Parameters:
+        """The best of what was tried."""
+        return self._box.at_shares(self._best()[0] if self._tried else self._first)
 
     def _foreseen(self, shares: np.ndarray) -> tuple[float, float]:
         """Mean and standard deviation of a window's reward, as far as they can be known before it."""
