@@ -18,7 +18,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import disturbances_of
 from sarah.errors import LearningError
 from sarah.runs.config import TrainingConfig
-from sarah.runs.journal import Journal
+from sarah.runs.recorded_episodes import RecordedEpisodes
 from sarah.runs.run_folder import RunFolder
 from sarah.training.learning_curves import LEARNED, CurveWriter, kept_pictures, summary_of
 from sarah.training.recommendation import Parameters, Tried, merit
@@ -37,7 +37,7 @@ class EpisodeRecorder(BaseCallback):
 
     :param run: run folder of the training
     :param config: settings of the training
-    :param journal: journal of the training
+    :param episodes: episodes of the training, with its journal
     :param progress: progress bar, which every episode moves on
     """
 
@@ -51,7 +51,9 @@ class EpisodeRecorder(BaseCallback):
     """Function that returns the parameters that the algorithm itself would choose now. While it is set, the
     recommendation is recorded in ``recommendations.csv``."""
 
-    def __init__(self, run: RunFolder, config: TrainingConfig, journal: Journal, progress: tqdm[NoReturn]) -> None:
+    def __init__(
+        self, run: RunFolder, config: TrainingConfig, episodes: RecordedEpisodes, progress: tqdm[NoReturn]
+    ) -> None:
         super().__init__()
         self.log = Logger(folder=None, output_formats=[_LoggerOutput(self)])
         self.diverged = 0
@@ -61,7 +63,7 @@ class EpisodeRecorder(BaseCallback):
         self._warm_up = warm_up_episodes(config)
         self.tried = Tried(self._task)
         self._run = run
-        self._journal = journal
+        self._episodes = episodes
         self._progress = progress
         self._curves: CurveWriter | None = None
         self._kept = kept_pictures(run)  # before the old curves are removed
@@ -125,7 +127,7 @@ class EpisodeRecorder(BaseCallback):
         else:
             from sarah.pictures.gait_snapshot import draw_gait  # slow to import because of matplotlib
 
-            with self._journal.outside():
+            with self._episodes.outside():
                 summary = summary_of(draw_gait(recommended, self._config.task, self._config.episode))
         self._open_curves().show(summary, episodes)
 
@@ -163,7 +165,7 @@ class EpisodeRecorder(BaseCallback):
 
     def _write(self, action: Callable[[], None]) -> None:
         self._held.append(action)
-        if not self._journal.replaying:
+        if not self._episodes.journal.replaying:
             self._write_held()
 
     def _write_held(self) -> None:
