@@ -94,9 +94,9 @@ PROTECTIONS = (
     ),
     Protection(
         "a training whose settings were edited is refused",
-        "runs/origin.py",
-        'if different := differences(_origin_of(config), there, "in this training"):',
-        "if False:",
+        "recorded/journal.py",
+        'if different := differences(self._origin, there, f"in this {self._kind}"):',
+        "if different := '':",
         "test_every_setting_edited_in_turn_is_refused",
     ),
     Protection(
