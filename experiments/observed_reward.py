@@ -16,8 +16,9 @@ from experiments.record import Row
 from sarah.episode.from_mapping import from_mapping
 from sarah.episode.workers import Workers
 from sarah.operation.settings import BOX, SHIPPED, OperationConfig, Parameters
-from sarah.sessions.session import SessionResult, SessionSpec, run_session
+from sarah.runs.session import SessionSpec
 from sarah.simulation.engines import Engine, is_installed
+from sarah.training.operate import SessionResult, run_session
 
 GROUNDS: dict[str, dict[str, Any]] = {
     "flat": {},

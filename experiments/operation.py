@@ -17,8 +17,9 @@ from experiments.record import Row
 from sarah.episode.from_mapping import from_mapping
 from sarah.episode.workers import Job, Workers
 from sarah.operation.settings import SHIPPED, Change, OperationConfig, Parameters
-from sarah.sessions.session import SessionResult, SessionSpec, run_session
+from sarah.runs.session import SessionSpec
 from sarah.simulation.engines import Engine
+from sarah.training.operate import SessionResult, run_session
 
 WEAK = {"randomisation": {"actuator_bandwidth": 12.0}}
 """Servos of 12 per second, where the simulation had 40 to 50."""

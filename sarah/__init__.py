@@ -33,10 +33,11 @@ if TYPE_CHECKING:
     from sarah.operation.settings import Change, OperationConfig
     from sarah.operation.window import Window
     from sarah.robot.reading import SensorReading
-    from sarah.sessions.session import SessionResult, SessionSpec, run_session
+    from sarah.runs.session import SessionSpec
     from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
     from sarah.simulation.randomisation import Randomisation
     from sarah.simulation.terrain import Terrain
+    from sarah.training.operate import SessionResult, run_session
 
 _HOMES = {
     "BALANCE": "episode.tasks",
@@ -63,8 +64,8 @@ _HOMES = {
     "Randomisation": "simulation.randomisation",
     "SarahError": "errors",
     "SensorReading": "robot.reading",
-    "SessionResult": "sessions.session",
-    "SessionSpec": "sessions.session",
+    "SessionResult": "training.operate",
+    "SessionSpec": "runs.session",
     "SteppingParameters": "control.pattern_generator",
     "Task": "episode.tasks",
     "Terrain": "simulation.terrain",
@@ -74,7 +75,7 @@ _HOMES = {
     "evaluate": "episode.evaluation",
     "load_task": "episode.tasks",
     "paper_ending": "episode.ending",
-    "run_session": "sessions.session",
+    "run_session": "training.operate",
     "simulate": "episode.episode",
 }
 

@@ -5,10 +5,8 @@ from pathlib import Path
 import pytest
 
 from sarah.episode.settings import EpisodeConfig
-from sarah.episode.workers import Workers
 from sarah.errors import TrainingInterruptedError
 from sarah.runs.config import TrainingConfig
-from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
 from sarah.training.train import train
@@ -23,7 +21,7 @@ INTERRUPTED = 3
 def begun(path: Path, config: TrainingConfig) -> RunFolder:
     """The run folder of a training that nobody has simulated an episode of."""
     run = RunFolder.create(path, config)
-    with Journal(run.journal_path, config, Workers()):
+    with run.journal_of(config):
         return run
 
 

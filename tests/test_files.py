@@ -22,8 +22,8 @@ from sarah.pictures.video import write_video
 from sarah.reports.report import write_report
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
-from sarah.sessions.session import SessionSpec
-from sarah.sessions.session_folder import SessionFolder
+from sarah.runs.session import SessionSpec
+from sarah.runs.session_folder import SessionFolder
 from sarah.simulation.physics import Physics
 
 

@@ -22,7 +22,7 @@ from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.errors import ConfigurationError, check_range
 from sarah.files import make_folder
-from sarah.sessions import is_session
+from sarah.runs.kinds import SESSION
 from sarah.streams import check_output
 
 if TYPE_CHECKING:
@@ -157,7 +157,7 @@ def _evaluate(arguments: Sequence[str]) -> None:
 def _next_steps(options: EvalOptions, arguments: Sequence[str]) -> Iterator[Step]:
     first = ("--seed", str(options.first_seed))
     yield to_see(options.subject, *passed_on(arguments, options.subject, *NOT_OF_VIEW), *first)
-    if Path(options.subject).is_dir() and not is_session(Path(options.subject)):
+    if Path(options.subject).is_dir() and not SESSION.owns(Path(options.subject)):
         yield to_report(options.subject, *([] if options.task is None else ["--task", options.task]))
 
 

@@ -37,12 +37,13 @@ from sarah.files import quoted
 from sarah.formats import read_yaml
 from sarah.number import number
 from sarah.operation.settings import Change, OperationConfig, Parameters
-from sarah.sessions import is_session
+from sarah.runs.kinds import SESSION
 
 if TYPE_CHECKING:
     from sarah.operation.window import Window
-    from sarah.sessions.session import SessionResult, SessionSpec
-    from sarah.sessions.session_folder import SessionFolder
+    from sarah.runs.session import SessionSpec
+    from sarah.runs.session_folder import SessionFolder
+    from sarah.training.operate import SessionResult
 
 COMMAND = "sarah-operate"
 WITHOUT_EFFECT = ("--episode.time-limit", "--episode.reward-form", "--episode.push.at-seconds")
@@ -106,7 +107,7 @@ def _operate(arguments: Sequence[str]) -> None:
     folder = _begun(options) if options.resume is None else _resumed(options, arguments)
     if folder is None:
         return
-    from sarah.sessions.operate import compare_frozen, operate
+    from sarah.training.operate import compare_frozen, operate
 
     spec = folder.spec()
     print(f"operating for {spec.config.minutes:g} min with learner {spec.learner} into {folder.path}", flush=True)
@@ -122,9 +123,9 @@ def _operate(arguments: Sequence[str]) -> None:
 
 def _begun(options: OperateOptions) -> SessionFolder:
     """The folder of a new session."""
-    from sarah.runs.run_folder import new_run_path
-    from sarah.sessions.session import FORMER_LEARNERS
-    from sarah.sessions.session_folder import SessionFolder
+    from sarah.recorded.folder import new_path
+    from sarah.runs.session import FORMER_LEARNERS
+    from sarah.runs.session_folder import SessionFolder
     from sarah.simulation.engines import check_engine
 
     if present := FORMER_LEARNERS.get(options.learner):
@@ -133,7 +134,7 @@ def _begun(options: OperateOptions) -> SessionFolder:
     _check_learns(options, spec)
     for count in range(len(spec.config.changes) + 1):
         check_engine(spec.config.robot_after(count).engine)
-    path = options.out or new_run_path("operation", spec.learner, spec.seed)
+    path = options.out or new_path("operation", f"{spec.learner}-s{spec.seed}")
     folder = SessionFolder.create(path, spec, options.compare_frozen)
     say_engine(spec.config.robot, options.engine)
     if Path(options.subject).is_dir() or is_shipped(options.subject):  # numbers have no settings
@@ -144,8 +145,8 @@ def _begun(options: OperateOptions) -> SessionFolder:
 
 def _resumed(options: OperateOptions, arguments: Sequence[str]) -> SessionFolder | None:
     """The folder of the session to go on with, which may be extended; ``None`` if nothing is left to do."""
-    from sarah.sessions.operate import add_frozen, extend
-    from sarah.sessions.session_folder import SessionFolder
+    from sarah.runs.session_folder import SessionFolder
+    from sarah.training.operate import add_frozen, extend
 
     assert options.resume is not None
     given = _check_alone(arguments)
@@ -175,7 +176,7 @@ def _check_learns(options: OperateOptions, spec: SessionSpec) -> None:
 def _parsed(arguments: Sequence[str]) -> OperateOptions:
     """Options of the command; a session that it begins with has times of its own."""
     options = parse_episode_options(COMMAND, arguments, OperateOptions(), adapted=settings_in_operation)
-    if is_session(Path(options.subject)):
+    if SESSION.owns(Path(options.subject)):
         usual = dataclasses.replace(OperateOptions(), **times_of_session(Path(options.subject)))
         options = parse_episode_options(COMMAND, arguments, usual, adapted=settings_in_operation)
     assert isinstance(options.episode, OperatedConfig)
@@ -197,7 +198,7 @@ def _check_alone(arguments: Sequence[str]) -> dict[str, str]:
 
 
 def _spec_of(options: OperateOptions) -> SessionSpec:
-    from sarah.sessions.session import SessionSpec
+    from sarah.runs.session import SessionSpec
 
     subject = episode_of(options.subject, None, named_task(options.task)).spec
     any_pushed = EpisodeSpec(STEPPING.baseline, 0, STEPPING, options.episode)

@@ -15,7 +15,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import TASKS
 from sarah.operation.settings import SOFT_PUSHES
-from sarah.sessions import is_session
+from sarah.runs.kinds import SESSION
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def settings_in_operation(config: EpisodeConfig, subject: str | None) -> Operate
     :param subject: what the robot begins with
     """
     shared = {item.name: getattr(config, item.name) for item in dataclasses.fields(EpisodeConfig)}
-    is_own = subject is not None and is_session(Path(subject))
+    is_own = subject is not None and SESSION.owns(Path(subject))
     push = config.push if is_own and isinstance(config, PushedConfig) else config.scale.scaled(SOFT_PUSHES)
     return OperatedConfig(**shared, push=RegularPush(**vars(push)))
 
@@ -54,7 +54,7 @@ def times_of_session(path: Path) -> dict[str, Any]:
 
     :param path: folder of the session
     """
-    from sarah.sessions.session_folder import SessionFolder
+    from sarah.runs.session_folder import SessionFolder
 
     config = SessionFolder.open(path).spec().config
     names = ("settle_seconds", "measure_seconds", "fall_seconds", "push_seconds")

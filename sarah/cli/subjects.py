@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from sarah.episode.tasks import Task
 from sarah.errors import ConfigurationError, RunFolderError, shortened, unknown_name
 from sarah.number import number
-from sarah.sessions import is_session
+from sarah.runs.kinds import SESSION
 
 if TYPE_CHECKING:
     from sarah.runs.run_episodes import RunEpisode
@@ -31,7 +31,7 @@ def is_there(subject: str) -> bool:
     """
     from sarah.episode.parameter_sets import PARAMETER_SETS
 
-    is_run = Path(subject).joinpath("config.yaml").is_file() or is_session(Path(subject))
+    is_run = Path(subject).joinpath("config.yaml").is_file() or SESSION.owns(Path(subject))
     return subject in PARAMETER_SETS or is_run or ("," in subject and subject.strip(" +-.")[:1].isdigit())
 
 
@@ -47,8 +47,8 @@ def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tupl
     from sarah.episode.parameter_sets import PARAMETER_SETS
     from sarah.runs.run_episodes import RunEpisode, choose_episode, episode_of_parameters, episodes_of_run
 
-    if is_session(Path(subject)):
-        from sarah.sessions.session_episodes import episodes_of_session
+    if SESSION.owns(Path(subject)):
+        from sarah.runs.session_episodes import episodes_of_session
 
         episodes = episodes_of_session(Path(subject))
         return episodes, choose_episode(episodes, which)
@@ -90,7 +90,7 @@ def episode_of(subject: str, which: str | None, task: Task[Any] | None) -> RunEp
     from sarah.runs.run_episodes import learned_episode
     from sarah.runs.run_folder import RunFolder
 
-    if Path(subject).is_dir() and not is_session(Path(subject)) and which in (None, "learned"):
+    if Path(subject).is_dir() and not SESSION.owns(Path(subject)) and which in (None, "learned"):
         run = RunFolder.open(Path(subject), unfinished=True, task=task)
         if run.is_finished:
             return learned_episode(run)
@@ -104,8 +104,8 @@ def learner_of(subject: str, task: Task[Any] | None) -> str | None:
     :param task: task of a run folder whose task is that of a file
     :raises RunFolderError: if the folder has no learned parameters
     """
-    if is_session(Path(subject)):
-        from sarah.sessions.session_folder import SessionFolder
+    if SESSION.owns(Path(subject)):
+        from sarah.runs.session_folder import SessionFolder
 
         session = SessionFolder.open(Path(subject))
         session.parameters()
@@ -125,7 +125,7 @@ def check_of_training(path: Path) -> None:
     :param path: path of a folder
     :raises RunFolderError: if it is a session's
     """
-    if is_session(path):
+    if SESSION.owns(path):
         raise RunFolderError(f"{path} is the folder of a session, not of a training: session.png in it is its figure")
 
 

@@ -111,8 +111,8 @@ def _train(arguments: Sequence[str]) -> None:
 
     describe_robot(config.episode.dimensions)  # a bad dimension is refused before anything is written
     from sarah.episode.workers import Workers
-    from sarah.runs.origin import check_origin
-    from sarah.runs.run_folder import RunFolder, new_run_path
+    from sarah.recorded.folder import new_path
+    from sarah.runs.run_folder import RunFolder
     from sarah.simulation.engines import check_engine
     from sarah.training.learners import check_device
 
@@ -127,7 +127,7 @@ def _train(arguments: Sequence[str]) -> None:
         if run.is_finished and config.episodes == run.config().episodes:
             print(finished_words(options.resume, "--episodes", config.episodes))
             return
-        check_origin(run.journal_path, run.config())
+        run.check_origin(run.config())
 
     from sarah.episode.trial import try_task
 
@@ -138,7 +138,7 @@ def _train(arguments: Sequence[str]) -> None:
             if run.is_finished:  # only now that somebody can simulate
                 config = _extended(run, config)
         else:
-            run = RunFolder.create(options.out or new_run_path(config.task.name, config.algo, config.seed), config)
+            run = RunFolder.create(options.out or new_path(config.task.name, f"{config.algo}-s{config.seed}"), config)
         say_engine(config.episode, options.engine)
         pushed = f", {pushed_words(config.episode)}" if isinstance(config.episode, PushedConfig) else ""
         what = f"{config.algo} on {config.task.name}{pushed}"

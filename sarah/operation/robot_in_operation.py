@@ -83,6 +83,7 @@ class RobotInOperation:
         :param window: result of the next window
         """
         self._make_changes()
+        self.close()  # its next window begins where this one ended: those since it stood up are run again
         self._count(window)
 
     def close(self) -> None:

@@ -29,7 +29,6 @@ from sarah.files import locked, read_text, replace_text
 from sarah.number import finite_number, whole_number
 from sarah.reports.race_entry import RACE_FILE, SCORES_FILE, Entry, RaceCurve, is_evaluated, read_curve, unreadable
 from sarah.runs.config_files import first_difference
-from sarah.runs.origin import check_origin
 from sarah.runs.run_folder import RunFolder
 from sarah.training.recorder import EPISODES_PER_RECOMMENDATION
 from sarah.training.train import train
@@ -58,7 +57,7 @@ def race(entries: Sequence[Entry], workers: Workers, progress_bar: bool = False)
     if left := [entry for entry in entries if not is_evaluated(entry)]:
         for entry in entries:  # otherwise nothing of today comes into the table
             if entry.folder.exists():
-                check_origin(RunFolder(entry.folder).journal_path, entry.config)
+                RunFolder(entry.folder).check_origin(entry.config)
         progress_bar = progress_bar and sys.stderr is not None
         if progress_bar:
             print(_work(left), file=sys.stderr)

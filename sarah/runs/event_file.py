@@ -13,7 +13,7 @@ from tensorboard.compat.proto.event_pb2 import Event
 from tensorboard.compat.proto.summary_pb2 import Summary
 from tensorboard.summary.writer.record_writer import RecordWriter
 
-from sarah.runs.run_folder import EVENTS
+from sarah.recorded.folder import EVENTS
 
 
 class EventFile:

@@ -18,9 +18,9 @@ from __future__ import annotations
 
 import csv
 import io
-import itertools
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -29,42 +29,20 @@ from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task, is_portable
 from sarah.errors import ConfigurationError, RunFolderError, shortened
-from sarah.files import check_name, quoted, read_lines, read_text, replace_text, write_command
+from sarah.files import read_lines, read_text, replace_text
 from sarah.formats import read_json
+from sarah.recorded.folder import Folder, unreadable
+from sarah.recorded.journal import Journal
 from sarah.runs.config import TrainingConfig
-from sarah.runs.config_files import read_config, write_config
+from sarah.runs.config_files import read_config, settings_by_key, write_config
+from sarah.runs.kinds import TRAINING
 from sarah.runs.recorded_task import SOURCE, record_task, recorded_task
-from sarah.versions import versions
 
-EVENTS = "events.out.tfevents."
-"""Prefix of the names of TensorBoard's files."""
-
-
-def new_run_path(task: str, algo: str, seed: int) -> Path:
-    """Make an empty folder for a run: ``runs/<task>/<algo>-s<seed>``, with a number behind it if that one exists.
-
-    Whoever makes the folder has it, so that no other run takes it at the same time.
-
-    :param task: name of the task, or of another kind of run
-    :param algo: name of the algorithm
-    :param seed: seed of the run
-    :raises RunFolderError: if it cannot be made
-    """
-    path = base = Path("runs") / task / f"{algo}-s{seed}"
-    try:
-        base.parent.mkdir(parents=True, exist_ok=True)
-        for number in itertools.count(2):
-            try:
-                path.mkdir()
-                break
-            except FileExistsError:
-                path = base.with_name(f"{base.name}-{number}")
-    except OSError as error:
-        raise RunFolderError(f"cannot write run folder {path}: {error.strerror or error}") from error
-    return path
+EPISODES_BESIDE = 1000
+"""Number of episodes, beside those of the budget, that a journal has room for: evaluations, and rows that were cut."""
 
 
-class RunFolder:
+class RunFolder(Folder):
     """The files of a training.
 
     :param path: path of the folder; :meth:`create` makes a new folder, :meth:`open` checks an existing one
@@ -72,18 +50,14 @@ class RunFolder:
     """
 
     def __init__(self, path: Path, task: Task[Any] | None = None) -> None:
-        self.path = path
+        super().__init__(path, TRAINING)
         self._task = task
         self.model_path = path / "model.zip"
         self.figures_path = path / "figures"
         self.report_path = path / "report.html"
-        self.journal_path = path / "journal.jsonl"
-        self._versions_path = path / "versions.txt"
         self._progress_path = path / "progress.csv"
-        self._config_path = path / "config.yaml"
         self._episodes_path = path / "episodes.csv"
         self._recommendations_path = path / "recommendations.csv"
-        self._parameters_path = path / "parameters.json"
 
     @classmethod
     def create(cls, path: Path, config: TrainingConfig) -> RunFolder:
@@ -98,31 +72,14 @@ class RunFolder:
             raise ConfigurationError(
                 f"a run folder records tasks of files: put {config.task.name!r} into one, and use sarah.load_task"
             )
-        check_name(path)
-        try:
-            path.mkdir(parents=True, exist_ok=True)
-            run = cls(path, config.task if config.task.file is not None else None)
-            if any(path.iterdir()) or not run._claim():
-                can_go_on = run._config_path.is_file() and run.journal_path.is_file() and not run.is_finished
-                go_on = f", or go on with sarah-train --resume {quoted(path)}" if can_go_on else ""
-                raise RunFolderError(f"run folder {path} is not empty: name another with --out{go_on}")
-            write_command(path / "command.txt")
-            run.write_versions()
-            record_task(config.task, path)
-            write_config(config, run._config_path)  # last, because a folder that has it can be resumed
-        except RunFolderError:
-            raise
-        except OSError as error:
-            raise RunFolderError(f"cannot write run folder {path}: {error.strerror or error}") from error
-        return run
+        run = cls(path, config.task if config.task.file is not None else None)
 
-    def _claim(self) -> bool:
-        """Make the journal's file, unless another training made it at the same time."""
-        try:
-            self.journal_path.touch(exist_ok=False)
-        except FileExistsError:
-            return False
-        return True
+        def write() -> None:
+            record_task(config.task, path)
+            write_config(config, run.specification_path)
+
+        run.begin(write)
+        return run
 
     @classmethod
     def open(cls, path: Path, unfinished: bool = False, task: Task[Any] | None = None) -> RunFolder:
@@ -134,14 +91,7 @@ class RunFolder:
         :raises RunFolderError: if the folder does not exist, has no learned parameters, or is another task's
         """
         run = cls(path, task)
-        if not path.is_dir():
-            raise RunFolderError(f"run folder {path} does not exist")
-        kind = "training" if unfinished else "finished training"
-        for file in (run._config_path,) if unfinished else (run._config_path, run._parameters_path):
-            if not file.is_file():
-                inside = next(iter(sorted(path.glob(f"*/{file.name}"))), None)
-                hint = f", and {inside.parent} has one" if inside else ""
-                raise RunFolderError(f"{path} is not the folder of a {kind}: it has no {file.name}{hint}")
+        run.check(finished=not unfinished)
         return run
 
     @classmethod
@@ -153,38 +103,31 @@ class RunFolder:
         :raises RunFolderError: if the folder does not exist, or lacks a file that a training is resumed from
         """
         run = cls(path, task)
-        if not path.is_dir():
-            raise RunFolderError(f"run folder {path} does not exist")
-        for file in (run._config_path, run.journal_path):
-            if not file.is_file():
-                raise RunFolderError(f"{path} cannot be resumed: it has no {file.name}")
+        run.check_resumable()
         return run
-
-    @property
-    def is_finished(self) -> bool:
-        """Whether the training has finished, with learned parameters."""
-        return self._parameters_path.is_file()
 
     def extend(self, config: TrainingConfig) -> None:
         """Make a finished training an unfinished one with a larger budget.
 
         :param config: settings with the larger budget
         """
-        self._parameters_path.unlink()  # first: without it, the training of before would only be finished again
-        write_config(config, self._config_path)
+        self.reopen(lambda: write_config(config, self.specification_path))
 
-    def write_versions(self) -> None:
-        """Write with which code and versions the training begins."""
-        lines = (f"{name} {version}\n" for name, version in versions().items())
-        replace_text(self._versions_path, "".join(lines))
+    def journal_of(self, config: TrainingConfig) -> AbstractContextManager[Journal]:
+        """Journal of the training, as a context.
 
-    def versions(self) -> dict[str, str]:
-        """Read the versions with which the training began, by name of the package."""
-        try:
-            lines = read_text(self._versions_path).splitlines()
-        except OSError as error:
-            raise _unreadable(self._versions_path, error) from error
-        return {name: version for name, _, version in (line.partition(" ") for line in lines)}
+        :param config: settings of the training
+        :raises ResumeError: if it was begun with other settings, code or versions, or is in use
+        """
+        return self.journal(_settings_of(config), config.episodes + EPISODES_BESIDE)
+
+    def check_origin(self, config: TrainingConfig) -> None:
+        """Refuse a training that was begun with other settings, code or versions.
+
+        :param config: settings of the training
+        :raises ResumeError: naming what differs, here and there
+        """
+        self.check_journal(_settings_of(config))
 
     def config(self) -> TrainingConfig:
         """Read the training's configuration.
@@ -192,7 +135,7 @@ class RunFolder:
         :raises RunFolderError: if the run folder was given a task that it was not made with
         """
         recorded = recorded_task(self.path)
-        config = read_config(TrainingConfig, self._config_path, recorded)
+        config = read_config(TrainingConfig, self.specification_path, recorded)
         if self._task is None:
             return config
         if self._task.identity != config.task.identity:
@@ -203,9 +146,9 @@ class RunFolder:
     def config_text(self) -> str:
         """Read the text of ``config.yaml``."""
         try:
-            return read_text(self._config_path)
+            return read_text(self.specification_path)
         except OSError as error:
-            raise _unreadable(self._config_path, error) from error
+            raise unreadable(self.specification_path, error) from error
 
     def append_episode(self, index: int, spec: EpisodeSpec, result: EpisodeResult) -> None:
         """Add one episode to ``episodes.csv``.
@@ -254,14 +197,10 @@ class RunFolder:
         writer.writerows(self._rows(self._progress_path))
         replace_text(self._progress_path, text.getvalue())
 
-    def event_files(self) -> list[Path]:
-        """Paths of TensorBoard's files."""
-        return sorted(path for path in self.path.glob(f"{EVENTS}*") if path.is_file())
-
     def remove_records(self) -> None:
         """Remove the tables and curves of the episodes: a resumed training writes all of them anew."""
         tables = (self._episodes_path, self._recommendations_path, self._progress_path)
-        for path in (*tables, *self.path.glob(f"{EVENTS}*")):  # whatever they are: a FIFO of that name would block
+        for path in (*tables, *self.event_files()):
             path.unlink(missing_ok=True)
 
     def write_parameters(self, content: Mapping[str, Any]) -> None:
@@ -269,7 +208,7 @@ class RunFolder:
 
         :param content: values to write, which include the learned ``parameters`` by name
         """
-        replace_text(self._parameters_path, json.dumps(content, indent=2) + "\n")
+        replace_text(self.result_path, json.dumps(content, indent=2) + "\n")
 
     def parameters(self) -> tuple[float, ...]:
         """Read the learned parameters, in the order of the task.
@@ -279,15 +218,15 @@ class RunFolder:
         task = self.config().task
         names = task.parameter_names
         try:
-            learned = read_json(read_text(self._parameters_path))["parameters"]
+            learned = read_json(read_text(self.result_path))["parameters"]
             if set(learned) != set(names):
                 found = shortened(", ".join(map(str, learned)))
                 raise ValueError(f"it names {found} instead of {', '.join(names)}")
             return task.box.checked([learned[name] for name in names])
         except OSError as error:
-            raise _unreadable(self._parameters_path, error) from error
+            raise unreadable(self.result_path, error) from error
         except (ValueError, KeyError, TypeError) as error:
-            raise RunFolderError(f"{self._parameters_path} does not hold learned parameters: {error}") from error
+            raise RunFolderError(f"{self.result_path} does not hold learned parameters: {error}") from error
 
     def _rows(self, path: Path) -> Iterator[dict[str, str]]:
         """Read a table, which has at most a row for each episode of the training."""
@@ -296,7 +235,7 @@ class RunFolder:
         try:
             yield from csv.DictReader(read_lines(path, self.config().episodes + 1))
         except (OSError, csv.Error) as error:
-            raise _unreadable(path, error) from error
+            raise unreadable(path, error) from error
 
 
 def _append_row(path: Path, fields: Sequence[str], row: Mapping[str, Any]) -> None:
@@ -308,5 +247,9 @@ def _append_row(path: Path, fields: Sequence[str], row: Mapping[str, Any]) -> No
         writer.writerow(row)
 
 
-def _unreadable(path: Path, error: Exception) -> RunFolderError:
-    return RunFolderError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}")
+def _settings_of(config: TrainingConfig) -> dict[str, Any]:
+    """Settings by name that decide what a training does: its journal has a row for each extension."""
+    settings = settings_by_key(replace(config, episodes=config.stages[0], extended_from=()))
+    for name in ("pictures", "extended_from"):  # pictures change no result
+        del settings[name]
+    return settings

@@ -99,7 +99,7 @@ def kept_pictures(run: RunFolder) -> dict[int, Summary]:
     """
     kept = {}
     for path in run.event_files():
-        if path.stat().st_size > LARGEST:
+        if not path.is_file() or path.stat().st_size > LARGEST:
             continue
         try:
             for event in LegacyEventFileLoader(str(path)).Load():

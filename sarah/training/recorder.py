@@ -14,7 +14,7 @@ from sarah.episode.evaluation import Evaluation
 from sarah.episode.result import METRICS, EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import disturbances_of
-from sarah.runs.journal import Journal
+from sarah.runs.recorded_episodes import RecordedEpisodes
 from sarah.runs.run_folder import RunFolder
 from sarah.training.learning_curves import LEARNED, CurveWriter, kept_pictures, summary_of
 from sarah.training.plan import Plan
@@ -33,7 +33,7 @@ class EpisodeRecorder:
 
     :param run: run folder of the training
     :param plan: plan of the training
-    :param journal: journal of the training
+    :param episodes: episodes of the training, with its journal
     :param progress: progress bar, which every episode moves on
     """
 
@@ -44,7 +44,7 @@ class EpisodeRecorder:
     diverged: int
     """Number of episodes so far that diverged."""
 
-    def __init__(self, run: RunFolder, plan: Plan, journal: Journal, progress: tqdm[NoReturn]) -> None:
+    def __init__(self, run: RunFolder, plan: Plan, episodes: RecordedEpisodes, progress: tqdm[NoReturn]) -> None:
         self.log = Logger(folder=None, output_formats=[_LoggerOutput(self)])
         self.diverged = 0
         self._config = plan.config
@@ -52,7 +52,7 @@ class EpisodeRecorder:
         self._warm_up = plan.warm_up_episodes
         self.tried = Tried(self._task)
         self._run = run
-        self._journal = journal
+        self._episodes = episodes
         self._progress = progress
         self._curves: CurveWriter | None = None
         self._kept = kept_pictures(run)  # before the old curves are removed
@@ -108,7 +108,7 @@ class EpisodeRecorder:
         else:
             from sarah.pictures.gait_snapshot import draw_gait  # slow to import because of matplotlib
 
-            with self._journal.outside():
+            with self._episodes.outside():
                 summary = summary_of(draw_gait(recommended, self._config.task, self._config.episode))
         self._open_curves().show(summary, episodes)
 
@@ -146,7 +146,7 @@ class EpisodeRecorder:
 
     def _write(self, action: Callable[[], None]) -> None:
         self._held.append(action)
-        if not self._journal.replaying:
+        if not self._episodes.journal.replaying:
             self._write_held()
 
     def _write_held(self) -> None:

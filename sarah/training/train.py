@@ -17,7 +17,7 @@ from sarah.episode.workers import Executor, executor_of
 from sarah.errors import LearningError, SarahError, one_line
 from sarah.process import apart
 from sarah.runs.config import TrainingConfig
-from sarah.runs.journal import Journal
+from sarah.runs.recorded_episodes import RecordedEpisodes
 from sarah.runs.run_folder import RunFolder
 from sarah.training.learners import Learner, make_learner
 from sarah.training.plan import Stage, plan_of
@@ -65,26 +65,26 @@ def train(
     :raises TrainingInterruptedError: if ``interrupted`` asks to stop
     """
     executor = executor_of(workers)
-    with apart() as outside, Journal(run.journal_path, config, executor, interrupted, outside) as journal:
-        if journal.is_new:
-            run.write_versions()  # they may not be those that the folder was made with
-        return _train(config, run, journal, progress_bar)
+    with apart() as outside, run.journal_of(config) as journal:
+        episodes = RecordedEpisodes(journal, executor, interrupted, outside)
+        return _train(config, run, episodes, progress_bar)
 
 
-def _train(config: TrainingConfig, run: RunFolder, journal: Journal, progress_bar: bool) -> Learned:
+def _train(config: TrainingConfig, run: RunFolder, episodes: RecordedEpisodes, progress_bar: bool) -> Learned:
     plan = plan_of(config)
     generator = np.random.default_rng(plan.seeds.trials)
     with (
         tqdm(total=config.episodes, unit=" episodes", disable=not progress_bar or sys.stderr is None) as progress,
-        EpisodeRecorder(run, plan, journal, progress) as recorder,
+        EpisodeRecorder(run, plan, episodes, progress) as recorder,
     ):
-        learner = make_learner(plan, run, recorder, journal)
+        learner = make_learner(plan, run, recorder, episodes)
         for stage in plan.stages:
             if stage.begin:
-                journal.extend(stage.end)
+                episodes.extend(stage.end)
             choice = _choice(learner, stage, config.algo)
-            parameters = _recommended(choice, stage, config, recorder, generator, journal)
-            learned = _evaluated(parameters, config, recorder, journal)
+            parameters = _recommended(choice, stage, config, recorder, generator, episodes)
+            learned = _evaluated(parameters, config, recorder, episodes)
+        episodes.journal.check_asked()
         recorder.finish(learned.evaluation)
     _write_parameters(learned, config, run)
     return learned

@@ -26,8 +26,8 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import settings_by_key
 from sarah.runs.run_episodes import RunEpisode
 from sarah.runs.run_folder import RunFolder
-from sarah.sessions.session import SessionSpec
-from sarah.sessions.session_folder import SessionFolder
+from sarah.runs.session import SessionSpec
+from sarah.runs.session_folder import SessionFolder
 from sarah.simulation.engines import default_engine, is_installed
 from sarah.simulation.physics import Physics
 from sarah.viewer.scenario import Scenario

@@ -31,7 +31,6 @@ from sarah.reports.race import LOCK_FILE, race, run_entry
 from sarah.reports.race_entry import RaceCurve, entries_of, is_evaluated, read_curve
 from sarah.runs import origin as origin_module
 from sarah.runs.config import TrainingConfig
-from sarah.runs.journal import Journal
 from sarah.runs.run_folder import RunFolder
 
 ONCE = Evaluations(1, 1)
@@ -80,7 +79,7 @@ def met(monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, int]]:
 
     monkeypatch.setattr(race_module, "train", learn)
     monkeypatch.setattr(race_module, "evaluate", judge)
-    monkeypatch.setattr(race_module, "check_origin", lambda *_: None)  # nothing has a journal
+    monkeypatch.setattr(RunFolder, "check_origin", lambda *_: None)  # nothing has a journal
     return episodes
 
 
@@ -143,7 +142,7 @@ def test_a_race_leaves_a_training_alone_that_another_is_at(tmp_path: Path) -> No
     (entry,) = entries_of(("random",), range(1), TINY, ONCE, tmp_path)
     begun = RunFolder.create(tmp_path / "random-s0", entry.config)
     with (
-        Journal(begun.journal_path, entry.config, Workers()),
+        begun.journal_of(entry.config),
         pytest.raises(RunFolderError, match="in use by another training"),
     ):
         run_entry(entry)

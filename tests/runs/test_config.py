@@ -17,7 +17,7 @@ from sarah.robot.description import describe_robot
 from sarah.runs.agent_settings import NAFSettings
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import read_config, write_config
-from sarah.sessions.session import SessionSpec
+from sarah.runs.session import SessionSpec
 from sarah.simulation.engines import default_engine
 from sarah.simulation.physics import Physics, PyBulletPhysics
 from sarah.simulation.randomisation import Randomisation

@@ -60,7 +60,7 @@ def test_a_cut_extension_goes_on_to_the_same_end(extended: tuple[str, Path]) -> 
     """Cut where the journal has some of the new episodes, and at the extension itself."""
     _, folder = extended
     rows = (folder / "run" / "journal.jsonl").read_bytes().splitlines(keepends=True)
-    extension = next(index for index, row in enumerate(rows) if b'"extend"' in row)
+    extension = next(index for index, row in enumerate(rows) if b'"extended_to"' in row)
     for count in (extension, extension + 4):
         copy = folder / f"cut{count}"
         shutil.copytree(folder / "run", copy)

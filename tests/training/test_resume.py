@@ -21,7 +21,7 @@ from sarah.episode.workers import Executor, Job, Workers, begin_episode, finish_
 from sarah.errors import LearningError, ResumeError, RunFolderError, TrainingInterruptedError
 from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import AGENTS, ALGORITHMS, TrainingConfig
-from sarah.runs.journal import Journal
+from sarah.runs.recorded_episodes import RecordedEpisodes
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
 from sarah.training import learners as learning
@@ -146,7 +146,7 @@ def test_a_damaged_row_costs_its_simulation_only(
     counting = Counting()
     begun = begun_with(tmp_path / "damaged", whole, b"".join(lines))
     train(whole.config(), begun, counting)
-    assert counting.run == 1 and "damaged rows: 1; their episodes are simulated again" in caplog.text
+    assert counting.run == 1 and "damaged rows: 1; what they have is asked again" in caplog.text
     assert everything(begun) == everything(whole)
 
 
@@ -177,7 +177,7 @@ def test_a_training_that_does_not_repeat_is_not_resumed(whole: RunFolder, tmp_pa
 def test_two_trainings_do_not_share_a_run_folder(whole: RunFolder, tmp_path: Path) -> None:
     begun = RunFolder.create(tmp_path / "begun", whole.config())
     with (
-        Journal(begun.journal_path, whole.config(), Workers()),
+        begun.journal_of(whole.config()),
         pytest.raises(RunFolderError, match=r"begun is in use by another training"),
     ):
         train(whole.config(), begun)
@@ -190,13 +190,13 @@ def test_two_trainings_do_not_share_a_run_folder(whole: RunFolder, tmp_path: Pat
 )
 def test_the_journal_gives_back_every_bit(function: Callable[..., Any], seeds: list[int], tmp_path: Path) -> None:
     specs = [EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), seed, config=EpisodeConfig(time_limit=3.0)) for seed in seeds]
-    path = tmp_path / "journal.jsonl"
-    path.touch()
-    with Journal(path, TrainingConfig(), Workers()) as journal:
-        simulated = journal.submit(function, *specs).result()
-    with Journal(path, TrainingConfig(), Workers()) as journal:
+    config = TrainingConfig()
+    run = RunFolder.create(tmp_path / "run", config)
+    with run.journal_of(config) as journal:
+        simulated = RecordedEpisodes(journal, Workers()).submit(function, *specs).result()
+    with run.journal_of(config) as journal:
         assert journal.replaying
-        known = journal.submit(function, *specs).result()
+        known = RecordedEpisodes(journal, Workers()).submit(function, *specs).result()
         assert not journal.replaying
     assert repr(known) == repr(simulated) and type(known) is type(simulated)
 

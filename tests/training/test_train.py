@@ -25,9 +25,10 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
 from sarah.errors import LearningError, RunFolderError
+from sarah.recorded.folder import new_path
 from sarah.runs.agent_settings import settings_of
 from sarah.runs.config import OPTIMISERS, TrainingConfig
-from sarah.runs.run_folder import RunFolder, new_run_path
+from sarah.runs.run_folder import RunFolder
 from sarah.training.optimisers import RandomSearch
 from sarah.training.plan import Stage
 from sarah.training.recommendation import Tried, merit
@@ -246,8 +247,8 @@ def test_run_folder_that_is_not_empty_is_refused_and_left_alone(tmp_path: Path) 
 
 def test_run_folders_number_themselves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    assert new_run_path("stepping", "naf", 3) == Path("runs/stepping/naf-s3")
-    assert new_run_path("stepping", "naf", 3) == Path("runs/stepping/naf-s3-2")
+    assert new_path("stepping", "naf-s3") == Path("runs/stepping/naf-s3")
+    assert new_path("stepping", "naf-s3") == Path("runs/stepping/naf-s3-2")
 
 
 def test_folders_without_a_finished_training_are_refused(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import dataclasses
 import hashlib
+import json
 import re
 import shutil
 import zlib
@@ -15,14 +16,11 @@ import yaml
 from interrupted import EPISODE, INTERRUPTED, begun, content, go_on, interrupted
 
 from sarah.episode.tasks import TASKS
-from sarah.episode.workers import Workers
 from sarah.errors import ConfigurationError, ResumeError, RunFolderError
-from sarah.runs import origin as origin_module
+from sarah.recorded import folder
 from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.config_files import read_config, settings_by_key
-from sarah.runs.journal import Journal
-from sarah.runs.rows import compact_json
 from sarah.runs.run_folder import RunFolder
 from sarah.training import train as training
 from sarah.training.train import train
@@ -122,7 +120,7 @@ def test_every_setting_edited_in_turn_is_refused(task: str, algo: str, tmp_path:
 
 @pytest.mark.parametrize("name", ["python", "sarah", "sarah-sources", *LEARNING])
 def test_other_versions_are_refused(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(origin_module, "versions", lambda: {**versions(), name: "0.0.7"})
+    monkeypatch.setattr(folder, "versions", lambda: {**versions(), name: "0.0.7"})
     run = interrupted(tmp_path / "run", TrainingConfig(algo="random", episodes=5, episode=EPISODE))
     go_on(run, INTERRUPTED)
     monkeypatch.undo()
@@ -143,7 +141,7 @@ def test_the_command_names_what_was_edited_and_changes_nothing(tmp_path: Path) -
     assert resumed.returncode != 0
     assert resumed.stderr.splitlines()[-1] == (
         "sarah-train: error: run cannot be resumed: seed is 1 here, and 0 in this training; episode.time_limit is 2.4 "
-        "here, and 1.2 in this training: put that back, or train anew with --config run/config.yaml"
+        "here, and 1.2 in this training: put that back, or begin anew (run/config.yaml has the settings)"
     )
     assert content(run) == before
 
@@ -177,7 +175,7 @@ def test_rows_of_another_training_do_not_count(tmp_path: Path) -> None:
     _, *rows = other.journal_path.read_bytes().splitlines(keepends=True)
     with run.journal_path.open("ab") as file:
         file.writelines(rows)
-    with Journal(run.journal_path, config, Workers()) as journal:
+    with run.journal_of(config) as journal:
         assert rows and not journal.replaying
 
 
@@ -200,7 +198,7 @@ def test_a_run_folder_says_with_what_it_was_begun(tmp_path: Path) -> None:
 
 def test_what_others_wrote_is_printed_without_control_characters(tmp_path: Path) -> None:
     run = begun(tmp_path / "run", TrainingConfig(algo="random", episodes=5, episode=EPISODE))
-    origin = compact_json({"torch": "\x1b[31m" * 3000, "\x1b[2J": 1})
+    origin = json.dumps({"torch": "\x1b[31m" * 3000, "\x1b[2J": 1}).encode()
     run.journal_path.write_bytes(hashlib.sha256(origin).hexdigest()[:16].encode() + b" " + origin + b"\n")
     with pytest.raises(ResumeError) as refused:
         train(run.config(), run)

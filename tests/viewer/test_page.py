@@ -22,9 +22,9 @@ from sarah.operation.settings import OperationConfig
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.runs.run_episodes import episodes_of_run
 from sarah.runs.run_folder import RunFolder
-from sarah.sessions.operate import operate
-from sarah.sessions.session import SessionSpec
-from sarah.sessions.session_folder import SessionFolder
+from sarah.runs.session import SessionSpec
+from sarah.runs.session_folder import SessionFolder
+from sarah.training.operate import operate
 from sarah.viewer.scenario import Scenario
 from sarah.viewer.scene import channels, describe_tick
 

@@ -12,24 +12,24 @@ frozen/                                    the same session without learning, if
 from __future__ import annotations
 
 import csv
-import io
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from dataclasses import asdict
 from pathlib import Path
 
 from sarah.errors import RunFolderError
-from sarah.files import check_name, quoted, read_lines, read_text, replace_text, write_command
+from sarah.files import read_lines, read_text, replace_text
 from sarah.formats import read_json
 from sarah.number import finite_number, whole_number
 from sarah.operation.settings import BOX, PARAMETERS, Parameters
 from sarah.operation.window import FELT, Window
-from sarah.runs.config_files import read_config, write_config
+from sarah.recorded.folder import Folder
+from sarah.recorded.journal import Journal
+from sarah.runs.config_files import read_config, settings_by_key, write_config
+from sarah.runs.kinds import SESSION
 from sarah.runs.run_episodes import LONGEST_REASON
-from sarah.runs.run_folder import EVENTS
-from sarah.sessions import SPECIFICATION, is_session
-from sarah.sessions.session import SessionSpec
-from sarah.versions import versions
+from sarah.runs.session import SessionSpec
 
 NAMES = tuple(parameter.name for parameter in PARAMETERS)
 COLUMNS = ("index", "begin", "seconds", "changes", *NAMES, "score", "observed_reward", "fell", *FELT)
@@ -38,20 +38,17 @@ MOST_WINDOWS = 100_000
 """Largest number of windows that are read."""
 
 
-class SessionFolder:
+class SessionFolder(Folder):
     """The files of a session.
 
     :param path: path of the folder; :meth:`create` makes a new one, :meth:`open` checks an existing one
     """
 
     def __init__(self, path: Path) -> None:
-        self.path = path
-        self.journal_path = path / "journal.jsonl"
+        super().__init__(path, SESSION)
         self.picture_path = path / "session"
         self.frozen_path = path / "frozen"
-        self._spec_path = path / SPECIFICATION
         self._windows_path = path / "windows.csv"
-        self._parameters_path = path / "parameters.json"
 
     @classmethod
     def create(cls, path: Path, spec: SessionSpec, compare_frozen: bool = False) -> SessionFolder:
@@ -62,24 +59,14 @@ class SessionFolder:
         :param compare_frozen: whether it is to be compared with the same session without learning
         :raises RunFolderError: if the folder is not empty or cannot be written
         """
-        check_name(path)
         folder = cls(path)
-        try:
-            path.mkdir(parents=True, exist_ok=True)
-            if any(path.iterdir()):
-                can_go_on = folder._spec_path.is_file() and not folder.is_finished
-                go_on = f", or go on with sarah-operate --resume {quoted(path)}" if can_go_on else ""
-                raise RunFolderError(f"folder {path} is not empty: name another with --out{go_on}")
-            folder.journal_path.touch(exist_ok=False)
-            write_command(path / "command.txt")
-            replace_text(path / "versions.txt", "".join(f"{name} {version}\n" for name, version in versions().items()))
+
+        def write() -> None:
             if compare_frozen:
                 folder.add_frozen(spec)
-            write_config(spec, folder._spec_path)  # last, because a folder that has it can be resumed
-        except RunFolderError:
-            raise
-        except OSError as error:
-            raise RunFolderError(f"cannot write folder {path}: {error.strerror or error}") from error
+            write_config(spec, folder.specification_path)
+
+        folder.begin(write)
         return folder
 
     @classmethod
@@ -90,10 +77,7 @@ class SessionFolder:
         :raises RunFolderError: if it is not one
         """
         folder = cls(path)
-        if not path.is_dir():
-            raise RunFolderError(f"session folder {path} does not exist")
-        if not is_session(path):
-            raise RunFolderError(f"{path} is not the folder of a session: it has no {folder._spec_path.name}")
+        folder.check()
         return folder
 
     @property
@@ -104,7 +88,7 @@ class SessionFolder:
     @property
     def frozen(self) -> SessionFolder | None:
         """Folder of the same session without learning; ``None`` if there is none."""
-        return SessionFolder(self.frozen_path) if is_session(self.frozen_path) else None
+        return SessionFolder(self.frozen_path) if SESSION.owns(self.frozen_path) else None
 
     def add_frozen(self, spec: SessionSpec) -> None:
         """Make the folder of the same session without learning.
@@ -119,36 +103,36 @@ class SessionFolder:
 
         :param spec: specification with the longer duration
         """
-        for folder in (self.frozen, self):  # first: without them, the sessions of before would only be finished again
-            if folder is not None:
-                folder._parameters_path.unlink(missing_ok=True)
-        write_config(spec, self._spec_path)
+        if self.frozen is not None:
+            self.frozen.result_path.unlink(missing_ok=True)
+        self.reopen(lambda: write_config(spec, self.specification_path))
+
+    def journal_of(self, spec: SessionSpec) -> AbstractContextManager[Journal]:
+        """Journal of the session, as a context.
+
+        :param spec: specification of the session
+        :raises ResumeError: if it was begun with other settings, code or versions, or is in use
+        """
+        settings = settings_by_key(spec)
+        settings["config.minutes"] = spec.config.stages[0]
+        del settings["config.extended_from"]  # the journal has a row for each extension
+        return self.journal(settings, MOST_WINDOWS)
 
     def spec(self) -> SessionSpec:
         """Read the specification.
 
         :raises ConfigurationError: naming file, key and value, if a value is not allowed
         """
-        return read_config(SessionSpec, self._spec_path)
-
-    def write_windows(self, windows: Iterable[Window]) -> None:
-        """Write the table anew.
-
-        :param windows: windows of the session so far
-        """
-        text = io.StringIO()
-        writer = csv.writer(text)
-        writer.writerow(COLUMNS)
-        writer.writerows(map(_row, windows))
-        replace_text(self._windows_path, text.getvalue())
+        return read_config(SessionSpec, self.specification_path)
 
     def append_window(self, window: Window) -> None:
         """Add a window to the table.
 
         :param window: window that follows those of the table
         """
+        is_new = not self._windows_path.exists()
         with self._windows_path.open("a", newline="", encoding="utf-8") as file:
-            csv.writer(file).writerow(_row(window))
+            csv.writer(file).writerows([*[COLUMNS] * is_new, _row(window)])
 
     def windows(self) -> list[Window]:
         """Read the windows of the table.
@@ -166,10 +150,10 @@ class SessionFolder:
             reason = repr(error)[:LONGEST_REASON]
             raise RunFolderError(f"the windows of {self.path} cannot be read: {reason}") from error
 
-    def remove_events(self) -> None:
-        """Remove TensorBoard's files, before they are written anew."""
-        for path in self.path.glob(f"{EVENTS}*"):
-            path.unlink()
+    def remove_records(self) -> None:
+        """Remove the table and the curves of the windows: a session that goes on writes them anew."""
+        for path in (self._windows_path, *self.event_files()):
+            path.unlink(missing_ok=True)
 
     def write_parameters(self, parameters: Parameters) -> None:
         """Write the parameters that the robot is left with, which ends the session.
@@ -179,7 +163,7 @@ class SessionFolder:
         config = self.spec().config
         controller = config.robot_after(len(config.changes)).controller
         content = {"parameters": dict(zip(NAMES, parameters, strict=True)), "controller": asdict(controller)}
-        replace_text(self._parameters_path, json.dumps(content, indent=2) + "\n")
+        replace_text(self.result_path, json.dumps(content, indent=2) + "\n")
 
     def parameters(self) -> Parameters:
         """Read the parameters that the robot was left with.
@@ -188,14 +172,13 @@ class SessionFolder:
         """
         left = self._left()
         if left is None:
-            go_on = f"go on with sarah-operate --resume {quoted(self.path)}"
-            raise RunFolderError(f"{self.path} is not the folder of a finished session: {go_on}")
+            raise RunFolderError(f"{self.path} is not the folder of a finished session: {self.go_on}")
         return left
 
     def _left(self) -> Parameters | None:
         """Parameters that the robot was left with; ``None`` if there are none, or if the file is damaged."""
         try:
-            values = read_json(read_text(self._parameters_path))["parameters"]
+            values = read_json(read_text(self.result_path))["parameters"]
             return BOX.checked([values[name] for name in NAMES])
         except (OSError, ValueError, KeyError, TypeError):
             return None

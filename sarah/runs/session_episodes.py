@@ -15,8 +15,8 @@ from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import PARAMETERS, Parameters
 from sarah.operation.window import Window
 from sarah.runs.run_episodes import RunEpisode
-from sarah.sessions.session import SessionSpec
-from sarah.sessions.session_folder import SessionFolder
+from sarah.runs.session import SessionSpec
+from sarah.runs.session_folder import SessionFolder
 
 STEPPING_COUNT = len(PARAMETERS) - len(BALANCE.parameters)
 """Number of the parameters that the task balance has among its settings: P1 to P5."""

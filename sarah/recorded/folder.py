@@ -1,0 +1,205 @@
+"""The folder of something that is recorded: its specification, the command, the versions, and the journal."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from sarah.errors import RunFolderError
+from sarah.files import check_name, quoted, read_text, replace_text, write_command
+from sarah.recorded.journal import Journal
+from sarah.versions import versions
+
+EVENTS = "events.out.tfevents."
+"""Prefix of the names of TensorBoard's files."""
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of what is recorded.
+
+    :param name: word for it
+    :param specification: name of the file that makes a folder one of this kind
+    :param command: command that goes on with it by ``--resume``
+    """
+
+    name: str
+    specification: str
+    command: str
+
+    def owns(self, path: Path) -> bool:
+        """Whether a folder is one of this kind.
+
+        :param path: path of the folder
+        """
+        return path.joinpath(self.specification).is_file()
+
+
+class Folder:
+    """The folder of something that is recorded, with the files that all kinds have in common.
+
+    :param path: path of the folder
+    :param kind: kind of what is recorded
+    """
+
+    def __init__(self, path: Path, kind: Kind) -> None:
+        self.path = path
+        self.kind = kind
+        self.specification_path = path / kind.specification
+        self.journal_path = path / "journal.jsonl"
+        self.result_path = path / "parameters.json"
+        self._versions_path = path / "versions.txt"
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether it has come to its end, with a result."""
+        return self.result_path.is_file()
+
+    def begin(self, write_specification: Callable[[], None]) -> None:
+        """Make a new folder, and write the command, the versions, and what is to be done.
+
+        :param write_specification: function that writes the specification, and before it what it needs: a folder that
+            has it can be resumed
+        :raises RunFolderError: if the folder is not empty, or cannot be written
+        """
+        check_name(self.path)
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+            if any(self.path.iterdir()) or not self._claim():
+                can_go_on = self.specification_path.is_file() and self.journal_path.is_file() and not self.is_finished
+                go_on = f", or {self.go_on}" if can_go_on else ""
+                raise RunFolderError(f"folder {self.path} is not empty: name another with --out{go_on}")
+            write_command(self.path / "command.txt")
+            self._write_versions()
+            write_specification()
+        except RunFolderError:
+            raise
+        except OSError as error:
+            raise RunFolderError(f"cannot write folder {self.path}: {error.strerror or error}") from error
+
+    def _claim(self) -> bool:
+        """Make the journal's file, unless another process made it at the same time."""
+        try:
+            self.journal_path.touch(exist_ok=False)
+        except FileExistsError:
+            return False
+        return True
+
+    @property
+    def go_on(self) -> str:
+        """Words for how to go on with it."""
+        return f"go on with {self.kind.command} --resume {quoted(self.path)}"
+
+    def check(self, finished: bool = False) -> None:
+        """Refuse what is not the folder of something of this kind.
+
+        :param finished: whether it must have come to its end
+        :raises RunFolderError: naming what is missing
+        """
+        if not self.path.is_dir():
+            raise RunFolderError(f"folder {self.path} does not exist")
+        kind = f"finished {self.kind.name}" if finished else self.kind.name
+        for file in (self.specification_path, self.result_path) if finished else (self.specification_path,):
+            if not file.is_file():
+                inside = next(iter(sorted(self.path.glob(f"*/{file.name}"))), None)
+                hint = f", and {inside.parent} has one" if inside else ""
+                raise RunFolderError(f"{self.path} is not the folder of a {kind}: it has no {file.name}{hint}")
+
+    def check_resumable(self) -> None:
+        """Refuse a folder that lacks a file which it would go on from.
+
+        :raises RunFolderError: naming what is missing
+        """
+        if not self.path.is_dir():
+            raise RunFolderError(f"folder {self.path} does not exist")
+        for file in (self.specification_path, self.journal_path):
+            if not file.is_file():
+                raise RunFolderError(f"{self.path} cannot be resumed: it has no {file.name}")
+
+    @contextmanager
+    def journal(self, settings: Mapping[str, Any], most_requests: int) -> Iterator[Journal]:
+        """The journal, as a context in which no other process can use it.
+
+        :param settings: settings by name, as JSON has them, without those that change no outcome
+        :param most_requests: number of requests that such a program has at most
+        :raises ResumeError: if it was begun with other settings, code or versions, or is in use
+        """
+        with self._journal(settings, most_requests) as journal:
+            if journal.is_new:
+                self._write_versions()  # they may not be those that the folder was made with
+            yield journal
+
+    def check_journal(self, settings: Mapping[str, Any]) -> None:
+        """Refuse a journal that was begun with other settings, code or versions.
+
+        :param settings: settings by name, as JSON has them, without those that change no outcome
+        :raises ResumeError: naming what differs, here and there
+        """
+        self._journal(settings, 0).check()
+
+    def _journal(self, settings: Mapping[str, Any], most_requests: int) -> Journal:
+        origin = {**settings, **versions()}
+        return Journal(self.journal_path, origin, self.kind.name, most_requests, self.kind.specification)
+
+    def versions(self) -> dict[str, str]:
+        """Read the versions with which it began, by name of the package.
+
+        :raises RunFolderError: if they cannot be read
+        """
+        try:
+            lines = read_text(self._versions_path).splitlines()
+        except OSError as error:
+            raise unreadable(self._versions_path, error) from error
+        return {name: version for name, _, version in (line.partition(" ") for line in lines)}
+
+    def _write_versions(self) -> None:
+        lines = (f"{name} {version}\n" for name, version in versions().items())
+        replace_text(self._versions_path, "".join(lines))
+
+    def reopen(self, write_specification: Callable[[], None]) -> None:
+        """Make what is finished unfinished, with a larger budget.
+
+        :param write_specification: function that writes the specification with the larger budget
+        """
+        self.result_path.unlink(missing_ok=True)  # first: with it, what was before would only be finished again
+        write_specification()
+
+    def event_files(self) -> list[Path]:
+        """Paths of TensorBoard's files, whatever they are: a FIFO of that name would block who opens it."""
+        return sorted(self.path.glob(f"{EVENTS}*"))
+
+
+def new_path(group: str, name: str) -> Path:
+    """Make an empty folder ``runs/<group>/<name>``, with a number behind it if that one exists.
+
+    Whoever makes the folder has it, so that no other process takes it at the same time.
+
+    :param group: name of the task, or of another group
+    :param name: name within the group
+    :raises RunFolderError: if it cannot be made
+    """
+    path = base = Path("runs") / group / name
+    try:
+        base.parent.mkdir(parents=True, exist_ok=True)
+        for number in itertools.count(2):
+            try:
+                path.mkdir()
+                break
+            except FileExistsError:
+                path = base.with_name(f"{base.name}-{number}")
+    except OSError as error:
+        raise RunFolderError(f"cannot write folder {path}: {error.strerror or error}") from error
+    return path
+
+
+def unreadable(path: Path, error: Exception) -> RunFolderError:
+    """Error of a file that cannot be read.
+
+    :param path: path of the file
+    :param error: error that came of it
+    """
+    return RunFolderError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}")

@@ -1,0 +1,263 @@
+"""The journal of a recorded program: what it asked for, and what came of it, from which it goes on exactly.
+
+A recorded program is deterministic: what it asks for next follows from its settings and from the outcomes so far. So
+one that was interrupted runs again from its beginning, but takes the outcomes that its journal has instead of asking
+the world. It restores random generators, models and schedules of any kind, because they go through the same states
+again.
+
+The first row says what all others depend on: settings, this package's code, others' versions. A row is a checksum and a
+JSON object, and is on the disk before the program goes on. A damaged row is ignored, and the world is asked again.
+Checksums begin from the hash of the first row, so rows of other programs count as damaged.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import logging
+import os
+import zlib
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Any, BinaryIO, TypeVar
+
+from sarah.errors import ResumeError, SarahError
+from sarah.files import open_locked, open_regular, quoted
+from sarah.versions import differences
+
+Outcome = TypeVar("Outcome")
+
+LONGEST_ROW = 100_000
+"""Largest number of bytes in a row; an episode's has some 1500."""
+ROOM_PER_REQUEST = 10_000
+"""Number of bytes for each request in a journal that is read."""
+
+_log = logging.getLogger(__name__)
+
+
+class Journal:
+    """A journal, as a context in which no other process can use its file.
+
+    A new file, or one that was cut in its first row, begins anew. The lock ends with its process, however that ends.
+
+    :param path: path of the file, which must exist, in the folder of what is recorded
+    :param origin: what all outcomes depend on: settings and versions by name, as JSON has them
+    :param kind: word for what is recorded, for messages
+    :param most_requests: number of requests that a journal of this program has at most
+    :param specification: name of the file that has the settings, for messages
+    :raises ResumeError: on entering, if the file is missing, if another process uses it, or if it was begun with
+        something else
+    """
+
+    is_new: bool
+    """Whether the program begins with this journal, in its context."""
+
+    def __init__(
+        self, path: Path, origin: Mapping[str, Any], kind: str, most_requests: int, specification: str
+    ) -> None:
+        self.is_new = False
+        self._path, self._origin, self._kind, self._specification = path, origin, kind, specification
+        self._most_bytes = ROOM_PER_REQUEST * most_requests
+        self._file: BinaryIO
+        self._seed = 0
+        self._known: dict[int, dict[str, Any]] = {}
+
+    def __enter__(self) -> Journal:
+        """Lock the file, and read it."""
+        try:
+            file = open_locked(self._path, os.O_RDWR | os.O_APPEND, wait=False)
+        except OSError as error:
+            reason = f"it has no {self._path.name}" if isinstance(error, FileNotFoundError) else str(error)
+            raise self._refusal(reason) from error
+        if file is None:
+            raise ResumeError(f"folder {self._path.parent} is in use by another {self._kind}")
+        self._file = file
+        try:
+            self._read()
+        except BaseException:
+            self._file.close()
+            raise
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close the file, and release the lock."""
+        self._file.close()
+
+    @property
+    def replaying(self) -> bool:
+        """Whether the journal has outcomes that the program has not yet asked for."""
+        return bool(self._known)
+
+    def known(self, request: Mapping[str, Any], read: Callable[[Any], Outcome]) -> Outcome | None:
+        """Outcome of a request, if the journal has it.
+
+        :param request: what the program asks for, as JSON has it, and its ``index``: the number of the request
+        :param read: function that makes the outcome of what JSON has
+        :raises ResumeError: if the program asked for something else when the journal was written
+        """
+        row = self._known.pop(request["index"], None)
+        if row is None:
+            return None
+        there = {name: value for name, value in row.items() if name != "outcome"}
+        if there != request:
+            raise self._other_request(request, there)
+        try:
+            return read(row["outcome"])
+        except (ValueError, TypeError, LookupError, ArithmeticError, AttributeError, SarahError, RecursionError):
+            _log.warning("%s: damaged rows: 1; what it has is asked again", self._path)
+            return None
+
+    def add(self, request: Mapping[str, Any], outcome: Any, at_once: bool = True) -> None:
+        """Write an outcome.
+
+        :param request: what the program asked for
+        :param outcome: outcome, as JSON has it
+        :param at_once: whether it is on the disk when this returns; what is cheap need not be
+        """
+        self._append(_checksummed({**request, "outcome": outcome}, self._seed), at_once)
+
+    def extend(self, index: int, budget: float) -> None:
+        """Note that the program goes on to a larger budget, or check that it did so before.
+
+        :param index: number of the request
+        :param budget: the larger budget
+        :raises ResumeError: if it was extended to another one
+        """
+        request = {"index": index, "extended_to": budget}
+        if self.known(request, bool) is None:
+            self.add(request, True)
+
+    def check_asked(self) -> None:
+        """Refuse a program that has come to its end without asking for all that the journal has.
+
+        :raises ResumeError: if there is more
+        """
+        if self._known:
+            raise self._other_request({}, self._known[min(self._known)])
+
+    def _read(self) -> None:
+        if (size := os.fstat(self._file.fileno()).st_size) > self._most_bytes:
+            raise ResumeError(
+                f"{self._path} has {size} bytes, but such a {self._kind} writes at most {self._most_bytes}"
+            )
+        expected = _first_row(self._origin)
+        with open(self._path, "rb") as reader:
+            first = reader.readline(LONGEST_ROW)
+            if not expected.startswith(first) or first == expected:
+                self._check_first_row(first)
+                self._seed = _checksum_seed(first)
+                self._read_rows(reader)
+                return
+        self.is_new = True
+        self._file.truncate(0)
+        self._append(expected)
+        self._seed = _checksum_seed(expected)
+
+    def check(self) -> None:
+        """Refuse a file that was begun with something else; it is neither locked nor changed.
+
+        :raises ResumeError: naming what differs, here and there
+        """
+        try:
+            with open_regular(self._path, os.O_RDONLY) as file:
+                first = file.readline(LONGEST_ROW)
+        except OSError as error:
+            raise self._refusal(str(error)) from error
+        if not _first_row(self._origin).startswith(first):  # what was cut in its first row begins anew
+            self._check_first_row(first)
+
+    def _check_first_row(self, first: bytes) -> None:
+        there = _read_first_row(first)
+        if there is None:
+            raise self._refusal(
+                f"the first row of {self._path.name}, which says with what the {self._kind} was begun, is damaged or "
+                "missing"
+            )
+        if different := differences(self._origin, there, f"in this {self._kind}"):
+            has_them = quoted(self._path.with_name(self._specification))
+            raise self._refusal(f"{different}: put that back, or begin anew ({has_them} has the settings)")
+
+    def _read_rows(self, reader: BinaryIO) -> None:
+        damaged, whole = 0, reader.tell()
+        while line := reader.readline(LONGEST_ROW):
+            row = _read_checksummed(line, self._seed)
+            if line.endswith(b"\n"):
+                whole = reader.tell()
+            if row is None or type(row.get("index")) is not int:
+                damaged += 1
+            else:
+                self._known[row["index"]] = row
+        if damaged:
+            self._file.truncate(whole)  # a row that was cut has no end
+            _log.warning("%s: damaged rows: %d; what they have is asked again", self._path, damaged)
+
+    def _append(self, row: bytes, at_once: bool = True) -> None:
+        """Append a row as a whole; if ``at_once``, it is on the disk when this returns."""
+        left = memoryview(row)
+        while left:  # a disk that is nearly full takes only a part
+            left = left[self._file.write(left) :]
+        if at_once:
+            os.fsync(self._file.fileno())
+
+    def _other_request(self, here: Mapping[str, Any], there: Mapping[str, Any]) -> ResumeError:
+        """Error of a program that does not ask what it asked before."""
+        budgets = [request.get("extended_to") for request in (there, here)]
+        if any(budgets):
+            was, would = (f"extended to {budget:g}" if budget else "not extended" for budget in budgets)
+            return self._refusal(f"it was {was} there, and would be {would} here")
+        return ResumeError(
+            f"{self._path.parent} cannot be resumed here: it does not repeat what it did before its interruption, as "
+            "the kind of processor differs, or something else that arithmetic depends on"
+        )
+
+    def _refusal(self, reason: str) -> ResumeError:
+        return ResumeError(f"{self._path.parent} cannot be resumed: {reason}")
+
+
+def _compact_json(row: Mapping[str, Any]) -> bytes:
+    return json.dumps(row, allow_nan=False, separators=(",", ":")).encode()
+
+
+def _first_row(origin: Mapping[str, Any]) -> bytes:
+    """First row of a journal: a hash and a JSON object."""
+    text = _compact_json(origin)
+    return b"%s %s\n" % (_digest(text), text)
+
+
+def _read_first_row(first: bytes) -> dict[str, Any] | None:
+    """What a first row says; ``None`` if it is damaged."""
+    digest, _, text = first.rstrip(b"\n").partition(b" ")
+    return _object(text) if digest == _digest(text) else None
+
+
+def _checksum_seed(first: bytes) -> int:
+    """Number that the checksums of all other rows begin from."""
+    return int(first[:8], 16)
+
+
+def _checksummed(row: Mapping[str, Any], seed: int) -> bytes:
+    """A row with its checksum."""
+    text = _compact_json(row)
+    return b"%08x %s\n" % (zlib.crc32(text, seed), text)
+
+
+def _read_checksummed(line: bytes, seed: int) -> dict[str, Any] | None:
+    """Values of a row; ``None`` if it is damaged."""
+    checksum, _, text = line.rstrip(b"\n").partition(b" ")
+    return _object(text) if checksum == b"%08x" % zlib.crc32(text, seed) else None
+
+
+def _object(text: bytes) -> dict[str, Any] | None:
+    """A JSON object; ``None`` if the text is none."""
+    try:
+        value = json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+    return value if isinstance(value, dict) else None
+
+
+def _digest(text: bytes) -> bytes:
+    return hashlib.sha256(text).hexdigest()[:16].encode()

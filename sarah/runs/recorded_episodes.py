@@ -1,0 +1,130 @@
+"""The episodes of a training: what its journal knows is taken from there, and all others are simulated.
+
+A training asks for its episodes in an order that follows from its settings and from the outcomes so far.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from functools import partial
+from typing import Any, NamedTuple
+
+from sarah.episode.ending import is_ending
+from sarah.episode.episode import simulate
+from sarah.episode.result import EpisodeResult
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.workers import Executor, Job, Outcome, begin_episode, finish_episode
+from sarah.errors import TrainingInterruptedError
+from sarah.recorded.journal import Journal
+from sarah.robot.reading import SensorReading
+
+
+class _Kind(NamedTuple):
+    """Kind of a request.
+
+    :param name: name in the journal
+    :param plain: function that makes values for JSON of an outcome
+    :param read: function that makes the outcome of values from JSON
+    """
+
+    name: str
+    plain: Callable[[Any], Any]
+    read: Callable[[Any], Any]
+
+
+def _reading(plain: Any) -> SensorReading:
+    return SensorReading(*map(tuple, plain))
+
+
+def _result(plain: Any) -> EpisodeResult:
+    x, y, z = plain["final_position"]
+    termination = plain["termination"]
+    if not is_ending(termination):
+        raise ValueError("the way in which an episode ended is no name")
+    numbers = {name: value for name, value in plain.items() if name not in ("termination", "final_position")}
+    if any(type(value) not in (int, float) for value in (x, y, z, *numbers.values())):
+        raise TypeError("a number of an episode is none")
+    return EpisodeResult(termination=termination, final_position=(x, y, z), **numbers)
+
+
+_KINDS: dict[Callable[..., Any], _Kind] = {
+    begin_episode: _Kind("begin", lambda reading: reading, _reading),
+    finish_episode: _Kind(
+        "finish",
+        lambda outcome: [outcome.result.fields(), *outcome[1:]],
+        lambda p: Outcome(_result(p[0]), _reading(p[1]), p[2] and _reading(p[2])),
+    ),
+    simulate: _Kind("simulate", lambda result: result.fields(), _result),
+}
+
+
+class RecordedEpisodes(Executor):
+    """Who simulates the episodes of a training that its journal does not know.
+
+    :param journal: journal of the training
+    :param executor: executor that simulates
+    :param interrupted: function that says after every episode whether the training is to stop
+    :param outside: function that makes the context in which to simulate and to ask that, which is not the learner's
+    """
+
+    def __init__(
+        self,
+        journal: Journal,
+        executor: Executor,
+        interrupted: Callable[[], bool] = lambda: False,
+        outside: Callable[[], AbstractContextManager[None]] = nullcontext,
+    ) -> None:
+        self.journal = journal
+        self.outside = outside
+        self._executor = executor
+        self._interrupted = interrupted
+        self._numbers = itertools.count()
+
+    def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
+        """Have an episode simulated, unless its outcome is known.
+
+        :param function: function to call: :func:`~sarah.episode.workers.begin_episode`,
+            :func:`~sarah.episode.workers.finish_episode` or :func:`sarah.simulate`
+        :param subjects: arguments of the function, the episode's specification first
+        :raises ResumeError: if the training asks for another episode than it did when the journal was written
+        """
+        kind, spec = _KINDS[function], subjects[0]
+        assert isinstance(spec, EpisodeSpec)
+        index = next(self._numbers)
+        request = {"index": index, "kind": kind.name, "seed": spec.seed, "parameters": list(spec.parameters)}
+        known = self.journal.known(request, kind.read)
+        if known is not None:
+            return _Job(partial(self._known, known))
+        return _Job(partial(self._new, kind, request, self._executor.submit(function, *subjects)))
+
+    def extend(self, episodes: int) -> None:
+        """Note that the training goes on to a larger budget, or check that it did so before.
+
+        :param episodes: the larger budget
+        :raises ResumeError: if the training was extended to another one
+        """
+        self.journal.extend(next(self._numbers), episodes)
+
+    def _known(self, outcome: Any) -> Any:
+        self._stop_if_interrupted()
+        return outcome
+
+    def _new(self, kind: _Kind, request: dict[str, Any], job: Job) -> Any:
+        with self.outside():
+            outcome = job.result()
+        # Standing is cheap to simulate again.
+        self.journal.add(request, kind.plain(outcome), at_once=kind is not _KINDS[begin_episode])
+        self._stop_if_interrupted()
+        return outcome
+
+    def _stop_if_interrupted(self) -> None:
+        with self.outside():
+            is_to_stop = self._interrupted()
+        if is_to_stop:
+            raise TrainingInterruptedError("the training was interrupted")
+
+
+class _Job(NamedTuple):
+    result: Callable[[], Any]

@@ -1,0 +1,244 @@
+"""Sessions: a learner renews the parameters of a robot in operation, and a folder records every window."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from sarah.errors import TrainingInterruptedError, check_type
+from sarah.operation.robot_in_operation import RobotInOperation
+from sarah.operation.settings import PARAMETERS, OperationConfig, Parameters
+from sarah.operation.window import Window
+from sarah.process import apart
+from sarah.recorded.journal import Journal
+from sarah.runs.event_file import EventFile
+from sarah.runs.session import SessionSpec
+from sarah.runs.session_folder import SessionFolder
+from sarah.simulation.world import HoldsWorld
+from sarah.training.session_learners import LEARNERS
+
+
+@dataclass(frozen=True)
+class SessionResult:
+    """The result of a session.
+
+    :param windows: all windows, in order
+    :param parameters: parameters that the learner leaves the robot with
+    """
+
+    windows: tuple[Window, ...]
+    parameters: Parameters
+
+    @property
+    def falls(self) -> int:
+        """Number of falls."""
+        return sum(window.fell for window in self.windows)
+
+    def mean_score(self, begin: float = 0.0, end: float = float("inf")) -> float:
+        """Mean score of the windows that ended within a span of time.
+
+        :param begin: time of operation, in min
+        :param end: time of operation, in min
+        """
+        scores = [window.score for window in self.windows if 60.0 * begin < window.end <= 60.0 * end]
+        return sum(scores) / len(scores) if scores else float("nan")
+
+
+class WatchedRobot(HoldsWorld):
+    """A robot in operation, each of whose windows is told. What a journal knows is not simulated again.
+
+    :param robot: robot, at the beginning of its operation
+    :param watch: function that is called with every window
+    :param journal: journal of the session, if it has one
+    """
+
+    def __init__(self, robot: RobotInOperation, watch: Callable[[Window], None], journal: Journal | None) -> None:
+        self.config: OperationConfig = robot.config
+        self.windows: list[Window] = []
+        """All windows so far, in order."""
+        self._robot = robot
+        self._watch = watch
+        self._journal = journal
+        self._numbers = itertools.count()
+        self._stages_over = 0
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the operation's time is over."""
+        return self._robot.is_over
+
+    @property
+    def windows_left(self) -> float:
+        """Number of windows that the time of the present stage is enough for if the robot does not fall."""
+        return self._robot.windows_left
+
+    def run(self, parameters: Parameters) -> Window:
+        """Run one window, unless it is known.
+
+        :param parameters: P1 to P5 and V1 to V4
+        :raises ResumeError: if the window that the journal knows had others
+        """
+        window = self._robot.run(parameters) if self._journal is None else self._recorded(self._journal, parameters)
+        self.windows.append(window)
+        self._watch(window)
+        return window
+
+    def _recorded(self, journal: Journal, parameters: Parameters) -> Window:
+        while self._stages_over < self.config.stages_over(self._robot.seconds):
+            self._stages_over += 1
+            journal.extend(next(self._numbers), self.config.stages[self._stages_over])
+        request = {"index": next(self._numbers), "parameters": list(parameters)}
+        window = journal.known(request, Window.of_plain)
+        if window is not None:
+            self._robot.skip(window)
+            return window
+        window = self._robot.run(parameters)
+        journal.add(request, window.plain())
+        return window
+
+    def close(self) -> None:
+        """Give the physics engine's resources back."""
+        self._robot.close()
+
+
+def run_session(
+    spec: SessionSpec,
+    watch: Callable[[Window], None] = lambda window: None,
+    journal: Journal | None = None,
+) -> SessionResult:
+    """Operate a robot from standing to the end of the operation's time.
+
+    :param spec: specification, which determines the result: the same one gives the same bytes in any process
+    :param watch: function that is called with every window
+    :param journal: journal of the session, whose windows are not simulated again; without one nothing is recorded
+    :return: the result
+    :raises ResumeError: if the learner asks for other parameters than a window of the journal has
+    """
+    check_type("spec", spec, SessionSpec)
+    with apart() as outside:
+
+        def watch_outside(window: Window) -> None:
+            with outside():
+                watch(window)
+
+        robot = WatchedRobot(RobotInOperation(spec.config, spec.seed), watch_outside, journal)
+        try:
+            parameters = LEARNERS[spec.learner](robot, spec.parameters, spec.seed)
+        finally:
+            robot.close()
+    return SessionResult(tuple(robot.windows), parameters)
+
+
+def operate(
+    folder: SessionFolder,
+    spec: SessionSpec,
+    watch: Callable[[Window], None] = lambda window: None,
+    interrupted: Callable[[], bool] = lambda: False,
+) -> SessionResult:
+    """Run a session, or go on with it, and write its folder.
+
+    :param folder: folder of the session
+    :param spec: specification of the session
+    :param watch: function that is called with every window, also with those that are known
+    :param interrupted: function that says after every window whether to stop
+    :return: the result
+    :raises ResumeError: if the folder was begun with another specification, code or versions, or is in use
+    :raises TrainingInterruptedError: if ``interrupted`` asks to stop
+    """
+    with folder.journal_of(spec) as journal:
+        events: EventFile | None = None
+        held: list[Window] = []
+
+        def add(window: Window) -> None:
+            nonlocal events
+            held.append(window)
+            watch(window)
+            if not journal.replaying:
+                if events is None:  # only now is it sure that the session goes on
+                    folder.remove_records()
+                    events = EventFile(folder.path)
+                while held:
+                    folder.append_window(held[0])
+                    _show(events, held.pop(0))
+            if interrupted():
+                raise TrainingInterruptedError("the session was interrupted")
+
+        try:
+            result = run_session(spec, add, journal)
+            journal.check_asked()
+        finally:
+            if events is not None:
+                events.close()
+        _draw(folder, spec, result)
+        folder.write_parameters(result.parameters)
+        return result
+
+
+def compare_frozen(
+    folder: SessionFolder,
+    spec: SessionSpec,
+    result: SessionResult,
+    watch: Callable[[Window], None] = lambda window: None,
+    interrupted: Callable[[], bool] = lambda: False,
+) -> SessionResult:
+    """Run a session without learning, or go on with it, in the folder of the one with it, whose picture shows both.
+
+    :param folder: folder of the session with learning
+    :param spec: specification of the session with learning
+    :param result: result of the session with learning
+    :param watch: function that is called with every window, also with those that are known
+    :param interrupted: function that says after every new window whether to stop
+    :return: the result without learning
+    :raises ResumeError: if the session without learning was begun otherwise, or is in use
+    :raises TrainingInterruptedError: if ``interrupted`` asks to stop
+    """
+    if folder.frozen is None:
+        folder.add_frozen(spec)
+    frozen = SessionFolder.open(folder.frozen_path)
+    if frozen.spec() != spec.frozen():
+        frozen.extend(spec.frozen())
+    without = operate(frozen, spec.frozen(), watch, interrupted)
+    _draw(folder, spec, result, without.windows)
+    return without
+
+
+def extend(folder: SessionFolder, minutes: float) -> SessionSpec:
+    """Make a finished session one that goes on for longer.
+
+    :param folder: folder of the session
+    :param minutes: the longer duration, what is over included, in min
+    :return: specification to go on with
+    :raises ConfigurationError: if the duration is not allowed
+    :raises ResumeError: if the session was begun with other code or versions, or is in use: nothing is changed then
+    """
+    before = folder.spec()
+    extended = before.extended_to(minutes)
+    with folder.journal_of(before):
+        folder.extend(extended)
+    return extended
+
+
+def add_frozen(folder: SessionFolder) -> None:
+    """Have a session compared with the same one without learning, from its next process on.
+
+    :param folder: folder of the session
+    :raises ResumeError: if the session was begun with other code or versions, or is in use: nothing is changed then
+    """
+    spec = folder.spec()
+    with folder.journal_of(spec):
+        folder.add_frozen(spec)
+
+
+def _show(events: EventFile, window: Window) -> None:
+    """Add a window to TensorBoard's curves, at its second of operation."""
+    values = {f"parameters/{item.name}": value for item, value in zip(PARAMETERS, window.parameters, strict=True)}
+    values |= {"operation/score": window.score, "operation/observed_reward": window.observed_reward}
+    values |= {"operation/fell": float(window.fell), "operation/changes": float(window.changes)}
+    events.add_points(values, round(window.end))
+
+
+def _draw(folder: SessionFolder, spec: SessionSpec, result: SessionResult, frozen: Sequence[Window] = ()) -> None:
+    from sarah.pictures.session_figure import draw_session  # slow to import because of matplotlib
+
+    draw_session(result.windows, spec.config.changes, folder.picture_path, frozen)

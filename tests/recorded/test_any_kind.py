@@ -1,0 +1,70 @@
+"""What a new kind of recorded work has of its own is its settings, requests and outcomes; the rest comes with it."""
+
+import dataclasses
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import throws
+from throws import THROWS, Game, play
+
+from sarah.errors import ResumeError, RunFolderError
+from sarah.recorded.folder import Folder
+from sarah.versions import versions
+
+GAME = Game(3, 40)
+
+
+def begun(path: Path) -> Path:
+    Folder(path, THROWS).begin(lambda: (path / "game.json").write_text(json.dumps(dataclasses.asdict(GAME))) and None)
+    return path
+
+
+def test_killed_in_the_middle_it_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
+    play(begun(tmp_path / "whole"), GAME)
+    journal = tmp_path / "killed/journal.jsonl"
+    process = subprocess.Popen([sys.executable, throws.__file__, str(journal.parent)])
+    while process.poll() is None and not (journal.exists() and journal.read_bytes().count(b"\n") > 5):
+        time.sleep(0.01)
+    process.kill()
+    assert process.wait() == -9 and 5 < journal.read_bytes().count(b"\n") < 41
+    play(journal.parent, GAME)
+    for name in ("journal.jsonl", "parameters.json", "game.json", "versions.txt"):
+        assert (journal.parent / name).read_bytes() == (tmp_path / "whole" / name).read_bytes(), name
+
+
+def test_what_is_known_is_not_asked_again(tmp_path: Path) -> None:
+    path = begun(tmp_path / "game")
+    best = play(path, GAME)
+    began = time.monotonic()
+    assert play(path, GAME, seconds=10.0) == best and time.monotonic() - began < 5.0
+
+
+@pytest.mark.parametrize(
+    ("game", "words"),
+    [
+        (Game(4, 40), "seed is 4 here, and 3 in this game: put that back, or begin anew .*game.json has the settings"),
+        (Game(3, 10), "throws is 10 here, and 40 in this game"),
+    ],
+)
+def test_edited_settings_are_refused(game: Game, words: str, tmp_path: Path) -> None:
+    path = begun(tmp_path / "game")
+    play(path, GAME)
+    before = (path / "journal.jsonl").read_bytes()
+    with pytest.raises(ResumeError, match=words):
+        play(path, game)
+    assert (path / "journal.jsonl").read_bytes() == before
+
+
+def test_its_folder_belongs_to_one(tmp_path: Path) -> None:
+    path = begun(tmp_path / "game")
+    with pytest.raises(RunFolderError, match=r"not empty: name another .*, or go on with python throws.py --resume"):
+        begun(path)
+    with Folder(path, THROWS).journal(dataclasses.asdict(GAME), 40), pytest.raises(ResumeError, match="another game"):
+        play(path, GAME)
+    assert Folder(path, THROWS).versions() == versions() and (path / "command.txt").is_file()
+    with pytest.raises(RunFolderError, match=r"not the folder of a finished game: it has no parameters.json"):
+        Folder(path, THROWS).check(finished=True)
