@@ -16,7 +16,7 @@ from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import Step, passed_on, say_next, to_report, to_see
 from sarah.cli.options import named_task, run_command, say_engine
-from sarah.cli.subjects import episode_of, learner_of
+from sarah.cli.subjects import learned_of
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
@@ -136,7 +136,9 @@ def _evaluate(arguments: Sequence[str]) -> None:
         shown = partial(tqdm, total=options.episodes, unit=" episodes", leave=False, disable=None)
         evaluation = evaluate(spec.task, spec.parameters, spec.config, options.seeds, workers, shown)
         neutral = spec.task.neutral
-        baseline = None if neutral is None else evaluate(spec.task, neutral, spec.config, options.seeds, workers, shown)
+        baseline = evaluation if neutral == spec.parameters else None
+        if baseline is None and neutral is not None:
+            baseline = evaluate(spec.task, neutral, spec.config, options.seeds, workers, shown)
     if options.json:
         named = dict(zip(spec.task.parameter_names, spec.parameters, strict=True))
         content: dict[str, object] = {"task": spec.task.reference, "algorithm": algorithm, "parameters": named}
@@ -163,9 +165,7 @@ def _next_steps(options: EvalOptions, arguments: Sequence[str]) -> Iterator[Step
 
 def _subject(options: EvalOptions) -> tuple[EpisodeSpec, str | None]:
     """Episode of what is evaluated, on any seed, and the algorithm that learned its parameters."""
-    task = named_task(options.task)
-    algorithm = learner_of(options.subject, task)
-    return episode_of(options.subject, None, task).spec, algorithm
+    return learned_of(options.subject, named_task(options.task))
 
 
 def _show_robustness(

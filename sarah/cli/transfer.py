@@ -13,7 +13,7 @@ import tyro
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.next_steps import say_next, to_open
 from sarah.cli.options import named_task, run_command
-from sarah.cli.subjects import episode_of, learner_of
+from sarah.cli.subjects import learned_of
 from sarah.episode.spec import FIRST_EVALUATION_SEED
 from sarah.errors import ConfigurationError
 from sarah.files import make_folder
@@ -113,7 +113,5 @@ def _learned(subject: str, arguments: Sequence[str]) -> LearnedParameters:
     from sarah.reports.transfer import LearnedParameters
 
     options = parse_episode_options(COMMAND, arguments, TransferOptions(), subject)
-    task = named_task(options.task)
-    learner_of(subject, task)  # refuses an unfinished training
-    spec = episode_of(subject, None, task).spec
+    spec, _ = learned_of(subject, named_task(options.task))
     return LearnedParameters(Path(subject).name, spec.task, spec.parameters, options.applied_to(spec).config)
