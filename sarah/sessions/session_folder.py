@@ -25,8 +25,8 @@ from sarah.number import finite_number, whole_number
 from sarah.operation.settings import PARAMETERS, Parameters, checked_parameters
 from sarah.operation.window import FELT, Window
 from sarah.runs.config_files import read_config, write_config
-from sarah.runs.run_episodes import LONGEST_REASON
 from sarah.runs.run_folder import EVENTS
+from sarah.runs.run_record import LONGEST_REASON
 from sarah.sessions import SPECIFICATION, is_session
 from sarah.sessions.session import SessionSpec
 from sarah.versions import versions
