@@ -173,7 +173,7 @@ def _show_robustness(
 ) -> None:
     """Print the table as Markdown, and write the table and the polar plot."""
     from sarah.cli.eval_text import settings_of_table
-    from sarah.reports.robustness import forces_for, push_many, pushed_settings, robustness_table
+    from sarah.reports.robustness import forces_for, push_many, pushed_settings, robustness_table, survival_interval
     from sarah.reports.training_figures import draw_survival
 
     folder, neutral = options.out, BALANCE.neutral
@@ -187,11 +187,12 @@ def _show_robustness(
     lines = [about, "", f"| push | direction | episodes |{head}", "|---" * (3 + 4 * len(names)) + "|"]
     for rows in zip(*map(robustness_table, pushed), strict=True):
         cells = "".join(
-            f" {row.survival:.2f} ({row.survival_low:.2f} to {row.survival_high:.2f}) | {row.score_median:.2f} "
-            f"| {100 * row.drift_median:.1f} cm | {row.vibration_median:.1f} |"
-            for row in rows
+            " {:.2f} ({:.2f} to {:.2f})".format(found.survival_rate, *survival_interval(found))
+            + f" | {found.median('score'):.2f} | {100 * found.median('drift'):.1f} cm "
+            + f"| {found.median('vibration'):.1f} |"
+            for found in (row.evaluation for row in rows)
         )
-        lines.append(f"| {rows[0].newtons:g} N | {rows[0].direction} | {rows[0].episodes} |{cells}")
+        lines.append(f"| {rows[0].newtons:g} N | {rows[0].direction} | {rows[0].evaluation.episodes} |{cells}")
     table = "\n".join(lines)
     print(table)
     (folder / "robustness.md").write_text(table + "\n", encoding="utf-8")
