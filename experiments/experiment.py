@@ -13,7 +13,7 @@ from sarah.episode.evaluation import Evaluation
 from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS
-from sarah.reports.robustness import wilson_interval
+from sarah.reports.robustness import survival_interval
 
 
 class Experiment(Protocol):
@@ -72,7 +72,7 @@ def survival(found: Evaluation) -> Row:
 
     :param found: episodes
     """
-    low, high = wilson_interval(found.survivors, found.episodes)
+    low, high = survival_interval(found)
     return {
         "episodes": found.episodes,
         "survival": found.survival_rate,

@@ -9,7 +9,7 @@ from experiments.record import Row
 from experiments.trainings import OfTrainings
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.workers import Workers
-from sarah.reports.robustness import FORCES, push_many, robustness_table
+from sarah.reports.robustness import FORCES, push_many, robustness_table, survival_interval
 from sarah.runs.config import TrainingConfig
 
 
@@ -42,15 +42,16 @@ class Robustness(OfTrainings):
             for controller, parameters in controllers.items():
                 (pushed,) = push_many([parameters], config, workers, self.forces, self.episodes)
                 for row in robustness_table(pushed):
+                    found, (low, high) = row.evaluation, survival_interval(row.evaluation)
                     yield {
                         "controller": controller,
                         "push_n": f"{row.newtons:g}",
                         "direction": row.direction,
-                        "episodes": row.episodes,
-                        "survival": row.survival,
-                        "survival_low": row.survival_low,
-                        "survival_high": row.survival_high,
-                        "score": row.score_median,
-                        "drift_cm": 100.0 * row.drift_median,
-                        "vibration_m2_s4": row.vibration_median,
+                        "episodes": found.episodes,
+                        "survival": found.survival_rate,
+                        "survival_low": low,
+                        "survival_high": high,
+                        "score": found.median("score"),
+                        "drift_cm": 100.0 * found.median("drift"),
+                        "vibration_m2_s4": found.median("vibration"),
                     }

@@ -11,9 +11,10 @@ import tyro
 from experiments.engines import ENGINES
 from experiments.record import Row
 from experiments.trainings import OfTrainings
+from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BalanceConfig
 from sarah.episode.workers import Workers
-from sarah.reports.transfer import LearnedParameters, transfer
+from sarah.reports.transfer import transfer
 from sarah.runs.config import TrainingConfig
 
 
@@ -49,9 +50,9 @@ class TransferBetweenEngines(OfTrainings):
             push = dataclasses.replace(config.push, newtons=(self.newtons, self.newtons))
             config = dataclasses.replace(config, push=push)
         parameters = self.trained(training, workers).parameters()
-        learned = LearnedParameters(f"naf seed {training.seed}", self.task, parameters, config)
-        (found,) = transfer([learned], range(self.episodes), workers)
-        row: dict[str, object] = {"run": learned.name, "task": self.task, "learned_in": config.engine}
+        learned = EpisodeSpec(parameters, 0, self.task, config)
+        (found,) = transfer([(f"naf seed {training.seed}", learned)], range(self.episodes), workers)
+        row: dict[str, object] = {"run": found.name, "task": self.task, "learned_in": config.engine}
         for engine, evaluation in found.evaluations.items():
             row[f"{engine}_score"] = evaluation.mean("score")
             row[f"{engine}_survival"] = evaluation.survival_rate

@@ -22,6 +22,7 @@ from sarah.pictures.video import write_video
 from sarah.reports.report import write_report
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
+from sarah.runs.run_record import RunRecord
 from sarah.runs.session import SessionSpec
 from sarah.runs.session_folder import SessionFolder
 from sarah.simulation.physics import Physics
@@ -75,7 +76,7 @@ def test_other_names_are_refused_before_anything_is_made(name: str, tmp_path: Pa
         lambda: SessionFolder.create(path, SessionSpec()),
         lambda: write_video([], path.with_suffix(".gif")),
         lambda: save(Figure(), path),
-        lambda: write_report(RunFolder(tmp_path), path, Workers()),
+        lambda: write_report(RunRecord(RunFolder(tmp_path)), path, Workers()),
     ]
     for make in making:
         with pytest.raises(ConfigurationError, match="a name must be UTF-8 text without control characters") as caught:
@@ -97,7 +98,7 @@ def test_a_report_that_cannot_be_written_is_refused_first(name: str, words: str,
     (tmp_path / "folder").mkdir()
     (tmp_path / "folder" / "file").touch()
     with pytest.raises(ConfigurationError, match=f"cannot write .*: .*{words}"):
-        write_report(RunFolder(tmp_path), tmp_path / name, Workers())
+        write_report(RunRecord(RunFolder(tmp_path)), tmp_path / name, Workers())
 
 
 def test_the_command_of_any_program_is_recorded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -16,7 +16,7 @@ from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import Step, passed_on, say_next, to_report, to_see
 from sarah.cli.options import named_task, run_command, say_engine
-from sarah.cli.subjects import episode_of, learner_of
+from sarah.cli.subjects import learned_of
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
@@ -136,7 +136,9 @@ def _evaluate(arguments: Sequence[str]) -> None:
         shown = partial(tqdm, total=options.episodes, unit=" episodes", leave=False, disable=None)
         evaluation = evaluate(spec.task, spec.parameters, spec.config, options.seeds, workers, shown)
         neutral = spec.task.neutral
-        baseline = None if neutral is None else evaluate(spec.task, neutral, spec.config, options.seeds, workers, shown)
+        baseline = evaluation if neutral == spec.parameters else None
+        if baseline is None and neutral is not None:
+            baseline = evaluate(spec.task, neutral, spec.config, options.seeds, workers, shown)
     if options.json:
         named = dict(zip(spec.task.parameter_names, spec.parameters, strict=True))
         content: dict[str, object] = {"task": spec.task.reference, "algorithm": algorithm, "parameters": named}
@@ -163,9 +165,7 @@ def _next_steps(options: EvalOptions, arguments: Sequence[str]) -> Iterator[Step
 
 def _subject(options: EvalOptions) -> tuple[EpisodeSpec, str | None]:
     """Episode of what is evaluated, on any seed, and the algorithm that learned its parameters."""
-    task = named_task(options.task)
-    algorithm = learner_of(options.subject, task)
-    return episode_of(options.subject, None, task).spec, algorithm
+    return learned_of(options.subject, named_task(options.task))
 
 
 def _show_robustness(
@@ -173,7 +173,7 @@ def _show_robustness(
 ) -> None:
     """Print the table as Markdown, and write the table and the polar plot."""
     from sarah.cli.eval_text import settings_of_table
-    from sarah.reports.robustness import forces_for, push_many, pushed_settings, robustness_table
+    from sarah.reports.robustness import forces_for, push_many, pushed_settings, robustness_table, survival_interval
     from sarah.reports.training_figures import draw_survival
 
     folder, neutral = options.out, BALANCE.neutral
@@ -187,11 +187,12 @@ def _show_robustness(
     lines = [about, "", f"| push | direction | episodes |{head}", "|---" * (3 + 4 * len(names)) + "|"]
     for rows in zip(*map(robustness_table, pushed), strict=True):
         cells = "".join(
-            f" {row.survival:.2f} ({row.survival_low:.2f} to {row.survival_high:.2f}) | {row.score_median:.2f} "
-            f"| {100 * row.drift_median:.1f} cm | {row.vibration_median:.1f} |"
-            for row in rows
+            " {:.2f} ({:.2f} to {:.2f})".format(found.survival_rate, *survival_interval(found))
+            + f" | {found.median('score'):.2f} | {100 * found.median('drift'):.1f} cm "
+            + f"| {found.median('vibration'):.1f} |"
+            for found in (row.evaluation for row in rows)
         )
-        lines.append(f"| {rows[0].newtons:g} N | {rows[0].direction} | {rows[0].episodes} |{cells}")
+        lines.append(f"| {rows[0].newtons:g} N | {rows[0].direction} | {rows[0].evaluation.episodes} |{cells}")
     table = "\n".join(lines)
     print(table)
     (folder / "robustness.md").write_text(table + "\n", encoding="utf-8")

@@ -51,13 +51,14 @@ def _draw(arguments: Sequence[str]) -> None:
     for path in options.runs:
         check_of_training(path)
     from sarah.runs.run_folder import RunFolder
+    from sarah.runs.run_record import RunRecord
 
     task = named_task(options.task)
     runs = [RunFolder.open(path, task=task) for path in options.runs]
     folder = options.out or runs[0].figures_path
     from sarah.reports.all_figures import draw_all_figures
 
-    files = sorted(draw_all_figures(runs, folder))
+    files = sorted(draw_all_figures([RunRecord(run) for run in runs], folder))
     for file in files:
         print(file)
     typed = [] if options.task is None else ["--task", options.task]

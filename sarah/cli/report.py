@@ -62,11 +62,12 @@ def _report(arguments: Sequence[str]) -> None:
     from sarah.episode.workers import Workers
     from sarah.reports.report import write_report
     from sarah.runs.run_folder import RunFolder
+    from sarah.runs.run_record import RunRecord
 
     run = RunFolder.open(options.run, task=named_task(options.task))
     path = options.out or run.report_path
     with Workers(options.workers) as workers:
-        write_report(run, path, workers, options.episodes, options.seconds)
+        write_report(RunRecord(run), path, workers, options.episodes, options.seconds)
     print(path)
     typed = [] if options.task is None else ["--task", options.task]
     say_next(to_open(path), to_see(options.run, *typed))

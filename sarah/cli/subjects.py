@@ -11,6 +11,7 @@ from sarah.number import number
 from sarah.runs.kinds import SESSION
 
 if TYPE_CHECKING:
+    from sarah.episode.spec import EpisodeSpec
     from sarah.runs.run_episodes import RunEpisode
 
 
@@ -89,19 +90,21 @@ def episode_of(subject: str, which: str | None, task: Task[Any] | None) -> RunEp
     """
     from sarah.runs.run_episodes import learned_episode
     from sarah.runs.run_folder import RunFolder
+    from sarah.runs.run_record import RunRecord
 
     if Path(subject).is_dir() and not SESSION.owns(Path(subject)) and which in (None, "learned"):
         run = RunFolder.open(Path(subject), unfinished=True, task=task)
         if run.is_finished:
-            return learned_episode(run)
+            return learned_episode(RunRecord(run))
     return episodes_of(subject, which, task)[1]
 
 
-def learner_of(subject: str, task: Task[Any] | None) -> str | None:
-    """Name of what learned the parameters of a folder; ``None`` for numbers and shipped parameters.
+def learned_of(subject: str, task: Task[Any] | None) -> tuple[EpisodeSpec, str | None]:
+    """Episode of learned or given parameters, and name of what learned them; ``None`` for given and shipped ones.
 
-    :param subject: path of a run folder or a session's, or something else
-    :param task: task of a run folder whose task is that of a file
+    :param subject: path of a run folder, numbers separated by commas, or the name of shipped parameters
+    :param task: task of the numbers, or of a run folder whose task is that of a file
+    :raises ConfigurationError: if there is no such subject
     :raises RunFolderError: if the folder has no learned parameters
     """
     if SESSION.owns(Path(subject)):
@@ -109,14 +112,15 @@ def learner_of(subject: str, task: Task[Any] | None) -> str | None:
 
         session = SessionFolder.open(Path(subject))
         session.parameters()
-        return session.spec().learner
+        return episode_of(subject, None, task).spec, session.spec().learner
     if Path(subject).is_dir():
+        from sarah.runs.run_episodes import learned_episode
         from sarah.runs.run_folder import RunFolder
+        from sarah.runs.run_record import RunRecord
 
-        run = RunFolder.open(Path(subject), task=task)
-        run.parameters()
-        return run.config().algo
-    return None
+        run = RunRecord(RunFolder.open(Path(subject), task=task))
+        return learned_episode(run).spec, run.config.algo
+    return episode_of(subject, None, task).spec, None
 
 
 def check_of_training(path: Path) -> None:

@@ -6,20 +6,17 @@ import dataclasses
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.next_steps import say_next, to_open
 from sarah.cli.options import named_task, run_command
-from sarah.cli.subjects import episode_of, learner_of
-from sarah.episode.spec import FIRST_EVALUATION_SEED
+from sarah.cli.subjects import learned_of
+from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
 from sarah.errors import ConfigurationError
 from sarah.files import make_folder
-
-if TYPE_CHECKING:
-    from sarah.reports.transfer import LearnedParameters
 
 COMMAND = "sarah-transfer"
 
@@ -94,26 +91,22 @@ def _transfer(arguments: Sequence[str]) -> None:
     say_next(to_open(files[0]))
 
 
-def _about_settings(learned: Sequence[LearnedParameters]) -> Iterator[str]:
+def _about_settings(learned: Sequence[tuple[str, EpisodeSpec]]) -> Iterator[str]:
     """Lines about the settings that the other engine does not take as they are."""
     from sarah.reports.markdown import plain_text
     from sarah.reports.transfer import ENGINES
     from sarah.runs.episode_words import differences
 
     yield "All settings are those of the training, but:"
-    for one in learned:
+    for name, one in learned:
         for engine in ENGINES:
             changes = differences(dataclasses.replace(one.config, engine=engine), one.config)
             if words := ", ".join(change for change in changes if not change.startswith("engine ")):
-                yield f"- {plain_text(one.name)} in {engine}: {words}"
+                yield f"- {plain_text(name)} in {engine}: {words}"
 
 
-def _learned(subject: str, arguments: Sequence[str]) -> LearnedParameters:
-    """Parameters of one subject; the options change its own settings."""
-    from sarah.reports.transfer import LearnedParameters
-
+def _learned(subject: str, arguments: Sequence[str]) -> tuple[str, EpisodeSpec]:
+    """Name and episode of one subject; the options change its own settings."""
     options = parse_episode_options(COMMAND, arguments, TransferOptions(), subject)
-    task = named_task(options.task)
-    learner_of(subject, task)  # refuses an unfinished training
-    spec = episode_of(subject, None, task).spec
-    return LearnedParameters(Path(subject).name, spec.task, spec.parameters, options.applied_to(spec).config)
+    spec, _ = learned_of(subject, named_task(options.task))
+    return Path(subject).name, options.applied_to(spec)

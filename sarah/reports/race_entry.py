@@ -15,7 +15,7 @@ from sarah.number import finite_number, whole_number
 from sarah.reports.judging import MOST_EVALUATIONS, Evaluations
 from sarah.runs.agent_settings import settings_of
 from sarah.runs.config import TrainingConfig
-from sarah.runs.run_episodes import LONGEST_REASON
+from sarah.runs.run_record import LONGEST_REASON
 
 RACE_FILE = "race.csv"
 """Name of the file in every run folder of a race: mean scores of its recommendations, along the way and at its end."""

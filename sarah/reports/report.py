@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from base64 import b64encode
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,10 +12,9 @@ from pathlib import Path
 from jinja2 import Environment, StrictUndefined
 from tqdm import tqdm
 
-from sarah.control.parameters import Parameters
 from sarah.episode.episode import simulate
 from sarah.episode.evaluation import Evaluation, evaluate
-from sarah.episode.result import METRICS
+from sarah.episode.result import METRICS, EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, Task
 from sarah.episode.workers import Executor
@@ -27,7 +26,8 @@ from sarah.reports.all_figures import draw_all_figures
 from sarah.reports.training_figures import figures_of
 from sarah.runs.config import TrainingConfig
 from sarah.runs.episode_words import told_of
-from sarah.runs.run_folder import RunFolder
+from sarah.runs.run_episodes import learned_episode
+from sarah.runs.run_record import RunRecord
 from sarah.simulation.renderer import check_renderer
 
 PAPER_CAPTIONS = {
@@ -56,11 +56,11 @@ class Row:
 
 
 def write_report(
-    run: RunFolder, path: Path, executor: Executor, episodes: int = 10, seconds: tuple[float, float] = (1.0, 9.0)
+    run: RunRecord, path: Path, executor: Executor, episodes: int = 10, seconds: tuple[float, float] = (1.0, 9.0)
 ) -> None:
     """Write the page.
 
-    :param run: run folder of a finished training
+    :param run: record of a finished training
     :param path: path of the HTML file
     :param executor: executor that simulates the episodes of the table
     :param episodes: number of episodes on unseen seeds for the table
@@ -69,41 +69,54 @@ def write_report(
     :raises ConfigurationError: if the page cannot be written
     """
     check_file(path)
-    config, learned, versions = run.config(), run.parameters(), run.versions()  # before the long simulation
+    config, learned = run.config, learned_episode(run).spec
+    settings, versions = run.folder.config_text(), run.folder.versions()  # before the long simulation
     task = config.task
-    compared = dict.fromkeys((learned, task.baseline, task.neutral or task.baseline))
+    of, shown = _evaluations(learned, episodes, executor)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        of = {values: evaluate(task, values, config.episode, range(episodes), executor) for values in compared}
-        ours, theirs = of[learned], of[task.baseline]
-        drawn = {file.stem: file for file in draw_all_figures([run], folder) if file.suffix == ".png"}
+        drawn = {file.stem: file for file in draw_all_figures([run], folder, shown) if file.suffix == ".png"}
         figures = [
             (text, _address(drawn[stem].read_bytes(), "image/png"))
             for stem, text in _captions(task).items()
             if stem in drawn
         ]
-        film, caption = _film(EpisodeSpec(learned, 0, config.task, config.episode), folder, seconds)
+        film, caption = _film(learned, shown, folder, seconds)
     page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True).from_string(
         (files("sarah.reports") / "report.html").read_text(encoding="utf-8")
     )
     text = page.render(
         title=task.title,
-        run=str(run.path),
+        run=str(run.folder.path),
         config=config,
         algorithm=algorithm_label(config.algo),
         episodes=episodes,
-        rows=_parameter_rows(task, learned) + _result_rows(config, ours, theirs),
+        rows=_parameter_rows(learned) + _result_rows(config, of[learned.parameters], of[task.baseline]),
         baseline=task.baseline_label,
-        warnings=_warnings(task, ours, None if task.neutral is None else of[task.neutral]),
+        warnings=_warnings(task, of[learned.parameters], None if task.neutral is None else of[task.neutral]),
         figures=figures,
         film=film,
         film_caption=caption,
-        settings=run.config_text(),
-        settings_address=_address(run.config_text().encode(), "text/yaml"),
-        commands=_commands(run, config),
+        settings=settings,
+        settings_address=_address(settings.encode(), "text/yaml"),
+        commands=_commands(config),
         versions=versions,
     )
     replace_text(path, text)
+
+
+def _evaluations(
+    learned: EpisodeSpec, episodes: int, executor: Executor
+) -> tuple[dict[tuple[float, ...], Evaluation], EpisodeResult]:
+    """Evaluations of learned, baseline and neutral parameters, and the first of the learned ones' episodes, traced."""
+    task, config = learned.task, learned.config
+    others = executor.simulate_all([replace(learned, seed=seed) for seed in range(1, episodes)])
+    shown = simulate(learned, record_trace=True)
+    of = {learned.parameters: Evaluation((shown, *others), config.least_clearance)}
+    for values in (task.baseline, task.neutral or task.baseline):
+        if values not in of:
+            of[values] = evaluate(task, values, config, range(episodes), executor)
+    return of, shown
 
 
 def _captions(task: Task) -> dict[str, str]:
@@ -118,10 +131,11 @@ def _captions(task: Task) -> dict[str, str]:
     }
 
 
-def _parameter_rows(task: Task, learned: Parameters) -> list[Row]:
+def _parameter_rows(learned: EpisodeSpec) -> list[Row]:
+    task = learned.task
     return [
         Row(parameter.label, f"{ours:.2f}", f"{theirs:.2f}", parameter.paper)
-        for parameter, ours, theirs in zip(task.parameters, learned, task.baseline, strict=True)
+        for parameter, ours, theirs in zip(task.parameters, learned.parameters, task.baseline, strict=True)
     ]
 
 
@@ -144,15 +158,14 @@ def _warnings(task: Task, learned: Evaluation, neutral: Evaluation | None) -> li
     return found
 
 
-def _film(spec: EpisodeSpec, folder: Path, seconds: tuple[float, float]) -> tuple[str, str]:
-    """Film a part of an episode, if the renderer is installed, and write a line about it."""
+def _film(spec: EpisodeSpec, result: EpisodeResult, folder: Path, seconds: tuple[float, float]) -> tuple[str, str]:
+    """Film a part of an episode with a trace, if the renderer is installed, and write a line about it."""
     try:
         check_renderer()
     except ConfigurationError as missing:
         return "", f"No video: {missing}."
     name, kind = ("film.mp4", "video/mp4") if find_spec("imageio_ffmpeg") else ("film.gif", "image/gif")
     path = folder / name
-    result = simulate(spec, record_trace=True)
     trace = result.trace
     assert trace is not None
     end = min(seconds[1], trace.time[-1])
@@ -165,7 +178,7 @@ def _film(spec: EpisodeSpec, folder: Path, seconds: tuple[float, float]) -> tupl
     return _address(path.read_bytes(), kind), caption
 
 
-def _commands(run: RunFolder, config: TrainingConfig) -> list[str]:
+def _commands(config: TrainingConfig) -> list[str]:
     again = f"{config.algo}-s{config.seed}-again"
     task = "" if config.task.file is None else f" --task {quoted(config.task.reference)}"
     extra = ["sarah-eval RUN --robustness --out tables"] if config.task is BALANCE else ["sarah-video RUN --out a.mp4"]

@@ -10,8 +10,8 @@ import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from statistics import median
 
+from sarah.episode.evaluation import Evaluation
 from sarah.episode.push import Push, draw_push
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
@@ -53,28 +53,16 @@ class PushedEpisode:
 
 @dataclass(frozen=True)
 class Robustness:
-    """Statistics of the episodes with pushes of one force in one group of directions.
+    """Episodes with pushes of one force in one group of directions.
 
     :param newtons: force of the pushes, in N
     :param direction: group of directions, one of :data:`DIRECTIONS`
-    :param episodes: number of episodes
-    :param survival: share of the episodes that survived
-    :param survival_low: lower end of the 95 % interval of that share
-    :param survival_high: upper end of the 95 % interval of that share
-    :param score_median: median score
-    :param drift_median: median horizontal distance from the start at the end, in m
-    :param vibration_median: median mean square of the torso's acceleration from 20 to 50 Hz, in m^2/s^4
+    :param evaluation: evaluation of the episodes
     """
 
     newtons: float
     direction: str
-    episodes: int
-    survival: float
-    survival_low: float
-    survival_high: float
-    score_median: float
-    drift_median: float
-    vibration_median: float
+    evaluation: Evaluation
 
 
 def forces_for(scale: Scale) -> tuple[float, ...]:
@@ -153,22 +141,16 @@ def robustness_table(episodes: Sequence[PushedEpisode]) -> list[Robustness]:
         for direction in DIRECTIONS:
             group = [e.result for e in episodes if e.newtons == newtons and direction in ("all", e.direction)]
             if group:
-                rows.append(_summary(newtons, direction, group))
+                rows.append(Robustness(newtons, direction, Evaluation(tuple(group))))
     return rows
 
 
-def _summary(newtons: float, direction: str, group: Sequence[EpisodeResult]) -> Robustness:
-    survived = sum(result.survived for result in group)
-    return Robustness(
-        newtons,
-        direction,
-        len(group),
-        survived / len(group),
-        *wilson_interval(survived, len(group)),
-        median(result.score for result in group),
-        median(result.drift for result in group),
-        median(result.vibration for result in group),
-    )
+def survival_interval(evaluation: Evaluation) -> tuple[float, float]:
+    """Wilson's 95 % interval of the survival.
+
+    :param evaluation: evaluation of the episodes
+    """
+    return wilson_interval(evaluation.survivors, evaluation.episodes)
 
 
 def wilson_interval(successes: int, trials: int) -> tuple[float, float]:

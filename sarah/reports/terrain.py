@@ -18,7 +18,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
 from sarah.episode.workers import Workers
-from sarah.reports.robustness import push_of_table, rounded, wilson_interval
+from sarah.reports.robustness import push_of_table, rounded, survival_interval
 from sarah.robot.scale import Scale
 from sarah.simulation.terrain import LARGEST_ROUGHNESS, Terrain
 
@@ -92,11 +92,6 @@ class OnTerrain:
     situation: Situation
     evaluation: Evaluation
 
-    @property
-    def interval(self) -> tuple[float, float]:
-        """Wilson's 95 % interval of the survival."""
-        return wilson_interval(self.evaluation.survivors, self.evaluation.episodes)
-
 
 def situations(scale: Scale) -> Iterator[Situation]:
     """All situations of the table: each ground without a push, then with one.
@@ -152,7 +147,7 @@ def as_markdown(rows: Sequence[OnTerrain]) -> str:
         "|---" * 7 + "|",
     ]
     for row in rows:
-        found, (low, high) = row.evaluation, row.interval
+        found, (low, high) = row.evaluation, survival_interval(row.evaluation)
         lines.append(
             f"| {_ground(row.situation)} | {row.situation.newtons:g} N | {found.episodes} "
             f"| {found.mean('score'):.3f} | {found.mean('steps_per_second'):.2f} "

@@ -9,6 +9,7 @@ import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 
 from sarah.pictures.style import COLUMN_WIDTH, own_style, save
+from sarah.reports.robustness import survival_interval
 from sarah.reports.terrain import UPHILL, OnTerrain, Situation
 
 KINDS = {"slope": ("slope (°)", 1.0), "roughness": ("bumps (mm)", 1000.0), "friction": ("friction", 1.0)}
@@ -74,5 +75,5 @@ def _draw(axis: Axes, rows: Sequence[OnTerrain], metric: str, factor: float) -> 
             label = f"uphill {uphill}{pushed}" if uphill else f"bumps or friction{pushed}"
             axis.plot(x, found, dashes, marker="o", markersize=2.5, linewidth=1.0, color=colour, label=label)
             if metric == "survival":
-                low, high = zip(*(row.interval for row in line), strict=True)
+                low, high = zip(*(survival_interval(row.evaluation) for row in line), strict=True)
                 axis.fill_between(x, low, high, color=colour, alpha=0.08, linewidth=0.0)

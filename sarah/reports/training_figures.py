@@ -30,7 +30,7 @@ from sarah.pictures.style import COLUMN_WIDTH, own_style, save
 from sarah.reports.robustness import PushedEpisode, finest_sectors, survival_by_direction
 from sarah.reports.training_curves import RunCurves, read_curves
 from sarah.reports.uncertainty import standard_error
-from sarah.runs.run_folder import RunFolder
+from sarah.runs.run_record import RunRecord
 
 if TYPE_CHECKING:  # the import would load the learning algorithms
     from sarah.reports.race_entry import RaceCurve
@@ -72,18 +72,17 @@ def figures_of(task: Task) -> dict[str, Panels]:
     return {outcome: panels, parameters: [(parameter.name, parameter.label) for parameter in task.parameters]}
 
 
-def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
+def draw_figures(runs: Sequence[RunRecord], folder: Path) -> list[Path]:
     """Draw Figures 4 and 5 of First Trainings, 6 and 7 of Second Trainings, and others' like them, as PNG and PDF.
 
-    :param runs: run folders whose episodes are drawn
+    :param runs: records of the trainings whose episodes are drawn
     :param folder: folder for the figures, which is made if it does not exist
     :return: the files
     :raises RunFolderError: if a run folder has no episodes, or damaged ones; nothing is drawn then
     """
-    tasks = [run.config().task for run in runs]
-    of_task = {task.identity: task for task in tasks}
+    of_task = {run.config.task.identity: run.config.task for run in runs}
     curves = {
-        task: read_curves([run for run, its in zip(runs, tasks, strict=True) if its.identity == identity], task)
+        task: read_curves([run for run in runs if run.config.task.identity == identity], task)
         for identity, task in of_task.items()
     }
     make_folder(folder)

@@ -6,12 +6,10 @@ import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice, product
-from typing import Any, get_args
+from typing import get_args
 
 from sarah.episode.evaluation import Evaluation
-from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import Task
 from sarah.episode.workers import Workers
 from sarah.reports.markdown import plain_text
 from sarah.simulation.engines import Engine
@@ -20,30 +18,16 @@ ENGINES: tuple[Engine, ...] = get_args(Engine)
 
 
 @dataclass(frozen=True)
-class LearnedParameters:
-    """Learned parameters of a training.
-
-    :param name: name of the run folder, or the parameters themselves
-    :param task: task that owns the parameters
-    :param parameters: values of P1 to P5, or of V1 to V4
-    :param config: settings of the episodes; its engine is the one that they were learned in
-    """
-
-    name: str
-    task: Task[Any]
-    parameters: tuple[float, ...]
-    config: EpisodeConfig
-
-
-@dataclass(frozen=True)
 class Transfer:
     """Evaluations of learned parameters in every engine.
 
-    :param learned: learned parameters
+    :param name: name of the run folder, or the parameters themselves
+    :param learned: an episode of the learned parameters, in the engine that they were learned in
     :param evaluations: evaluations by engine
     """
 
-    learned: LearnedParameters
+    name: str
+    learned: EpisodeSpec
     evaluations: dict[Engine, Evaluation]
 
     @property
@@ -54,24 +38,28 @@ class Transfer:
         return min(scores.values()) / at_home if at_home else 0.0
 
 
-def transfer(many: Sequence[LearnedParameters], seeds: Sequence[int], workers: Workers) -> list[Transfer]:
+def transfer(many: Sequence[tuple[str, EpisodeSpec]], seeds: Sequence[int], workers: Workers) -> list[Transfer]:
     """Evaluate learned parameters in every engine.
 
-    :param many: learned parameters of several trainings
+    :param many: names and episodes of learned parameters
     :param seeds: seeds of the episodes, the same for all
     :param workers: workers that simulate the episodes
     """
     specs = [
-        EpisodeSpec(learned.parameters, seed, learned.task, dataclasses.replace(learned.config, engine=engine))
-        for learned, engine, seed in product(many, ENGINES, seeds)
+        dataclasses.replace(learned, seed=seed, config=dataclasses.replace(learned.config, engine=engine))
+        for (_, learned), engine, seed in product(many, ENGINES, seeds)
     ]
     results = iter(list(workers.simulate_all(specs)))
     return [
         Transfer(
-            one,
-            {engine: Evaluation(tuple(islice(results, len(seeds))), one.config.least_clearance) for engine in ENGINES},
+            name,
+            learned,
+            {
+                engine: Evaluation(tuple(islice(results, len(seeds))), learned.config.least_clearance)
+                for engine in ENGINES
+            },
         )
-        for one in many
+        for name, learned in many
     ]
 
 
@@ -88,7 +76,7 @@ def as_markdown(transfers: Sequence[Transfer]) -> str:
             f"{e.median('vibration'):.1f}"
             for e in one.evaluations.values()
         ]
-        learned, name = one.learned, plain_text(one.learned.name)
+        learned, name = one.learned, plain_text(one.name)
         lines.append(
             f"| {name} | {learned.task.name} | {learned.config.engine} | {' | '.join(cells)} | {one.kept:.0%} |"
         )

@@ -14,9 +14,7 @@ from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
 from sarah.errors import ConfigurationError, RunFolderError
 from sarah.number import finite_number, whole_number
 from sarah.runs.run_folder import RunFolder
-
-LONGEST_REASON = 200
-"""Length up to which a message quotes the error of a row, in characters."""
+from sarah.runs.run_record import RunRecord
 
 
 @dataclass(frozen=True)
@@ -47,14 +45,13 @@ class RunEpisode:
         return self if spec == self.spec else replace(self, spec=spec, score=None, recorded=None, next_name=None)
 
 
-def learned_episode(run: RunFolder) -> RunEpisode:
+def learned_episode(run: RunRecord) -> RunEpisode:
     """Episode of a training's learned parameters, with seed 0.
 
-    :param run: run folder of the training, which is finished
+    :param run: record of the training, which is finished
     :raises RunFolderError: if the learned parameters cannot be read
     """
-    training = run.config()
-    spec = EpisodeSpec(run.parameters(), 0, training.task, training.episode)
+    spec = EpisodeSpec(run.learned, 0, run.config.task, run.config.episode)
     return RunEpisode("learned", "learned parameters · seed 0", spec)
 
 
@@ -64,20 +61,17 @@ def episodes_of_run(run: RunFolder) -> list[RunEpisode]:
     :param run: run folder of the training, which need not be finished
     :raises RunFolderError: if a row of ``episodes.csv`` cannot be read, or if there is no episode
     """
-    training = run.config()
-    task = training.task
-    shown = [learned_episode(run)] if run.is_finished else []
+    record = RunRecord(run)
+    task = record.config.task
+    shown = [learned_episode(record)] if run.is_finished else []
     simulated = []
-    for row in run.episodes():
-        try:
+    for row in record.episodes:
+        with record.naming_folder():
             parameters = tuple(finite_number(row[name]) for name in task.parameter_names)
-            spec = EpisodeSpec(parameters, whole_number(row["seed"]), task, training.episode)
+            spec = EpisodeSpec(parameters, whole_number(row["seed"]), task, record.config.episode)
             score, ending = finite_number(row["score"]), ending_words(row["termination"])
             label = f"episode {row['index']} · score {score:.2f} · {ending}"
             simulated.append(RunEpisode(row["index"], label, spec, score))
-        except (KeyError, TypeError, ValueError) as error:
-            reason = repr(error)[:LONGEST_REASON]
-            raise RunFolderError(f"the episodes of {run.path} cannot be read: {reason}") from error
     if simulated:
         best = max(simulated, key=lambda episode: -math.inf if episode.score is None else episode.score)
         shown.append(RunEpisode("best", f"best: {best.label}", best.spec, best.score))

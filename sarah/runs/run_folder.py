@@ -161,9 +161,12 @@ class RunFolder(Folder):
         row = {"index": index, "seed": spec.seed, **parameters, **result.columns()}
         _append_row(self._episodes_path, tuple(row), row)
 
-    def episodes(self) -> Iterator[dict[str, str]]:
-        """Read ``episodes.csv``, row by row, as text; there are no rows before the first episode."""
-        return self._rows(self._episodes_path)
+    def episodes(self, config: TrainingConfig | None = None) -> Iterator[dict[str, str]]:
+        """Read ``episodes.csv``, row by row, as text; there are no rows before the first episode.
+
+        :param config: settings of the training, if they have been read
+        """
+        return self._rows(self._episodes_path, config)
 
     def append_recommendation(self, episodes: int, parameters: Mapping[str, float]) -> None:
         """Add a row to ``recommendations.csv``.
@@ -174,9 +177,12 @@ class RunFolder(Folder):
         row = {"episodes": episodes, **parameters}
         _append_row(self._recommendations_path, tuple(row), row)
 
-    def recommendations(self) -> Iterator[dict[str, str]]:
-        """Read ``recommendations.csv``, row by row, as text."""
-        return self._rows(self._recommendations_path)
+    def recommendations(self, config: TrainingConfig | None = None) -> Iterator[dict[str, str]]:
+        """Read ``recommendations.csv``, row by row, as text.
+
+        :param config: settings of the training, if they have been read
+        """
+        return self._rows(self._recommendations_path, config)
 
     def append_progress(self, columns: Sequence[str], values: Mapping[str, Any]) -> None:
         """Add a row to ``progress.csv``.
@@ -210,12 +216,13 @@ class RunFolder(Folder):
         """
         replace_text(self.result_path, json.dumps(content, indent=2) + "\n")
 
-    def parameters(self) -> tuple[float, ...]:
+    def parameters(self, config: TrainingConfig | None = None) -> tuple[float, ...]:
         """Read the learned parameters, in the order of the task.
 
+        :param config: settings of the training, if they have been read
         :raises RunFolderError: if the file does not contain exactly the task's parameters
         """
-        task = self.config().task
+        task = (config or self.config()).task
         names = task.parameter_names
         try:
             learned = read_json(read_text(self.result_path))["parameters"]
@@ -228,12 +235,12 @@ class RunFolder(Folder):
         except (ValueError, KeyError, TypeError) as error:
             raise RunFolderError(f"{self.result_path} does not hold learned parameters: {error}") from error
 
-    def _rows(self, path: Path) -> Iterator[dict[str, str]]:
+    def _rows(self, path: Path, config: TrainingConfig | None = None) -> Iterator[dict[str, str]]:
         """Read a table, which has at most a row for each episode of the training."""
         if not path.exists():
             return
         try:
-            yield from csv.DictReader(read_lines(path, self.config().episodes + 1))
+            yield from csv.DictReader(read_lines(path, (config or self.config()).episodes + 1))
         except (OSError, csv.Error) as error:
             raise unreadable(path, error) from error
 

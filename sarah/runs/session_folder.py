@@ -28,7 +28,7 @@ from sarah.recorded.folder import Folder
 from sarah.recorded.journal import Journal
 from sarah.runs.config_files import read_config, settings_by_key, write_config
 from sarah.runs.kinds import SESSION
-from sarah.runs.run_episodes import LONGEST_REASON
+from sarah.runs.run_record import LONGEST_REASON
 from sarah.runs.session import SessionSpec
 
 NAMES = tuple(parameter.name for parameter in PARAMETERS)

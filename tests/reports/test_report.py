@@ -4,15 +4,24 @@ import base64
 import dataclasses
 import json
 import re
+from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 import terminal
-from laboratory import NEEDS_PYBULLET
+from laboratory import NEEDS_PYBULLET, RESULT
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 from tensorboard.plugins.hparams.plugin_data_pb2 import HParamsPluginData
 
+from sarah.cli import figures as figures_command
+from sarah.cli import report as report_command
+from sarah.episode.episode import Episode
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import TASKS
+from sarah.reports import all_figures, report, training_figures
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import is_installed
@@ -63,6 +72,56 @@ def test_report_is_a_page_that_needs_nothing_else(task: str, runs: dict[str, Run
     assert f"<td>{noted['score_median']:.3f}</td>" in text and f"<td>{noted['vibration_median']:.1f} m²/s⁴</td>" in text
     assert ("about 0.4" in text) == ("P1" in TASKS[task].parameter_names)
     assert re.search(r"from 1\.0 to 1\.2 s of [\d.]+ s: .*time_limit 1\.5\.</figcaption>", text)  # what is not as usual
+
+
+@pytest.fixture
+def counts(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
+    """Counts of what is read of run folders, and of the episodes that are simulated, by parameters and seed."""
+    counted: Counter[str] = Counter()
+
+    class Counting(Episode):
+        def __init__(self, config: EpisodeConfig, seed: int, *arguments: Any) -> None:
+            super().__init__(config, seed, *arguments)
+            self.seed = seed
+
+        def start(self, parameters: tuple[float, ...]) -> None:
+            counted[f"{parameters} with seed {self.seed}"] += 1
+            super().start(parameters)
+
+    def counting(name: str) -> Callable[..., Any]:
+        read = getattr(RunFolder, name)
+
+        def count(*arguments: Any) -> Any:
+            counted[name] += 1
+            return read(*arguments)
+
+        return count
+
+    monkeypatch.setattr("sarah.episode.episode.Episode", Counting)
+    for name in ("config", "config_text", "parameters", "episodes", "recommendations"):
+        monkeypatch.setattr(RunFolder, name, counting(name))
+    for module in (training_figures, all_figures, report):  # drawing would take most of the time
+        for name in {"save", "draw_robot", "draw_state_machine", "frames"} & set(vars(module)):
+            monkeypatch.setattr(module, name, lambda *_, **__: [Path("drawn.png")])
+    monkeypatch.setattr(report, "write_video", lambda _, path: path.touch())
+    return counted
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_a_run_is_read_once_and_no_episode_is_simulated_twice(
+    task: str, counts: Counter[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    episode = dataclasses.replace(TASKS[task].episode, time_limit=1.2, physics=PHYSICS)
+    config = TrainingConfig(task, episodes=1, episode=episode)
+    run, learned = RunFolder.create(tmp_path / "run", config), (0.5,) * len(TASKS[task].parameters)
+    run.append_episode(0, EpisodeSpec(learned, 2**31, task, episode), RESULT)
+    run.write_parameters({"parameters": dict(zip(TASKS[task].parameter_names, learned, strict=True))})
+    for command, options in ((report_command, ["--episodes", "2"]), (figures_command, [])):
+        counts.clear()
+        monkeypatch.setattr("sys.argv", ["sarah", str(run.path), "--out", str(tmp_path / command.__name__), *options])
+        command.main()
+        assert counts[f"{learned} with seed 0"] == counts["episodes"] == counts["config"] == 1
+        assert set(counts.values()) == {1}, counts
 
 
 def test_report_says_what_it_cannot_do(tmp_path: Path) -> None:

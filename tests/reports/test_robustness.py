@@ -64,7 +64,7 @@ def test_pushes_within_45_degrees_of_the_sides_are_lateral() -> None:
 
 def test_table_counts_by_direction() -> None:
     rows = robustness_table([pushed(0), pushed(180, FALL), pushed(90), pushed(90), pushed(0, newtons=25.0)])
-    table = {(row.newtons, row.direction): (row.episodes, row.survival) for row in rows}
+    table = {(row.newtons, row.direction): (row.evaluation.episodes, row.evaluation.survival_rate) for row in rows}
     assert table == {
         (25.0, "all"): (1, 1.0),
         (25.0, "lateral"): (1, 1.0),
@@ -72,8 +72,8 @@ def test_table_counts_by_direction() -> None:
         (100.0, "lateral"): (2, 0.5),
         (100.0, "sagittal"): (2, 1.0),
     }
-    everything = rows[2]
-    assert everything.score_median == 0.8 and everything.drift_median == pytest.approx(0.05)
+    everything = rows[2].evaluation
+    assert everything.median("score") == 0.8 and everything.median("drift") == pytest.approx(0.05)
 
 
 def test_wilsons_interval_is_the_published_one() -> None:

@@ -1,6 +1,7 @@
 """The paper's figures from run folders."""
 
 import dataclasses
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,9 +17,10 @@ from sarah.pictures.colours import algorithm_colours
 from sarah.reports import training_figures
 from sarah.reports.race_entry import RaceCurve
 from sarah.reports.training_curves import read_curves
-from sarah.reports.training_figures import draw_figures, draw_race, running_median
+from sarah.reports.training_figures import draw_race, running_median
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
+from sarah.runs.run_record import RunRecord
 
 
 def run_with_episodes(path: Path, task: str, count: int, algo: str = "naf", shift: float = 0.0) -> RunFolder:
@@ -29,6 +31,10 @@ def run_with_episodes(path: Path, task: str, count: int, algo: str = "naf", shif
         result = dataclasses.replace(RESULT, episode_return=shift + index / count, final_position=position)
         run.append_episode(index, dataclasses.replace(spec, seed=index), result)
     return run
+
+
+def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
+    return training_figures.draw_figures([RunRecord(run) for run in runs], folder)
 
 
 def test_first_training_makes_figures_4_and_5_and_the_second_6_and_7(tmp_path: Path) -> None:
@@ -115,7 +121,7 @@ def test_no_line_goes_through_the_warm_up(tmp_path: Path) -> None:
         for index in range(40):
             result = dataclasses.replace(RESULT, episode_return=shift * (index % 3) / 2 if index < 8 else index / 40)
             run.append_episode(index, EpisodeSpec((0.5,) * 5, index), result)
-        (curves,) = read_curves([run], STEPPING)
+        (curves,) = read_curves([RunRecord(run)], STEPPING)
         assert (curves.warm_up, curves.learning) == (8, 40)
         pictures.append(imread(draw_figures([run], tmp_path / f"out{shift}")[0]))
     line = [(np.abs(picture[..., :3] - (0.0, 114 / 255, 178 / 255)).max(axis=-1) < 0.05) for picture in pictures]

@@ -8,31 +8,27 @@ from laboratory import RESULT
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING
 from sarah.reports.markdown import code
-from sarah.reports.transfer import LearnedParameters, Transfer, as_markdown
+from sarah.reports.transfer import Transfer, as_markdown
 
 
 def scoring(score: float) -> Evaluation:
     return Evaluation((dataclasses.replace(RESULT, score=score),))
 
 
+LEARNED = EpisodeSpec(PAPER_STEPPING, 0, STEPPING, EpisodeConfig(engine="mujoco"))
 SCORES = {"pybullet": scoring(0.6), "mujoco": scoring(0.8)}
 
 
 def test_the_name_of_a_run_stays_in_its_cell_of_the_table() -> None:
-    rows = [
-        as_markdown(
-            [Transfer(LearnedParameters(name, STEPPING, PAPER_STEPPING, EpisodeConfig(engine="mujoco")), SCORES)]
-        )
-        for name in ("run_1", "a|b", "[x](y) `<b>`")
-    ]
+    rows = [as_markdown([Transfer(name, LEARNED, SCORES)]) for name in ("run_1", "a|b", "[x](y) `<b>`")]
     assert "| run_1 |" in rows[0] and r"| a\|b |" in rows[1] and r"| \[x\](y) \`\<b\>\` |" in rows[2]
     assert code("a | `b`") == "`` a | `b` ``" and code("sarah-eval a_b") == "`sarah-eval a_b`"
 
 
 def test_kept_is_the_lowest_share_in_any_other_engine() -> None:
-    learned = LearnedParameters("run", "stepping", PAPER_STEPPING, EpisodeConfig(engine="mujoco"))
     scores = {"pybullet": scoring(0.6), "mujoco": scoring(0.8), "third": scoring(0.4)}
-    assert Transfer(learned, scores).kept == pytest.approx(0.5)  # type: ignore[arg-type]  # a third engine
-    assert Transfer(learned, {**scores, "mujoco": scoring(0.0)}).kept == 0.0  # type: ignore[arg-type]
+    assert Transfer("run", LEARNED, scores).kept == pytest.approx(0.5)  # type: ignore[arg-type]  # a third engine
+    assert Transfer("run", LEARNED, {**scores, "mujoco": scoring(0.0)}).kept == 0.0  # type: ignore[arg-type]

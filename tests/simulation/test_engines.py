@@ -18,7 +18,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.errors import ConfigurationError
-from sarah.reports.transfer import LearnedParameters, Transfer
+from sarah.reports.transfer import Transfer
 from sarah.robot.description import describe_robot
 from sarah.robot.reading import GRAVITY, Side
 from sarah.simulation import engines
@@ -190,5 +190,5 @@ def test_kept_is_the_share_of_the_score_that_the_other_engine_gives() -> None:
     at_home, worse = Evaluation((result,)), Evaluation((dataclasses.replace(result, score=0.5 * result.score),))
     evaluations = {"pybullet": at_home, "mujoco": worse}
     for engine, kept in (("pybullet", 0.5), ("mujoco", 2.0)):
-        learned = LearnedParameters("run", "stepping", PAPER_STEPPING, EpisodeConfig(engine=engine))
-        assert Transfer(learned, evaluations).kept == pytest.approx(kept)
+        learned = EpisodeSpec(PAPER_STEPPING, 0, "stepping", EpisodeConfig(engine=engine))
+        assert Transfer("run", learned, evaluations).kept == pytest.approx(kept)
