@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal, get_args
+from typing import Annotated, Any, Literal, get_args
 
 from sarah.episode.from_mapping import convert_fields
-from sarah.errors import ConfigurationError, check_range, shortened, to_ranges, unknown_name
+from sarah.errors import ConfigurationError, shortened, unknown_name
+from sarah.ranges import Within, check_ranges
 
 Preset = Literal["one-step", "paper"]
 Activation = Literal["tanh", "relu", "sigmoid"]
@@ -44,35 +45,11 @@ PRESETS: dict[str, dict[str, Any]] = {
 MOST_LAYERS = 20
 WARM_UP = 5
 """Default number of episodes before an algorithm uses what it knows: the same for all, which makes races fair."""
-PLAUSIBLE: dict[str, tuple[float, float]] = {
-    "learning_rate": (1e-9, 1.0),
-    "buffer_size": (1, 10_000_000),
-    "learning_starts": (0, 1_000_000),
-    "batch_size": (1, 100_000),
-    "tau": (0.0, 1.0),
-    "gamma": (0.0, 1.0),
-    "gradient_steps": (1, 10_000),
-    "max_grad_norm": (1e-6, 1e6),
-    "exploration_std": (0.0, 2.0),
-    "temperature": (0.0, 100.0),
-    "elite_share": (0.0, 1.0),
-    "elite_std": (0.0, 2.0),
-    "elite_draws": (1, 10_000),
-    "layers": (1, 10_000),
-    "v_layers": (1, 10_000),
-    "mu_layers": (1, 10_000),
-    "l_layers": (1, 10_000),
-    "shared_layers": (1, 10_000),
-    "min_curvature": (0.0, 1000.0),
-    "action_noise_std": (0.0, 2.0),
-    "policy_delay": (1, 100),
-    "target_policy_noise": (0.0, 2.0),
-    "target_noise_clip": (0.0, 2.0),
-    "ent_coef": (0.0, 100.0),
-    "deviation": (0.01, 2.0),
-    "population": (2, 1000),
-}
-"""Lowest and highest value of every number in the settings; an empty tuple of layers has none."""
+Share = Annotated[float, Within(0.0, 1.0)]
+Deviation = Annotated[float, Within(0.0, 2.0)]
+LearningRate = Annotated[float, Within(1e-9, 1.0)]
+BufferSize = Annotated[int, Within(1, 10_000_000)]
+Layers = tuple[Annotated[int, Within(1, 10_000)], ...]
 
 
 @dataclass(frozen=True)
@@ -83,12 +60,9 @@ class AgentSettings:
         """Refuse values of another type or out of their range."""
         convert_fields(self, "agent.")
         for name, value in vars(self).items():
-            key = f"agent.{name}"
             if name.endswith("layers") and len(value) > MOST_LAYERS:
-                raise ConfigurationError(f"{key} must be at most {MOST_LAYERS} layers, not {len(value)}")
-            if name in PLAUSIBLE and value != "auto":
-                for number in value if isinstance(value, tuple) else (value,):
-                    check_range(key, number, *PLAUSIBLE[name])
+                raise ConfigurationError(f"agent.{name} must be at most {MOST_LAYERS} layers, not {len(value)}")
+        check_ranges("agent.", self)
 
 
 @dataclass(frozen=True)
@@ -105,13 +79,13 @@ class LearnerSettings(AgentSettings):
     :param device: device of the networks: cpu, cuda, cuda:1 and so on, or auto, which takes CUDA where there is some
     """
 
-    learning_rate: float = 1e-3
-    buffer_size: int = 1_000_000
-    learning_starts: int = WARM_UP
-    batch_size: int = 64
-    tau: float = 0.005
-    gamma: float = 0.0
-    gradient_steps: int = 10
+    learning_rate: LearningRate = 1e-3
+    buffer_size: BufferSize = 1_000_000
+    learning_starts: Annotated[int, Within(0, 1_000_000)] = WARM_UP
+    batch_size: Annotated[int, Within(1, 100_000)] = 64
+    tau: Share = 0.005
+    gamma: Share = 0.0
+    gradient_steps: Annotated[int, Within(1, 10_000)] = 10
     device: str = "cpu"
 
     def __post_init__(self) -> None:
@@ -149,23 +123,23 @@ class NAFSettings(LearnerSettings):
     :param min_curvature: curvature, from 0, that is added to L L^T, so that Q is flat nowhere
     """
 
-    buffer_size: int = 10_000
-    tau: float = 0.02
+    buffer_size: BufferSize = 10_000
+    tau: Share = 0.02
     preset: Preset = "one-step"
-    max_grad_norm: float = 10.0
-    exploration_std: tuple[float, float] = (0.3, 0.05)
-    temperature: float = _by_preset()
+    max_grad_norm: Annotated[float, Within(1e-6, 1e6)] = 10.0
+    exploration_std: tuple[Deviation, Deviation] = (0.3, 0.05)
+    temperature: Annotated[float, Within(0.0, 100.0)] = _by_preset()
     smoothed: bool = _by_preset()
-    elite_share: float = _by_preset()
-    elite_std: tuple[float, float] = (0.4, 0.15)
-    elite_draws: int = 1
-    v_layers: tuple[int, ...] = _by_preset()
-    mu_layers: tuple[int, ...] = _by_preset()
-    l_layers: tuple[int, ...] = _by_preset()
-    shared_layers: tuple[int, ...] = ()
+    elite_share: Share = _by_preset()
+    elite_std: tuple[Deviation, Deviation] = (0.4, 0.15)
+    elite_draws: Annotated[int, Within(1, 10_000)] = 1
+    v_layers: Layers = _by_preset()
+    mu_layers: Layers = _by_preset()
+    l_layers: Layers = _by_preset()
+    shared_layers: Layers = ()
     activation: Activation = _by_preset()
     squash_mu: bool = _by_preset()
-    min_curvature: float = _by_preset()
+    min_curvature: Annotated[float, Within(0.0, 1000.0)] = _by_preset()
 
     def __post_init__(self) -> None:
         """Take what is not given from the preset, and refuse unknown names and values out of their range."""
@@ -176,13 +150,6 @@ class NAFSettings(LearnerSettings):
                 object.__setattr__(self, name, value)
         if self.activation not in get_args(Activation):
             raise ConfigurationError(unknown_name("agent.activation", self.activation, get_args(Activation)))
-        to_ranges(self, "exploration_std", "elite_std")
-        for name in ("exploration_std", "elite_std"):
-            value = getattr(self, name)
-            if not isinstance(value, tuple) or len(value) != 2:
-                raise ConfigurationError(
-                    f"agent.{name} must be a number, or one at first and one at last, not {shortened(value)}"
-                )
         super().__post_init__()
         if self.gamma > 0 and (self.temperature > 0 or self.elite_share > 0):
             raise ConfigurationError(
@@ -206,8 +173,8 @@ class DDPGSettings(LearnerSettings):
     :param action_noise_std: standard deviation, 0 to 2, of the exploration noise
     """
 
-    layers: tuple[int, ...] = (64, 64)
-    action_noise_std: float = 0.2
+    layers: Layers = (64, 64)
+    action_noise_std: Deviation = 0.2
 
 
 @dataclass(frozen=True)
@@ -219,9 +186,9 @@ class TD3Settings(DDPGSettings):
     :param target_noise_clip: largest absolute value, 0 to 2, of that noise
     """
 
-    policy_delay: int = 2
-    target_policy_noise: float = 0.2
-    target_noise_clip: float = 0.5
+    policy_delay: Annotated[int, Within(1, 100)] = 2
+    target_policy_noise: Deviation = 0.2
+    target_noise_clip: Deviation = 0.5
 
 
 @dataclass(frozen=True)
@@ -232,9 +199,9 @@ class SACSettings(LearnerSettings):
     :param ent_coef: coefficient of the entropy, from 0, or auto, which learns it
     """
 
-    learning_rate: float = 3e-4
-    layers: tuple[int, ...] = (64, 64)
-    ent_coef: float | Literal["auto"] = "auto"
+    learning_rate: LearningRate = 3e-4
+    layers: Layers = (64, 64)
+    ent_coef: Annotated[float, Within(0.0, 100.0)] | Literal["auto"] = "auto"
 
 
 @dataclass(frozen=True)
@@ -245,8 +212,8 @@ class EvolutionSettings(AgentSettings):
     :param population: number of episodes, from 2, in a generation
     """
 
-    deviation: float = 0.6
-    population: int = 8
+    deviation: Annotated[float, Within(0.01, 2.0)] = 0.6
+    population: Annotated[int, Within(2, 1000)] = 8
 
 
 AGENT_SETTINGS: dict[str, type[AgentSettings]] = {
