@@ -125,8 +125,8 @@ class Scale(NamedTuple):
     def scaled(self, settings: Settings) -> Settings:
         """Settings of a robot of this scale that is like the one they are for.
 
-        :param settings: settings, a dataclass, of which fields with a range of :class:`Sized` go with the scale, also those
-            of settings within them
+        :param settings: settings, a dataclass: fields with a range of :class:`Sized` go with the scale, also those of
+            settings within them
         """
         if self == Scale():
             return settings

@@ -69,13 +69,13 @@ class AgentSettings:
 class LearnerSettings(AgentSettings):
     """Settings that all reinforcement learners share. Actions are scaled to [-1, 1].
 
-    :param learning_rate: step size of the optimiser Adam, above 0
-    :param buffer_size: number of episodes, from 1, that the replay buffer holds
+    :param learning_rate: step size of the optimiser Adam
+    :param buffer_size: number of episodes that the replay buffer holds
     :param learning_starts: number of uniform episodes before the networks learn; twice the slots, if that is more
-    :param batch_size: number of episodes, from 1, in the minibatch of an update
-    :param tau: share of their weights, 0 to 1, that the target networks take over from the others at an update
-    :param gamma: discount factor, 0 to 1, of what follows an action; nothing does, as an episode is one action
-    :param gradient_steps: number of updates, from 1, after each episode
+    :param batch_size: number of episodes in the minibatch of an update
+    :param tau: share of their weights that the target networks take over from the others at an update
+    :param gamma: discount factor of what follows an action; nothing does, as an episode is one action
+    :param gradient_steps: number of updates after each episode
     :param device: device of the networks: cpu, cuda, cuda:1 and so on, or auto, which takes CUDA where there is some
     """
 
@@ -107,20 +107,20 @@ class NAFSettings(LearnerSettings):
     """Settings of NAF. Standard deviations are of actions scaled to [-1, 1].
 
     :param preset: source of defaults: one-step for local NAF, paper for the paper's networks and plain NAF
-    :param max_grad_norm: largest norm of an update's gradient, above 0
-    :param exploration_std: standard deviation, 0 to 2, of the noise around mu: at first, and after 80 % of the training
-    :param temperature: logarithm, from 0, of how much more often the best episode is replayed than the worst
+    :param max_grad_norm: largest norm of an update's gradient
+    :param exploration_std: standard deviation of the noise around mu: at first, and after 80 % of the training
+    :param temperature: logarithm of how much more often the best episode is replayed than the worst
     :param smoothed: smoothing of the returns over similar actions, by a Gaussian process of the newest 500 episodes
-    :param elite_share: share of the actions, 0 to 1, that are drawn around the best one so far instead of around mu
-    :param elite_std: standard deviation, 0 to 2, of these draws: at first, and after 80 % of the training
-    :param elite_draws: number of draws, from 1, of which the most promising is tried
+    :param elite_share: share of the actions that are drawn around the best one so far instead of around mu
+    :param elite_std: standard deviation of these draws: at first, and after 80 % of the training
+    :param elite_draws: number of draws, of which the most promising is tried
     :param v_layers: widths of the hidden layers of V
     :param mu_layers: widths of the hidden layers of mu
     :param l_layers: widths of the hidden layers of L
     :param shared_layers: widths of hidden layers that mu and L have in common, before their own
     :param activation: activation function of the hidden layers: tanh, relu or sigmoid
     :param squash_mu: tanh at the end of mu; if there is none, mu is linear and clipped
-    :param min_curvature: curvature, from 0, that is added to L L^T, so that Q is flat nowhere
+    :param min_curvature: curvature that is added to L L^T, so that Q is flat nowhere
     """
 
     buffer_size: BufferSize = 10_000
@@ -170,7 +170,7 @@ class DDPGSettings(LearnerSettings):
     """Settings of stable-baselines3's DDPG. Standard deviations are of actions scaled to [-1, 1].
 
     :param layers: widths of the hidden layers of actor and critic
-    :param action_noise_std: standard deviation, 0 to 2, of the exploration noise
+    :param action_noise_std: standard deviation of the exploration noise
     """
 
     layers: Layers = (64, 64)
@@ -181,9 +181,9 @@ class DDPGSettings(LearnerSettings):
 class TD3Settings(DDPGSettings):
     """Settings of stable-baselines3's TD3. Standard deviations are of actions scaled to [-1, 1].
 
-    :param policy_delay: number of updates of the critics, from 1, to one of the actor
-    :param target_policy_noise: standard deviation, 0 to 2, of the noise on actions that targets are computed with
-    :param target_noise_clip: largest absolute value, 0 to 2, of that noise
+    :param policy_delay: number of updates of the critics to one of the actor
+    :param target_policy_noise: standard deviation of the noise on actions that targets are computed with
+    :param target_noise_clip: largest absolute value of that noise
     """
 
     policy_delay: Annotated[int, Within(1, 100)] = 2
@@ -196,7 +196,7 @@ class SACSettings(LearnerSettings):
     """Settings of stable-baselines3's SAC.
 
     :param layers: widths of the hidden layers of actor and critics
-    :param ent_coef: coefficient of the entropy, from 0, or auto, which learns it
+    :param ent_coef: coefficient of the entropy, or auto, which learns it
     """
 
     learning_rate: LearningRate = 3e-4
@@ -208,8 +208,8 @@ class SACSettings(LearnerSettings):
 class EvolutionSettings(AgentSettings):
     """Settings of CMA-ES.
 
-    :param deviation: standard deviation, 0.01 to 2, of the first generation, in actions scaled to [-1, 1]
-    :param population: number of episodes, from 2, in a generation
+    :param deviation: standard deviation of the first generation, in actions scaled to [-1, 1]
+    :param population: number of episodes in a generation
     """
 
     deviation: Annotated[float, Within(0.01, 2.0)] = 0.6

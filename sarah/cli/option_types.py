@@ -1,0 +1,119 @@
+"""How commands read and show each type of option."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, get_args
+
+import docstring_parser
+import tyro
+
+from sarah.episode.tasks import Task, load_task
+from sarah.number import is_number, number, whole_number
+from sarah.ranges import Range, ranges_of, types_of
+
+
+def _task_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
+    """How tyro reads a task from the command line, and shows one."""
+    if Task not in (info.type, info.type_origin):
+        return None
+    return tyro.constructors.PrimitiveConstructorSpec(
+        nargs=1,
+        metavar="TASK",
+        instance_from_str=lambda words: load_task(words[0]),
+        is_instance=lambda value: isinstance(value, Task),
+        str_from_instance=lambda task: [task.reference],
+    )
+
+
+def _range_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
+    """How tyro shows a range, of which one number may stand for both ends."""
+    if info.type_origin is not tuple or get_args(info.type) != get_args(Range):
+        return None
+    return tyro.constructors.PrimitiveConstructorSpec(
+        nargs=2,
+        metavar="FLOAT [FLOAT]",
+        instance_from_str=lambda words: tuple(map(number, words)),
+        is_instance=lambda value: isinstance(value, tuple) and len(value) == 2,
+        str_from_instance=lambda ends: list(map(str, ends)),
+    )
+
+
+def _number_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
+    """How tyro reads a number: tyro itself takes Python's spellings, such as ``0100`` and ``1_000``."""
+    if info.type not in (int, float):
+        return None
+    return tyro.constructors.PrimitiveConstructorSpec(
+        nargs=1,
+        metavar="INT" if info.type is int else "FLOAT",
+        instance_from_str=lambda words: (whole_number if info.type is int else number)(words[0]),
+        is_instance=lambda value: is_number(value) and (info.type is float or isinstance(value, int)),
+        str_from_instance=lambda value: [str(value)],
+    )
+
+
+def _dimensions_rule(
+    info: tyro.constructors.PrimitiveTypeInfo,
+) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
+    """How tyro reads dimensions: names and numbers in turn, also where some differ from their defaults already."""
+    if info.type_origin is not Mapping:
+        return None
+    return tyro.constructors.PrimitiveConstructorSpec(
+        nargs="*",
+        metavar="NAME FLOAT",
+        instance_from_str=named_numbers,
+        is_instance=lambda value: isinstance(value, Mapping),
+        str_from_instance=lambda given: [word for name, value in given.items() for word in (name, f"{value:g}")],
+    )
+
+
+def _settings_rule(info: tyro.constructors.StructTypeInfo) -> tyro.constructors.StructConstructorSpec | None:
+    """How tyro shows settings: beside the default of each stands its range."""
+    ranges = ranges_of(info.type) if dataclasses.is_dataclass(info.type) else {}
+    if not ranges:
+        return None
+    types, fields = types_of(info.type), []
+    for item in dataclasses.fields(info.type):
+        kind, default = types[item.name], getattr(info.default, item.name)
+        if item.name in ranges:
+            hint = f"({ranges[item.name]}; default: {{}})".format
+            kind = Annotated[kind, tyro.conf.arg(help_behavior_hint=hint)]
+        meaning = functools.partial(_meaning, info.type, item.name)
+        fields.append(tyro.constructors.StructFieldSpec(item.name, kind, default, meaning))
+    return tyro.constructors.StructConstructorSpec(info.type, tuple(fields))
+
+
+def _meaning(config_type: type, name: str) -> str | None:
+    return meanings_of(config_type).get(name)
+
+
+@functools.cache
+def meanings_of(config_type: type) -> dict[str, str]:
+    """What each ``:param:`` line of a dataclass and of those it extends says.
+
+    :param config_type: the dataclass
+    """
+    style = docstring_parser.DocstringStyle.REST
+    parsed = (docstring_parser.parse(base.__doc__ or "", style) for base in reversed(config_type.__mro__))
+    return {p.arg_name: " ".join((p.description or "").split()) for docstring in parsed for p in docstring.params}
+
+
+def named_numbers(words: Sequence[str]) -> dict[str, float]:
+    """Numbers by name, from words that are names and numbers in turn.
+
+    :param words: the words
+    :raises ValueError: if one of the numbers is none, or missing
+    """
+    if len(words) % 2:
+        raise ValueError(f"must be names and numbers in turn, and {words[-1]!r} has no number")
+    return {name: number(word) for name, word in zip(words[::2], words[1::2], strict=True)}
+
+
+REGISTRY = tyro.constructors.ConstructorRegistry()
+REGISTRY.primitive_rule(_dimensions_rule)
+REGISTRY.primitive_rule(_number_rule)
+REGISTRY.primitive_rule(_task_rule)
+REGISTRY.primitive_rule(_range_rule)
+REGISTRY.struct_rule(_settings_rule)
