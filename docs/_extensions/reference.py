@@ -13,8 +13,8 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
-from sarah.cli.option_types import meanings_of
 from sarah.cli.training_defaults import default_training
+from sarah.cli.value_rules import meanings_of
 from sarah.control.constants import STANDARD_CONSTANTS
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.result import METRICS

@@ -105,10 +105,8 @@ class EpisodeConfig:
         for name, default in OF_DEFAULT_ROBOT.items():
             if getattr(self, name) is None:
                 within = ranges_of(type(self)).get(name)
-                if isinstance(within, Sized):
-                    object.__setattr__(self, name, default * self.scale.factor(within.quantity))
-                else:
-                    object.__setattr__(self, name, self.scale.scaled(default))
+                own = default * self.scale.factor(within.unit) if within else self.scale.scaled(default)
+                object.__setattr__(self, name, own)
         if self.physics is None:
             object.__setattr__(self, "physics", PHYSICS["standard"].at_scale(self.scale))
 

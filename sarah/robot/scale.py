@@ -30,10 +30,7 @@ DIGITS = 12
 POWERS = {
     "": (0.0, 0.0),
     "rad": (0.0, 0.0),
-    "rad per rad": (0.0, 0.0),
     "m/s^2": (0.0, 0.0),
-    "m/s^2 per rad": (0.0, 0.0),
-    "rad per m/s^2": (0.0, 0.0),
     "m": (1.0, 0.0),
     "s": (0.5, 0.0),
     "m/s": (0.5, 0.0),
@@ -63,11 +60,6 @@ class Sized(Within):
     """
 
     goes_by: str = ""
-
-    @property
-    def quantity(self) -> str:
-        """Unit whose factor the setting goes by."""
-        return self.goes_by or self.unit
 
 
 class Scale(NamedTuple):
@@ -133,7 +125,7 @@ class Scale(NamedTuple):
         values, ranges = {}, ranges_of(type(settings))
         for name, value in vars(settings).items():
             if isinstance(within := ranges.get(name), Sized):
-                factor = self.factor(within.quantity)
+                factor = self.factor(within.goes_by or within.unit)
                 values[name] = tuple(end * factor for end in value) if isinstance(value, tuple) else value * factor
             elif is_dataclass(value):
                 values[name] = self.scaled(value)
