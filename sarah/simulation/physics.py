@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from typing import Annotated, TypeVar
 
 from sarah.errors import ConfigurationError, check_whole
@@ -45,7 +45,7 @@ class Physics:
 
         :param control_rate: control ticks per second
         """
-        check_whole("physics.control_rate", control_rate, *CONTROL_RATES.limits)
+        check_whole("physics.control_rate", control_rate, *astuple(CONTROL_RATES))
         multiple = -(-self.rate // control_rate)
         return replace(self, rate=multiple * control_rate, control_rate=control_rate)
 
