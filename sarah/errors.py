@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import reprlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from itertools import pairwise
 from typing import Any
@@ -72,7 +71,7 @@ def check_range(key: str, value: Any, low: float, high: float, unit: str = "") -
     return value
 
 
-def check_whole(key: str, value: Any, low: int, high: int, unit: str = "") -> int:
+def check_whole(key: str, value: Any, low: float, high: float, unit: str = "") -> int:
     """Refuse what is not a whole number within a range.
 
     :param key: name of the setting, as the user gives it
@@ -100,7 +99,8 @@ def check_ends(key: str, ends: Any, low: float, high: float, unit: str = "") -> 
     :return: both ends
     :raises ConfigurationError: naming key, value and range
     """
-    given = tuple(map(plain, ends)) if isinstance(ends, (list, tuple)) else plain(ends)
+    given = plain(ends)
+    given = tuple(map(plain, given)) if isinstance(given, (list, tuple)) else given
     if not isinstance(given, tuple) or len(given) != 2 or given[0] == given[1]:
         value = given[0] if isinstance(given, tuple) and len(given) == 2 else given
         number = float(check_range(key, value, low, high, unit))
@@ -124,37 +124,6 @@ def check_extended_from(earlier: Sequence[float], name: str, budget: float) -> N
 
 def _span(low: float, high: float, unit: str) -> str:
     return f"between {low:.10g} and {high:.10g}{unit and f' {unit}'}"
-
-
-def to_ranges(config: object, *names: str) -> None:
-    """Make ranges of fields of a frozen configuration: one number means both ends. What is no range stays as it is.
-
-    :param config: configuration to change, while it is made
-    :param names: names of the fields
-    """
-    for name in names:
-        value = plain(getattr(config, name))
-        ends = tuple(map(plain, value)) if isinstance(value, (list, tuple)) else (value, value)
-        if len(ends) == 2 and all(map(is_number, ends)):
-            with contextlib.suppress(OverflowError):  # a whole number beyond all ranges
-                object.__setattr__(config, name, tuple(map(float, ends)))
-
-
-def check_fields(key: str, config: object, plausible: Mapping[str, tuple[float, float, str]]) -> None:
-    """Refuse a configuration if one of its fields is outside its range, and make floats of all of them.
-
-    :param key: prefix of the fields' names in messages
-    :param config: frozen configuration to check, while it is made
-    :param plausible: lowest value, highest value and unit of each field, by name
-    :raises ConfigurationError: naming key, value and range
-    """
-    for name, limits in plausible.items():
-        key_of_field, value = f"{key}.{name}", getattr(config, name)
-        is_range = "tuple[" in str(type(config).__dataclass_fields__[name].type)  # type: ignore[attr-defined]
-        checked = (
-            check_ends(key_of_field, value, *limits) if is_range else float(check_range(key_of_field, value, *limits))
-        )
-        object.__setattr__(config, name, checked)
 
 
 def check_type(key: str, value: object, expected: type) -> None:

@@ -11,16 +11,18 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from reference_markdown import markdown, meanings_of, shown, table
+from reference_markdown import markdown, shown, table
 from sphinx.application import Sphinx
 
 from sarah.cli.training_defaults import default_training
+from sarah.cli.value_rules import meanings_of
 from sarah.control.constants import STANDARD_CONSTANTS
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.result import METRICS
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS, Task
 from sarah.episode.tick import Tick
+from sarah.ranges import ranges_of
 from sarah.robot.description import JOINT_TYPES, describe_robot
 from sarah.robot.dimensions import known_dimensions
 from sarah.robot.reading import ACTUATED_JOINTS
@@ -94,11 +96,15 @@ def section(title: str, key: str, names: Iterable[str], columns: Mapping[str, An
     :param names: names of the fields
     :param columns: dataclasses with defaults, by heading
     """
-    meanings = meanings_of(type(next(iter(columns.values()))))
-    rows = [[f"`{key}{name}`", *(shown(getattr(c, name)) for c in columns.values()), meanings[name]] for name in names]
+    kind = type(next(iter(columns.values())))
+    meanings, ranges = meanings_of(kind), ranges_of(kind)
+    rows = []
+    for name in names:
+        values = [shown(getattr(config, name)) for config in columns.values()]
+        rows.append([f"`{key}{name}`", *values, str(ranges.get(name, "")), markdown(meanings[name])])
     if rows:
         yield f"## {title}\n"
-        yield from table(["setting", *columns, "meaning"], rows)
+        yield from table(["setting", *columns, "range", "meaning"], rows)
 
 
 def own_fields(config_type: Any, base: Any = None) -> list[str]:
@@ -142,7 +148,7 @@ def metrics_page() -> Iterator[str]:
 
 def tick_page() -> Iterator[str]:
     """A table of what a reward and an ending know."""
-    fields = {name: meaning for name, meaning in meanings_of(Tick).items() if name != "simulator"}
+    fields = {name: markdown(meaning) for name, meaning in meanings_of(Tick).items() if name != "simulator"}
     properties = {
         name: markdown(str(member.__doc__).rstrip("."))
         for name, member in vars(Tick).items()

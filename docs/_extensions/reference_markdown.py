@@ -6,8 +6,6 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-import docstring_parser
-
 from sarah.episode.tasks import Task
 
 
@@ -20,16 +18,6 @@ def table(head: list[str], rows: Iterable[list[str]]) -> Iterator[str]:
     for cells in (head, ["---"] * len(head), *rows):
         yield f"| {' | '.join(cell or '-' for cell in cells)} |"
     yield ""
-
-
-def meanings_of(config_type: type) -> dict[str, str]:
-    """What each ``:param:`` line of a dataclass and of those it extends says, as Markdown.
-
-    :param config_type: the dataclass
-    """
-    style = docstring_parser.DocstringStyle.REST
-    parsed = (docstring_parser.parse(base.__doc__ or "", style) for base in reversed(config_type.__mro__))
-    return {p.arg_name: markdown(p.description or "") for docstring in parsed for p in docstring.params}
 
 
 def markdown(text: str) -> str:

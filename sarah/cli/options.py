@@ -12,7 +12,7 @@ import re
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from difflib import get_close_matches
-from typing import Any, NoReturn, TypeVar, get_type_hints
+from typing import Any, NoReturn, TypeVar
 
 import tyro
 
@@ -23,6 +23,7 @@ from sarah.episode.tasks import Task, load_task
 from sarah.errors import ConfigurationError, SarahError, unknown_name
 from sarah.files import is_text
 from sarah.number import NUMBER
+from sarah.ranges import Range, types_of
 from sarah.simulation.engines import default_engine
 from sarah.streams import check_output, keep_streams, say_lost_output
 
@@ -136,12 +137,12 @@ def _checked(words: Sequence[str]) -> Sequence[str]:
 
 def _ranges_of(config: Any) -> Iterator[str]:
     """Names of the options of some settings that are ranges."""
-    types = get_type_hints(type(config))
+    types = types_of(type(config))
     for item in dataclasses.fields(config):
         value, name = getattr(config, item.name), item.name.replace("_", "-")
         if dataclasses.is_dataclass(value) and not isinstance(value, Task):
             yield from (f"{name}.{inner}" if name != "training" else inner for inner in _ranges_of(value))
-        elif types[item.name] in (tuple[float, float], tuple[float, float] | None):
+        elif types[item.name] in (Range, Range | None):
             yield name
 
 

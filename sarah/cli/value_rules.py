@@ -1,14 +1,18 @@
-"""How the command line reads a task, a range, a number and dimensions, and how it shows them."""
+"""How the command line reads a task, a range, a number and dimensions, and how it shows them and settings."""
 
 from __future__ import annotations
 
+import dataclasses
+import functools
 from collections.abc import Mapping, Sequence
-from typing import Any, get_args
+from typing import Annotated, Any, get_args
 
+import docstring_parser
 import tyro
 
 from sarah.episode.tasks import Task, load_task
 from sarah.number import is_number, number, whole_number
+from sarah.ranges import ranges_of, types_of
 
 
 def _task_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
@@ -76,9 +80,41 @@ def named_numbers(words: Sequence[str]) -> dict[str, float]:
     return {name: number(word) for name, word in zip(words[::2], words[1::2], strict=True)}
 
 
+def _settings_rule(info: tyro.constructors.StructTypeInfo) -> tyro.constructors.StructConstructorSpec | None:
+    """How tyro shows settings: beside the default of each stands its range."""
+    ranges = ranges_of(info.type) if dataclasses.is_dataclass(info.type) else {}
+    if not ranges:
+        return None
+    types, fields = types_of(info.type), []
+    for item in dataclasses.fields(info.type):
+        kind, default = types[item.name], getattr(info.default, item.name)
+        if item.name in ranges:
+            hint = f"({ranges[item.name]}; default: {{}})".format
+            kind = Annotated[kind, tyro.conf.arg(help_behavior_hint=hint)]
+        meaning = functools.partial(_meaning, info.type, item.name)
+        fields.append(tyro.constructors.StructFieldSpec(item.name, kind, default, meaning))
+    return tyro.constructors.StructConstructorSpec(info.type, tuple(fields))
+
+
+def _meaning(config_type: type, name: str) -> str | None:
+    return meanings_of(config_type).get(name)
+
+
+@functools.cache
+def meanings_of(config_type: type) -> dict[str, str]:
+    """What each ``:param:`` line of a dataclass and of those it extends says.
+
+    :param config_type: the dataclass
+    """
+    style = docstring_parser.DocstringStyle.REST
+    parsed = (docstring_parser.parse(base.__doc__ or "", style) for base in reversed(config_type.__mro__))
+    return {p.arg_name: " ".join((p.description or "").split()) for docstring in parsed for p in docstring.params}
+
+
 REGISTRY = tyro.constructors.ConstructorRegistry()
 """Rules for tyro."""
 REGISTRY.primitive_rule(_dimensions_rule)
 REGISTRY.primitive_rule(_number_rule)
 REGISTRY.primitive_rule(_task_rule)
 REGISTRY.primitive_rule(_range_rule)
+REGISTRY.struct_rule(_settings_rule)

@@ -3,47 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
-from sarah.errors import check_fields
-from sarah.robot.scale import ROCKING
-
-PLAUSIBLE = {
-    "baseline_time_constant": (0.1, 10_000.0, "s"),
-    "minimum_phase_seconds": (0.0, 1.0, "s"),
-    "time_out_seconds": (0.01, 100.0, "s"),
-    "landing_rate": (0.0, 1000.0, "rad/s"),
-    "rate_scale": (0.0, 10.0, "rad/s"),
-    "shift_extension": (0.0, 1.0, "m"),
-    "lift_retraction": (0.0, 1.0, "m"),
-    "leg_speed": (0.01, 100.0, "m/s"),
-    "tilt_time_constant": (1e-4, 100.0, "s"),
-    "rate_time_constant": (1e-4, 100.0, "s"),
-    "abduction_tilt": (0.0, 10_000.0, "m/s^2 per rad"),
-    "abduction_rate_share": (0.0, 10.0, ""),
-    "largest_acceleration": (0.1, 1000.0, "m/s^2"),
-    "abduction_scale": (0.0, 10.0, "rad per m/s^2"),
-    "flexion_scale": (0.0, 1.0, "rad"),
-    "largest_hip_angle": (0.0, 1.5, "rad"),
-    "hip_speed": (0.01, 100.0, "rad/s"),
-    "stable_time_constant": (1e-4, 100.0, "s"),
-    "lean_time_constant": (0.02, 100.0, "s"),  # a control period at least: its leak is one step of Euler's method
-    "fall_time_constant": (1e-4, 100.0, "s"),
-    "fall_rate": (0.1, 100.0, "1/s"),
-    "fall_dead_band": (0.0, 1.5, "rad"),
-    "largest_servo_error": (0.0, 10.0, "rad"),
-    "capture_gain": (0.0, 10.0, ""),
-    "spread_gain": (0.0, 10.0, ""),
-    "spread_dead_band": (0.0, 1.5, "rad"),
-    "spread_speed": (0.01, 100.0, "rad/s"),
-    "spread_return_speed": (0.01, 100.0, "rad/s"),
-    "pad_threshold": (0.0, 100_000.0, "N"),
-    "largest_rate": (0.1, 1000.0, "rad/s"),
-    "balance_ramp": (0.01, 1000.0, "per second"),
-    "largest_blow": (0.1, 1000.0, "m/s^2"),
-    "upright_time_constant": (1e-4, 100.0, "s"),
-    "least_upright": (-20.0, 20.0, "m/s^2"),
-}
-"""Lowest value, highest value and unit of each constant. Beyond them, somebody has mistaken the unit."""
+from sarah.ranges import Within, check_ranges
+from sarah.robot.scale import ROCKING, Sized
 
 
 @dataclass(frozen=True)
@@ -93,46 +56,44 @@ class ControllerConstants:
     :param least_upright: low-passed vertical acceleration of the torso below which the robot has fallen, in m/s^2
     """
 
-    UNITS = {name: unit for name, (_, _, unit) in PLAUSIBLE.items()} | {"shift_extension": ROCKING}
-
-    baseline_time_constant: float = 8.0
-    minimum_phase_seconds: float = 0.04
-    time_out_seconds: float = 0.5
-    landing_rate: float = 1.0
-    rate_scale: float = 0.01
-    shift_extension: float = 0.008
-    lift_retraction: float = 0.030
-    leg_speed: float = 1.0
-    tilt_time_constant: float = 0.10
-    rate_time_constant: float = 0.01
-    abduction_tilt: float = 150.0
-    abduction_rate_share: float = 0.2
-    largest_acceleration: float = 20.0
-    abduction_scale: float = 0.05
-    flexion_scale: float = 0.02
-    largest_hip_angle: float = 0.3
-    hip_speed: float = 6.0
-    stable_time_constant: float = 0.30
-    lean_time_constant: float = 1.0
-    fall_time_constant: float = 0.03
-    fall_rate: float = 4.0
-    fall_dead_band: float = 0.03
-    largest_servo_error: float = 0.1
-    capture_gain: float = 0.6
-    spread_gain: float = 2.0
-    spread_dead_band: float = 0.15
-    spread_speed: float = 1.5
-    spread_return_speed: float = 1.0
-    pad_threshold: float = 30.0
-    largest_rate: float = 10.0
-    balance_ramp: float = 4.0
-    largest_blow: float = 40.0
-    upright_time_constant: float = 0.5
-    least_upright: float = 5.0
+    baseline_time_constant: Annotated[float, Sized(0.1, 10_000.0, "s")] = 8.0
+    minimum_phase_seconds: Annotated[float, Sized(0.0, 1.0, "s")] = 0.04
+    time_out_seconds: Annotated[float, Sized(0.01, 100.0, "s")] = 0.5
+    landing_rate: Annotated[float, Sized(0.0, 1000.0, "rad/s")] = 1.0
+    rate_scale: Annotated[float, Sized(0.0, 10.0, "rad/s")] = 0.01
+    shift_extension: Annotated[float, Sized(0.0, 1.0, "m", ROCKING)] = 0.008
+    lift_retraction: Annotated[float, Sized(0.0, 1.0, "m")] = 0.030
+    leg_speed: Annotated[float, Sized(0.01, 100.0, "m/s")] = 1.0
+    tilt_time_constant: Annotated[float, Sized(1e-4, 100.0, "s")] = 0.10
+    rate_time_constant: Annotated[float, Sized(1e-4, 100.0, "s")] = 0.01
+    abduction_tilt: Annotated[float, Within(0.0, 10_000.0, "m/s^2 per rad")] = 150.0
+    abduction_rate_share: Annotated[float, Within(0.0, 10.0)] = 0.2
+    largest_acceleration: Annotated[float, Within(0.1, 1000.0, "m/s^2")] = 20.0
+    abduction_scale: Annotated[float, Within(0.0, 10.0, "rad per m/s^2")] = 0.05
+    flexion_scale: Annotated[float, Within(0.0, 1.0, "rad")] = 0.02
+    largest_hip_angle: Annotated[float, Within(0.0, 1.5, "rad")] = 0.3
+    hip_speed: Annotated[float, Sized(0.01, 100.0, "rad/s")] = 6.0
+    stable_time_constant: Annotated[float, Sized(1e-4, 100.0, "s")] = 0.30
+    lean_time_constant: Annotated[float, Sized(0.02, 100.0, "s")] = 1.0  # a control period at least: a step of Euler's
+    fall_time_constant: Annotated[float, Sized(1e-4, 100.0, "s")] = 0.03
+    fall_rate: Annotated[float, Sized(0.1, 100.0, "1/s")] = 4.0
+    fall_dead_band: Annotated[float, Within(0.0, 1.5, "rad")] = 0.03
+    largest_servo_error: Annotated[float, Within(0.0, 10.0, "rad")] = 0.1
+    capture_gain: Annotated[float, Within(0.0, 10.0)] = 0.6
+    spread_gain: Annotated[float, Within(0.0, 10.0)] = 2.0
+    spread_dead_band: Annotated[float, Within(0.0, 1.5, "rad")] = 0.15
+    spread_speed: Annotated[float, Sized(0.01, 100.0, "rad/s")] = 1.5
+    spread_return_speed: Annotated[float, Sized(0.01, 100.0, "rad/s")] = 1.0
+    pad_threshold: Annotated[float, Sized(0.0, 100_000.0, "N")] = 30.0
+    largest_rate: Annotated[float, Sized(0.1, 1000.0, "rad/s")] = 10.0
+    balance_ramp: Annotated[float, Sized(0.01, 1000.0, "per second")] = 4.0
+    largest_blow: Annotated[float, Within(0.1, 1000.0, "m/s^2")] = 40.0
+    upright_time_constant: Annotated[float, Sized(1e-4, 100.0, "s")] = 0.5
+    least_upright: Annotated[float, Within(-20.0, 20.0, "m/s^2")] = 5.0
 
     def __post_init__(self) -> None:
         """Refuse values that no controller can have."""
-        check_fields("controller", self, PLAUSIBLE)
+        check_ranges("controller.", self)
 
 
 STANDARD_CONSTANTS = ControllerConstants()

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS, Task, task_named
 from sarah.errors import LONGEST_NAME, ConfigurationError, shortened, unknown_name
 from sarah.number import is_number, plain
+from sarah.ranges import Range, types_of
 
 ConfigType = TypeVar("ConfigType")
-RANGE = tuple[float, float]
 
 
 def from_mapping(default: ConfigType, content: Any, key: str = "") -> ConfigType:
@@ -27,7 +27,7 @@ def from_mapping(default: ConfigType, content: Any, key: str = "") -> ConfigType
         return content
     if not isinstance(content, Mapping):
         raise ConfigurationError(f"{key.rstrip('.') or 'the file'} must hold keys and values, not {shortened(content)}")
-    types = get_type_hints(type(default))
+    types = types_of(type(default))
     dependent: dict[str, Any] = getattr(default, "dependent_defaults", lambda _: {})(content)
     values = dict(dependent)
     for name, value in content.items():
@@ -67,7 +67,7 @@ def convert_fields(config: Any, key: str = "") -> None:
     :param key: prefix of the names in messages
     :raises ConfigurationError: naming key and value, if a value is of another type
     """
-    for name, expected in get_type_hints(type(config)).items():
+    for name, expected in types_of(type(config)).items():
         object.__setattr__(config, name, _converted(expected, getattr(config, name), key + name))
 
 
@@ -125,7 +125,7 @@ def _converted(expected: Any, value: Any, key: str) -> Any:
 
 def _made(expected: Any, content: Any, key: str) -> Any:
     """A dataclass without defaults, of a mapping that names all its fields."""
-    types = get_type_hints(expected)
+    types = types_of(expected)
     if not isinstance(content, Mapping) or content.keys() != types.keys():
         raise ConfigurationError(f"{key} must hold {' and '.join(types)}, not {shortened(content)}")
     return expected(**{name: _converted(types[name], value, f"{key}.{name}") for name, value in content.items()})
@@ -138,14 +138,14 @@ def _short(name: Any) -> str:
 
 def _converted_tuple(parts: tuple[Any, ...], value: Any, key: str) -> tuple[Any, ...]:
     """A tuple of the expected parts, of which an ellipsis stands for as many as there are of the one before it."""
-    if parts == get_args(RANGE) and is_number(value):
+    if parts == get_args(Range) and is_number(value):
         value = (value, value)  # one number is both ends of a range
     is_list = isinstance(value, (list, tuple))
     if Ellipsis in parts:
         parts = (parts[0],) * len(value) if is_list else ()
     if not is_list or len(value) != len(parts):
         values = f"a list of {len(parts)} values" if parts else "a list"
-        if parts == get_args(RANGE):
+        if parts == get_args(Range):
             values = "one number, or a list of 2 for a range"
         raise ConfigurationError(f"{key} must be {values}, not {shortened(value)}")
     return tuple(_converted(part, item, key) for part, item in zip(parts, value, strict=True))

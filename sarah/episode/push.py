@@ -5,21 +5,16 @@ from __future__ import annotations
 import math
 import random
 from dataclasses import dataclass
+from typing import Annotated
 
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.settings import LONGEST_EPISODE, EpisodeConfig
-from sarah.errors import ConfigurationError, check_fields, check_types, to_ranges
+from sarah.errors import ConfigurationError, check_types
 from sarah.number import is_finite, plain, to_floats
+from sarah.ranges import Range, Within, check_ranges
 from sarah.robot.reading import Vector
+from sarah.robot.scale import Sized
 
-PLAUSIBLE = {
-    "newtons": (0.0, 10_000.0, "N"),
-    "degrees": (0.0, 720.0, "degrees"),
-    "at_seconds": (STAND_SECONDS, LONGEST_EPISODE, "s"),
-    "duration": (0.0, 10.0, "s"),
-    "sagittal_share": (0.0, 1.0, ""),
-}
-"""Lowest value, highest value and unit of each setting. Beyond them, somebody has mistaken the unit."""
 PUSH_SHOWN_SECONDS = 0.6
 """Shortest time for which pictures show a push, in s: most are over before a viewer has noticed them."""
 DIRECTIONS = (
@@ -51,18 +46,15 @@ class Push:
         way, instead of anywhere in the range of directions
     """
 
-    UNITS = {"newtons": "N", "duration": "s"}
-
-    newtons: tuple[float, float] = (0.0, 100.0)
-    degrees: tuple[float, float] = (0.0, 360.0)
-    at_seconds: tuple[float, float] = (1.0, 4.0)
-    duration: float = 0.15
-    sagittal_share: float = 0.0
+    newtons: Annotated[Range, Sized(0.0, 10_000.0, "N")] = (0.0, 100.0)
+    degrees: Annotated[Range, Within(0.0, 720.0, "degrees")] = (0.0, 360.0)
+    at_seconds: Annotated[Range, Within(STAND_SECONDS, LONGEST_EPISODE, "s")] = (1.0, 4.0)
+    duration: Annotated[float, Sized(0.0, 10.0, "s")] = 0.15
+    sagittal_share: Annotated[float, Within(0.0, 1.0)] = 0.0
 
     def __post_init__(self) -> None:
         """Refuse impossible pushes, and pushes that begin while the robot stands."""
-        to_ranges(self, "newtons", "degrees", "at_seconds")
-        check_fields("push", self, PLAUSIBLE)
+        check_ranges("push.", self)
 
 
 NOBODY = Push(newtons=(0.0, 0.0))

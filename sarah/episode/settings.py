@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
-from typing import Any, Literal, TypeVar, get_args
+from typing import Annotated, Any, Literal, TypeVar, get_args
 
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.pattern_generator import STAND_SECONDS
-from sarah.errors import ConfigurationError, check_range, check_types, unknown_name
+from sarah.errors import ConfigurationError, check_types, unknown_name
 from sarah.number import is_number, plain
+from sarah.ranges import Within, check_ranges, ranges_of
 from sarah.robot.dimensions import check_dimensions, scale_of, unscaled_dimensions
-from sarah.robot.scale import Scale
+from sarah.robot.scale import Scale, Sized
 from sarah.simulation.engines import Engine, default_engine
 from sarah.simulation.physics import PHYSICS, Physics, physics_for
 from sarah.simulation.randomisation import Randomisation
@@ -28,15 +29,6 @@ BOX_HALF_WIDTH = 0.25
 """Displacement of the default robot's torso along any axis at which an episode ends, in m; it is the paper's."""
 LEAST_CLEARANCE = 0.010
 """Sole clearance of the default robot below which a gait is a shuffle, in m."""
-PLAUSIBLE = {
-    "payload": (0.0, 100.0, "kg"),
-    "time_limit": (STAND_SECONDS, LONGEST_EPISODE, "s"),
-    "step_frequency": (0.1, 100.0, "per second"),
-    "reward_half_width": (0.001, 100.0, "m"),
-    "box_half_width": (0.001, 100.0, "m"),
-    "least_clearance": (0.0, 1.0, "m"),
-}
-"""Lowest value, highest value and unit of each setting that is a number."""
 OF_DEFAULT_ROBOT: dict[str, Any] = {
     "controller": STANDARD_CONSTANTS,
     "randomisation": Randomisation(),
@@ -79,21 +71,19 @@ class EpisodeConfig:
     :param least_clearance: sole clearance below which a gait is a shuffle, and not valid, in m
     """
 
-    UNITS = {"payload": "kg", "reward_half_width": "m", "box_half_width": "m", "least_clearance": "m"}
-
     physics: Physics = None  # type: ignore[assignment]  # as are others, of the robot's size
     engine: Engine = field(default_factory=default_engine)
     randomisation: Randomisation = None  # type: ignore[assignment]
     terrain: Terrain = None  # type: ignore[assignment]
     controller: ControllerConstants = None  # type: ignore[assignment]
-    payload: float = 0.0
+    payload: Annotated[float, Sized(0.0, 100.0, "kg")] = 0.0
     dimensions: Mapping[str, float] = field(default_factory=dict)
-    time_limit: float = 30.0
+    time_limit: Annotated[float, Within(STAND_SECONDS, LONGEST_EPISODE, "s")] = 30.0
     reward_form: RewardForm = "symmetric"
-    step_frequency: float = STEP_FREQUENCY
-    reward_half_width: float = None  # type: ignore[assignment]
-    box_half_width: float = None  # type: ignore[assignment]
-    least_clearance: float = None  # type: ignore[assignment]
+    step_frequency: Annotated[float, Within(0.1, 100.0, "per second")] = STEP_FREQUENCY
+    reward_half_width: Annotated[float, Sized(0.001, 100.0, "m")] = None  # type: ignore[assignment]
+    box_half_width: Annotated[float, Sized(0.001, 100.0, "m")] = None  # type: ignore[assignment]
+    least_clearance: Annotated[float, Sized(0.0, 1.0, "m")] = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         """Refuse settings that cannot be simulated."""
@@ -108,8 +98,7 @@ class EpisodeConfig:
                 raise ConfigurationError(unknown_name(name, str(given), allowed))
             object.__setattr__(self, name, given)
         object.__setattr__(self, "physics", physics_for(self.engine, self.physics, self.scale))
-        for name, (low, high, unit) in PLAUSIBLE.items():
-            object.__setattr__(self, name, float(check_range(name, getattr(self, name), low, high, unit)))
+        check_ranges("", self)
         if self.time_limit < STAND_SECONDS + self.physics.control_dt:
             raise ConfigurationError(
                 f"time_limit must be above the {STAND_SECONDS:g} s of standing, not {self.time_limit!r}"
@@ -119,8 +108,8 @@ class EpisodeConfig:
         """Set what was not given to that of the robot's size."""
         for name, default in OF_DEFAULT_ROBOT.items():
             if getattr(self, name) is None:
-                unit = self.UNITS.get(name)
-                own = self.scale.scaled(default) if unit is None else default * self.scale.factor(unit)
+                within = ranges_of(type(self)).get(name)
+                own = default * self.scale.factor(within.unit) if within else self.scale.scaled(default)
                 object.__setattr__(self, name, own)
         if self.physics is None:
             object.__setattr__(self, "physics", PHYSICS["standard"].at_scale(self.scale))

@@ -6,7 +6,7 @@ import dataclasses
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
 from sarah.control.hip_law import BalanceParameters
 from sarah.control.parameters import BALANCE_PARAMETERS, STEPPING_PARAMETERS, Box
@@ -17,13 +17,12 @@ from sarah.episode.shipped import shipped_parameters
 from sarah.errors import (
     ConfigurationError,
     check_extended_from,
-    check_fields,
-    check_range,
     check_type,
     check_types,
     shortened,
 )
 from sarah.number import plain
+from sarah.ranges import Within, check_ranges
 from sarah.robot.description import describe_robot
 
 PARAMETERS = (*STEPPING_PARAMETERS, *BALANCE_PARAMETERS)
@@ -36,14 +35,7 @@ SHIPPED: Parameters = (
     *shipped_parameters("balance", BALANCE_PARAMETERS),
 )
 """P1 to P5 and V1 to V4 that the package ships."""
-PLAUSIBLE = {
-    "minutes": (0.1, 600.0, "min"),
-    "settle_seconds": (0.0, 60.0, "s"),
-    "measure_seconds": (0.5, 600.0, "s"),
-    "fall_seconds": (0.0, 3600.0, "s"),
-    "push_seconds": (0.5, 3600.0, "s"),
-}
-"""Lowest value, highest value and unit of each setting. Beyond them, somebody has mistaken the unit."""
+Minutes = Annotated[float, Within(0.1, 600.0, "min")]
 WITHOUT_EFFECT = ("time_limit", "reward_form", "push.at_seconds")
 """Settings of an episode that an operation does not know."""
 SOFT_PUSHES = Push(newtons=(0.0, 50.0))
@@ -88,24 +80,21 @@ class OperationConfig:
     """
 
     robot: PushedConfig = field(default_factory=lambda: PushedConfig(push=SOFT_PUSHES))
-    minutes: float = 10.0
-    settle_seconds: float = 2.0
-    measure_seconds: float = 4.0
-    fall_seconds: float = 20.0
-    push_seconds: float = 4.0
+    minutes: Minutes = 10.0
+    settle_seconds: Annotated[float, Within(0.0, 60.0, "s")] = 2.0
+    measure_seconds: Annotated[float, Within(0.5, 600.0, "s")] = 4.0
+    fall_seconds: Annotated[float, Within(0.0, 3600.0, "s")] = 20.0
+    push_seconds: Annotated[float, Within(0.5, 3600.0, "s")] = 4.0
     changes: tuple[Change, ...] = ()
-    extended_from: tuple[float, ...] = ()
+    extended_from: tuple[Minutes, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse settings that cannot be simulated, also those of robots that come later."""
         check_types(self, robot=PushedConfig, changes=tuple, extended_from=tuple)
         if type(self.robot) is not PushedConfig:  # the file of a session holds no settings of a task
             raise ConfigurationError(f"robot must be a PushedConfig, not a {type(self.robot).__name__}")
-        check_fields("operation", self, PLAUSIBLE)
-        limits = PLAUSIBLE["minutes"]
-        earlier = tuple(float(check_range("extended_from", value, *limits)) for value in self.extended_from)
-        object.__setattr__(self, "extended_from", earlier)
-        check_extended_from(earlier, "minutes", self.minutes)
+        check_ranges("operation.", self)
+        check_extended_from(self.extended_from, "minutes", self.minutes)
         for change in self.changes:
             check_type("a change", change, Change)
         minutes = [change.minute for change in self.changes]

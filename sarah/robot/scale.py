@@ -14,8 +14,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import fields, replace
-from typing import Any, NamedTuple, TypeVar
+from dataclasses import dataclass, is_dataclass, replace
+from typing import NamedTuple, TypeVar
+
+from sarah.ranges import Within, ranges_of
 
 HEIGHT = 0.84
 """Height of the default robot's torso over the floor, in m."""
@@ -28,10 +30,7 @@ DIGITS = 12
 POWERS = {
     "": (0.0, 0.0),
     "rad": (0.0, 0.0),
-    "rad per rad": (0.0, 0.0),
     "m/s^2": (0.0, 0.0),
-    "m/s^2 per rad": (0.0, 0.0),
-    "rad per m/s^2": (0.0, 0.0),
     "m": (1.0, 0.0),
     "s": (0.5, 0.0),
     "m/s": (0.5, 0.0),
@@ -51,6 +50,16 @@ ROCKING = "m of rocking"
 """Unit of a length that goes by width^2 / height."""
 
 Settings = TypeVar("Settings")
+
+
+@dataclass(frozen=True)
+class Sized(Within):
+    """Range of a setting that goes with the robot's size.
+
+    :param goes_by: unit whose factor the setting goes by, if it is not that of its limits
+    """
+
+    goes_by: str = ""
 
 
 class Scale(NamedTuple):
@@ -108,18 +117,16 @@ class Scale(NamedTuple):
     def scaled(self, settings: Settings) -> Settings:
         """Settings of a robot of this scale that is like the one they are for.
 
-        :param settings: settings, a dataclass, whose class may have ``UNITS``: units of the numbers and ranges that go
-            with the scale, by name; settings within them go with it too
+        :param settings: settings, a dataclass: fields with a range of :class:`Sized` go with the scale, also those of
+            settings within them
         """
         if self == Scale():
             return settings
-        values: dict[str, Any] = {}
-        for item in fields(settings):  # type: ignore[arg-type]  # a dataclass
-            value = getattr(settings, item.name)
-            unit = getattr(settings, "UNITS", {}).get(item.name)
-            if unit is not None:
-                factor = self.factor(unit)
-                values[item.name] = tuple(end * factor for end in value) if isinstance(value, tuple) else value * factor
-            elif hasattr(value, "UNITS"):
-                values[item.name] = self.scaled(value)
+        values, ranges = {}, ranges_of(type(settings))
+        for name, value in vars(settings).items():
+            if isinstance(within := ranges.get(name), Sized):
+                factor = self.factor(within.goes_by or within.unit)
+                values[name] = tuple(end * factor for end in value) if isinstance(value, tuple) else value * factor
+            elif is_dataclass(value):
+                values[name] = self.scaled(value)
         return replace(settings, **values)  # type: ignore[type-var]  # a dataclass

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal, get_args
+from typing import Annotated, Any, Literal, get_args
 
 from sarah.episode.from_mapping import convert_fields
-from sarah.errors import ConfigurationError, check_range, shortened, to_ranges, unknown_name
+from sarah.errors import ConfigurationError, shortened, unknown_name
+from sarah.ranges import Within, check_ranges
 
 Preset = Literal["one-step", "paper"]
 Activation = Literal["tanh", "relu", "sigmoid"]
@@ -44,35 +45,11 @@ PRESETS: dict[str, dict[str, Any]] = {
 MOST_LAYERS = 20
 WARM_UP = 5
 """Default number of episodes before an algorithm uses what it knows: the same for all, which makes races fair."""
-PLAUSIBLE: dict[str, tuple[float, float]] = {
-    "learning_rate": (1e-9, 1.0),
-    "buffer_size": (1, 10_000_000),
-    "learning_starts": (0, 1_000_000),
-    "batch_size": (1, 100_000),
-    "tau": (0.0, 1.0),
-    "gamma": (0.0, 1.0),
-    "gradient_steps": (1, 10_000),
-    "max_grad_norm": (1e-6, 1e6),
-    "exploration_std": (0.0, 2.0),
-    "temperature": (0.0, 100.0),
-    "elite_share": (0.0, 1.0),
-    "elite_std": (0.0, 2.0),
-    "elite_draws": (1, 10_000),
-    "layers": (1, 10_000),
-    "v_layers": (1, 10_000),
-    "mu_layers": (1, 10_000),
-    "l_layers": (1, 10_000),
-    "shared_layers": (1, 10_000),
-    "min_curvature": (0.0, 1000.0),
-    "action_noise_std": (0.0, 2.0),
-    "policy_delay": (1, 100),
-    "target_policy_noise": (0.0, 2.0),
-    "target_noise_clip": (0.0, 2.0),
-    "ent_coef": (0.0, 100.0),
-    "deviation": (0.01, 2.0),
-    "population": (2, 1000),
-}
-"""Lowest and highest value of every number in the settings; an empty tuple of layers has none."""
+Share = Annotated[float, Within(0.0, 1.0)]
+Deviation = Annotated[float, Within(0.0, 2.0)]
+LearningRate = Annotated[float, Within(1e-9, 1.0)]
+BufferSize = Annotated[int, Within(1, 10_000_000)]
+Layers = tuple[Annotated[int, Within(1, 10_000)], ...]
 
 
 @dataclass(frozen=True)
@@ -83,35 +60,32 @@ class AgentSettings:
         """Refuse values of another type or out of their range."""
         convert_fields(self, "agent.")
         for name, value in vars(self).items():
-            key = f"agent.{name}"
             if name.endswith("layers") and len(value) > MOST_LAYERS:
-                raise ConfigurationError(f"{key} must be at most {MOST_LAYERS} layers, not {len(value)}")
-            if name in PLAUSIBLE and value != "auto":
-                for number in value if isinstance(value, tuple) else (value,):
-                    check_range(key, number, *PLAUSIBLE[name])
+                raise ConfigurationError(f"agent.{name} must be at most {MOST_LAYERS} layers, not {len(value)}")
+        check_ranges("agent.", self)
 
 
 @dataclass(frozen=True)
 class LearnerSettings(AgentSettings):
     """Settings that all reinforcement learners share. Actions are scaled to [-1, 1].
 
-    :param learning_rate: step size of the optimiser Adam, above 0
-    :param buffer_size: number of episodes, from 1, that the replay buffer holds
+    :param learning_rate: step size of the optimiser Adam
+    :param buffer_size: number of episodes that the replay buffer holds
     :param learning_starts: number of uniform episodes before the networks learn; twice the slots, if that is more
-    :param batch_size: number of episodes, from 1, in the minibatch of an update
-    :param tau: share of their weights, 0 to 1, that the target networks take over from the others at an update
-    :param gamma: discount factor, 0 to 1, of what follows an action; nothing does, as an episode is one action
-    :param gradient_steps: number of updates, from 1, after each episode
+    :param batch_size: number of episodes in the minibatch of an update
+    :param tau: share of their weights that the target networks take over from the others at an update
+    :param gamma: discount factor of what follows an action; nothing does, as an episode is one action
+    :param gradient_steps: number of updates after each episode
     :param device: device of the networks: cpu, cuda, cuda:1 and so on, or auto, which takes CUDA where there is some
     """
 
-    learning_rate: float = 1e-3
-    buffer_size: int = 1_000_000
-    learning_starts: int = WARM_UP
-    batch_size: int = 64
-    tau: float = 0.005
-    gamma: float = 0.0
-    gradient_steps: int = 10
+    learning_rate: LearningRate = 1e-3
+    buffer_size: BufferSize = 1_000_000
+    learning_starts: Annotated[int, Within(0, 1_000_000)] = WARM_UP
+    batch_size: Annotated[int, Within(1, 100_000)] = 64
+    tau: Share = 0.005
+    gamma: Share = 0.0
+    gradient_steps: Annotated[int, Within(1, 10_000)] = 10
     device: str = "cpu"
 
     def __post_init__(self) -> None:
@@ -133,39 +107,39 @@ class NAFSettings(LearnerSettings):
     """Settings of NAF. Standard deviations are of actions scaled to [-1, 1].
 
     :param preset: source of defaults: one-step for local NAF, paper for the paper's networks and plain NAF
-    :param max_grad_norm: largest norm of an update's gradient, above 0
-    :param exploration_std: standard deviation, 0 to 2, of the noise around mu: at first, and after 80 % of the training
-    :param temperature: logarithm, from 0, of how much more often the best episode is replayed than the worst
+    :param max_grad_norm: largest norm of an update's gradient
+    :param exploration_std: standard deviation of the noise around mu: at first, and after 80 % of the training
+    :param temperature: logarithm of how much more often the best episode is replayed than the worst
     :param smoothed: smoothing of the returns over similar actions, by a Gaussian process of the newest 500 episodes
-    :param elite_share: share of the actions, 0 to 1, that are drawn around the best one so far instead of around mu
-    :param elite_std: standard deviation, 0 to 2, of these draws: at first, and after 80 % of the training
-    :param elite_draws: number of draws, from 1, of which the most promising is tried
+    :param elite_share: share of the actions that are drawn around the best one so far instead of around mu
+    :param elite_std: standard deviation of these draws: at first, and after 80 % of the training
+    :param elite_draws: number of draws, of which the most promising is tried
     :param v_layers: widths of the hidden layers of V
     :param mu_layers: widths of the hidden layers of mu
     :param l_layers: widths of the hidden layers of L
     :param shared_layers: widths of hidden layers that mu and L have in common, before their own
     :param activation: activation function of the hidden layers: tanh, relu or sigmoid
     :param squash_mu: tanh at the end of mu; if there is none, mu is linear and clipped
-    :param min_curvature: curvature, from 0, that is added to L L^T, so that Q is flat nowhere
+    :param min_curvature: curvature that is added to L L^T, so that Q is flat nowhere
     """
 
-    buffer_size: int = 10_000
-    tau: float = 0.02
+    buffer_size: BufferSize = 10_000
+    tau: Share = 0.02
     preset: Preset = "one-step"
-    max_grad_norm: float = 10.0
-    exploration_std: tuple[float, float] = (0.3, 0.05)
-    temperature: float = _by_preset()
+    max_grad_norm: Annotated[float, Within(1e-6, 1e6)] = 10.0
+    exploration_std: tuple[Deviation, Deviation] = (0.3, 0.05)
+    temperature: Annotated[float, Within(0.0, 100.0)] = _by_preset()
     smoothed: bool = _by_preset()
-    elite_share: float = _by_preset()
-    elite_std: tuple[float, float] = (0.4, 0.15)
-    elite_draws: int = 1
-    v_layers: tuple[int, ...] = _by_preset()
-    mu_layers: tuple[int, ...] = _by_preset()
-    l_layers: tuple[int, ...] = _by_preset()
-    shared_layers: tuple[int, ...] = ()
+    elite_share: Share = _by_preset()
+    elite_std: tuple[Deviation, Deviation] = (0.4, 0.15)
+    elite_draws: Annotated[int, Within(1, 10_000)] = 1
+    v_layers: Layers = _by_preset()
+    mu_layers: Layers = _by_preset()
+    l_layers: Layers = _by_preset()
+    shared_layers: Layers = ()
     activation: Activation = _by_preset()
     squash_mu: bool = _by_preset()
-    min_curvature: float = _by_preset()
+    min_curvature: Annotated[float, Within(0.0, 1000.0)] = _by_preset()
 
     def __post_init__(self) -> None:
         """Take what is not given from the preset, and refuse unknown names and values out of their range."""
@@ -176,13 +150,6 @@ class NAFSettings(LearnerSettings):
                 object.__setattr__(self, name, value)
         if self.activation not in get_args(Activation):
             raise ConfigurationError(unknown_name("agent.activation", self.activation, get_args(Activation)))
-        to_ranges(self, "exploration_std", "elite_std")
-        for name in ("exploration_std", "elite_std"):
-            value = getattr(self, name)
-            if not isinstance(value, tuple) or len(value) != 2:
-                raise ConfigurationError(
-                    f"agent.{name} must be a number, or one at first and one at last, not {shortened(value)}"
-                )
         super().__post_init__()
         if self.gamma > 0 and (self.temperature > 0 or self.elite_share > 0):
             raise ConfigurationError(
@@ -203,25 +170,25 @@ class DDPGSettings(LearnerSettings):
     """Settings of stable-baselines3's DDPG. Standard deviations are of actions scaled to [-1, 1].
 
     :param layers: widths of the hidden layers of actor and critic
-    :param action_noise_std: standard deviation, 0 to 2, of the exploration noise
+    :param action_noise_std: standard deviation of the exploration noise
     """
 
-    layers: tuple[int, ...] = (64, 64)
-    action_noise_std: float = 0.2
+    layers: Layers = (64, 64)
+    action_noise_std: Deviation = 0.2
 
 
 @dataclass(frozen=True)
 class TD3Settings(DDPGSettings):
     """Settings of stable-baselines3's TD3. Standard deviations are of actions scaled to [-1, 1].
 
-    :param policy_delay: number of updates of the critics, from 1, to one of the actor
-    :param target_policy_noise: standard deviation, 0 to 2, of the noise on actions that targets are computed with
-    :param target_noise_clip: largest absolute value, 0 to 2, of that noise
+    :param policy_delay: number of updates of the critics to one of the actor
+    :param target_policy_noise: standard deviation of the noise on actions that targets are computed with
+    :param target_noise_clip: largest absolute value of that noise
     """
 
-    policy_delay: int = 2
-    target_policy_noise: float = 0.2
-    target_noise_clip: float = 0.5
+    policy_delay: Annotated[int, Within(1, 100)] = 2
+    target_policy_noise: Deviation = 0.2
+    target_noise_clip: Deviation = 0.5
 
 
 @dataclass(frozen=True)
@@ -229,24 +196,24 @@ class SACSettings(LearnerSettings):
     """Settings of stable-baselines3's SAC.
 
     :param layers: widths of the hidden layers of actor and critics
-    :param ent_coef: coefficient of the entropy, from 0, or auto, which learns it
+    :param ent_coef: coefficient of the entropy, or auto, which learns it
     """
 
-    learning_rate: float = 3e-4
-    layers: tuple[int, ...] = (64, 64)
-    ent_coef: float | Literal["auto"] = "auto"
+    learning_rate: LearningRate = 3e-4
+    layers: Layers = (64, 64)
+    ent_coef: Annotated[float, Within(0.0, 100.0)] | Literal["auto"] = "auto"
 
 
 @dataclass(frozen=True)
 class EvolutionSettings(AgentSettings):
     """Settings of CMA-ES.
 
-    :param deviation: standard deviation, 0.01 to 2, of the first generation, in actions scaled to [-1, 1]
-    :param population: number of episodes, from 2, in a generation
+    :param deviation: standard deviation of the first generation, in actions scaled to [-1, 1]
+    :param population: number of episodes in a generation
     """
 
-    deviation: float = 0.6
-    population: int = 8
+    deviation: Annotated[float, Within(0.01, 2.0)] = 0.6
+    population: Annotated[int, Within(2, 1000)] = 8
 
 
 AGENT_SETTINGS: dict[str, type[AgentSettings]] = {

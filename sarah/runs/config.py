@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 from sarah.episode.from_mapping import convert_fields
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED
 from sarah.episode.tasks import STEPPING, Task, task_named
-from sarah.errors import ConfigurationError, check_extended_from, check_range, shortened
+from sarah.errors import ConfigurationError, check_extended_from
+from sarah.ranges import Within, check_ranges
 from sarah.runs.agent_settings import AGENT_SETTINGS, AgentSettings, LearnerSettings, NAFSettings, settings_of
 
 MOST_EPISODES = 1_000_000
@@ -48,13 +49,13 @@ class TrainingConfig:
 
     task: Task[Any] = STEPPING
     algo: str = "naf"
-    episodes: int = 100
-    seed: int = 0
-    slots: int = 4
+    episodes: Annotated[int, Within(1, MOST_EPISODES)] = 100
+    seed: Annotated[int, Within(0, FIRST_TRAINING_SEED - 1)] = 0
+    slots: Annotated[int, Within(1, MOST_SLOTS)] = 4
     agent: AgentSettings = None  # type: ignore[assignment]  # the algorithm's own
     episode: EpisodeConfig = None  # type: ignore[assignment]  # the task's own
     extended_from: tuple[int, ...] = ()
-    pictures: int = 0
+    pictures: Annotated[int, Within(0, MOST_EPISODES)] = 0
 
     def __post_init__(self) -> None:
         """Refuse unknown names and impossible budgets."""
@@ -67,13 +68,8 @@ class TrainingConfig:
                 f"agent must be the {settings.__name__} of algo {self.algo!r}, not {type(self.agent).__name__}"
             )
         convert_fields(self)
-        check_range("episodes", self.episodes, 1, MOST_EPISODES)
+        check_ranges("", self)
         check_extended_from(self.extended_from, "episodes", self.episodes)
-        check_range("slots", self.slots, 1, MOST_SLOTS)
-        check_range("pictures", self.pictures, 0, MOST_EPISODES)
-        if not 0 <= self.seed < FIRST_TRAINING_SEED:
-            last = FIRST_TRAINING_SEED - 1
-            raise ConfigurationError(f"seed must be between 0 and {last}, not {shortened(self.seed)}")
         self.episode.check_for_training()
 
     def dependent_defaults(self, content: Mapping[str, Any]) -> dict[str, Any]:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from typing import TypeVar
+from dataclasses import astuple, dataclass, replace
+from typing import Annotated, TypeVar
 
-from sarah.errors import ConfigurationError, check_fields, check_whole
-from sarah.robot.scale import DIGITS, Scale
+from sarah.errors import ConfigurationError, check_whole
+from sarah.ranges import Within, check_ranges
+from sarah.robot.scale import DIGITS, Scale, Sized
 
-SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE = 50, 1000
-FASTEST_PHYSICS_RATE = 20_000
-MOST_SOLVER_ITERATIONS = 10_000
-LARGEST_ADDED_INERTIA = 100.0
+CONTROL_RATES = Within(50, 1000, "Hz")
 LITTLE_PAIR = 0.05
 """Share of a pair of physics steps in a control tick that a robot of another size does without. Steps come in pairs, so
 that the control rate can be doubled."""
@@ -29,19 +27,13 @@ class Physics:
     :param control_rate: control ticks per second; the paper's pattern generator ran at 100
     """
 
-    rate: int = 400
-    solver_iterations: int = 20
-    control_rate: int = 100
+    rate: Annotated[int, Within(50, 20_000, "Hz")] = 400
+    solver_iterations: Annotated[int, Within(1, 10_000)] = 20
+    control_rate: Annotated[int, CONTROL_RATES] = 100
 
     def __post_init__(self) -> None:
         """Refuse rates that do not divide into each other."""
-        control_rate = check_whole(
-            "physics.control_rate", self.control_rate, SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE, "Hz"
-        )
-        rate = check_whole("physics.rate", self.rate, control_rate, FASTEST_PHYSICS_RATE, "Hz")
-        iterations = check_whole("physics.solver_iterations", self.solver_iterations, 1, MOST_SOLVER_ITERATIONS)
-        for name, value in (("control_rate", control_rate), ("rate", rate), ("solver_iterations", iterations)):
-            object.__setattr__(self, name, value)
+        check_ranges("physics.", self)
         if self.rate % self.control_rate:
             raise ConfigurationError(
                 f"physics.rate must be a multiple of the control rate, {self.control_rate} Hz, such as "
@@ -53,7 +45,7 @@ class Physics:
 
         :param control_rate: control ticks per second
         """
-        check_whole("physics.control_rate", control_rate, SLOWEST_CONTROL_RATE, FASTEST_CONTROL_RATE, "Hz")
+        check_whole("physics.control_rate", control_rate, *astuple(CONTROL_RATES))
         multiple = -(-self.rate // control_rate)
         return replace(self, rate=multiple * control_rate, control_rate=control_rate)
 
@@ -81,14 +73,7 @@ class PyBulletPhysics(Physics):
         0 leaves the robot as it is
     """
 
-    UNITS = {"added_plate_inertia": "kg m^2"}
-
-    added_plate_inertia: float = 0.003
-
-    def __post_init__(self) -> None:
-        """Refuse values that cannot be simulated."""
-        super().__post_init__()
-        check_fields("physics", self, {"added_plate_inertia": (0.0, LARGEST_ADDED_INERTIA, "kg m^2")})
+    added_plate_inertia: Annotated[float, Sized(0.0, 100.0, "kg m^2")] = 0.003
 
 
 PHYSICS = {"standard": PyBulletPhysics(), "reference": PyBulletPhysics(1000, 100, added_plate_inertia=0.0)}

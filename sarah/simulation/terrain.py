@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 import random
 from dataclasses import dataclass
+from typing import Annotated
 
-from sarah.errors import ConfigurationError, check_fields, to_ranges
+from sarah.errors import ConfigurationError
+from sarah.ranges import Range, Within, check_ranges
 from sarah.robot.reading import GRAVITY, Vector
+from sarah.robot.scale import Sized
 from sarah.scenery.ground import LEVEL_GRAVITY, Ground
 
 LARGEST_ROUGHNESS = 0.05
@@ -16,17 +19,6 @@ LARGEST_REACH = 10.0
 """Largest distance from the start up to which rough ground reaches, in m."""
 MOST_CELLS = 50.0
 """Largest number of cells from the start to where rough ground ends: an episode begins with making them."""
-PLAUSIBLE = {
-    "slope_degrees": (0.0, 45.0, "degrees"),
-    "direction_degrees": (0.0, 720.0, "degrees"),
-    "roughness": (0.0, LARGEST_ROUGHNESS, "m"),
-    "cell": (0.002, 1.0, "m"),
-}
-"""Lowest value, highest value and unit of each setting. On more than 45 degrees the robot has fallen at once."""
-PLAUSIBLE_FRICTION = {side: (0.0, 5.0, "") for side in ("friction_left", "friction_right")}
-"""The same for settings that may be ``None``."""
-PLAUSIBLE_REACH = {"reach": (0.05, LARGEST_REACH, "m")}
-"""The same for the setting that is no range."""
 
 
 @dataclass(frozen=True)
@@ -51,21 +43,17 @@ class Terrain:
         randomisation
     """
 
-    UNITS = {"roughness": "m", "cell": "m", "reach": "m"}
-
-    slope_degrees: tuple[float, float] = (0.0, 0.0)
-    direction_degrees: tuple[float, float] = (0.0, 360.0)
-    roughness: tuple[float, float] = (0.0, 0.0)
-    cell: tuple[float, float] = (0.05, 0.05)
-    friction_left: tuple[float, float] | None = None
-    friction_right: tuple[float, float] | None = None
-    reach: float = 0.7
+    slope_degrees: Annotated[Range, Within(0.0, 45.0, "degrees")] = (0.0, 0.0)
+    direction_degrees: Annotated[Range, Within(0.0, 720.0, "degrees")] = (0.0, 360.0)
+    roughness: Annotated[Range, Sized(0.0, LARGEST_ROUGHNESS, "m")] = (0.0, 0.0)
+    cell: Annotated[Range, Sized(0.002, 1.0, "m")] = (0.05, 0.05)
+    friction_left: Annotated[Range, Within(0.0, 5.0)] | None = None
+    friction_right: Annotated[Range, Within(0.0, 5.0)] | None = None
+    reach: Annotated[float, Sized(0.05, LARGEST_REACH, "m")] = 0.7
 
     def __post_init__(self) -> None:
         """Refuse ground that nobody stands on."""
-        to_ranges(self, *PLAUSIBLE, *PLAUSIBLE_FRICTION)
-        given = {name: limits for name, limits in PLAUSIBLE_FRICTION.items() if getattr(self, name) is not None}
-        check_fields("terrain", self, PLAUSIBLE | PLAUSIBLE_REACH | given)
+        check_ranges("terrain.", self)
         farthest = MOST_CELLS * self.cell[0]
         if self.reach > farthest:
             raise ConfigurationError(
@@ -84,7 +72,7 @@ def draw_terrain(ranges: Terrain, seed: int) -> Terrain:
     """
     slope, bumps = random.Random(f"terrain {seed}"), random.Random(f"roughness {seed}")
     texture = random.Random(f"texture {seed}")
-    shares = {name: texture.random() for name in PLAUSIBLE_FRICTION}
+    shares = {name: texture.random() for name in ("friction_left", "friction_right")}
     given = {name: friction for name in shares if (friction := getattr(ranges, name)) is not None}
     return Terrain(
         slope_degrees=_single(slope.uniform(*ranges.slope_degrees)),
