@@ -20,12 +20,13 @@ from sarah.errors import ConfigurationError
 from sarah.runs.agent_settings import AgentSettings, LearnerSettings, NAFSettings, settings_of
 from sarah.runs.config import AGENTS, TrainingConfig
 from sarah.training.learners import check_device, make_agent
+from sarah.training.plan import plan_of
 
 
 def built(algo: str = "naf", slots: int = 1, task: str = "stepping", **settings: Any) -> OffPolicyAlgorithm:
     """The agent of some settings."""
     config = TrainingConfig(task=task, algo=algo, slots=slots, agent=settings_of(algo)(**settings))
-    return make_agent(config, EpisodeVecEnv(task, config.episode, 1, slots, Workers()))
+    return make_agent(plan_of(config), EpisodeVecEnv(task, config.episode, 1, slots, Workers()))
 
 
 def widths(net: nn.Module, outputs: int = 1) -> tuple[int, ...]:
@@ -184,7 +185,7 @@ def test_no_random_stream_is_used_twice(algo: str) -> None:
     config = TrainingConfig(algo=algo, slots=3)
     asked = Asked()
     env = EpisodeVecEnv("stepping", config.episode, 3, 3, asked)
-    model = make_agent(config, env)
+    model = make_agent(plan_of(config), env)
     # torch and numpy have the same generator, of which torch's draws the weights and numpy's the exploration.
     weights = np.random.RandomState(torch.initial_seed()).get_state()[1]
     assert not np.array_equal(np.random.get_state()[1], weights)  # type: ignore[call-overload]
