@@ -13,10 +13,7 @@ config = sarah.EpisodeConfig(time_limit=5.0)
 generator = random.Random(0)
 best, best_score = (1.0, 1.0, 1.0, 1.0, 1.0), 0.0
 for attempt in range(20):
-    tried = tuple(
-        min(max(generator.gauss(value, 0.3), parameter.low), parameter.high)
-        for value, parameter in zip(best, STEPPING.parameters, strict=True)
-    )
+    tried = STEPPING.box.clipped(generator.gauss(value, 0.3) for value in best)
     score = sarah.evaluate("stepping", tried, config, seeds=range(2)).median("score")
     if score > best_score:
         best, best_score = tried, score
