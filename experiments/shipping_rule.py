@@ -43,7 +43,7 @@ from experiments.interval import with_error
 from experiments.judge import Asked, Condition, Judge
 from experiments.record import Row
 from sarah.control.parameters import Parameters
-from sarah.episode.push import NOBODY
+from sarah.episode.push import NO_PUSH
 from sarah.episode.workers import Workers
 from sarah.reports.uncertainty import standard_error
 from sarah.simulation.engines import Engine
@@ -257,7 +257,7 @@ class Shipping(OfSecondTrainings):
     def _of_engine(self, size: Round, engine: Engine) -> Iterator[Criterion]:
         yield Criterion("hard pushes", engine, self.pushes(engine, CHOOSING_SEED, size.pushes))
         yield Criterion(NEW_PUSHES, engine, self.pushes(engine, TESTING_SEED, size.new_pushes))
-        level = Condition("level ground", self.balance(engine, push=NOBODY), OTHER_SEED)
+        level = Condition("level ground", self.balance(engine, push=NO_PUSH), OTHER_SEED)
         yield Criterion(level.name, engine, [(level, size.slopes)])
         for degrees in KEPT_ON_SLOPES:
             slopes = [(self._slope(engine, degrees, uphill), size.slopes) for uphill in DIRECTIONS]
@@ -271,7 +271,7 @@ class Shipping(OfSecondTrainings):
     def _slope(self, engine: Engine, degrees: float, uphill: float) -> Condition:
         terrain = Terrain((degrees, degrees), (uphill, uphill))
         name = f"{slope_name(degrees)}, uphill {uphill:g}"
-        return Condition(name, self.balance(engine, push=NOBODY, terrain=terrain), OTHER_SEED)
+        return Condition(name, self.balance(engine, push=NO_PUSH, terrain=terrain), OTHER_SEED)
 
 
 def slope_name(degrees: float) -> str:

@@ -20,7 +20,7 @@ import tyro
 from sarah.cli.options import dimension_words, named_task, parse_options
 from sarah.cli.subjects import episode_of, is_shipped, is_there
 from sarah.cli.value_rules import named_numbers
-from sarah.episode.push import NOBODY, PushedConfig
+from sarah.episode.push import NO_PUSH, PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
@@ -76,9 +76,9 @@ class EpisodeOptions:
             config = dataclasses.replace(config, physics=chosen)
         if not self.randomisation:
             config = dataclasses.replace(config, randomisation=dataclasses.replace(config.randomisation, enabled=False))
-        if isinstance(config, PushedConfig) and not spec.task.has_push and config.push.newtons == NOBODY.newtons:
+        if isinstance(config, PushedConfig) and not spec.task.has_push and config.push.newtons == NO_PUSH.newtons:
             config = spec.task.config_of(config)
-        if isinstance(config, PushedConfig) and config.push.newtons != NOBODY.newtons:
+        if isinstance(config, PushedConfig) and config.push.newtons != NO_PUSH.newtons:
             config.check_for_training()  # nor would anybody see a push after the end
         return dataclasses.replace(spec, config=config)
 
@@ -116,7 +116,7 @@ def parse_episode_options(
     subject = subject or _subject_among(arguments, default, given)
     own = adapted(_settings_of(subject, given.get("which"), task) if subject else (task or STEPPING).episode, subject)
     if type(own) is EpisodeConfig:  # any robot can be pushed, whether its task has a push or not
-        own = PushedConfig(**vars(own), push=own.scale.scaled(NOBODY))
+        own = PushedConfig(**vars(own), push=own.scale.scaled(NO_PUSH))
     episode = with_given_directions(with_given_engine(own, given), given)
     if subject is None or not Path(subject).is_dir():  # what a folder has recorded stays as it is
         episode = for_given_robot(episode, arguments)

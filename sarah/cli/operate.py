@@ -21,7 +21,7 @@ from sarah.cli.next_steps import say_next, to_see, to_test, to_watch
 from sarah.cli.operated import OperatedConfig, say_differences, settings_in_operation, times_of_session
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episode_of, is_shipped
-from sarah.episode.push import NOBODY, PushedConfig
+from sarah.episode.push import NO_PUSH, PushedConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import controller_of
 from sarah.episode.tasks import BALANCE, STEPPING
@@ -204,7 +204,7 @@ def _spec_of(options: OperateOptions) -> SessionSpec:
     any_pushed = EpisodeSpec(STEPPING.baseline, 0, STEPPING, options.episode)
     robot = options.applied_to(any_pushed).config
     config = OperationConfig(
-        robot=robot if isinstance(robot, PushedConfig) else PushedConfig(**vars(robot), push=NOBODY),
+        robot=robot if isinstance(robot, PushedConfig) else PushedConfig(**vars(robot), push=NO_PUSH),
         minutes=options.minutes,
         settle_seconds=options.settle_seconds,
         measure_seconds=options.measure_seconds,

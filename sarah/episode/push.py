@@ -57,8 +57,8 @@ class Push:
         check_ranges("push.", self)
 
 
-NOBODY = Push(newtons=(0.0, 0.0))
-"""Push of nobody, where a task has none."""
+NO_PUSH = Push(newtons=(0.0, 0.0))
+"""Push without force, where a task has none."""
 
 
 @dataclass(frozen=True)

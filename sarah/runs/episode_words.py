@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from sarah.episode.push import NOBODY, PushedConfig, push_words
+from sarah.episode.push import NO_PUSH, PushedConfig, push_words
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
@@ -43,7 +43,7 @@ def _usual(task: Task[Any], config: EpisodeConfig) -> dict[str, Any]:
     of_size: EpisodeConfig = task.episode.for_robot(config.dimensions)
     usual = replace(of_size, engine=config.engine, dimensions=task.episode.dimensions)
     if isinstance(config, PushedConfig) and not isinstance(usual, PushedConfig):
-        usual = PushedConfig(**vars(usual), push=config.scale.scaled(NOBODY))
+        usual = PushedConfig(**vars(usual), push=config.scale.scaled(NO_PUSH))
     return settings_by_key(usual)
 
 
