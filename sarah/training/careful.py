@@ -57,8 +57,8 @@ NOISE_WINDOWS = 20
 """Number of the last windows that tell how far rewards differ from what was expected."""
 LEAST_NOISE_WINDOWS = 5
 """Number of windows below which they tell nothing."""
-DEVIATIONS_PER_MEDIAN_ERROR = 1.4826
-"""Standard deviations in the median of the absolute values of normal numbers."""
+DEVIATION_OVER_MEDIAN = 1.4826
+"""Standard deviation of normal numbers around 0 over the median of their absolute values."""
 MOST_WINDOWS = 500
 """Number of windows that are remembered: the last ones. The time that a choice takes grows with its third power."""
 
@@ -146,7 +146,7 @@ class CarefulSearch:
         """Standard deviation of the last rewards from what was expected, by their median, which no fall moves."""
         if len(self._errors) < LEAST_NOISE_WINDOWS:
             return 0.0
-        return DEVIATIONS_PER_MEDIAN_ERROR * float(np.median(self._errors))
+        return DEVIATION_OVER_MEDIAN * float(np.median(self._errors))
 
     def _forget(self) -> None:
         """Begin again where the robot is now, with the windows since the first doubt."""
