@@ -37,12 +37,13 @@ class Within:
         return f"{self.low:.10g} to {self.high:.10g} {self.unit}".rstrip()
 
 
-def types_of(config_type: type) -> Mapping[str, Any]:
-    """Types of the fields of a dataclass by name, without their ranges.
+def types_of(config_type: type, annotated: bool = False) -> Mapping[str, Any]:
+    """Types of the fields of a dataclass by name.
 
     :param config_type: the dataclass
+    :param annotated: whether the types have their annotations, such as ranges
     """
-    return _read(config_type).types
+    return _read(config_type).annotated if annotated else _read(config_type).types
 
 
 def ranges_of(config_type: type) -> Mapping[str, Within]:
@@ -67,6 +68,7 @@ def check_ranges(key: str, config: object) -> None:
 
 class _Hints(NamedTuple):
     types: dict[str, Any]
+    annotated: dict[str, Any]
     ranges: dict[str, Within]
     checks: dict[str, Check]
 
@@ -77,7 +79,7 @@ def _read(config_type: type) -> _Hints:
     annotated = get_type_hints(config_type, include_extras=True)
     ranges = {name: within for name, kind in annotated.items() if (within := _range_in(kind))}
     checks = {name: _check_of(annotated[name], within) for name, within in ranges.items()}
-    return _Hints(get_type_hints(config_type), ranges, checks)
+    return _Hints(get_type_hints(config_type), annotated, ranges, checks)
 
 
 def _range_in(kind: Any) -> Within | None:

@@ -85,14 +85,13 @@ def _settings_rule(info: tyro.constructors.StructTypeInfo) -> tyro.constructors.
     ranges = ranges_of(info.type) if dataclasses.is_dataclass(info.type) else {}
     if not ranges:
         return None
-    types, fields = types_of(info.type), []
-    for item in dataclasses.fields(info.type):
-        kind, default = types[item.name], getattr(info.default, item.name)
-        if item.name in ranges:
-            hint = f"({ranges[item.name]}; default: {{}})".format
-            kind = Annotated[kind, tyro.conf.arg(help_behavior_hint=hint)]
-        meaning = functools.partial(_meaning, info.type, item.name)
-        fields.append(tyro.constructors.StructFieldSpec(item.name, kind, default, meaning))
+    types, fields = dict(types_of(info.type, annotated=True)), []
+    for name, within in ranges.items():
+        hint = f"({within}; default: {{}})".format
+        types[name] = Annotated[types_of(info.type)[name], tyro.conf.arg(help_behavior_hint=hint)]
+    for name, kind in types.items():
+        meaning = functools.partial(_meaning, info.type, name)
+        fields.append(tyro.constructors.StructFieldSpec(name, kind, getattr(info.default, name), meaning))
     return tyro.constructors.StructConstructorSpec(info.type, tuple(fields))
 
 
