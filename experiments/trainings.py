@@ -26,7 +26,10 @@ from sarah.versions import source_hash, versions
 SARAH = Path(sarah.__file__).parent
 CODE = (".py", ".xacro")
 """Endings of the names of files that decide what a training makes of its settings."""
-TRAINING_CODE = ("agents", "control", "envs", "episode", "robot", "runs", "scenery", "simulation", "training", "urdf")
+TRAINING_CODE = (
+    *("agents", "control", "envs", "episode", "recorded", "robot"),
+    *("runs", "scenery", "simulation", "training", "urdf"),
+)
 """Parts of sarah that a training depends on."""
 EPISODES: dict[str, EpisodeConfig] = {name: default_training(task).episode for name, task in TASKS.items()}
 """Settings of the trainings' episodes, by task: those of ``sarah-train``."""
