@@ -19,8 +19,6 @@ FEWEST_TO_CHOOSE = 10
 """Number of episodes below which length and noise are the first ones: so few tell them badly."""
 PRIOR_QUANTILE = 0.1
 """Quantile of the rewards that is expected where nothing is known."""
-DISTINCT = 0.2
-"""Distance from avoided actions within which nothing counts as best, in scaled actions."""
 MOST_EPISODES = 500
 """Newest episodes that are known: the time that an expectation takes grows with the third power of their number."""
 ANYWHERE = 128
@@ -85,23 +83,17 @@ class GaussianProcess:
         bounds: np.ndarray = self._doubt + covariances @ self._weights + deviations * np.sqrt(unknown)
         return bounds
 
-    def best(
-        self, candidates: np.ndarray | None = None, avoided: np.ndarray | None = None, deviations: float = 0.0
-    ) -> np.ndarray:
+    def best(self, candidates: np.ndarray | None = None, deviations: float = 0.0) -> np.ndarray:
         """
         Action of the highest expected reward in the box from -1 to 1: random draws, ever closer to the best so far.
 
         :param candidates: Scaled actions to begin at beside the known ones; the first one among equals
-        :param avoided: Scaled actions whose surroundings are left out, see :data:`DISTINCT`
         :param deviations: Number of standard deviations by which an action may be better than expected
         :return: A scaled action, of shape (dim,)
         """
 
         def value_of(places: np.ndarray) -> np.ndarray:
-            values = self.upper_bounds(places, deviations) if deviations else self.expected(places)
-            if avoided is not None and len(avoided):
-                values[_squared_distances(places, avoided).min(axis=1) < DISTINCT**2] = -np.inf
-            return values
+            return self.upper_bounds(places, deviations) if deviations else self.expected(places)
 
         generator = np.random.default_rng(0)  # The same draws each time, so that episodes alone decide
         places = self._known if candidates is None else np.vstack([candidates, self._known])

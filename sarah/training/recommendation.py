@@ -4,7 +4,8 @@ An agent's own choice tends to stop at the edge of a plateau, and the best singl
 does not show a robot that steps to a clock or drags its feet, so an episode without a valid gait has less merit here
 than its score. For all algorithms, therefore, parameters are judged by the merit that a Gaussian process expects,
 without the part that known disturbances explain. Its maximum is looked for in the whole box of the parameters. The last
-episodes of a budget try it: its gait must be valid, and its hips must not chatter.
+episodes of a budget try it, and then the best of what was simulated, which may be the same: where the process errs, one
+of both is good. Their gait must be valid, and their hips must not chatter.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ from sarah.episode.settings import LEAST_CLEARANCE
 from sarah.episode.tasks import Task
 from sarah.errors import LearningError
 
+DISTINCT = 0.2
+"""Distance within which parameters count as those that failed, scaled to [-1, 1]."""
 LARGEST_MERIT = 1e100
 """Largest merit by amount: larger ones, of a reward of your own, would overflow."""
 
@@ -58,6 +61,7 @@ class Tried:
         self._places: list[Parameters] = []
         self._merits: list[float] = []
         self._disturbances: list[Sequence[float]] = []
+        self._parameters: list[Parameters] = []
 
     def __len__(self) -> int:
         """Number of episodes."""
@@ -77,20 +81,29 @@ class Tried:
                 f"{self._reference}: disturbances must be as many numbers in every episode, "
                 f"{len(self._disturbances[0])}, not {len(numbers)}"
             )
+        self._parameters.append(parameters)
         self._places.append(self._box.scaled(parameters))
         self._merits.append(min(LARGEST_MERIT, max(-LARGEST_MERIT, merit)))
         self._disturbances.append(numbers)
 
-    def best(self, choice: Parameters, failed: Sequence[Parameters] = ()) -> Parameters:
+    def best(self, choice: Parameters) -> Parameters:
         """Find the parameters of which the highest merit is expected.
 
         :param choice: parameters to begin the search at, beside those of the episodes
-        :param failed: parameters that failed when they were tried, whose surroundings are avoided
         :return: the best parameters; the choice if nothing is known
         """
-        avoided = np.array([self._box.scaled(parameters) for parameters in failed])
-        begin = np.array([self._box.scaled(choice)])
-        return self._box.unscaled(self._expectation().best(begin, avoided))
+        return self._box.unscaled(self._expectation().best(np.array([self._box.scaled(choice)])))
+
+    def best_tried(self, failed: Sequence[Parameters]) -> Parameters:
+        """Find the parameters of which the highest merit is expected among those of the episodes.
+
+        :param failed: parameters that failed when they were tried, whose surroundings are avoided
+        """
+        expected = self._expectation().expected(np.array(self._places))
+        for parameters in failed:
+            distances = np.linalg.norm(np.array(self._places) - self._box.scaled(parameters), axis=1)
+            expected[distances < DISTINCT] = -np.inf
+        return self._parameters[int(np.argmax(expected))]
 
     def best_of(self, candidates: Sequence[Parameters]) -> Parameters:
         """Choose those of some parameters of which the highest merit is expected.

@@ -136,7 +136,9 @@ def _recommended(
     generator: np.random.Generator,
     workers: Executor,
 ) -> Parameters:
-    """Try the parameters of which most is expected, and return those which are best of what was valid.
+    """Try the parameters of which most is expected, first of all and then of those that were simulated.
+
+    Of those which are valid the ones are returned of which most is expected in the end.
 
     All trials meet the same seeds. Whether hips chatter is judged against the neutral parameters on these seeds too;
     the summary's stay unseen. If all trials fail, the best of them is returned, and the summary says what it lacks.
@@ -147,8 +149,8 @@ def _recommended(
     neutral = config.task.neutral
     baseline = None if neutral is None else evaluate(config.task, neutral, config.episode, seeds, workers)
     valid, failed = list[Parameters](), list[Parameters]()
-    for _ in range(stage.trials):
-        candidate = recorder.tried.best(choice, failed)
+    for trial in range(stage.trials):
+        candidate = recorder.tried.best_tried(failed) if trial else recorder.tried.best(choice)
         specs = [EpisodeSpec(candidate, seed, config.task, config.episode) for seed in seeds]
         results = tuple(workers.simulate_all(specs))
         for spec, result in zip(specs, results, strict=True):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sarah.agents.gaussian_process import DISTINCT, LENGTHS, MOST_EPISODES, NOISES, PRIOR_QUANTILE, GaussianProcess
+from sarah.agents.gaussian_process import LENGTHS, MOST_EPISODES, NOISES, PRIOR_QUANTILE, GaussianProcess
 
 
 def tried(seed: int, count: int = 80, dim: int = 3) -> tuple[np.ndarray, np.ndarray]:
@@ -106,15 +106,6 @@ def test_how_deep_a_few_disasters_are_makes_no_difference() -> None:
 def test_lengths_grow_with_the_distances_in_a_large_box() -> None:
     few = [GaussianProcess(np.zeros((5, dim)), np.zeros(5)).kernel[0] for dim in (1, 4, 16)]
     assert few == [LENGTHS[0], LENGTHS[0], 2 * LENGTHS[0]]
-
-
-def test_surroundings_of_avoided_actions_are_left_out() -> None:
-    actions, rewards = tried(2)
-    process = GaussianProcess(actions, rewards)
-    first = process.best()
-    second = process.best(avoided=first[None])
-    assert np.linalg.norm(first - second) >= DISTINCT
-    assert process.expected(second[None]) < process.expected(first[None])
 
 
 def test_without_episodes_the_first_candidate_is_best() -> None:

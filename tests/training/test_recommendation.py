@@ -9,13 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from laboratory import RESULT
 
-from sarah.agents.gaussian_process import DISTINCT
 from sarah.control.parameters import Parameters
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.tasks import STEPPING, Task
 from sarah.errors import LearningError
 from sarah.training.plan import Stage
-from sarah.training.recommendation import Tried, is_valid, merit
+from sarah.training.recommendation import DISTINCT, Tried, is_valid, merit
 
 CHOICE = (1.0, 1.0, 1.0, 1.0, 1.0)
 WIDTH = 2.0
@@ -89,11 +88,20 @@ def test_disturbances_of_another_number_are_one_line() -> None:
 
 def test_what_failed_is_avoided() -> None:
     episodes = random_episodes(60)
-    first = after(episodes).best(CHOICE)
-    second = after(episodes).best(CHOICE, [first])
-    third = after(episodes).best(CHOICE, [first, second])
-    assert min(distance(first, second), distance(first, third), distance(second, third)) >= DISTINCT - 1e-9
+    first = after(episodes).best_tried([])
+    second = after(episodes).best_tried([first])
+    third = after(episodes).best_tried([first, second])
+    assert {first, second, third} < {parameters for parameters, _ in episodes}
+    assert min(distance(first, second), distance(first, third), distance(second, third)) >= DISTINCT
     assert after(episodes).best_of([third, second, first]) == first
+
+
+def test_where_the_best_expected_disappoints_the_best_of_what_was_simulated_is_tried() -> None:
+    """A cliff beside the best makes the process promise too much beyond it."""
+    episodes = [(around(*CHOICE, offset=0.02 * step), 0.9 if step < 5 else 0.1 * step) for step in range(10)]
+    promised = after(episodes).best(CHOICE)
+    found = after([*episodes, *[(promised, 0.5)] * 5]).best_tried([])
+    assert distance(found, promised) > 0.0 and dict(episodes)[found] >= 0.8
 
 
 def test_distances_are_shares_of_the_box() -> None:
