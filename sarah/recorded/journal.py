@@ -62,6 +62,7 @@ class Journal:
         self._file: BinaryIO
         self._seed = 0
         self._known: dict[int, dict[str, Any]] = {}
+        self._held: list[Callable[[], None]] = []
 
     def __enter__(self) -> Journal:
         """Lock the file, and read it."""
@@ -129,6 +130,21 @@ class Journal:
         request = {"index": index, "extended_to": budget}
         if self.known(request, bool) is None:
             self.add(request, True)
+
+    def hold(self, action: Callable[[], None]) -> None:
+        """Do something once the program asks for what the journal has not: until then, its files may stay as they are.
+
+        :param action: function that writes a part of what the program leaves behind
+        """
+        self._held.append(action)
+        if not self.replaying:
+            self.release()
+
+    def release(self) -> None:
+        """Do what is held back."""
+        held, self._held = self._held, []
+        for action in held:
+            action()
 
     def check_asked(self) -> None:
         """Refuse a program that has come to its end without asking for all that the journal has.

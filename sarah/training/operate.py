@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from sarah.errors import TrainingInterruptedError, check_type
 from sarah.operation.robot_in_operation import RobotInOperation
@@ -148,19 +149,18 @@ def operate(
     """
     with folder.journal_of(spec) as journal:
         events: EventFile | None = None
-        held: list[Window] = []
+
+        def record(window: Window) -> None:
+            nonlocal events
+            if events is None:
+                folder.remove_records()
+                events = EventFile(folder.path)
+            folder.append_window(window)
+            _show(events, window)
 
         def add(window: Window) -> None:
-            nonlocal events
-            held.append(window)
             watch(window)
-            if not journal.replaying:
-                if events is None:  # only now is it sure that the session goes on
-                    folder.remove_records()
-                    events = EventFile(folder.path)
-                while held:
-                    folder.append_window(held[0])
-                    _show(events, held.pop(0))
+            journal.hold(partial(record, window))
             if interrupted():
                 raise TrainingInterruptedError("the session was interrupted")
 

@@ -52,11 +52,10 @@ class EpisodeRecorder:
         self._warm_up = plan.warm_up_episodes
         self.tried = Tried(self._task)
         self._run = run
-        self._episodes = episodes
+        self._outside, self._journal = episodes.outside, episodes.journal
         self._progress = progress
         self._curves: CurveWriter | None = None
         self._kept = kept_pictures(run)  # before the old curves are removed
-        self._held: list[Callable[[], None]] = []
 
     def record(self, spec: EpisodeSpec, result: EpisodeResult, choice: Callable[[], Parameters] | None = None) -> None:
         """Write one episode, and from time to time what is recommended.
@@ -66,7 +65,7 @@ class EpisodeRecorder:
         :param choice: function that returns what the algorithm itself would choose now; ``None`` for a trial
         """
         index = len(self.tried)
-        self._write(partial(self._run.append_episode, index, spec, result))
+        self._journal.hold(partial(self._append_episode, index, spec, result))
         worth = merit(result, self._task.must_step, spec.config.least_clearance)
         self.tried.append(spec.parameters, worth, disturbances_of(spec))
         self.diverged += result.termination == "diverged"
@@ -86,6 +85,10 @@ class EpisodeRecorder:
         self._progress.set_postfix(score=f"{result.score:.2f}", refresh=False)
         self._progress.update()
 
+    def _append_episode(self, index: int, spec: EpisodeSpec, result: EpisodeResult) -> None:
+        self._open_curves()  # which removes the tables of before
+        self._run.append_episode(index, spec, result)
+
     def _record_recommendation(self, choice: Callable[[], Parameters], episodes: int) -> None:
         """Record the recommendation, and draw it, after the numbers of episodes that are set for each."""
         interval = self._config.pictures
@@ -96,11 +99,11 @@ class EpisodeRecorder:
         recommended = self.tried.best(choice())
         if noted:
             named = dict(zip(self._task.parameter_names, recommended, strict=True))
-            self._write(partial(self._run.append_recommendation, episodes, named))
+            self._journal.hold(partial(self._run.append_recommendation, episodes, named))
             for name, value in named.items():
                 self.log.record(f"recommendation/{name}", value, exclude="csv")  # recommendations.csv has it
         if drawn:
-            self._write(partial(self._draw, recommended, episodes))
+            self._journal.hold(partial(self._draw, recommended, episodes))
 
     def _draw(self, recommended: Parameters, episodes: int) -> None:
         if episodes in self._kept:
@@ -108,7 +111,7 @@ class EpisodeRecorder:
         else:
             from sarah.pictures.gait_snapshot import draw_gait  # slow to import because of matplotlib
 
-            with self._episodes.outside():
+            with self._outside():
                 summary = summary_of(draw_gait(recommended, self._config.task, self._config.episode))
         self._open_curves().show(summary, episodes)
 
@@ -119,7 +122,7 @@ class EpisodeRecorder:
         :param excluded: formats that leave a curve out, by name of the curve
         :param step: number of episodes so far
         """
-        self._write(lambda: self._open_curves().write(values, excluded, step))
+        self._journal.hold(lambda: self._open_curves().write(values, excluded, step))
 
     def __enter__(self) -> EpisodeRecorder:
         """Do nothing: the files are opened when there is something to write."""
@@ -142,18 +145,7 @@ class EpisodeRecorder:
             learned.mean("sole_clearance"),
         )
         self.write_curves(dict(zip(LEARNED, values, strict=True)), dict.fromkeys(LEARNED, ("csv",)), len(self.tried))
-        self._write_held()
-
-    def _write(self, action: Callable[[], None]) -> None:
-        self._held.append(action)
-        if not self._episodes.journal.replaying:
-            self._write_held()
-
-    def _write_held(self) -> None:
-        held, self._held = self._held, []
-        self._open_curves()
-        for action in held:
-            action()
+        self._journal.release()
 
     def _open_curves(self) -> CurveWriter:
         if self._curves is None:
