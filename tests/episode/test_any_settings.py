@@ -37,7 +37,7 @@ CONFIG = st.builds(
     BalanceConfig,
     physics=st.sampled_from([Physics(50, 1, 50), Physics(100, 1), Physics(300, 200), Physics(2000, 1, 1000)]),
     randomisation=legal(Randomisation),
-    terrain=legal(Terrain),
+    terrain=legal(Terrain, cell=st.sampled_from([(0.02, 0.02), (0.02, 0.1), (0.1, 0.1)]), reach=st.just(0.7)),
     controller=legal(ControllerConstants),
     time_limit=st.sampled_from([1.1, 1.5]),
     reward_form=st.sampled_from(["symmetric", "printed"]),
