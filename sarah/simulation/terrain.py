@@ -54,10 +54,11 @@ class Terrain:
     def __post_init__(self) -> None:
         """Refuse ground that nobody stands on."""
         check_ranges("terrain.", self)
-        farthest = MOST_CELLS * self.cell[0]
-        if self.reach > farthest:
+        nearest, farthest = self.cell[1], MOST_CELLS * self.cell[0]
+        if not nearest <= self.reach <= farthest:
             raise ConfigurationError(
-                f"terrain.reach must be at most {MOST_CELLS:g} times terrain.cell, {farthest:g} m, not {self.reach:g}"
+                f"terrain.reach must be between 1 and {MOST_CELLS:g} times terrain.cell, {nearest:g} and {farthest:g} m, "
+                f"not {self.reach:g}"
             )
 
 
