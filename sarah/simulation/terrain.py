@@ -57,8 +57,8 @@ class Terrain:
         nearest, farthest = self.cell[1], MOST_CELLS * self.cell[0]
         if not nearest <= self.reach <= farthest:
             raise ConfigurationError(
-                f"terrain.reach must be between 1 and {MOST_CELLS:g} times terrain.cell, {nearest:g} and {farthest:g} m, "
-                f"not {self.reach:g}"
+                f"terrain.reach must be between 1 and {MOST_CELLS:g} times terrain.cell, here {nearest:g} and "
+                f"{farthest:g} m, not {self.reach:g}"
             )
 
 
