@@ -179,12 +179,12 @@ def test_the_loop_for_a_real_robot_drives_the_simulated_one_as_an_episode_does(t
         sent.append(targets)
         robot.set_targets(targets)
         robot.advance()
-        if len(sent) == round(config.time_limit / names["DT"]):
+        if len(sent) == round(config.time_limit / 0.01):
             raise AllSentError
 
     limits = [description.limits[joint] for joint in ACTUATED_JOINTS]
     with pytest.raises(AllSentError):
-        names["drive"](names["controller"](learned, limits), robot.read, send)
+        names["drive"](names["controller"](learned, limits, 0.01), 0.01, robot.read, send)
     robot.close()
     assert np.array_equal(sent[-len(trace) :], trace.targets) and not np.any(sent[: -len(trace)])
 
@@ -205,19 +205,20 @@ def test_the_loop_for_a_real_robot_says_when_a_reading_was_late_and_ends_with_a_
     def read() -> None:
         clock.now += 0.034 if len(told) == 2 else 0.004
 
-    names["drive"](Generator(), read, lambda targets: None)
+    names["drive"](Generator(), 0.01, read, lambda targets: None)
     assert told == pytest.approx([0.01, 0.01, 0.01, 0.034, 0.01, 0.01])
 
 
 def test_the_limits_on_the_page_are_the_robots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run = tmp_path / "runs" / "balance" / "naf-s0"
     run.mkdir(parents=True)
-    (run / "parameters.json").write_text(json.dumps(LEARNED["balance"]))
+    (run / "parameters.json").write_text(json.dumps({**LEARNED["balance"], "control_rate": 200}))
     monkeypatch.chdir(tmp_path)
     names, driven = {**loop_of_the_page(), "read": None, "send": None}, []
-    names["drive"] = lambda generator, read, send: driven.append(generator)
+    names["drive"] = lambda generator, dt, read, send: driven.append(generator)
     exec(blocks("how_to/real_robot.md")[1], names)
     assert names["LIMITS"] == [describe_robot().limits[joint] for joint in ACTUATED_JOINTS]
+    assert names["DT"] == 1 / 200
     assert driven[0].hips.parameters == BalanceParameters(0.8, 0.1, 0.2, 0.1)
 
 
@@ -227,10 +228,10 @@ def test_the_page_takes_the_parameters_of_trainings_of_sessions_and_of_the_packa
     limits = [(-1.0, 1.0)] * 6
     p, v = PARAMETER_SETS["stepping"].spec.parameters, PARAMETER_SETS["balance"].spec.parameters
     for name, hips in (("stepping", (0.0,) * 4), ("balance", v)):
-        generator = controller(shipped[name], limits)
+        generator = controller(shipped[name], limits, 0.01)
         assert astuple(generator.parameters) == p and astuple(generator.hips.parameters) == hips
     names = [f"{letter}{number}" for letter, count in (("P", 5), ("V", 4)) for number in range(1, count + 1)]
-    session = controller({"parameters": dict(zip(names, range(9), strict=True))}, limits)
+    session = controller({"parameters": dict(zip(names, range(9), strict=True))}, limits, 0.01)
     assert (*astuple(session.parameters), *astuple(session.hips.parameters)) == tuple(range(9))
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import fmean
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
@@ -22,7 +22,7 @@ from sarah.cli.episode_options import (
 )
 from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import say_next, to_open, to_see, to_watch
-from sarah.cli.options import parse_options, run_command, say_engine
+from sarah.cli.options import parse_options, pushed_words, run_command, say_engine
 from sarah.cli.training_defaults import default_training
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, Task, load_task
@@ -31,6 +31,9 @@ from sarah.files import make_folder
 from sarah.reports.judging import PUSHED, UNPUSHED, evaluations_of
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.kinds import SESSION
+
+if TYPE_CHECKING:
+    from sarah.reports.race_entry import Entry, RaceCurve
 
 COMMAND = "sarah-compare"
 MOST_SEEDS = 1000
@@ -151,8 +154,9 @@ def _compare(arguments: Sequence[str]) -> None:
             print(f"\n{COMMAND}: interrupted; the same command goes on with the race", file=sys.stderr)
             raise SystemExit(130) from None
     table = rankings(curves, options.best_known)
-    print(as_markdown(table))
-    (options.out / "race.md").write_text(as_markdown(table) + "\n", encoding="utf-8")
+    text = "\n".join([*_about(entries, curves[0]), "", as_markdown(table)])
+    print(text)
+    (options.out / "race.md").write_text(text + "\n", encoding="utf-8")
     write_csv(table, options.out / "race.csv")
     files = draw_race(curves, options.out / "race")
     for file in files:
@@ -161,3 +165,29 @@ def _compare(arguments: Sequence[str]) -> None:
     typed = [] if options.task.file is None else ["--task", options.task.reference]
     _, see_best = to_see(entries[best].folder, *typed)
     say_next(to_open(files[0]), ("see its best", see_best), to_watch(options.out))
+
+
+def _about(entries: Sequence[Entry], curve: RaceCurve) -> Iterator[str]:
+    """Lines about what was raced, and about what so small a budget cannot show.
+
+    :param entries: all trainings of the race
+    :param curve: scores of any of them
+    """
+    from sarah.reports.markdown import plain_text
+    from sarah.reports.rankings import HELD
+    from sarah.runs.episode_words import changed_settings
+    from sarah.training.plan import plan_of
+
+    base = entries[0].config
+    task, episode = base.task, base.episode
+    yield (
+        f"Task {plain_text(task.name)} in {episode.engine}, {pushed_words(episode)}: {base.episodes} episodes in each "
+        f"training, of at most {episode.time_limit:g} s."
+    )
+    if changes := [line for line in changed_settings(task, episode) if not line.startswith("time_limit ")]:
+        yield f"Settings: {', '.join(changes)}."
+    plans = (plan_of(entry.config) for entry in entries)
+    if idle := dict.fromkeys(plan.config.algo for plan in plans if plan.warm_up_episodes >= base.episodes):
+        yield f"Nothing was learned by {', '.join(idle)}: the warm-up took all {base.episodes} episodes."
+    if (count := len(set(curve.episodes))) < HELD:
+        yield f"Nothing can be held: the table asks for {HELD} evaluations in a row, and a training has {count}."

@@ -126,9 +126,9 @@ def _evaluate(arguments: Sequence[str]) -> None:
         make_folder(options.out)
     with Workers(options.workers, options.scheduler) as workers:
         if options.robustness:
-            _show_robustness(spec.parameters, spec.config, options, workers)
+            _show_robustness(own.config, spec, options, workers)
         if options.terrain:
-            _show_terrain(spec, options, workers, shlex.join([COMMAND, *arguments]))
+            _show_terrain(own.config, spec, options, workers, shlex.join([COMMAND, *arguments]))
         if options.out is not None:
             say_next(*_next_steps(options, arguments))
             return
@@ -168,22 +168,20 @@ def _subject(options: EvalOptions) -> tuple[EpisodeSpec, str | None]:
     return learned_of(options.subject, named_task(options.task))
 
 
-def _show_robustness(
-    parameters: tuple[float, ...], config: EpisodeConfig, options: EvalOptions, workers: Workers
-) -> None:
+def _show_robustness(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions, workers: Workers) -> None:
     """Print the table as Markdown, and write the table and the polar plot."""
     from sarah.cli.eval_text import settings_of_table
     from sarah.reports.robustness import forces_for, push_many, pushed_settings, robustness_table, survival_interval
     from sarah.reports.training_figures import draw_survival
 
-    folder, neutral = options.out, BALANCE.neutral
+    folder, neutral, parameters, config = options.out, BALANCE.neutral, spec.parameters, spec.config
     assert folder is not None and neutral is not None and isinstance(config, BalanceConfig)
     say_engine(config, options.engine)
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
     forces = options.forces or forces_for(config.scale)
     pushed = push_many((neutral, parameters), config, workers, forces, options.episodes, options.first_seed)
     head = "".join(f" {name}: survival | score | drift | vibration |" for name in names)
-    about = settings_of_table(options.subject, pushed_settings(config, max(forces)), config)
+    about = settings_of_table(options.subject, pushed_settings(config, max(forces)), own)
     lines = [about, "", f"| push | direction | episodes |{head}", "|---" * (3 + 4 * len(names)) + "|"]
     for rows in zip(*map(robustness_table, pushed), strict=True):
         cells = "".join(
@@ -193,6 +191,12 @@ def _show_robustness(
             for found in (row.evaluation for row in rows)
         )
         lines.append(f"| {rows[0].newtons:g} N | {rows[0].direction} | {rows[0].evaluation.episodes} |{cells}")
+    lines += [
+        "",
+        "- survival: share of the episodes (its 95 % interval)",
+        "- score, drift, vibration: medians; vibration is in m²/s⁴, of the torso's acceleration from 20 to 50 Hz",
+        "- lateral: pushes that point within 45° of the robot's right or left; sagittal: the others",
+    ]
     table = "\n".join(lines)
     print(table)
     (folder / "robustness.md").write_text(table + "\n", encoding="utf-8")
@@ -212,7 +216,7 @@ def _check_replaced_options(options: EvalOptions, arguments: Sequence[str]) -> N
             raise ConfigurationError(f"--{table} has {own} of its own: leave {mistaken[0]} out")
 
 
-def _show_terrain(spec: EpisodeSpec, options: EvalOptions, workers: Workers, command: str) -> None:
+def _show_terrain(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions, workers: Workers, command: str) -> None:
     """Print the table as Markdown, and write the table and the picture. The command says what was asked for."""
     from tqdm import tqdm
 
@@ -230,7 +234,7 @@ def _show_terrain(spec: EpisodeSpec, options: EvalOptions, workers: Workers, com
     values = ", ".join(f"{value:g}" for value in spec.parameters)
     about = f"{spec.task.name} ({values}) in {spec.config.engine}, seeds {options.seeds[0]} to {options.seeds[-1]}"
     pushed_on_level = next(situation for situation in tried if situation.newtons).config(spec.task, spec.config)
-    settings = settings_of_table(options.subject, pushed_on_level, spec.config)
+    settings = settings_of_table(options.subject, pushed_on_level, own)
     table = f"{about}: {code(command)}\n\n{settings}\n\n{as_markdown(rows)}"
     print(table)
     (folder / "terrain.md").write_text(table + "\n", encoding="utf-8")

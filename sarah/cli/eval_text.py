@@ -65,14 +65,14 @@ def rows_of(
         yield "physics", warning
 
 
-def settings_of_table(subject: str, used: EpisodeConfig, config: EpisodeConfig) -> str:
+def settings_of_table(subject: str, used: EpisodeConfig, own: EpisodeConfig) -> str:
     """Line about the settings of a table's episodes, of which the table itself has the force of the pushes.
 
     :param subject: what was evaluated, as it was given
     :param used: settings of episodes of the table
-    :param config: settings of the subject, as the options change them
+    :param own: settings of the subject's episodes, which the options and the table may change
     """
-    changes = ", ".join(line for line in differences(used, config) if not line.startswith("push.newtons "))
+    changes = ", ".join(line for line in differences(used, own) if not line.startswith("push.newtons "))
     return f"Settings of {plain_text(subject)}{changes and ', but '}{changes}."
 
 

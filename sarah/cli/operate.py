@@ -157,7 +157,7 @@ def _resumed(options: OperateOptions, arguments: Sequence[str]) -> SessionFolder
     if minutes > there:
         check_extendable(folder.path, "--minutes", folder.is_finished)
         extend(folder, minutes)
-        print(f"extending {there:g} to {minutes:g} min: the first {there:g} stay as they are")
+        print(f"extending {there:g} to {minutes:g} min: the windows so far stay as they are")
     else:
         check_same(folder.path, "session", "minutes", there, minutes)
     if options.compare_frozen and folder.frozen is None:
@@ -165,7 +165,8 @@ def _resumed(options: OperateOptions, arguments: Sequence[str]) -> SessionFolder
     if folder.is_finished and (folder.frozen is None or folder.frozen.is_finished):
         print(finished_words(folder.path, "--minutes", there))
         return None
-    return folder
+    with folder.journal_of(folder.spec()):  # a folder in use is refused before anything is said
+        return folder
 
 
 def _check_learns(options: OperateOptions, spec: SessionSpec) -> None:

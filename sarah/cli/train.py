@@ -29,7 +29,7 @@ from sarah.cli.interruption import Interruption
 from sarah.cli.next_steps import say_next, to_see, to_test, to_watch
 from sarah.cli.options import named_task, parse_options, pushed_words, run_command, say_engine
 from sarah.cli.subjects import check_of_training
-from sarah.cli.train_text import say_learned
+from sarah.cli.train_text import say_learned, say_size
 from sarah.cli.training_defaults import default_training
 from sarah.episode.push import PushedConfig
 from sarah.episode.reward import equation_2, frequency_hint
@@ -106,7 +106,8 @@ def _train(arguments: Sequence[str]) -> None:
     config = options.training
     config = dataclasses.replace(config, episode=with_engine(config.episode, options.engine))
     if options.from_run is not None and config.task is not BALANCE:
-        raise ConfigurationError(f"--from is for --task {BALANCE.name}, not {config.task.reference!r}")
+        same = f": to train again with its settings, say --config {quoted(options.from_run / 'config.yaml')}"
+        raise ConfigurationError(f"--from is for --task {BALANCE.name}, not {config.task.reference!r}{same}")
     from sarah.robot.description import describe_robot
 
     describe_robot(config.episode.dimensions)  # a bad dimension is refused before anything is written
@@ -142,7 +143,9 @@ def _train(arguments: Sequence[str]) -> None:
         say_engine(config.episode, options.engine)
         pushed = f", {pushed_words(config.episode)}" if isinstance(config.episode, PushedConfig) else ""
         what = f"{config.algo} on {config.task.name}{pushed}"
-        print(f"training {what}: {config.episodes} episodes into {run.path}", flush=True)
+        doing = "training" if options.resume is None else "resuming the training of"
+        print(f"{doing} {what}: {config.episodes} episodes into {run.path}", flush=True)
+        say_size(config.episode.scale, run.path)
         if options.from_run is None and config.task.reward is equation_2 and (hint := frequency_hint(config.episode)):
             print(hint, file=sys.stderr)
         if options.from_run is not None and isinstance(config.episode, BalanceConfig):

@@ -76,13 +76,14 @@ def _transfer(arguments: Sequence[str]) -> None:
     from sarah.reports.transfer_figure import draw_transfer
     from sarah.runs.run_folder import RunFolder
 
-    learned = [_learned(subject, arguments) for subject in options.subjects]
+    own = [learned_of(subject, named_task(options.task))[0] for subject in options.subjects]
+    learned = [_learned(subject, spec, arguments) for subject, spec in zip(options.subjects, own, strict=True)]
     out = options.out or RunFolder(first).figures_path
     make_folder(out)
     seeds = range(options.first_seed, options.first_seed + options.episodes)
     with Workers(options.workers, options.scheduler) as workers:
         transfers = transfer(learned, seeds, workers)
-    table = "\n".join([as_markdown(transfers), "", *_about_settings(learned)])
+    table = "\n".join([as_markdown(transfers), "", *_about_settings(learned, own)])
     print(table)
     (out / "transfer.md").write_text(table + "\n", encoding="utf-8")
     files = draw_transfer(transfers, out / "transfer")
@@ -91,22 +92,21 @@ def _transfer(arguments: Sequence[str]) -> None:
     say_next(to_open(files[0]))
 
 
-def _about_settings(learned: Sequence[tuple[str, EpisodeSpec]]) -> Iterator[str]:
-    """Lines about the settings that the other engine does not take as they are."""
+def _about_settings(learned: Sequence[tuple[str, EpisodeSpec]], own: Sequence[EpisodeSpec]) -> Iterator[str]:
+    """Lines about the settings that an option has changed, or that the other engine does not take as they are."""
     from sarah.reports.markdown import plain_text
     from sarah.reports.transfer import ENGINES
     from sarah.runs.episode_words import differences
 
     yield "All settings are those of the training, but:"
-    for name, one in learned:
+    for (name, one), trained in zip(learned, own, strict=True):
         for engine in ENGINES:
-            changes = differences(dataclasses.replace(one.config, engine=engine), one.config)
+            changes = differences(dataclasses.replace(one.config, engine=engine), trained.config)
             if words := ", ".join(change for change in changes if not change.startswith("engine ")):
                 yield f"- {plain_text(name)} in {engine}: {words}"
 
 
-def _learned(subject: str, arguments: Sequence[str]) -> tuple[str, EpisodeSpec]:
+def _learned(subject: str, own: EpisodeSpec, arguments: Sequence[str]) -> tuple[str, EpisodeSpec]:
     """Name and episode of one subject; the options change its own settings."""
     options = parse_episode_options(COMMAND, arguments, TransferOptions(), subject)
-    spec, _ = learned_of(subject, named_task(options.task))
-    return Path(subject).name, options.applied_to(spec)
+    return Path(subject).name, options.applied_to(own)

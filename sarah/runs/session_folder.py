@@ -161,8 +161,12 @@ class SessionFolder(Folder):
         :param parameters: P1 to P5 and V1 to V4
         """
         config = self.spec().config
-        controller = config.robot_after(len(config.changes)).controller
-        content = {"parameters": dict(zip(NAMES, parameters, strict=True)), "controller": asdict(controller)}
+        robot = config.robot_after(len(config.changes))
+        content = {
+            "parameters": dict(zip(NAMES, parameters, strict=True)),
+            "controller": asdict(robot.controller),
+            "control_rate": robot.physics.control_rate,
+        }
         replace_text(self.result_path, json.dumps(content, indent=2) + "\n")
 
     def parameters(self) -> Parameters:

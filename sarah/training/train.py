@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from functools import partial
 
 import numpy as np
 from tqdm import tqdm
@@ -72,9 +73,9 @@ def train(
 
 def _train(config: TrainingConfig, run: RunFolder, episodes: RecordedEpisodes, progress_bar: bool) -> Learned:
     plan = plan_of(config)
-    generator = np.random.default_rng(plan.seeds.trials)
+    generator, silent = np.random.default_rng(plan.seeds.trials), not progress_bar or sys.stderr is None
     with (
-        tqdm(total=config.episodes, unit=" episodes", disable=not progress_bar or sys.stderr is None) as progress,
+        tqdm(total=config.episodes, unit=" episodes", disable=silent) as progress,
         EpisodeRecorder(run, plan, episodes, progress) as recorder,
     ):
         learner = make_learner(plan, run, recorder, episodes)
@@ -83,7 +84,7 @@ def _train(config: TrainingConfig, run: RunFolder, episodes: RecordedEpisodes, p
                 episodes.extend(stage.end)
             choice = _choice(learner, stage, config.algo)
             parameters = _recommended(choice, stage, config, recorder, generator, episodes)
-            learned = _evaluated(parameters, config, recorder, episodes)
+            learned = _evaluated(parameters, config, recorder, episodes, silent)
         episodes.journal.check_asked()
         recorder.finish(learned.evaluation)
     _write_parameters(learned, config, run)
@@ -101,11 +102,15 @@ def _choice(learner: Learner, stage: Stage, algo: str) -> Parameters:
         raise LearningError(f"{algo} cannot go on: {one_line(error)}") from error
 
 
-def _evaluated(parameters: Parameters, config: TrainingConfig, recorder: EpisodeRecorder, workers: Executor) -> Learned:
+def _evaluated(
+    parameters: Parameters, config: TrainingConfig, recorder: EpisodeRecorder, workers: Executor, silent: bool
+) -> Learned:
     """Evaluate learned parameters, and what they are compared with, on seeds that no training has seen."""
     seeds, neutral = range(SUMMARY_EPISODES), config.task.neutral
-    evaluation = evaluate(config.task, parameters, config.episode, seeds, workers)
-    baseline = None if neutral is None else evaluate(config.task, neutral, config.episode, seeds, workers)
+    words = f"evaluating on {SUMMARY_EPISODES} unseen seeds"
+    shown = partial(tqdm, total=SUMMARY_EPISODES, desc=words, unit=" episodes", leave=False, disable=silent)
+    evaluation = evaluate(config.task, parameters, config.episode, seeds, workers, shown)
+    baseline = None if neutral is None else evaluate(config.task, neutral, config.episode, seeds, workers, shown)
     return Learned(parameters, evaluation, baseline, recorder.diverged)
 
 
@@ -121,6 +126,7 @@ def _write_parameters(learned: Learned, config: TrainingConfig, run: RunFolder) 
             "parameters": dict(zip(config.task.parameter_names, learned.parameters, strict=True)),
             "stepping": getattr(config.episode, "stepping", None),
             "controller": asdict(config.episode.controller),
+            "control_rate": config.episode.physics.control_rate,
             "evaluation": evaluation.summary(),
             "baseline": baseline and baseline.summary(),
             "chatters": baseline and evaluation.chatters(baseline),
