@@ -103,10 +103,13 @@ def test_transfer_compares_the_engines_on_the_same_seeds(
 
 
 def test_compare_ends_with_table_and_plot(tmp_path: Path) -> None:
-    arguments = ("--algorithms", "naf", "random", "--seeds", "1", "--episodes", "6", "--evaluations", "1")
+    arguments = ("--algorithms", "naf", "random", "--seeds", "1", "--episodes", "5", "--evaluations", "1")
     process = run("sarah-compare", "--out", "race", *arguments, *SHORT, "--workers", "2", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
-    assert "| naf | 1 |" in process.stdout and "| random | 1 |" in process.stdout
+    table = (tmp_path / "race" / "race.md").read_text()
+    assert "Task stepping" in table and "5 episodes in each training, of at most 1.5 s" in table
+    assert "Nothing can be held" in table and "Nothing was learned by naf: the warm-up took all 5 episodes" in table
+    assert table in process.stdout and "| naf | 1 |" in process.stdout and "| random | 1 |" in process.stdout
     names = {path.name for path in (tmp_path / "race").iterdir()}
     assert names == {"naf-s0", "random-s0", "race.md", "race.csv", "race.png", "race.pdf"}
 

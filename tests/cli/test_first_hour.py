@@ -117,14 +117,16 @@ def test_an_own_algorithm_in_a_race(tmp_path: Path) -> None:
 
 
 def test_extend_a_training(trained: Path) -> None:
-    assert "extending 20 to 30 episodes" in typed("sarah-train --resume run --simulations 30", trained)
+    shown = typed("sarah-train --resume run --simulations 30", trained)
+    assert "extending 20 to 30 episodes" in shown and "resuming the training of naf on stepping" in shown
 
 
 def test_a_robot_of_other_masses(tmp_path: Path) -> None:
     robot = "--episode.dimensions torso_mass 12 thigh_mass 6"
     shown = typed(f"sarah-describe {robot}", tmp_path)
     assert re.search(r"mass +36 kg\n", shown) and (tmp_path / "sarah_robot.png").exists()
-    typed(f"sarah-train --episodes 3 --out mine {robot} {' '.join(QUICK)}", tmp_path)
+    shown = typed(f"sarah-train --episodes 3 --out mine {robot} {' '.join(QUICK)}", tmp_path)
+    assert "go with length (1 times the default), mass (1.2) and hip offset (1): sarah-describe mine lists" in shown
     assert "dimensions torso_mass 12, thigh_mass 6" in typed("sarah-eval mine --episodes 1", tmp_path)
 
 
@@ -145,6 +147,7 @@ def test_servos_and_sensors_of_mine_through_both_trainings(tmp_path: Path) -> No
         "bandwidth:\n    - 15.0\n    - 15.0\n",
     ):
         assert setting in settings
+    assert '"control_rate": 200' in (tmp_path / "second/parameters.json").read_text()
     shown = typed("sarah-eval second --episodes 1", tmp_path)
     assert "in mujoco" in shown and "randomisation.delay_seconds 0.03" in shown
 

@@ -113,7 +113,7 @@ def test_a_longer_session_is_the_one_that_was_meant_so(operated: Path) -> None:
     shutil.copytree(operated, folder / "longer")
     more = run("sarah-operate", "--resume", "longer", "--minutes", "0.3", cwd=folder)
     assert more.returncode == 0, more.stderr
-    assert "extending 0.2 to 0.3 min: the first 0.2 stay as they are" in more.stdout
+    assert "extending 0.2 to 0.3 min: the windows so far stay as they are" in more.stdout
     assert (folder / "longer/windows.csv").read_text().startswith((operated / "windows.csv").read_text())
     line = ["--change", "0.1: payload=5", "--seed", "2", "--episode.randomisation.actuator-bandwidth", "12", *QUICK]
     whole = run("sarah-operate", *line, "--minutes", "0.3", "--extended-from", "0.2", "--out", "whole", cwd=folder)

@@ -162,6 +162,7 @@ def ran(
 
 PUSH = {"push", *(f"push.{name}" for name in ("newtons", "degrees", "at_seconds", "duration", "sagittal_share"))}
 GROUND = {f"terrain.{name}" for name in ("slope_degrees", "direction_degrees", "cell", "reach", "friction_left")}
+LADEN = "--episode.payload 3"
 SHORT = "--minutes 0.1 --learner none"
 
 
@@ -178,14 +179,20 @@ SHORT = "--minutes 0.1 --learner none"
         *((f"sarah-report {run} --out out.html --episodes 1 --seconds 1 1.05", set()) for run in ("first", "second")),
         *((f"sarah-figures {run} --out out", set()) for run in ("first", "second")),
         *(
-            (f"sarah-transfer {subject} --out out --episodes 1", {"engine", "physics.added_plate_inertia"})
+            (
+                f"sarah-transfer {subject} --out out --episodes 1 {LADEN}",
+                {"engine", "physics.added_plate_inertia", "payload"},
+            )
             for subject in ("first", "second", "session")
         ),
-        ("sarah-eval second --robustness --out out --forces 25 --episodes 1", {*PUSH, "time_limit"}),
+        (
+            f"sarah-eval second --robustness --out out --forces 25 --episodes 1 {LADEN}",
+            {*PUSH, "time_limit", "payload"},
+        ),
         *(
             (
-                f"sarah-eval {subject} --terrain --out out --episodes 1",
-                {*PUSH, *GROUND, "terrain.friction_right", "time_limit"},
+                f"sarah-eval {subject} --terrain --out out --episodes 1 {LADEN}",
+                {*PUSH, *GROUND, "terrain.friction_right", "time_limit", "payload"},
             )
             for subject in ("first", "second")
         ),

@@ -29,7 +29,7 @@ def test_train_ends_with_a_summary(trained: tuple[Path, subprocess.CompletedProc
 
 def test_train_shows_its_progress(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
     _, process = trained
-    assert "4/4" in process.stdout + process.stderr
+    assert "4/4" in process.stderr and "evaluating on 10 unseen seeds" in process.stderr
 
 
 def test_workers_train_and_evaluate_the_same(
@@ -76,7 +76,10 @@ def test_the_summary_tells_of_falls_and_of_the_baseline(
 
 def test_only_a_balance_training_continues_a_first_one(balanced: Path) -> None:
     for arguments, message in (
-        (("--from", "mine"), "--from is for --task balance, not 'stepping'"),
+        (
+            ("--from", "mine"),
+            "--from is for --task balance, not 'stepping': to train again with its settings, say --config mine/config",
+        ),
         (("--task", "balance", "--from", "second"), "--from needs the run folder of a training of 'stepping'"),
     ):
         process = run("sarah-train", *arguments, cwd=balanced.parent)

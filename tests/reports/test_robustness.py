@@ -111,5 +111,6 @@ def test_eval_prints_the_table_and_leaves_it_with_a_plot(
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"robustness.md", "robustness.png", "robustness.pdf"}
     printed = capsys.readouterr().out
     assert (tmp_path / "out" / "robustness.md").read_text() in printed
+    assert "score, drift, vibration: medians" in printed
     row = next(line for line in printed.splitlines() if line.startswith("| 100 N | all"))
     assert "| 8 | 0.00 (0.00 to 0.32)" in row and "1.00 (0.68 to 1.00)" in row

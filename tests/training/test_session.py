@@ -133,8 +133,9 @@ def test_the_folder_has_a_table_a_picture_and_parameters(whole: tuple[Path, Sess
     lines = (path / "windows.csv").read_text().splitlines()
     assert len(lines) == 1 + len(result.windows)
     assert (path / "session.png").stat().st_size > 10_000
-    left = json.loads((path / "parameters.json").read_text())["parameters"]
-    assert tuple(left.values()) == result.parameters == SessionFolder(path).parameters()
+    left = json.loads((path / "parameters.json").read_text())
+    assert left["control_rate"] == SPEC.config.robot.physics.control_rate
+    assert tuple(left["parameters"].values()) == result.parameters == SessionFolder(path).parameters()
 
 
 @pytest.mark.parametrize("damaged", ["", "{}", "[1", '{"parameters": {"P1": 1}}', '{"parameters": null}'])
