@@ -82,7 +82,7 @@ def subjects(tmp_path_factory: pytest.TempPathFactory) -> Path:
     shared = {name: value for name, value in vars(second).items() if name != "stepping"}
     operation = OperationConfig(PushedConfig(**shared), 0.5, *(0.5, 0.6, 0.7, 0.8))
     session = SessionFolder.create(folder / "session", SessionSpec((*LEGS, *HIPS), "none", 0, operation))
-    session.write_windows([Window(0, 0.0, 2.1, 0, (*LEGS, *HIPS), 0.5, 0.5, False, (0.0,) * len(FELT))])
+    session.append_window(Window(0, 0.0, 2.1, 0, (*LEGS, *HIPS), 0.5, 0.5, False, (0.0,) * len(FELT)))
     session.write_parameters((*LEGS, *HIPS))
     for config in (first, second):
         usual = settings_by_key(type(config)())
@@ -258,9 +258,8 @@ def test_an_option_changes_nothing_else_of_a_sessions_windows(tmp_path: Path, mo
     folder = SessionFolder.create(tmp_path / "session", SessionSpec(config=config))
     parameters = ((*LEGS, *HIPS), (*LEGS[::-1], *HIPS))
     felt = (0.0,) * len(FELT)
-    folder.write_windows(
-        [Window(index, 6.0 * index, 6.0, index, each, 0.5, 0.5, False, felt) for index, each in enumerate(parameters)]
-    )
+    for index, each in enumerate(parameters):
+        folder.append_window(Window(index, 6.0 * index, 6.0, index, each, 0.5, 0.5, False, felt))
     changed = ["--episode.randomisation.friction", "0.5", "--episode.dimensions", "thigh_length", "0.36"]
     monkeypatch.setattr("sys.argv", ["sarah-view", str(folder.path), *changed])
     with pytest.raises(SystemExit):
