@@ -168,24 +168,17 @@ def _compare(arguments: Sequence[str]) -> None:
 
 
 def _about(entries: Sequence[Entry], curve: RaceCurve) -> Iterator[str]:
-    """Lines about what was raced, and about what so small a budget cannot show.
-
-    :param entries: all trainings of the race
-    :param curve: scores of any of them
-    """
+    """Lines about what was raced, and about what a budget that is too small cannot show; the curve is of any entry."""
     from sarah.reports.markdown import plain_text
     from sarah.reports.rankings import HELD
     from sarah.runs.episode_words import changed_settings
     from sarah.training.plan import plan_of
 
     base = entries[0].config
-    task, episode = base.task, base.episode
-    yield (
-        f"Task {plain_text(task.name)} in {episode.engine}, {pushed_words(episode)}: {base.episodes} episodes in each "
-        f"training, of at most {episode.time_limit:g} s."
-    )
-    if changes := [line for line in changed_settings(task, episode) if not line.startswith("time_limit ")]:
-        yield f"Settings: {', '.join(changes)}."
+    changes = (line for line in changed_settings(base.task, base.episode) if not line.startswith("time_limit "))
+    settings = ", ".join([base.episode.engine, pushed_words(base.episode), *changes])
+    budget = f"{base.episodes} episodes in each training, of at most {base.episode.time_limit:g} s"
+    yield f"Task {plain_text(base.task.name)} in {settings}: {budget}."
     plans = (plan_of(entry.config) for entry in entries)
     if idle := dict.fromkeys(plan.config.algo for plan in plans if plan.warm_up_episodes >= base.episodes):
         yield f"Nothing was learned by {', '.join(idle)}: the warm-up took all {base.episodes} episodes."

@@ -108,7 +108,7 @@ def _evaluate(arguments: Sequence[str]) -> None:
     former = {option: f"{option} --out" for option in ("--robustness", "--terrain")}
     arguments = with_out(COMMAND, arguments, former)
     options = parse_episode_options(COMMAND, arguments, EvalOptions())
-    own, algorithm = _subject(options)
+    own, algorithm = learned_of(options.subject, named_task(options.task))
     spec = options.applied_to(own)
     _check_replaced_options(options, arguments)
     if options.robustness and spec.task is not BALANCE:
@@ -161,11 +161,6 @@ def _next_steps(options: EvalOptions, arguments: Sequence[str]) -> Iterator[Step
     yield to_see(options.subject, *passed_on(arguments, options.subject, *NOT_OF_VIEW), *first)
     if Path(options.subject).is_dir() and not SESSION.owns(Path(options.subject)):
         yield to_report(options.subject, *([] if options.task is None else ["--task", options.task]))
-
-
-def _subject(options: EvalOptions) -> tuple[EpisodeSpec, str | None]:
-    """Episode of what is evaluated, on any seed, and the algorithm that learned its parameters."""
-    return learned_of(options.subject, named_task(options.task))
 
 
 def _show_robustness(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions, workers: Workers) -> None:

@@ -48,7 +48,9 @@ def _usual(task: Task[Any], config: EpisodeConfig) -> dict[str, Any]:
 
 
 def differences(config: EpisodeConfig, subject: EpisodeConfig) -> Iterator[str]:
-    """Settings of episodes that are not those of what they are made of, each with both values; P1 to P5 are left out.
+    """Settings of episodes that are not those of what they are made of, each with both values.
+
+    P1 to P5 that only one of both has are left out.
 
     :param config: settings of the episodes
     :param subject: settings of what a command was given, such as a run folder
@@ -56,7 +58,7 @@ def differences(config: EpisodeConfig, subject: EpisodeConfig) -> Iterator[str]:
     here, there = _by_name(config, subject), _by_name(subject, config)
     for name in here | there:
         value, other = here.get(name), there.get(name)
-        if name != "stepping" and value != other:
+        if value != other and not (name == "stepping" and None in (value, other)):
             if isinstance(value, Mapping) and isinstance(other, Mapping):  # dimensions
                 value, other = _only_here(value, other), _only_here(other, value)
             yield f"{name} {_text(value)} instead of {_text(other)}"
@@ -121,11 +123,12 @@ def _drawn(ranges: Terrain, usual: Terrain, seed: int) -> Terrain:
 
 
 def _text(value: Any) -> str:
-    """Text of a setting; of a range both ends, unless they are equal."""
+    """Text of a setting; of a range both ends, unless they are equal; of P1 to P5 all."""
     if value is None or value == {}:
         return "none"
     if isinstance(value, list):
-        return " to ".join(f"{end:g}" for end in dict.fromkeys(value))
+        of_range = len(value) == 2
+        return (" to " if of_range else ", ").join(f"{one:g}" for one in (dict.fromkeys(value) if of_range else value))
     if isinstance(value, Mapping):
         return ", ".join(f"{name} {_text(inner)}" for name, inner in value.items())
     return f"{value:g}" if isinstance(value, float) else str(value)

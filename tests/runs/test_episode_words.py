@@ -11,7 +11,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.trace import Trace
 from sarah.robot.dimensions import dimensions_alike
-from sarah.runs.episode_words import told_of
+from sarah.runs.episode_words import differences, told_of
 from sarah.simulation.terrain import Terrain, draw_terrain
 
 SPEC = EpisodeSpec((1.0, 0.0, 1.0, 0.0), 5, BALANCE, BalanceConfig(time_limit=1.5, push=Push(40.0, 90.0, 1.2)))
@@ -57,6 +57,13 @@ def test_nothing_is_told_of_what_is_as_usual(trace: Trace) -> None:
 def test_settings_that_differ_are_told(settings: dict[str, object], told: list[str], trace: Trace) -> None:
     changed = dataclasses.replace(USUAL, config=dataclasses.replace(USUAL.config, **settings))
     assert told_of(changed, still(trace)) == told
+
+
+def test_what_an_option_changes_has_both_values() -> None:
+    changed = dataclasses.replace(USUAL.config, payload=3.0, stepping=(0.5, 1.0, 0.0, 1.0, 1.0))
+    other = dataclasses.replace(USUAL.config, stepping=(0.5, 1.0, 0.0, 1.0, 0.75))
+    stepping = "stepping 0.5, 1, 0, 1, 1 instead of 0.5, 1, 0, 1, 0.75"
+    assert list(differences(changed, other)) == ["payload 3 instead of 0", stepping]
 
 
 def test_many_dimensions_are_counted(trace: Trace) -> None:
