@@ -65,8 +65,7 @@ def _following(config: EpisodeConfig, usual: EpisodeConfig) -> Iterator[str]:
         if value != default[name] and name not in config.dimensions
     ]
     if rows:
-        length, mass, width = config.scale
-        yield f"Follows from length ({length:.3g} times the default), mass ({mass:.3g}) and hip offset ({width:.3g}):"
+        yield f"Follows from {config.scale.words()}:"
         yield from _aligned(("setting", "value", "default", ""), *rows)
         yield ""
 

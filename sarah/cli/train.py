@@ -29,7 +29,7 @@ from sarah.cli.interruption import Interruption
 from sarah.cli.next_steps import say_next, to_see, to_test, to_watch
 from sarah.cli.options import named_task, parse_options, pushed_words, run_command, say_engine
 from sarah.cli.subjects import check_of_training
-from sarah.cli.train_text import say_learned, say_size
+from sarah.cli.train_text import say_learned
 from sarah.cli.training_defaults import default_training
 from sarah.episode.push import PushedConfig
 from sarah.episode.reward import equation_2, frequency_hint
@@ -43,6 +43,7 @@ from sarah.errors import (
     TrainingInterruptedError,
 )
 from sarah.files import quoted
+from sarah.robot.scale import Scale
 from sarah.runs.agent_names import unknown_option
 from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import TrainingConfig
@@ -145,7 +146,9 @@ def _train(arguments: Sequence[str]) -> None:
         what = f"{config.algo} on {config.task.name}{pushed}"
         doing = "training" if options.resume is None else "resuming the training of"
         print(f"{doing} {what}: {config.episodes} episodes into {run.path}", flush=True)
-        say_size(config.episode.scale, run.path)
+        if config.episode.scale != Scale():
+            size = f"motors and other settings go with {config.episode.scale.words()}"
+            print(f"{size}: sarah-describe {quoted(run.path)} lists them", flush=True)
         if options.from_run is None and config.task.reward is equation_2 and (hint := frequency_hint(config.episode)):
             print(hint, file=sys.stderr)
         if options.from_run is not None and isinstance(config.episode, BalanceConfig):

@@ -6,23 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sarah.episode.tasks import BALANCE, Task
-from sarah.files import quoted
-from sarah.robot.scale import Scale
 
 if TYPE_CHECKING:
     from sarah.training.train import Learned
-
-
-def say_size(scale: Scale, path: Path) -> None:
-    """Print that motors and settings go with the size of a robot which is not the default one's.
-
-    :param scale: size of the robot
-    :param path: path of the run folder
-    """
-    if scale != Scale():
-        length, mass, width = scale
-        of_default = f"length ({length:.3g} times the default), mass ({mass:.3g}) and hip offset ({width:.3g})"
-        print(f"motors and other settings go with {of_default}: sarah-describe {quoted(path)} lists them", flush=True)
 
 
 def say_learned(task: Task[Any], learned: Learned, path: Path) -> None:

@@ -92,6 +92,10 @@ class Scale(NamedTuple):
         """
         return Scale(self.length / other.length, self.mass / other.mass, self.width / other.width)
 
+    def words(self) -> str:
+        """Ratios in words."""
+        return f"length ({self.length:.3g} times the default), mass ({self.mass:.3g}) and hip offset ({self.width:.3g})"
+
     @property
     def time(self) -> float:
         """Ratio of times: the square root of that of lengths."""
