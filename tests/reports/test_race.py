@@ -25,11 +25,11 @@ from sarah.episode.tasks import STEPPING
 from sarah.episode.workers import Workers
 from sarah.errors import ResumeError, RunFolderError
 from sarah.files import locked
+from sarah.recorded import folder as folder_module
 from sarah.reports import race as race_module
 from sarah.reports.judging import Evaluations
 from sarah.reports.race import LOCK_FILE, race, run_entry
 from sarah.reports.race_entry import RaceCurve, entries_of, is_evaluated, read_curve
-from sarah.runs import origin as origin_module
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 
@@ -119,7 +119,7 @@ def test_a_race_says_before_it_starts_what_there_is_to_do(tmp_path: Path, capsys
 
 def test_a_race_does_not_mix_states_of_the_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (first, second) = entries_of(("random",), range(2), TINY, Evaluations(2, 1), tmp_path)
-    monkeypatch.setattr(origin_module, "versions", lambda: {"sarah-sources": "another state"})
+    monkeypatch.setattr(folder_module, "versions", lambda: {"sarah-sources": "another state"})
     finished = race([first], Workers())
     monkeypatch.undo()
     assert race([first], Workers()) == finished  # nothing new comes into the table
