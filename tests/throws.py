@@ -8,9 +8,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from sarah.files import replace_text
-from sarah.recorded.folder import Folder, Kind
+from sarah.recorded.folder import Folder
+from sarah.recorded.kind import Kind
 
-THROWS = Kind("game", "game.json", "python throws.py")
+THROWS = Kind("game", "folder", "game.json", "python throws.py")
 
 
 @dataclass(frozen=True)

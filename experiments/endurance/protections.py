@@ -95,7 +95,7 @@ PROTECTIONS = (
     Protection(
         "a training whose settings were edited is refused",
         "recorded/journal.py",
-        'if different := differences(self._origin, there, f"in this {self._kind}"):',
+        'if different := differences(self._origin, there, f"in this {self._kind.name}"):',
         "if different := '':",
         "test_every_setting_edited_in_turn_is_refused",
     ),

@@ -5,38 +5,17 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from sarah.errors import RunFolderError
 from sarah.files import check_name, quoted, read_text, replace_text, write_command
 from sarah.recorded.journal import Journal
+from sarah.recorded.kind import Kind
 from sarah.versions import versions
 
 EVENTS = "events.out.tfevents."
 """Prefix of the names of TensorBoard's files."""
-
-
-@dataclass(frozen=True)
-class Kind:
-    """A kind of what is recorded.
-
-    :param name: word for it
-    :param specification: name of the file that makes a folder one of this kind
-    :param command: command that goes on with it by ``--resume``
-    """
-
-    name: str
-    specification: str
-    command: str
-
-    def owns(self, path: Path) -> bool:
-        """Whether a folder is one of this kind.
-
-        :param path: path of the folder
-        """
-        return path.joinpath(self.specification).is_file()
 
 
 class Folder:
@@ -72,14 +51,14 @@ class Folder:
             if any(self.path.iterdir()) or not self._claim():
                 can_go_on = self.specification_path.is_file() and self.journal_path.is_file() and not self.is_finished
                 go_on = f", or {self.go_on}" if can_go_on else ""
-                raise RunFolderError(f"folder {self.path} is not empty: name another with --out{go_on}")
+                raise RunFolderError(f"{self.kind.folder} {self.path} is not empty: name another with --out{go_on}")
             write_command(self.path / "command.txt")
             self._write_versions()
             write_specification()
         except RunFolderError:
             raise
         except OSError as error:
-            raise RunFolderError(f"cannot write folder {self.path}: {error.strerror or error}") from error
+            raise RunFolderError(f"cannot write {self.kind.folder} {self.path}: {error.strerror or error}") from error
 
     def _claim(self) -> bool:
         """Make the journal's file, unless another process made it at the same time."""
@@ -101,7 +80,7 @@ class Folder:
         :raises RunFolderError: naming what is missing
         """
         if not self.path.is_dir():
-            raise RunFolderError(f"folder {self.path} does not exist")
+            raise RunFolderError(f"{self.kind.folder} {self.path} does not exist")
         kind = f"finished {self.kind.name}" if finished else self.kind.name
         for file in (self.specification_path, self.result_path) if finished else (self.specification_path,):
             if not file.is_file():
@@ -115,7 +94,7 @@ class Folder:
         :raises RunFolderError: naming what is missing
         """
         if not self.path.is_dir():
-            raise RunFolderError(f"folder {self.path} does not exist")
+            raise RunFolderError(f"{self.kind.folder} {self.path} does not exist")
         for file in (self.specification_path, self.journal_path):
             if not file.is_file():
                 raise RunFolderError(f"{self.path} cannot be resumed: it has no {file.name}")
@@ -143,7 +122,7 @@ class Folder:
 
     def _journal(self, settings: Mapping[str, Any], most_requests: int) -> Journal:
         origin = {**settings, **versions()}
-        return Journal(self.journal_path, origin, self.kind.name, most_requests, self.kind.specification)
+        return Journal(self.journal_path, origin, self.kind, most_requests)
 
     def versions(self) -> dict[str, str]:
         """Read the versions with which it began, by name of the package.
@@ -192,7 +171,7 @@ def new_path(group: str, name: str) -> Path:
             except FileExistsError:
                 path = base.with_name(f"{base.name}-{number}")
     except OSError as error:
-        raise RunFolderError(f"cannot write folder {path}: {error.strerror or error}") from error
+        raise RunFolderError(f"cannot write run folder {path}: {error.strerror or error}") from error
     return path
 
 

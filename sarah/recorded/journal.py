@@ -24,6 +24,7 @@ from typing import Any, BinaryIO, TypeVar
 
 from sarah.errors import ResumeError, SarahError
 from sarah.files import open_locked, open_regular, quoted
+from sarah.recorded.kind import Kind
 from sarah.versions import differences
 
 Outcome = TypeVar("Outcome")
@@ -43,9 +44,8 @@ class Journal:
 
     :param path: path of the file, which must exist, in the folder of what is recorded
     :param origin: what all outcomes depend on: settings and versions by name, as JSON has them
-    :param kind: word for what is recorded, for messages
+    :param kind: kind of what is recorded
     :param most_requests: number of requests that a journal of this program has at most
-    :param specification: name of the file that has the settings, for messages
     :raises ResumeError: on entering, if the file is missing, if another process uses it, or if it was begun with
         something else
     """
@@ -53,11 +53,9 @@ class Journal:
     is_new: bool
     """Whether the program begins with this journal, in its context."""
 
-    def __init__(
-        self, path: Path, origin: Mapping[str, Any], kind: str, most_requests: int, specification: str
-    ) -> None:
+    def __init__(self, path: Path, origin: Mapping[str, Any], kind: Kind, most_requests: int) -> None:
         self.is_new = False
-        self._path, self._origin, self._kind, self._specification = path, origin, kind, specification
+        self._path, self._origin, self._kind = path, origin, kind
         self._most_bytes = ROOM_PER_REQUEST * most_requests
         self._file: BinaryIO
         self._seed = 0
@@ -72,7 +70,7 @@ class Journal:
             reason = f"it has no {self._path.name}" if isinstance(error, FileNotFoundError) else str(error)
             raise self._refusal(reason) from error
         if file is None:
-            raise ResumeError(f"folder {self._path.parent} is in use by another {self._kind}")
+            raise ResumeError(f"{self._kind.folder} {self._path.parent} is in use by another {self._kind.name}")
         self._file = file
         try:
             self._read()
@@ -157,7 +155,7 @@ class Journal:
     def _read(self) -> None:
         if (size := os.fstat(self._file.fileno()).st_size) > self._most_bytes:
             raise ResumeError(
-                f"{self._path} has {size} bytes, but such a {self._kind} writes at most {self._most_bytes}"
+                f"{self._path} has {size} bytes, but such a {self._kind.name} writes at most {self._most_bytes}"
             )
         expected = _first_row(self._origin)
         with open(self._path, "rb") as reader:
@@ -189,11 +187,11 @@ class Journal:
         there = _read_first_row(first)
         if there is None:
             raise self._refusal(
-                f"the first row of {self._path.name}, which says with what the {self._kind} was begun, is damaged or "
-                "missing"
+                f"the first row of {self._path.name}, which says with what the {self._kind.name} was begun, is damaged "
+                "or missing"
             )
-        if different := differences(self._origin, there, f"in this {self._kind}"):
-            has_them = quoted(self._path.with_name(self._specification))
+        if different := differences(self._origin, there, f"in this {self._kind.name}"):
+            has_them = quoted(self._path.with_name(self._kind.specification))
             raise self._refusal(f"{different}: put that back, or begin anew ({has_them} has the settings)")
 
     def _read_rows(self, reader: BinaryIO) -> None:

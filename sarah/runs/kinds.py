@@ -1,6 +1,6 @@
 """The kinds of what is recorded, and the files that tell them apart."""
 
-from sarah.recorded.folder import Kind
+from sarah.recorded.kind import Kind
 
-TRAINING = Kind("training", "config.yaml", "sarah-train")
-SESSION = Kind("session", "session.yaml", "sarah-operate")
+TRAINING = Kind("training", "run folder", "config.yaml", "sarah-train")
+SESSION = Kind("session", "session folder", "session.yaml", "sarah-operate")

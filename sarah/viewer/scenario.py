@@ -9,7 +9,7 @@ from typing import Any
 from sarah.episode.push import Push
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import controller_of, push_of
-from sarah.episode.tasks import BALANCE, TASKS, BalanceConfig, Task
+from sarah.episode.tasks import BALANCE, BalanceConfig, Task
 from sarah.simulation.terrain import Terrain, draw_terrain
 
 
@@ -80,5 +80,5 @@ class Scenario:
         )
         config = BALANCE.config_of(self.config, stepping=self.stepping, push=given, terrain=self.terrain)
         judged = {name: getattr(self.task, name) for name in ("reward", "best_reward", "ending", "file")}
-        task = BALANCE if self.task in TASKS.values() else replace(BALANCE, **judged)
-        return EpisodeSpec(self.balance, self.seed, task, config)
+        own = {name: value for name, value in judged.items() if value != getattr(BALANCE, name)}
+        return EpisodeSpec(self.balance, self.seed, replace(BALANCE, **own) if own else BALANCE, config)
