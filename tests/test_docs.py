@@ -243,9 +243,9 @@ def test_what_a_robot_needs_runs_with_the_standard_library_alone(tmp_path: Path)
             blocks("how_to/real_robot.md")[0],
             "from sarah.robot.reading import STANDING",
             "import json",
-            "generator, sent = controller(json.load(open('parameters.json')), [(-1.0, 1.0)] * 6), []",
+            "generator, sent = controller(json.load(open('parameters.json')), [(-1.0, 1.0)] * 6, 0.01), []",
             "lying = STANDING._replace(acceleration=(9.81, 0.0, 0.0))",
-            "drive(generator, lambda: lying if len(sent) > 120 else STANDING, sent.append)",
+            "drive(generator, 0.01, lambda: lying if len(sent) > 120 else STANDING, sent.append)",
             "assert generator.has_fallen and 120 < len(sent) < 220 and any(sent[-1])",
         ]
     )

@@ -263,8 +263,8 @@ PROTECTIONS = (
     Protection(
         "commands do not load models",
         "runs/run_folder.py",
-        "task = self.config().task",
-        "task = self.config().task; import torch; torch.load(self.model_path, weights_only=False)",
+        "task = (config or self.config()).task",
+        "task = (config or self.config()).task; import torch; torch.load(self.model_path, weights_only=False)",
         "test_no_file_of_a_run_is_unpickled",
     ),
     Protection(

@@ -197,9 +197,9 @@ class Journal:
     def _read_rows(self, reader: BinaryIO) -> None:
         damaged, whole = 0, reader.tell()
         while line := reader.readline(LONGEST_ROW):
-            row = _read_checksummed(line, self._seed)
-            if line.endswith(b"\n"):
-                whole = reader.tell()
+            has_end = line.endswith(b"\n")
+            row = _read_checksummed(line, self._seed) if has_end else None
+            whole = reader.tell() if has_end else whole
             if row is None or type(row.get("index")) is not int:
                 damaged += 1
             else:

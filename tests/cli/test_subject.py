@@ -75,7 +75,7 @@ def test_it_says_how_its_settings_differ_from_the_tasks_and_how_episodes_ended(t
     assert rows["subject"].endswith("pushed by 400 N")
     given = {"terrain.slope_degrees 2", "payload 1.5", "time_limit 6", "push.degrees 0", "push.at_seconds 2 to 3"}
     assert given <= set(rows["settings"].split(", "))
-    assert "sagittal_share" not in rows["settings"] and "pushes" not in rows
+    assert "push.sagittal_share 0 instead of 0.5" in rows["settings"] and "pushes" not in rows
     assert rows["survival"].startswith("0 of 8 episodes; seed 1000 ") and rows["survival"].endswith("; 3 more")
     text = run("sarah-eval", "balance", "--episodes", "8", *f"{settings} 2.5".split(), cwd=tmp_path).stdout
     begins = [draw_push(Push((400.0, 400.0), at_seconds=(2.0, 3.0)), seed).begin for seed in range(1000, 1008)]

@@ -65,7 +65,7 @@ def test_help_shows_these_defaults(
     with pytest.raises(SystemExit):
         import_module(f"sarah.cli.{name.removeprefix('sarah-')}").main()
     text = " ".join(capsys.readouterr().out.replace("│", " ").split())
-    shown = dict(re.findall(r"--(\S+) (?:INT|FLOAT)(?: \[FLOAT\])? (?:(?!--).)*?\(default: (.*?)\)", text))
+    shown = dict(re.findall(r"--(\S+) (?:INT|FLOAT)(?: \[FLOAT\])? (?:(?!--).)*?\((?:[^()]*; )?default: (.*?)\)", text))
     assert shown["episodes"] == "300" and shown["episode.time-limit"] == "10.0"
     assert shown["episode.push.newtons"] == "100.0 125.0" and shown["episode.push.sagittal-share"] == "0.5"
 

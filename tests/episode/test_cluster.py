@@ -22,6 +22,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Workers
 from sarah.errors import DescriptionError, WorkersError
+from sarah.robot.description import describe_robot
 
 SOMEBODYS = {
     "distributed.worker.lifetime.duration": "1 hour",
@@ -149,9 +150,8 @@ def test_a_call_that_ends_while_somebody_looks_is_answered(workers: Workers, mon
 
 
 def test_an_error_on_a_worker_is_raised_here(workers: Workers) -> None:
-    bad = EpisodeSpec(PAPER_STEPPING, 0, config=EpisodeConfig(dimensions={"hinge_height": 0.005}))
-    with pytest.raises(DescriptionError, match="plates must lie above"):
-        list(workers.simulate_all([bad]))
+    with pytest.raises(DescriptionError, match="unknown robot dimension 'legs'"):
+        workers.submit(describe_robot, {"legs": 3.0}).result()
 
 
 def test_workers_are_left_alone_by_an_interrupt(workers: Workers) -> None:

@@ -153,7 +153,7 @@ def test_impossible_operations_are_refused(settings: dict[str, Any], words: str)
 
 
 def test_a_robot_that_cannot_be_built_is_refused_before_the_operation_begins() -> None:
-    with pytest.raises(DescriptionError, match="plates must lie above"):
+    with pytest.raises(DescriptionError, match="foot plates reach the floor"):
         quick(changes=(Change(0.05, {"dimensions": {"hinge_height": 0.005}}),))
 
 

@@ -35,7 +35,7 @@ DIMENSIONS = [
     {"hip_offset": 1.3},
     {"hip_size": 0.8},
     {"thigh_width": 1.0},
-    {"forefoot_contact": 1.4, "sole_half_width": 0.5, "hip_offset": 0.6},
+    {"forefoot_contact": 1.4, "sole_half_width": 0.4, "hip_offset": 0.5},
     {name: 9.9 * value for name, value in LENGTHS.items()},
     {name: 0.11 * value for name, value in LENGTHS.items()} | {"sole_half_width": 0.006, "contact_radius": 0.008},
 ]
