@@ -201,9 +201,6 @@ class Workers(HoldsWorld, Executor):
     def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
         """Submit a call, of an episode or of a whole training.
 
-        :param function: function to call: :func:`begin_episode`, :func:`finish_episode`, :func:`sarah.simulate`, or
-            one of another module
-        :param subjects: arguments of the function, such as specifications of episodes
         :raises ConfigurationError: outside the context, or if other processes simulate and the task is that of a script
         """
         if self.client is None and (self._count or self._scheduler is not None):

@@ -83,11 +83,8 @@ class RecordedEpisodes(Executor):
         self._numbers = itertools.count()
 
     def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
-        """Have an episode simulated, unless its outcome is known.
+        """Have an episode simulated, unless its outcome is known; its specification is the first subject.
 
-        :param function: function to call: :func:`~sarah.episode.workers.begin_episode`,
-            :func:`~sarah.episode.workers.finish_episode` or :func:`sarah.simulate`
-        :param subjects: arguments of the function, the episode's specification first
         :raises ResumeError: if the training asks for another episode than it did when the journal was written
         """
         kind, spec = _KINDS[function], subjects[0]
