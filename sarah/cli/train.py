@@ -170,11 +170,7 @@ def _resumed(path: Path, options: TrainOptions, config: TrainingConfig) -> RunFo
 
 
 def _extended(run: RunFolder, config: TrainingConfig) -> TrainingConfig:
-    """Extend a finished training, and say what that means.
-
-    :param run: run folder of the training
-    :param config: settings with the larger budget
-    """
+    """Extend a finished training to a larger budget, and say what that means."""
     before = run.config()
     extended = dataclasses.replace(before.extended_to(config.episodes), pictures=config.pictures)
     run.extend(extended)
@@ -224,11 +220,7 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
 
 
 def _resumed_defaults(path: Path, given: Mapping[str, str]) -> TrainOptions:
-    """Options of the training to go on with; other settings than its own would need other options.
-
-    :param path: path of its run folder
-    :param given: values of the options that were given, by name
-    """
+    """Options of the training to go on with; other settings than its own would need other options."""
     from sarah.runs.recorded_task import RecordedTask
     from sarah.runs.run_folder import RunFolder
 
@@ -257,11 +249,7 @@ def _with_agent(training: TrainingConfig, algo: str | None, preset: str | None) 
 
 
 def _check_agent_options(arguments: Sequence[str], training: TrainingConfig) -> None:
-    """Refuse ``--agent.…`` options of settings that the algorithm has not.
-
-    :param arguments: all arguments of the command
-    :param training: settings of the training, with its algorithm
-    """
+    """Refuse ``--agent.…`` options of settings that the algorithm has not."""
     for argument in arguments:
         if argument.startswith("--agent.") and (message := unknown_option(training.algo, argument.partition("=")[0])):
             raise ConfigurationError(message)
