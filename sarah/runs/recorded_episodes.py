@@ -93,8 +93,8 @@ class RecordedEpisodes(Executor):
         request = {"index": index, "kind": kind.name, "seed": spec.seed, "parameters": list(spec.parameters)}
         known = self.journal.known(request, kind.read)
         if known is not None:
-            return _Job(partial(self._known, known))
-        return _Job(partial(self._new, kind, request, self._executor.submit(function, *subjects)))
+            return Job(partial(self._known, known))
+        return Job(partial(self._new, kind, request, self._executor.submit(function, *subjects)))
 
     def extend(self, episodes: int) -> None:
         """Note that the training goes on to a larger budget, or check that it did so before.
@@ -121,7 +121,3 @@ class RecordedEpisodes(Executor):
             is_to_stop = self._interrupted()
         if is_to_stop:
             raise TrainingInterruptedError("the training was interrupted")
-
-
-class _Job(NamedTuple):
-    result: Callable[[], Any]
