@@ -130,15 +130,8 @@ class RankReplayBuffer(ReplayBuffer):
         infos: list[dict[str, Any]],
     ) -> None:
         """
-        Add one transition of each environment.
+        Add one transition of each environment, whose info may hold what its disturbances were.
 
-        :param obs: Observations
-        :param next_obs: Next observations
-        :param action: Actions
-        :param reward: Rewards
-        :param done: Whether the episodes ended
-        :param infos: Additional information, which says whether a time limit ended an episode, and what its
-            disturbances were
         :raises ValueError: if disturbances are not finite, or not as many as those of the transitions before
         """
         self._forget()

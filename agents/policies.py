@@ -1,6 +1,6 @@
 """Policy of NAF: the critic, its target copy and their optimizer."""
 
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import torch as th
@@ -35,7 +35,7 @@ class NAFPolicy(BasePolicy):
         ``dropout`` has no effect
     :param activation_fn: Activation function (ReLU by default). Tanh suits smooth tasks of one step,
         but fails where values are large; with sigmoid, deeper networks hardly learn.
-    :param features_extractor_class: Features extractor to use.
+    :param features_extractor_class: Features extractor to use, by default that of the class
     :param features_extractor_kwargs: Keyword arguments
         to pass to the features extractor.
     :param normalize_images: Whether to normalize images or not,
@@ -52,6 +52,7 @@ class NAFPolicy(BasePolicy):
         flat ``mu`` gets no gradient: without it, ``mu`` may stay wrong in a direction that ``L`` makes flat to fit.
     """
 
+    default_features_extractor: ClassVar[type[BaseFeaturesExtractor]] = FlattenExtractor
     action_space: spaces.Box
     q_net: QuadraticCritic
     q_net_target: QuadraticCritic
@@ -64,7 +65,7 @@ class NAFPolicy(BasePolicy):
         lr_schedule: Schedule,
         net_arch: list[int] | dict[str, list[int]] | None = None,
         activation_fn: type[nn.Module] = nn.ReLU,
-        features_extractor_class: type[BaseFeaturesExtractor] = FlattenExtractor,
+        features_extractor_class: type[BaseFeaturesExtractor] | None = None,
         features_extractor_kwargs: dict[str, Any] | None = None,
         normalize_images: bool = True,
         optimizer_class: type[th.optim.Optimizer] = th.optim.Adam,
@@ -79,7 +80,7 @@ class NAFPolicy(BasePolicy):
         super().__init__(
             observation_space,
             action_space,
-            features_extractor_class,
+            features_extractor_class or self.default_features_extractor,
             features_extractor_kwargs,
             optimizer_class=optimizer_class,
             optimizer_kwargs=optimizer_kwargs,
@@ -120,14 +121,7 @@ class NAFPolicy(BasePolicy):
         self._build(lr_schedule)
 
     def _build(self, lr_schedule: Schedule) -> None:
-        """
-        Create the networks and the optimizer.
-
-        Put the target network into evaluation mode.
-
-        :param lr_schedule: Learning rate schedule
-            lr_schedule(1) is the initial learning rate
-        """
+        """Create the networks and the optimizer, and put the target network into evaluation mode."""
         self.q_net = self.make_q_net()
         self.q_net_target = self.make_q_net()
         self.q_net_target.load_state_dict(self.q_net.state_dict())
@@ -208,55 +202,15 @@ MlpPolicy = NAFPolicy
 
 class CnnPolicy(NAFPolicy):
     """
-    Policy class for NAF when using images as input.
-
-    :param observation_space: Observation space
-    :param action_space: Action space
-    :param lr_schedule: Learning rate schedule (could be constant)
-    :param features_extractor_class: Features extractor to use.
-    :param kwargs: Other arguments of :class:`NAFPolicy`
+    Policy class for NAF when using images as input; its arguments are those of :class:`NAFPolicy`.
     """
 
-    def __init__(
-        self,
-        observation_space: spaces.Space,
-        action_space: spaces.Box,
-        lr_schedule: Schedule,
-        features_extractor_class: type[BaseFeaturesExtractor] = NatureCNN,
-        **kwargs: Any,
-    ) -> None:
-        super().__init__(
-            observation_space,
-            action_space,
-            lr_schedule,
-            features_extractor_class=features_extractor_class,
-            **kwargs,
-        )
+    default_features_extractor = NatureCNN
 
 
 class MultiInputPolicy(NAFPolicy):
     """
-    Policy class for NAF when using dict observations as input.
-
-    :param observation_space: Observation space
-    :param action_space: Action space
-    :param lr_schedule: Learning rate schedule (could be constant)
-    :param features_extractor_class: Features extractor to use.
-    :param kwargs: Other arguments of :class:`NAFPolicy`
+    Policy class for NAF when using dict observations as input; its arguments are those of :class:`NAFPolicy`.
     """
 
-    def __init__(
-        self,
-        observation_space: spaces.Dict,
-        action_space: spaces.Box,
-        lr_schedule: Schedule,
-        features_extractor_class: type[BaseFeaturesExtractor] = CombinedExtractor,
-        **kwargs: Any,
-    ) -> None:
-        super().__init__(
-            observation_space,
-            action_space,
-            lr_schedule,
-            features_extractor_class=features_extractor_class,
-            **kwargs,
-        )
+    default_features_extractor = CombinedExtractor

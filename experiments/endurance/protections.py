@@ -158,13 +158,13 @@ PROTECTIONS = (
     Protection(
         "Ctrl-C and SIGTERM finish the episode",
         "cli/interruption.py",
-        "signal.signal(number, self._note)",
+        "signal.signal(number, note)",
         "pass",
         "test_killed_locked_stopped_and_resumed",
     ),
     Protection(
         "a full disk is one line",
-        "cli/train.py",
+        "cli/interruption.py",
         "except (SarahError, OSError) as error:",
         "except ZeroDivisionError as error:",
         "test_a_full_disk_stops_the_training_and_space_lets_it_go_on",

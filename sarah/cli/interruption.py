@@ -1,52 +1,54 @@
-"""Ctrl-C and SIGTERM: the first signal stops after the present episode, the second one at once."""
+"""The end of a command before its time: by Ctrl-C, SIGTERM or a mistake. Its last words say how to go on."""
 
 from __future__ import annotations
 
 import contextlib
 import os
 import signal
-from types import FrameType, TracebackType
-from typing import Any
+import sys
+from collections.abc import Callable, Iterator
+from types import FrameType
+
+from sarah.errors import ResumeError, RunFolderError, SarahError, TaskError, TrainingInterruptedError
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
-class Interruption:
-    """A context in which the first signal is only recorded, and the second has its usual effect.
+@contextlib.contextmanager
+def interruptible(command: str, unit: str, go_on: str) -> Iterator[Callable[[], bool]]:
+    """Context in which the first signal is only recorded, and the second has its usual effect.
 
-    :param command: name of the command, for the message
-    :param unit: what is completed before it stops, for the message
+    :param command: name of the command, for the messages
+    :param unit: what is completed before it stops, for the messages
+    :param go_on: words for how to go on
+    :return: function that says whether a signal has come
+    :raises RunFolderError: for whatever else stops it but a folder that cannot be resumed or a mistake in a task's file
     """
+    message = f"\n{command}: stopping when this {unit} is over; a second signal stops at once\n".encode()
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+    came: list[int] = []
 
-    signal: int | None
-    """Number of the signal that came; ``None`` before."""
+    def restore() -> None:
+        for number, usual in before.items():
+            signal.signal(number, usual)
 
-    def __init__(self, command: str, unit: str = "episode") -> None:
-        self.signal = None
-        self._message = f"\n{command}: stopping when this {unit} is over; a second signal stops at once\n".encode()
-        self._before: dict[int, Any] = {}
-
-    def __enter__(self) -> Interruption:
-        """Record signals from now on, except for those that the process ignores."""
-        self._before = {number: signal.getsignal(number) for number in SIGNALS}
-        for number, before in self._before.items():
-            if before != signal.SIG_IGN:
-                signal.signal(number, self._note)
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Restore the usual effect of the signals."""
-        for number, before in self._before.items():
-            signal.signal(number, before)
-
-    def came(self) -> bool:
-        """Whether a signal has come."""
-        return self.signal is not None
-
-    def _note(self, number: int, frame: FrameType | None) -> None:
-        self.signal = number
-        self.__exit__(None, None, None)
+    def note(number: int, frame: FrameType | None) -> None:
+        came.append(number)
+        restore()
         with contextlib.suppress(OSError):  # nobody need read it
-            os.write(2, self._message)  # a handler must not use the buffers of print
+            os.write(2, message)  # a handler must not use the buffers of print
+
+    for number, usual in before.items():
+        if usual != signal.SIG_IGN:
+            signal.signal(number, note)
+    try:
+        yield lambda: bool(came)
+    except (TrainingInterruptedError, KeyboardInterrupt):
+        print(f"\n{command}: interrupted; {go_on}", file=sys.stderr)
+        raise SystemExit(128 + (came[0] if came else signal.SIGINT)) from None
+    except (ResumeError, TaskError):
+        raise
+    except (SarahError, OSError) as error:
+        raise RunFolderError(f"{error}; finished {unit}s are kept, {go_on}") from error
+    finally:
+        restore()

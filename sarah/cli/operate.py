@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import signal
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass
 from functools import partial
@@ -16,7 +14,7 @@ import tyro
 from sarah.cli.episode_options import EpisodeOptions, given_options, parse_episode_options
 from sarah.cli.former_names import say_present, with_out
 from sarah.cli.going_on import check_extendable, check_same, finished_words
-from sarah.cli.interruption import Interruption
+from sarah.cli.interruption import interruptible
 from sarah.cli.next_steps import say_next, to_see, to_test, to_watch
 from sarah.cli.operated import OperatedConfig, say_differences, settings_in_operation, times_of_session
 from sarah.cli.options import named_task, run_command, say_engine
@@ -25,14 +23,7 @@ from sarah.episode.push import NO_PUSH, PushedConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import controller_of
 from sarah.episode.tasks import BALANCE, STEPPING
-from sarah.errors import (
-    ConfigurationError,
-    ResumeError,
-    RunFolderError,
-    SarahError,
-    TrainingInterruptedError,
-    shortened,
-)
+from sarah.errors import ConfigurationError, shortened
 from sarah.files import quoted
 from sarah.formats import read_yaml
 from sarah.number import number
@@ -269,16 +260,8 @@ def _watched(
         bar.set_postfix(window=window.index, score=f"{window.score:.2f}", falls=falls, changes=window.changes)
         bar.update(min(window.end, seconds) - bar.n)
 
-    with bar, Interruption(COMMAND, "window") as interruption:
-        try:
-            return run(show, interruption.came)
-        except (TrainingInterruptedError, KeyboardInterrupt):
-            print(f"\n{COMMAND}: interrupted; {go_on}", file=sys.stderr)
-            raise SystemExit(128 + (interruption.signal or signal.SIGINT)) from None
-        except ResumeError:
-            raise
-        except (SarahError, OSError) as error:
-            raise RunFolderError(f"{error}; finished windows are kept, {go_on}") from error
+    with bar, interruptible(COMMAND, "window", go_on) as interrupted:
+        return run(show, interrupted)
 
 
 def _summarise(result: SessionResult, frozen: SessionResult | None, spec: SessionSpec, path: Path) -> None:

@@ -103,11 +103,7 @@ def dimension_words(arguments: Sequence[str]) -> list[str]:
 
 
 def _with_all_dimensions(arguments: Sequence[str], config: Any) -> list[str]:
-    """Arguments whose dimensions come beside those that the settings have already.
-
-    :param arguments: arguments of a command
-    :param config: default options
-    """
+    """Arguments whose dimensions come beside those that the default options have already."""
     given = dimension_words(arguments)
     if not given:
         return list(arguments)

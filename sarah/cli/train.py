@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import re
-import signal
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -25,7 +24,7 @@ from sarah.cli.episode_options import (
 from sarah.cli.former_names import with_out
 from sarah.cli.given_settings import say_differences, settings_of_file, settings_on_stepping
 from sarah.cli.going_on import check_extendable, check_same, finished_words
-from sarah.cli.interruption import Interruption
+from sarah.cli.interruption import interruptible
 from sarah.cli.next_steps import say_next, to_see, to_test, to_watch
 from sarah.cli.options import named_task, parse_options, pushed_words, run_command, say_engine
 from sarah.cli.subjects import check_of_training
@@ -34,14 +33,7 @@ from sarah.cli.training_defaults import default_training
 from sarah.episode.push import PushedConfig
 from sarah.episode.reward import equation_2, frequency_hint
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, load_task
-from sarah.errors import (
-    ConfigurationError,
-    ResumeError,
-    RunFolderError,
-    SarahError,
-    TaskError,
-    TrainingInterruptedError,
-)
+from sarah.errors import ConfigurationError, TaskError
 from sarah.files import quoted
 from sarah.robot.scale import Scale
 from sarah.runs.agent_names import unknown_option
@@ -178,11 +170,7 @@ def _resumed(path: Path, options: TrainOptions, config: TrainingConfig) -> RunFo
 
 
 def _extended(run: RunFolder, config: TrainingConfig) -> TrainingConfig:
-    """Extend a finished training, and say what that means.
-
-    :param run: run folder of the training
-    :param config: settings with the larger budget
-    """
+    """Extend a finished training to a larger budget, and say what that means."""
     before = run.config()
     extended = dataclasses.replace(before.extended_to(config.episodes), pictures=config.pictures)
     run.extend(extended)
@@ -199,18 +187,11 @@ def _learned(config: TrainingConfig, run: RunFolder, workers: Workers, task: str
     from sarah.training.train import train
 
     go_on = f"go on with {COMMAND} --resume {quoted(run.path)}{task}"
-    with Interruption(COMMAND) as interruption:
+    with interruptible(COMMAND, "episode", go_on) as interrupted:
         try:
-            return train(config, run, workers, True, interruption.came)
-        except (TrainingInterruptedError, KeyboardInterrupt):
-            print(f"\n{COMMAND}: interrupted; {go_on}", file=sys.stderr)
-            raise SystemExit(128 + (interruption.signal or signal.SIGINT)) from None
-        except ResumeError:
-            raise
+            return train(config, run, workers, True, interrupted)
         except TaskError as error:
             raise TaskError(f"{error}; correct the file, and train into another folder than {run.path}") from error
-        except (SarahError, OSError) as error:
-            raise RunFolderError(f"{error}; finished episodes are kept, {go_on}") from error
 
 
 def _defaults(arguments: Sequence[str]) -> TrainOptions:
@@ -239,11 +220,7 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
 
 
 def _resumed_defaults(path: Path, given: Mapping[str, str]) -> TrainOptions:
-    """Options of the training to go on with; other settings than its own would need other options.
-
-    :param path: path of its run folder
-    :param given: values of the options that were given, by name
-    """
+    """Options of the training to go on with; other settings than its own would need other options."""
     from sarah.runs.recorded_task import RecordedTask
     from sarah.runs.run_folder import RunFolder
 
@@ -272,11 +249,7 @@ def _with_agent(training: TrainingConfig, algo: str | None, preset: str | None) 
 
 
 def _check_agent_options(arguments: Sequence[str], training: TrainingConfig) -> None:
-    """Refuse ``--agent.…`` options of settings that the algorithm has not.
-
-    :param arguments: all arguments of the command
-    :param training: settings of the training, with its algorithm
-    """
+    """Refuse ``--agent.…`` options of settings that the algorithm has not."""
     for argument in arguments:
         if argument.startswith("--agent.") and (message := unknown_option(training.algo, argument.partition("=")[0])):
             raise ConfigurationError(message)

@@ -90,12 +90,7 @@ def _view(arguments: Sequence[str]) -> None:
 
 
 def _changed_as(spec: EpisodeSpec, chosen: EpisodeSpec, changed: EpisodeSpec) -> EpisodeSpec:
-    """Specification of an episode with the changes of the chosen one. The windows of a session have settings each.
-
-    :param spec: specification of the episode
-    :param chosen: specification of the chosen episode, as it was
-    :param changed: specification of the chosen episode, as the options change it
-    """
+    """Specification of an episode with the changes of the chosen one. The windows of a session have settings each."""
     if spec.config == chosen.config:
         return dataclasses.replace(spec, config=changed.config)
     return dataclasses.replace(spec, config=changed_alike(spec.config, chosen.config, changed.config))

@@ -137,11 +137,7 @@ def _check_presence(client: Client) -> None:
 
 @contextlib.contextmanager
 def _in_one_line(what: str) -> Iterator[None]:
-    """Raise whatever goes wrong with Dask as one line, which says what was tried and why it failed.
-
-    :param what: words for what was tried
-    :raises WorkersError: with the first cause
-    """
+    """Raise whatever goes wrong with Dask as one line, which says what was tried and the first cause."""
     try:
         yield
     except WorkersError:

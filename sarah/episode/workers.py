@@ -11,8 +11,7 @@ import os
 from abc import ABC, abstractmethod
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Sequence
-from types import TracebackType
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sarah.episode.cluster import RemoteJob, connect, start
 from sarah.episode.episode import Episode, simulate
@@ -51,11 +50,13 @@ class Outcome(NamedTuple):
     following: SensorReading | None = None
 
 
-class Job(Protocol):
-    """A call that is computed now or later, in this process or another."""
+class Job(NamedTuple):
+    """A call that is computed now or later, in this process or another.
 
-    def result(self) -> Any:
-        """Wait for the call, and return what it returned."""
+    :param result: function that waits for the call, and returns what it returned
+    """
+
+    result: Callable[[], Any]
 
 
 def begin_episode(spec: EpisodeSpec) -> SensorReading:
@@ -178,9 +179,7 @@ class Workers(HoldsWorld, Executor):
                     self._restore_environment()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         """Stop the workers that were started; the workers of a scheduler go on without this client."""
         close_waiting_episodes()
         if self.client is not None:
@@ -201,15 +200,12 @@ class Workers(HoldsWorld, Executor):
     def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
         """Submit a call, of an episode or of a whole training.
 
-        :param function: function to call: :func:`begin_episode`, :func:`finish_episode`, :func:`sarah.simulate`, or
-            one of another module
-        :param subjects: arguments of the function, such as specifications of episodes
         :raises ConfigurationError: outside the context, or if other processes simulate and the task is that of a script
         """
         if self.client is None and (self._count or self._scheduler is not None):
             raise ConfigurationError("workers start in a with statement: with Workers(4) as workers")
         if self.client is None:
-            return _LocalJob(function, *subjects)
+            return Job(functools.partial(function, *subjects))
         for subject in subjects:
             if isinstance(subject, EpisodeSpec) and not is_portable(subject.task):
                 raise ConfigurationError(
@@ -217,12 +213,7 @@ class Workers(HoldsWorld, Executor):
                     "into one, and use sarah.load_task"
                 )
         packages = SIMULATING if function in _EPISODES else LEARNING
-        return RemoteJob(self.client, packages, function, *subjects)
-
-
-class _LocalJob:
-    def __init__(self, function: Callable[..., Any], *subjects: Any) -> None:
-        self.result = functools.partial(function, *subjects)
+        return Job(RemoteJob(self.client, packages, function, *subjects).result)
 
 
 def executor_of(workers: Executor | None) -> Executor:

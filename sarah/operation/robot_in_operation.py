@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import random
+from collections.abc import Callable
 from typing import Any
 
 from sarah.control.pattern_generator import STAND_SECONDS
@@ -14,6 +15,7 @@ from sarah.episode.result import EpisodeResult
 from sarah.episode.running_robot import RunningRobot, conditions_of
 from sarah.operation.settings import BOX, OperationConfig, Parameters, controller_parameters
 from sarah.operation.window import Window, WindowRecord
+from sarah.recorded.journal import Journal
 from sarah.robot.reading import Vector
 
 MOST_PUSHES = 2**20
@@ -28,15 +30,26 @@ class RobotInOperation:
 
     :param config: settings of the operation
     :param seed: seed of robot, world, noise and pushes
+    :param watch: function that is called with every window
+    :param journal: journal of the windows, of which those that it knows are not simulated again
     """
 
-    def __init__(self, config: OperationConfig, seed: int) -> None:
+    def __init__(
+        self,
+        config: OperationConfig,
+        seed: int,
+        watch: Callable[[Window], None] | None = None,
+        journal: Journal | None = None,
+    ) -> None:
         self.config = config
         self.seconds = 0.0
         """Time of operation so far, in s."""
         self.windows = 0
         """Number of windows so far."""
         self._seed = seed
+        self._watch = watch
+        self._journal = journal
+        self._stages_over = 0
         self._robot: RunningRobot | None = None
         self._changes = 0
         self._stands = 0
@@ -64,8 +77,25 @@ class RobotInOperation:
 
         :param parameters: P1 to P5 and V1 to V4
         :raises ConfigurationError: if a parameter is not within its box
+        :raises ResumeError: if the window that the journal knows had others
         """
-        return self._run_next(BOX.checked(parameters), False)[0]
+        window = self._run_next(parameters)[0] if self._journal is None else self._recorded(self._journal, parameters)
+        if self._watch is not None:
+            self._watch(window)
+        return window
+
+    def _recorded(self, journal: Journal, parameters: Parameters) -> Window:
+        while self._stages_over < self.config.stages_over(self.seconds):
+            journal.extend(self.windows + self._stages_over, self.config.stages[self._stages_over + 1])
+            self._stages_over += 1
+        request = {"index": self.windows + self._stages_over, "parameters": list(parameters)}
+        window = journal.known(request, Window.of_plain)
+        if window is not None:
+            self.skip(window)
+            return window
+        window = self._run_next(parameters)[0]
+        journal.add(request, window.plain())
+        return window
 
     def replay(self, window: Window) -> EpisodeResult:
         """Run one window again that is known, and record it.
@@ -73,7 +103,7 @@ class RobotInOperation:
         :param window: next window
         :return: it as the result of an episode, with a trace
         """
-        result = self._run_next(window.parameters, True)[1]
+        result = self._run_next(window.parameters, record=True)[1]
         assert result is not None
         return result
 
@@ -120,7 +150,8 @@ class RobotInOperation:
         robot.stand()
         return robot
 
-    def _run_next(self, parameters: Parameters, record: bool) -> tuple[Window, EpisodeResult | None]:
+    def _run_next(self, parameters: Parameters, record: bool = False) -> tuple[Window, EpisodeResult | None]:
+        parameters = BOX.checked(parameters)
         self._make_changes()
         if self._robot is None:
             self._robot = self._standing()

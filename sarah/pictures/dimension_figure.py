@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon, Rectangle
 from matplotlib.patheffects import withStroke
 
-from sarah.pictures.dimension_layout import LABEL_HEIGHT, TITLE_HEIGHT, Layout, Panel
 from sarah.pictures.dimension_marks import CENTRE_OF_MASS, Mark, Side, marks
 from sarah.pictures.link_shapes import outlines
 from sarah.pictures.style import own_style
@@ -21,12 +19,17 @@ from sarah.robot.description import RobotDescription
 from sarah.robot.dimensions import known_dimensions
 from sarah.robot.standing import links_of, model_of, together
 
-WIDTH = 7.6
-"""Width of the figure, in inches; so are all lengths below."""
+WIDTH, HEIGHT = 7.6, 6.3
+"""Size of the figure, in inches; so are all lengths below."""
 FONT_SIZE = 7.0
 RESOLUTION = 200
 """Pixels per inch."""
 GAP = 0.05
+LANE = 0.16
+"""Distance of arrows beside the robot from it, and from each other."""
+LABEL_WIDTH, LABEL_HEIGHT = 1.07, 0.26
+UNDER, OVER = 0.4, 0.65
+"""Room under what is framed, and over it, for arrows and the title."""
 SHORT = 0.13
 """Length below which an arrow has bars in place of heads."""
 LIGHTER = 0.45
@@ -34,28 +37,33 @@ LIGHTER = 0.45
 FROM_FRONT = np.array(((-1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)))
 FROM_RIGHT = np.array(((0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)))
 FOOT = ("right_forefoot", "right_hindfoot")
-ROWS = (
-    {
-        "front": Panel("from the front", 0.0, 3.8, 5.5, FROM_FRONT),
-        "side": Panel("from its right", 3.8, 3.8, 5.5, FROM_RIGHT),
-    },
-    {
-        "foot side": Panel("right foot, from its right", 0.0, 4.4, 1.6, FROM_RIGHT, FOOT),
-        "foot front": Panel("right foot, from the front", 4.4, 3.2, 1.6, FROM_FRONT, FOOT),
-    },
-)
-"""Panels by the name of their marks, row by row from the top."""
+EDGES = {"left": (0, 0), "right": (1, 0), "bottom": (0, 1), "top": (1, 1)}
+"""End of the frame on each side, 0 for the lower one, and the axis across that side."""
 
 
-class Name(NamedTuple):
-    """Text beside a mark.
+class Panel(NamedTuple):
+    """A part of the figure.
 
-    :param text: name and value, on two lines
-    :param weight: weight of the font: bold if the value is not the default
+    :param name: name of its marks
+    :param title: title
+    :param place: left, bottom, width and height
+    :param axes: unit vectors to the right, up and towards the eye, as rows
+    :param links: links that the panel shows from end to end; none stands for all
     """
 
-    text: str
-    weight: str
+    name: str
+    title: str
+    place: tuple[float, float, float, float]
+    axes: np.ndarray
+    links: tuple[str, ...] = ()
+
+
+PANELS = (
+    Panel("front", "from the front", (0.0, 2.1, 3.8, 4.2), FROM_FRONT),
+    Panel("side", "from its right", (3.8, 2.1, 3.8, 4.2), FROM_RIGHT),
+    Panel("foot side", "right foot, from its right", (0.0, 0.0, 4.4, 2.1), FROM_RIGHT, FOOT),
+    Panel("foot front", "right foot, from the front", (4.4, 0.0, 3.2, 2.1), FROM_FRONT, FOOT),
+)
 
 
 def draw_dimensions(robot: RobotDescription, dimensions: Mapping[str, float], path: Path) -> None:
@@ -65,139 +73,148 @@ def draw_dimensions(robot: RobotDescription, dimensions: Mapping[str, float], pa
     :param dimensions: values of all its dimensions, in SI units; those that differ from their defaults are bold
     :param path: path of the picture, a PNG
     """
-    model = model_of(robot)
     centre = together(links_of(robot).values()).centre
     shown = marks(dimensions, centre)
-    names = _names(dimensions) | {CENTRE_OF_MASS: Name(f"{CENTRE_OF_MASS}\n{centre[2]:.3g} m high", "normal")}
-    rows = [[_layout(panel, shown[name], robot, model) for name, panel in row.items()] for row in ROWS]
-    height = 0.0
-    for row in reversed(rows):
-        height += _fit(row, height)
+    texts = _texts(dimensions) | {CENTRE_OF_MASS: f"{CENTRE_OF_MASS}\n{centre[2]:.3g} m high"}
+    changed = {name for name, value in dimensions.items() if value != known_dimensions()[name].default}
+    views = [_View(panel, shown[panel.name], robot) for panel in PANELS]
+    shared = min(view.scale for view in views if not view.panel.links)  # of the whole robot; a foot has its own
     with own_style({"axes.grid": False, "font.size": FONT_SIZE}):
-        figure = plt.figure(figsize=(WIDTH, height))
-        axis = figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(0.0, WIDTH), ylim=(0.0, height))
-        axis.axis("off")
-        for layout in itertools.chain(*rows):
-            _draw_robot(axis, layout, robot, model)
-            for mark in layout.marks:
-                _draw_mark(axis, layout, mark)
-            _name_beside(axis, layout, "left", names)
-            _name_beside(axis, layout, "right", names)
-            _name_along(axis, layout, names)
+        figure = plt.figure(figsize=(WIDTH, HEIGHT))
+        for view in views:
+            view.begin(figure, view.scale if view.panel.links else shared)
+            view.draw_robot(robot)
+            for mark in view.marks:
+                view.draw_mark(mark)
+            view.write_names("left", texts, changed)
+            view.write_names("right", texts, changed)
         figure.savefig(path, dpi=RESOLUTION)
         plt.close(figure)
 
 
-def _fit(row: list[Layout], bottom: float) -> float:
-    """Fit a row of panels, and return its height; the whole robot has one scale in all of them, a foot its own."""
-    shared = min(layout.largest_scale for layout in row)
-    scales = [layout.largest_scale if layout.panel.links else shared for layout in row]
-    height = max(layout.height(scale) for layout, scale in zip(row, scales, strict=True))
-    for layout, scale in zip(row, scales, strict=True):
-        layout.fit(scale, bottom, height)
-    return height
-
-
-def _names(dimensions: Mapping[str, float]) -> dict[str, Name]:
+def _texts(dimensions: Mapping[str, float]) -> dict[str, str]:
+    """Name and value of each dimension, on two lines."""
     known, signs = known_dimensions(), dict.fromkeys(("abduction_limit", "flexion_limit"), "±")
-    return {
-        name: Name(
-            f"{name}\n{signs.get(name, '')}{value:.4g} {known[name].unit}",
-            "normal" if value == known[name].default else "bold",
-        )
-        for name, value in dimensions.items()
-    }
+    return {name: f"{name}\n{signs.get(name, '')}{value:.4g} {known[name].unit}" for name, value in dimensions.items()}
 
 
-def _layout(panel: Panel, shown: list[Mark], robot: RobotDescription, model: Any) -> Layout:
-    """Layout in which the panel's links and arcs have room, and the floor under them."""
-    flat = [mark.seen(panel.axes) for mark in shown]
-    whole = [outline.corners for outline in outlines(model, panel.links, robot.standing_height, panel.axes)]
-    arcs = [mark.points for mark in flat if len(mark.points) > 2]
-    points = np.concatenate(whole + arcs)
-    return Layout(panel, flat, np.concatenate((points, [(points[0, 0], 0.0)])))
+class _View:
+    """A panel as it is drawn: in metres, with the frame of links and arcs in the middle of its lower edge."""
 
+    def __init__(self, panel: Panel, shown: Sequence[Mark], robot: RobotDescription) -> None:
+        self.panel, self.marks = panel, shown
+        whole = [outline.corners for outline in self._outlines(robot, panel.links)]
+        arcs = [self._seen(mark.points) for mark in shown if len(mark.points) > 2]
+        points = np.concatenate(whole + arcs)
+        self._frame = np.array((np.minimum(points.min(axis=0), (np.inf, 0.0)), points.max(axis=0)))
+        _, _, width, height = panel.place
+        free = np.array((width - self._room("left") - self._room("right"), height - UNDER - OVER))
+        self.scale = float((free / np.ptp(self._frame, axis=0)).min())
+        """Largest scale at which everything has room, in inches per m."""
 
-def _draw_robot(axis: Axes, layout: Layout, robot: RobotDescription, model: Any) -> None:
-    """Draw the links, which end at the frame, the floor, and the contacts of an enlarged foot."""
-    panel, (width, height) = layout.panel, layout.high - layout.low
-    axis.text(panel.left + panel.width / 2, layout.top + TITLE_HEIGHT / 2, panel.title, ha="center")
-    frame = Rectangle(tuple(layout.low - GAP), width + 2 * GAP, height + 2 * GAP, transform=axis.transData)
-    links = [link for link in model.link_map if not panel.links or link.startswith("right")]
-    for outline in outlines(model, links, robot.standing_height, panel.axes):
-        colour = LIGHTER + (1.0 - LIGHTER) * np.array(outline.colour)
-        places = layout.at(outline.corners)
-        axis.add_patch(Polygon(places, facecolor=colour, edgecolor=0.7 * colour, linewidth=0.3)).set_clip_path(frame)
-    y = layout.at(np.zeros((1, 2)))[0, 1]
-    axis.plot((layout.low[0] - GAP, layout.high[0] + GAP), (y, y), color="0.3", linewidth=0.8)
-    right_soles = np.array(robot.standing_soles[len(robot.standing_soles) // 2 :])
-    for place in layout.at(right_soles @ panel.axes[:2].T) if panel.links else ():
-        axis.add_patch(
-            Circle(tuple(place), layout.scale * robot.contact_radius, fill=False, linewidth=0.5, linestyle=":")
-        )
+    def begin(self, figure: Figure, scale: float) -> None:
+        """Begin to draw at a scale, in inches per m."""
+        place, self._inch = np.array(self.panel.place), 1.0 / scale
+        size, (low, high) = place[2:] * self._inch, self._frame
+        left = (low + high - size)[0] / 2 + (self._room("right") - self._room("left")) * self._inch / 2
+        self._bottom = low[1] - UNDER * self._inch
+        self._top = self._bottom + size[1]
+        self._axis = figure.add_axes(tuple(place / (WIDTH, HEIGHT, WIDTH, HEIGHT)))
+        self._axis.set(xlim=(left, left + size[0]), ylim=(self._bottom, self._top))
+        self._axis.axis("off")
+        title = self._top - LABEL_HEIGHT / 2 * self._inch
+        self._axis.text(left + size[0] / 2, title, self.panel.title, ha="center", va="center")
 
+    def draw_robot(self, robot: RobotDescription) -> None:
+        """Draw the links, which end at the frame, the floor, and the contacts of an enlarged foot."""
+        (left, low), (right, high), gap = *self._frame, GAP * self._inch
+        corner, size = (left - gap, low - gap), (right - left + 2 * gap, high - low + 2 * gap)
+        frame = Rectangle(corner, *size, transform=self._axis.transData)
+        links = [link for link in model_of(robot).link_map if not self.panel.links or link.startswith("right")]
+        for outline in self._outlines(robot, links):
+            colour = LIGHTER + (1.0 - LIGHTER) * np.array(outline.colour)
+            shape = Polygon(outline.corners, facecolor=colour, edgecolor=0.7 * colour, linewidth=0.3)
+            self._axis.add_patch(shape).set_clip_path(frame)
+        self._axis.plot((left - gap, right + gap), (0.0, 0.0), color="0.3", linewidth=0.8)
+        right_soles = np.array(robot.standing_soles[len(robot.standing_soles) // 2 :])
+        for place in self._seen(right_soles) if self.panel.links else ():
+            circle = Circle(tuple(place), robot.contact_radius, fill=False, linewidth=0.5, linestyle=":")
+            self._axis.add_patch(circle)
 
-def _draw_mark(axis: Axes, layout: Layout, mark: Mark) -> None:
-    places, seen = layout.places(mark), layout.at(mark.points)
-    if len(places) == 1:
-        _draw_dot(axis, places[0], mark.name)
-        return
-    thin = list(zip(seen, places, strict=True)) if mark.is_beside else []
-    thin += [(centre, end) for centre in layout.at(mark.centre) for end in (places[0], places[-1])]
-    for first, last in thin:
-        axis.plot(*zip(first, last, strict=True), color="0.4", linewidth=0.4)
-    if len(places) > 2:
-        outline = [withStroke(linewidth=1.8, foreground="white")]
-        axis.plot(*places.T, color="black", linewidth=0.7, path_effects=outline)
-    length = np.linalg.norm(np.diff(places, axis=0), axis=1).sum()
-    head = "-|>,head_length=0.3,head_width=0.12" if length > SHORT else "|-|,widthA=0,widthB=0.12"
-    arrow = {"arrowstyle": head, "linewidth": 0.7, "color": "black", "shrinkA": 0, "shrinkB": 0}
-    for last, before in [(-1, -2), (0, 1)][: 1 + mark.has_two_heads]:
-        axis.annotate("", places[last], places[before], arrowprops=arrow)
+    def draw_mark(self, mark: Mark) -> None:
+        """Draw a mark without its name."""
+        places, seen = self._places(mark), self._seen(mark.points)
+        if mark.name == CENTRE_OF_MASS:
+            self._axis.plot(*places[0], "o", markersize=7, color="black", fillstyle="left", markerfacecoloralt="white")
+        elif len(places) == 1:
+            self._axis.plot(*places[0], "o", markersize=2.5, color="black", markeredgecolor="white", mew=0.5)
+        if len(places) == 1:
+            return
+        thin = list(zip(seen, places, strict=True)) if mark.beside else []
+        thin += [(centre, end) for centre in self._seen(mark.centre) for end in (places[0], places[-1])]
+        for first, last in thin:
+            self._axis.plot(*zip(first, last, strict=True), color="0.4", linewidth=0.4)
+        if len(places) > 2:
+            outline = [withStroke(linewidth=1.8, foreground="white")]
+            self._axis.plot(*places.T, color="black", linewidth=0.7, path_effects=outline)
+        length = np.linalg.norm(np.diff(places, axis=0), axis=1).sum()
+        head = "-|>,head_length=0.3,head_width=0.12" if length > SHORT * self._inch else "|-|,widthA=0,widthB=0.12"
+        arrow = {"arrowstyle": head, "linewidth": 0.7, "color": "black", "shrinkA": 0, "shrinkB": 0}
+        for last, before in [(-1, -2), (0, 1)][: 1 + mark.has_two_heads]:
+            self._axis.annotate("", places[last], places[before], arrowprops=arrow)
 
+    def write_names(self, side: Side, texts: Mapping[str, str], bold: set[str]) -> None:
+        """Write the names on a side in a column, in the order of what they name, with a line to each."""
+        from scipy.optimize import isotonic_regression
 
-def _draw_dot(axis: Axes, place: np.ndarray, name: str) -> None:
-    if name == CENTRE_OF_MASS:
-        axis.plot(*place, "o", markersize=7, color="black", fillstyle="left", markerfacecoloralt="white")
-    else:
-        axis.plot(*place, "o", markersize=2.5, color="black", markeredgecolor="white", markeredgewidth=0.5)
+        anchors = {mark.name: self._anchor(mark) for mark in self.marks if mark.side == side}
+        named = sorted(anchors.items(), key=lambda pair: -pair[1][1])
+        if not named:
+            return
+        label = LABEL_HEIGHT * self._inch
+        steps = label * np.arange(len(named))
+        wanted = np.array([anchor[1] for _, anchor in named]) + steps
+        heights = isotonic_regression(wanted, increasing=False).x
+        heights = np.clip(heights, self._bottom + label / 2 + steps[-1], self._top - 1.5 * label) - steps
+        x = self._edge(side, self._lanes(side))
+        gap, align = (GAP, "left") if side == "right" else (-GAP, "right")
+        for (name, anchor), height in zip(named, heights, strict=True):
+            self._axis.plot((anchor[0], x), (anchor[1], height), color="black", linewidth=0.4)
+            weight = "bold" if name in bold else "normal"
+            self._axis.text(x + gap * self._inch, height, texts[name], ha=align, va="center", weight=weight)
 
+    def _outlines(self, robot: RobotDescription, links: Sequence[str]) -> Any:
+        return outlines(model_of(robot), links, robot.standing_height, self.panel.axes)
 
-def _name_beside(axis: Axes, layout: Layout, side: Side, names: Mapping[str, Name]) -> None:
-    """Write the names on the left or right in a column, in the order of what they name, with a line to each."""
-    from scipy.optimize import isotonic_regression
+    def _seen(self, points: np.ndarray) -> np.ndarray:
+        """Points of the world to the right and up."""
+        return np.asarray(points @ self.panel.axes[:2].T)
 
-    named = sorted((tuple(_anchor(layout, mark)), mark.name) for mark in layout.on(side))
-    named.sort(key=lambda pair: -pair[0][1])
-    if not named:
-        return
-    steps = LABEL_HEIGHT * np.arange(len(named))
-    top, bottom = layout.top - LABEL_HEIGHT / 2, layout.names_at("bottom") + LABEL_HEIGHT / 2
-    wanted = np.array([y for (_, y), _ in named]) + steps
-    heights = np.clip(isotonic_regression(wanted, increasing=False).x, bottom + steps[-1], top) - steps
-    x, gap, align = layout.names_at(side), *((GAP, "left") if side == "right" else (-GAP, "right"))
-    for (anchor, name), height in zip(named, heights, strict=True):
-        axis.plot((anchor[0], x), (anchor[1], height), color="black", linewidth=0.4)
-        axis.text(x + gap, height, names[name].text, ha=align, va="center", weight=names[name].weight)
+    def _room(self, side: Side) -> float:
+        """Room for lanes and names on a side, in inches."""
+        has_names = any(mark.side == side for mark in self.marks)
+        return LANE * self._lanes(side) + (LABEL_WIDTH if has_names else 0.0)
 
+    def _lanes(self, side: Side) -> int:
+        """Number of lanes from the frame to the names on a side."""
+        return max((mark.lane for mark in self.marks if mark.beside == side), default=0) + 1
 
-def _anchor(layout: Layout, mark: Mark) -> np.ndarray:
-    """Place to which a name's line leads: the middle of an arrow in a lane, and else the nearest head."""
-    places = layout.places(mark)
-    if mark.is_beside:
-        return np.asarray(places.mean(axis=0))
-    heads = places[[0, -1]] if mark.has_two_heads else places[-1:]
-    return np.asarray(max(heads, key=lambda place: place[0] if mark.side == "right" else -place[0]))
+    def _edge(self, side: str, lane: int) -> float:
+        """Place of a lane across its side; lane 0 is the edge of the frame."""
+        end, across = EDGES[side]
+        return float(self._frame[end, across] + (2 * end - 1) * LANE * lane * self._inch)
 
+    def _places(self, mark: Mark) -> np.ndarray:
+        """Places of a mark's points; an arrow beside the robot is in its lane."""
+        places = self._seen(mark.points)
+        if mark.beside:
+            places[:, EDGES[mark.beside][1]] = self._edge(mark.beside, mark.lane)
+        return places
 
-def _name_along(axis: Axes, layout: Layout, names: Mapping[str, Name]) -> None:
-    """Write the names above and below their arrows; those below begin at the arrow's first point, away from others."""
-    for mark in layout.on("top"):
-        x = layout.places(mark)[:, 0].mean()
-        name = names[mark.name]
-        axis.text(x, layout.names_at("top") + GAP, name.text, ha="center", va="bottom", weight=name.weight)
-    for mark in layout.on("bottom"):
-        (first, _), (last, _) = layout.places(mark)
-        gap, align = (GAP, "left") if last > first else (-GAP, "right")
-        name = names[mark.name]
-        axis.text(first + gap, layout.names_at("bottom") - GAP, name.text, ha=align, va="top", weight=name.weight)
+    def _anchor(self, mark: Mark) -> np.ndarray:
+        """Place to which a name's line leads: the middle of an arrow beside the robot, and else the nearest head."""
+        places = self._places(mark)
+        if mark.beside == mark.side:
+            return np.asarray(places.mean(axis=0))
+        heads = places[[0, -1]] if mark.has_two_heads else places[-1:]
+        return np.asarray(max(heads, key=lambda place: place[0] if mark.side == "right" else -place[0]))

@@ -8,7 +8,8 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-Side = Literal["left", "right", "top", "bottom"]
+Side = Literal["left", "right"]
+Beside = Literal["", "left", "right", "top", "bottom"]
 Point = tuple[float, float, float]
 CENTRE_OF_MASS = "centre of mass"
 ARC_RADIUS = 0.3
@@ -24,7 +25,8 @@ class Mark(NamedTuple):
     :param name: name of the dimension
     :param side: side of the drawing on which its name stands
     :param points: points in the world's frame, in m: one of a dot, two of an arrow, more of an arc; shape (n, 3)
-    :param is_beside: whether the arrow is drawn beside the robot, on that side, and not on it
+    :param beside: side of the robot on which an arrow is drawn; empty for one that is drawn on the robot
+    :param lane: number of the lane beside the robot, counted from it
     :param has_two_heads: whether an arrow points to both of its ends, and not to the last only
     :param centre: centre of an arc, shape (1, 3); no point for others
     """
@@ -32,16 +34,10 @@ class Mark(NamedTuple):
     name: str
     side: Side
     points: np.ndarray
-    is_beside: bool = False
+    beside: Beside = ""
+    lane: int = 1
     has_two_heads: bool = True
     centre: np.ndarray = np.empty((0, 3))
-
-    def seen(self, axes: np.ndarray) -> Mark:
-        """The same mark in a flat drawing, whose points are to the right and up.
-
-        :param axes: unit vectors to the right, up and towards the eye, as rows
-        """
-        return self._replace(points=self.points @ axes[:2].T, centre=self.centre @ axes[:2].T)
 
 
 def marks(dimensions: Mapping[str, float], centre_of_mass: np.ndarray) -> dict[str, list[Mark]]:
@@ -63,11 +59,11 @@ def _front(d: Mapping[str, float]) -> list[Mark]:
     torso, left, right = hip + d["hip_drop"], -d["hip_offset"], d["hip_offset"]
     half, top = d["torso_width"] / 2, torso + d["torso_height"] / 2
     return [
-        _beside("torso_width", "top", (half, 0, top), (-half, 0, top)),
-        _beside("hip_drop", "left", (0, 0, torso), (right, 0, hip)),
-        _beside("thigh_length", "left", (right, 0, hip), (right, 0, knee)),
-        _beside("shank_length", "left", (right, 0, knee), (right, 0, ankle)),
-        _beside("hip_offset", "bottom", (0, 0, torso), (left, 0, hip)),
+        _beside("torso_width", "right", "top", (half, 0, top), (-half, 0, top)),
+        _beside("hip_drop", "left", "left", (0, 0, torso), (right, 0, hip)),
+        _beside("thigh_length", "left", "left", (right, 0, hip), (right, 0, knee)),
+        _beside("shank_length", "left", "left", (right, 0, knee), (right, 0, ankle)),
+        _beside("hip_offset", "left", "bottom", (0, 0, torso), (left, 0, hip)),
         _dot("torso_mass", "right", (-0.6 * half, 0, torso + 0.3 * d["torso_height"])),
         _dot("hip_mass", "right", (left, 0, hip)),
         _arc("abduction_limit", (left, 0, hip), ARC_RADIUS * (hip - ankle), d["abduction_limit"], across=0),
@@ -84,11 +80,11 @@ def _side(d: Mapping[str, float]) -> list[Mark]:
         (x, -thigh, knee + change) for change in (0.0, d["leg_retract_limit"], -d["leg_extend_limit"])
     )
     return [
-        _beside("torso_depth", "top", (0, -depth, top), (0, depth, top)),
-        _beside("torso_height", "left", (0, -depth, low), (0, -depth, top)),
+        _beside("torso_depth", "right", "top", (0, -depth, top), (0, depth, top)),
+        _beside("torso_height", "left", "left", (0, -depth, low), (0, -depth, top))._replace(lane=2),
         _dot("hip_effort", "left", (x, -d["hip_size"], hip)),
-        _beside("leg_retract_limit", "left", end, retracted)._replace(has_two_heads=False),
-        _beside("leg_extend_limit", "left", end, extended)._replace(has_two_heads=False),
+        _beside("leg_retract_limit", "left", "left", end, retracted)._replace(has_two_heads=False),
+        _beside("leg_extend_limit", "left", "left", end, extended)._replace(has_two_heads=False),
         _across("hip_size", d["hip_size"], hip),
         _arc("flexion_limit", (x, 0, hip), ARC_RADIUS * (hip - ankle), d["flexion_limit"], across=1),
         _dot("leg_effort", "right", (x, 1.44 * thigh, hip - 0.6 * d["thigh_length"])),
@@ -101,9 +97,9 @@ def _foot_side(d: Mapping[str, float]) -> list[Mark]:
     fore, hind, ankle = d["forefoot_contact"], d["hindfoot_contact"], d["hinge_height"]
     hinge, plate, forward = (0.0, 0.0, ankle), ankle - d["plate_thickness"], math.pi / 2
     return [
-        _beside("hindfoot_contact", "bottom", hinge, (0, -hind, d["contact_radius"])),
-        _beside("forefoot_contact", "bottom", hinge, (0, fore, d["contact_radius"])),
-        _beside("hinge_height", "left", (0, 0, 0), hinge),
+        _beside("hindfoot_contact", "left", "bottom", hinge, (0, -hind, d["contact_radius"])),
+        _beside("forefoot_contact", "right", "bottom", hinge, (0, fore, d["contact_radius"])),
+        _beside("hinge_height", "left", "left", (0, 0, 0), hinge),
         _dot("ankle_damping", "left", hinge),
         _dot("hindfoot_mass", "left", (0, -0.7 * hind, plate)),
         _dot("forefoot_mass", "right", (0, 0.7 * fore, plate)),
@@ -115,10 +111,12 @@ def _foot_side(d: Mapping[str, float]) -> list[Mark]:
 def _foot_front(d: Mapping[str, float]) -> list[Mark]:
     x, radius, thickness, ankle = d["hip_offset"], d["contact_radius"], d["plate_thickness"], d["hinge_height"]
     contact = x - d["sole_half_width"]
-    edge = contact - radius
+    edge, middle = contact - radius, ankle - thickness
     return [
-        _beside("sole_half_width", "bottom", (x, 0, ankle), (contact, 0, radius)),
-        _beside("plate_thickness", "right", (edge, 0, ankle - 1.5 * thickness), (edge, 0, ankle - 0.5 * thickness)),
+        _beside("sole_half_width", "right", "bottom", (x, 0, ankle), (contact, 0, radius)),
+        _beside(
+            "plate_thickness", "right", "right", (edge, 0, middle - thickness / 2), (edge, 0, middle + thickness / 2)
+        ),
         Mark("contact_radius", "right", np.array(((contact, 0, radius), (edge, 0, radius))), has_two_heads=False),
     ]
 
@@ -133,8 +131,8 @@ def _dot(name: str, side: Side, point: Point) -> Mark:
     return Mark(name, side, np.array([point]))
 
 
-def _beside(name: str, side: Side, first: Point, last: Point) -> Mark:
-    return Mark(name, side, np.array((first, last), float), is_beside=True)
+def _beside(name: str, side: Side, beside: Beside, first: Point, last: Point) -> Mark:
+    return Mark(name, side, np.array((first, last), float), beside)
 
 
 def _across(name: str, width: float, height: float) -> Mark:

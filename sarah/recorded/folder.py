@@ -14,6 +14,8 @@ from sarah.recorded.journal import Journal
 from sarah.recorded.kind import Kind
 from sarah.versions import versions
 
+LONGEST_REASON = 200
+"""Length up to which a message quotes the error of a file or a row, in characters."""
 EVENTS = "events.out.tfevents."
 """Prefix of the names of TensorBoard's files."""
 
@@ -176,9 +178,10 @@ def new_path(group: str, name: str) -> Path:
 
 
 def unreadable(path: Path, error: Exception) -> RunFolderError:
-    """Error of a file that cannot be read.
+    """Error that names a file, and says in short why it cannot be read.
 
     :param path: path of the file
-    :param error: error that came of it
+    :param error: what reading it raised
     """
-    return RunFolderError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}")
+    reason = getattr(error, "strerror", None) or repr(error)
+    return RunFolderError(f"{path} cannot be read: {reason[:LONGEST_REASON]}")

@@ -27,7 +27,8 @@ from sarah.episode.workers import Workers
 from sarah.errors import RunFolderError
 from sarah.files import locked, read_text, replace_text
 from sarah.number import finite_number, whole_number
-from sarah.reports.race_entry import RACE_FILE, SCORES_FILE, Entry, RaceCurve, is_evaluated, read_curve, unreadable
+from sarah.recorded.folder import unreadable
+from sarah.reports.race_entry import RACE_FILE, SCORES_FILE, Entry, RaceCurve, is_evaluated, read_curve
 from sarah.runs.config_files import first_difference
 from sarah.runs.run_folder import RunFolder
 from sarah.training.recorder import EPISODES_PER_RECOMMENDATION

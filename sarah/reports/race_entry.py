@@ -9,13 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import mean
 
-from sarah.errors import RunFolderError
 from sarah.files import read_lines
 from sarah.number import finite_number, whole_number
+from sarah.recorded.folder import unreadable
 from sarah.reports.judging import MOST_EVALUATIONS, Evaluations
 from sarah.runs.agent_settings import settings_of
 from sarah.runs.config import TrainingConfig
-from sarah.runs.run_record import LONGEST_REASON
 
 RACE_FILE = "race.csv"
 """Name of the file in every run folder of a race: mean scores of its recommendations, along the way and at its end."""
@@ -138,13 +137,3 @@ def _rows(entry: Entry) -> list[dict[str, str]]:
     if not rows:
         raise unreadable(path, ValueError("it has no rows"))
     return rows
-
-
-def unreadable(path: Path, error: Exception) -> RunFolderError:
-    """Error that names a file of a run folder, and says in short why it cannot be read.
-
-    :param path: path of the file
-    :param error: what reading it raised
-    """
-    reason = getattr(error, "strerror", None) or repr(error)
-    return RunFolderError(f"{path} cannot be read: {reason[:LONGEST_REASON]}")

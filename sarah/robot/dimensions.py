@@ -94,10 +94,7 @@ def check_dimensions(dimensions: Mapping[str, Any]) -> dict[str, float]:
 
 
 def _check_feet(robot: Mapping[str, float]) -> None:
-    """Refuse feet that overlap, and foot plates that do not lie above the soles.
-
-    :param robot: values of all dimensions
-    """
+    """Refuse feet that overlap, and foot plates that do not lie above the soles."""
     half_width, radius, thickness = robot["sole_half_width"], robot["contact_radius"], robot["plate_thickness"]
     for name, least, of_what, otherwise in (
         (

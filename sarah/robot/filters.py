@@ -12,11 +12,10 @@ class LowPass:
 
     :param time_constant: time constant, in s
     :param dt: control period, in s
-    :param value: value to start at
     """
 
-    def __init__(self, time_constant: float, dt: float, value: float = 0.0) -> None:
-        self.value = value
+    def __init__(self, time_constant: float, dt: float) -> None:
+        self.value = 0.0
         self._gain = low_pass_gain(time_constant, dt)
 
     def __call__(self, sample: float) -> float:

@@ -83,11 +83,8 @@ class RecordedEpisodes(Executor):
         self._numbers = itertools.count()
 
     def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
-        """Have an episode simulated, unless its outcome is known.
+        """Have an episode simulated, unless its outcome is known; its specification is the first subject.
 
-        :param function: function to call: :func:`~sarah.episode.workers.begin_episode`,
-            :func:`~sarah.episode.workers.finish_episode` or :func:`sarah.simulate`
-        :param subjects: arguments of the function, the episode's specification first
         :raises ResumeError: if the training asks for another episode than it did when the journal was written
         """
         kind, spec = _KINDS[function], subjects[0]
@@ -96,8 +93,8 @@ class RecordedEpisodes(Executor):
         request = {"index": index, "kind": kind.name, "seed": spec.seed, "parameters": list(spec.parameters)}
         known = self.journal.known(request, kind.read)
         if known is not None:
-            return _Job(partial(self._known, known))
-        return _Job(partial(self._new, kind, request, self._executor.submit(function, *subjects)))
+            return Job(partial(self._known, known))
+        return Job(partial(self._new, kind, request, self._executor.submit(function, *subjects)))
 
     def extend(self, episodes: int) -> None:
         """Note that the training goes on to a larger budget, or check that it did so before.
@@ -124,7 +121,3 @@ class RecordedEpisodes(Executor):
             is_to_stop = self._interrupted()
         if is_to_stop:
             raise TrainingInterruptedError("the training was interrupted")
-
-
-class _Job(NamedTuple):
-    result: Callable[[], Any]

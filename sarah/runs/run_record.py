@@ -9,11 +9,9 @@ from functools import cached_property
 
 from sarah.errors import RunFolderError
 from sarah.number import finite_number
+from sarah.recorded.folder import LONGEST_REASON
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
-
-LONGEST_REASON = 200
-"""Length up to which a message quotes the error of a row, in characters."""
 
 Rows = tuple[dict[str, str], ...]
 

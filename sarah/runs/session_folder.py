@@ -24,11 +24,10 @@ from sarah.formats import read_json
 from sarah.number import finite_number, whole_number
 from sarah.operation.settings import BOX, PARAMETERS, Parameters
 from sarah.operation.window import FELT, Window
-from sarah.recorded.folder import Folder
+from sarah.recorded.folder import Folder, unreadable
 from sarah.recorded.journal import Journal
 from sarah.runs.config_files import read_config, settings_by_key, write_config
 from sarah.runs.kinds import SESSION
-from sarah.runs.run_record import LONGEST_REASON
 from sarah.runs.session import SessionSpec
 
 NAMES = tuple(parameter.name for parameter in PARAMETERS)
@@ -144,11 +143,8 @@ class SessionFolder(Folder):
             if any(window.index != index for index, window in enumerate(windows)):
                 raise ValueError("they are not in order")
             return windows
-        except OSError as error:
-            raise RunFolderError(f"cannot read {self._windows_path}: {error.strerror}") from error
-        except (csv.Error, KeyError, TypeError, ValueError) as error:
-            reason = repr(error)[:LONGEST_REASON]
-            raise RunFolderError(f"the windows of {self.path} cannot be read: {reason}") from error
+        except (OSError, csv.Error, KeyError, TypeError, ValueError) as error:
+            raise unreadable(self._windows_path, error) from error
 
     def remove_records(self) -> None:
         """Remove the table and the curves of the windows: a session that goes on writes them anew."""

@@ -144,19 +144,13 @@ class MujocoSimulator(HoldsWorld):
         self.model.actuator_biasprm[actuator, :3] = (effort, 0.0, 0.0)
 
     def set_targets(self, targets: tuple[float, ...]) -> None:
-        """Set where the servos move the joints from now on.
-
-        :param targets: positions in the order of ``ACTUATED_JOINTS``, in rad and m
-        """
+        """Set where the servos move the joints from now on."""
         if targets != self._targets:  # the servos keep their targets
             self._targets = targets
             self.data.ctrl[:] = targets
 
     def push(self, force: Vector) -> None:
-        """Push the torso at its centre during the next control tick.
-
-        :param force: force in the world's frame, in N
-        """
+        """Push the torso at its centre during the next control tick."""
         self._pushed[:] = force
         self._is_pushed = True
 
@@ -254,11 +248,7 @@ class MujocoSimulator(HoldsWorld):
             )
 
     def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
-        """Positions of some joints, in rad and m.
-
-        :param names: names of the joints
-        :return: positions in the same order
-        """
+        """Positions of some joints, in rad and m."""
         return tuple(float(self._qpos[self._addresses[name]]) for name in names)
 
     def actuator_motion(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -273,10 +263,7 @@ class MujocoSimulator(HoldsWorld):
         return self._ground
 
     def sole_height(self, side: Side) -> float:
-        """Height of a foot's lowest sole contact over the ground, in m.
-
-        :param side: side of the foot
-        """
+        """Height of a foot's lowest sole contact over the ground, in m."""
         mujoco.mj_kinematics(self.model, self.data)  # a step leaves the link positions of its beginning
         if self._ground.is_rough:
             centres = self.data.geom_xpos.tolist()

@@ -192,10 +192,7 @@ class PyBulletSimulator(HoldsWorld):
         check_loaded("PyBullet", self.robot, conditions, masses, limits, gravity)
 
     def set_targets(self, targets: tuple[float, ...]) -> None:
-        """Set where the servos move the joints from now on.
-
-        :param targets: positions in the order of ``ACTUATED_JOINTS``, in rad and m
-        """
+        """Set where the servos move the joints from now on."""
         if targets == self._targets:  # the servos keep their targets
             return
         self._targets = targets
@@ -224,10 +221,7 @@ class PyBulletSimulator(HoldsWorld):
                 pybullet.changeDynamics(self.body, link, localInertiaDiagonal=inertia, physicsClientId=self.client)
 
     def push(self, force: Vector) -> None:
-        """Push the torso at its centre during the next control tick.
-
-        :param force: force in the world's frame, in N
-        """
+        """Push the torso at its centre during the next control tick."""
         pybullet.applyExternalForce(
             self.body, -1, force, self._torso.position, pybullet.WORLD_FRAME, physicsClientId=self.client
         )
@@ -264,8 +258,6 @@ class PyBulletSimulator(HoldsWorld):
     def joint_positions(self, names: tuple[str, ...]) -> tuple[float, ...]:
         """Positions of some joints, in rad and m.
 
-        :param names: names of the joints
-        :return: positions in the same order
         :raises SimulationError: if other code in the process has changed the world
         """
         self._world.check()
@@ -309,10 +301,7 @@ class PyBulletSimulator(HoldsWorld):
         return self._ground
 
     def sole_height(self, side: Side) -> float:
-        """Height of a foot's lowest sole contact over the ground, in m.
-
-        :param side: side of the foot
-        """
+        """Height of a foot's lowest sole contact over the ground, in m."""
         if self._ground.is_rough:
             return min(map(self._ground.distance, self._sole_centres(side))) - self.robot.contact_radius
         lowest = math.inf

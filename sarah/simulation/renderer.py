@@ -205,7 +205,6 @@ class Renderer(HoldsWorld):
         simulator: Simulator,
         width: int = 640,
         height: int = 480,
-        camera: Camera | None = None,
         force: Vector | None = None,
     ) -> np.ndarray:
         """Draw a simulator's robot as it stands, on the simulator's ground.
@@ -213,21 +212,17 @@ class Renderer(HoldsWorld):
         :param simulator: simulator of any engine
         :param width: width of the picture, in pixels
         :param height: height of the picture, in pixels
-        :param camera: place and direction of the camera; by default the renderer's, stepped back if the pose needs it
         :param force: force of a push, which is drawn as an arrow, in N
         :return: uint8 array of shape (height, width, 3); the ground alone if the simulation has diverged
         """
-        torso = simulator.torso_state()
+        torso, camera = simulator.torso_state(), self.camera._replace(ground=simulator.ground)
         if not torso.is_finite:
-            return floor(width, height, (camera or self.camera)._replace(ground=simulator.ground)).copy()
+            return floor(width, height, camera).copy()
         names = ACTUATED_JOINTS + ANKLE_JOINTS
         joints = dict(zip(names, simulator.joint_positions(names), strict=True))
         ends = None if force is None else arrow(np.array(torso.position), np.array(force), self._robot.scale)
-        if camera is None:
-            seen = self.corners(torso.position, torso.orientation, joints)
-            view = self.camera._replace(ground=simulator.ground)
-            camera = view.seeing(seen if ends is None else np.concatenate((seen, ends)), width, height)
-        camera = camera._replace(ground=simulator.ground)
+        seen = self.corners(torso.position, torso.orientation, joints)
+        camera = camera.seeing(seen if ends is None else np.concatenate((seen, ends)), width, height)
         picture = self.draw(torso.position, torso.orientation, joints, width, height, camera)
         if ends is None:
             return picture

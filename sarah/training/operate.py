@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
 from sarah.errors import TrainingInterruptedError, check_type
 from sarah.operation.robot_in_operation import RobotInOperation
-from sarah.operation.settings import PARAMETERS, OperationConfig, Parameters
+from sarah.operation.settings import PARAMETERS, Parameters
 from sarah.operation.window import Window
 from sarah.process import apart
 from sarah.recorded.journal import Journal
 from sarah.runs.event_file import EventFile
 from sarah.runs.session import SessionSpec
 from sarah.runs.session_folder import SessionFolder
-from sarah.simulation.world import HoldsWorld
 from sarah.training.session_learners import LEARNERS
 
 
@@ -46,63 +44,6 @@ class SessionResult:
         return sum(scores) / len(scores) if scores else float("nan")
 
 
-class WatchedRobot(HoldsWorld):
-    """A robot in operation, each of whose windows is told. What a journal knows is not simulated again.
-
-    :param robot: robot, at the beginning of its operation
-    :param watch: function that is called with every window
-    :param journal: journal of the session, if it has one
-    """
-
-    def __init__(self, robot: RobotInOperation, watch: Callable[[Window], None], journal: Journal | None) -> None:
-        self.config: OperationConfig = robot.config
-        self.windows: list[Window] = []
-        """All windows so far, in order."""
-        self._robot = robot
-        self._watch = watch
-        self._journal = journal
-        self._numbers = itertools.count()
-        self._stages_over = 0
-
-    @property
-    def is_over(self) -> bool:
-        """Whether the operation's time is over."""
-        return self._robot.is_over
-
-    @property
-    def windows_left(self) -> float:
-        """Number of windows that the time of the present stage is enough for if the robot does not fall."""
-        return self._robot.windows_left
-
-    def run(self, parameters: Parameters) -> Window:
-        """Run one window, unless it is known.
-
-        :param parameters: P1 to P5 and V1 to V4
-        :raises ResumeError: if the window that the journal knows had others
-        """
-        window = self._robot.run(parameters) if self._journal is None else self._recorded(self._journal, parameters)
-        self.windows.append(window)
-        self._watch(window)
-        return window
-
-    def _recorded(self, journal: Journal, parameters: Parameters) -> Window:
-        while self._stages_over < self.config.stages_over(self._robot.seconds):
-            self._stages_over += 1
-            journal.extend(next(self._numbers), self.config.stages[self._stages_over])
-        request = {"index": next(self._numbers), "parameters": list(parameters)}
-        window = journal.known(request, Window.of_plain)
-        if window is not None:
-            self._robot.skip(window)
-            return window
-        window = self._robot.run(parameters)
-        journal.add(request, window.plain())
-        return window
-
-    def close(self) -> None:
-        """Give the physics engine's resources back."""
-        self._robot.close()
-
-
 def run_session(
     spec: SessionSpec,
     watch: Callable[[Window], None] = lambda window: None,
@@ -117,18 +58,20 @@ def run_session(
     :raises ResumeError: if the learner asks for other parameters than a window of the journal has
     """
     check_type("spec", spec, SessionSpec)
+    windows: list[Window] = []
     with apart() as outside:
 
         def watch_outside(window: Window) -> None:
+            windows.append(window)
             with outside():
                 watch(window)
 
-        robot = WatchedRobot(RobotInOperation(spec.config, spec.seed), watch_outside, journal)
+        robot = RobotInOperation(spec.config, spec.seed, watch_outside, journal)
         try:
             parameters = LEARNERS[spec.learner](robot, spec.parameters, spec.seed)
         finally:
             robot.close()
-    return SessionResult(tuple(robot.windows), parameters)
+    return SessionResult(tuple(windows), parameters)
 
 
 def operate(

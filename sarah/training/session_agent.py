@@ -8,7 +8,7 @@ from stable_baselines3.common.callbacks import BaseCallback
 
 from sarah.agents import PRESETS, LocalNAF, RankReplayBuffer
 from sarah.envs.operation_env import SarahOperationEnv
-from sarah.operation.operation import Operation
+from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import Parameters
 
 UNSMOOTHED: dict[str, Any] = dict(replay_buffer_class=RankReplayBuffer, elite_share=0.5, elite_draws=16)
@@ -17,7 +17,7 @@ LONGEST = 1_000_000
 """Number of windows that no operation has."""
 
 
-def operate_by_naf(robot: Operation, first: Parameters, seed: int) -> Parameters:
+def operate_by_naf(robot: RobotInOperation, first: Parameters, seed: int) -> Parameters:
     """Operate a robot by LocalNAF with its preset for few steps, around the first parameters, until the time is over.
 
     A window is worth its own reward only.
@@ -38,7 +38,7 @@ def operate_by_naf(robot: Operation, first: Parameters, seed: int) -> Parameters
 
 
 class _UntilOver(BaseCallback):
-    def __init__(self, robot: Operation) -> None:
+    def __init__(self, robot: RobotInOperation) -> None:
         super().__init__()
         self._robot = robot
 

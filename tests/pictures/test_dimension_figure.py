@@ -28,7 +28,7 @@ def test_every_dimension_is_marked_and_each_arrow_is_as_long_as_it_says(changed:
     assert sorted(mark.name for mark in shown) == sorted([*dimensions, CENTRE_OF_MASS])
     for mark in shown:
         if len(mark.points) == 2:
-            along = 2 if mark.side in ("left", "right") and mark.is_beside else slice(None, 2)
+            along = 2 if mark.beside in ("left", "right") else slice(None, 2)
             length = np.linalg.norm(np.diff(mark.points, axis=0)[0, along])
             assert length == pytest.approx(dimensions[mark.name]), mark.name
 
@@ -41,7 +41,7 @@ def test_names_are_readable_whatever_the_proportions(
     edges: list[Bbox] = []
 
     def look(figure: Figure, *_: object, **__: object) -> None:
-        texts = [text for text in figure.axes[0].texts if text.get_text()]
+        texts = [text for axis in figure.axes for text in axis.texts if text.get_text()]
         seen.extend((text.get_text(), str(text.get_weight()), text.get_window_extent()) for text in texts)
         edges.append(figure.bbox)
 
