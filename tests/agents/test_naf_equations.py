@@ -96,7 +96,7 @@ def test_lower_triangle_of_the_paper():
     np.testing.assert_allclose(lower, expected, rtol=1e-6)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(
     action_dim=st.integers(1, 6),
     seed=st.integers(0, 10_000),
@@ -113,7 +113,7 @@ def test_mu_is_the_maximum_and_v_its_value(action_dim, seed, squash_mu):
     assert (nearby <= values).all()
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(action_dim=st.integers(1, 6), seed=st.integers(0, 10_000), min_curvature=st.floats(0, 10))
 def test_q_falls_in_every_direction_by_the_least_curvature(action_dim, seed, min_curvature):
     """Whatever L learns: where Q were flat, mu would get no gradient."""
@@ -125,7 +125,7 @@ def test_q_falls_in_every_direction_by_the_least_curvature(action_dim, seed, min
     assert (falls >= 0.5 * min_curvature * distances - 1e-4).all()
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(action_dim=st.integers(1, 6), seed=st.integers(0, 10_000))
 def test_curvature_is_positive_definite(action_dim, seed):
     """L L^T is, exactly when L is triangular with a positive diagonal (Cholesky); its eigenvalues would be rounded."""
@@ -134,7 +134,7 @@ def test_curvature_is_positive_definite(action_dim, seed):
     assert (lower.diagonal(dim1=1, dim2=2) > 0).all()
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(scale=st.floats(1, 1e30), seed=st.integers(0, 10_000))
 def test_diagonal_is_bounded_whatever_the_weights(scale, seed):
     critic = make_critic(3, seed)

@@ -69,7 +69,7 @@ def test_action_shapes_and_types(shape, dtype):
     assert space.contains(action.astype(dtype))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(low=st.floats(-100, 100, width=32), size=st.floats(2**-7, 100, width=32), seed=st.integers(0, 1000))
 def test_saturated_actions_are_in_the_space(low, size, seed):
     """Also where low + (high - low) is rounded to more than high, and with a linear mu far outside."""

@@ -168,7 +168,7 @@ def test_w_follows_its_targets_also_where_nobody_acts_near_mu():
     assert slope[-1].item() == pytest.approx(2 * 0.2 / 10, rel=1e-3)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(distance=st.floats(0, 30), seed=st.integers(0, 1000))
 def test_w_has_a_mean_whatever_the_distances(distance, seed):
     """Also where all actions are mu itself; and W is not drawn beyond the largest target."""

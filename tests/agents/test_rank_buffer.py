@@ -5,7 +5,7 @@ import tracemalloc
 import numpy as np
 import pytest
 from gymnasium import spaces
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from stable_baselines3.common.utils import set_random_seed
 
@@ -36,7 +36,6 @@ def frequencies(buffer: RankReplayBuffer, n: int, draws: int = 200_000) -> np.nd
     return np.bincount(numbers, minlength=n) / draws
 
 
-@settings(deadline=None)
 @given(st.lists(st.integers(-5, 5), min_size=1, max_size=30))
 def test_ranks_by_counting(values):
     n = len(values)
@@ -44,7 +43,6 @@ def test_ranks_by_counting(values):
     np.testing.assert_allclose(average_ranks(np.array(values)), np.array(by_counting) / max(n - 1, 1))
 
 
-@settings(deadline=None)
 @given(st.lists(st.floats(-1e6, 1e6, width=32), min_size=2, max_size=30))
 def test_ranks_are_in_the_unit_interval_and_centred(values):
     ranks = average_ranks(np.array(values))

@@ -124,7 +124,7 @@ VALUES = st.recursive(
 CONFIGS = st.dictionaries(st.sampled_from(KEYS), VALUES, max_size=4)
 
 
-@settings(max_examples=300, deadline=None, derandomize=True)
+@settings(max_examples=300, derandomize=True)
 @given(content=(VALUES | CONFIGS).map(yaml.safe_dump) | st.text(max_size=40))
 def test_any_file_is_a_configuration_or_a_mistake(content: str, tmp_path_factory: pytest.TempPathFactory) -> None:
     path = tmp_path_factory.getbasetemp() / "any.yaml"

@@ -37,7 +37,7 @@ CHANGE = (
 RANGE = st.tuples(st.floats(-0.5, 0.0), st.floats(0.0, 0.5))
 
 
-@settings(max_examples=150, deadline=None, derandomize=True)
+@settings(max_examples=150, derandomize=True)
 @given(p=P, v=V, held=HELD, control_rate=st.sampled_from([50, 100, 1000]))
 def test_pattern_generator_keeps_to_limits_and_rates_and_never_sticks(
     p: tuple[float, ...], v: tuple[float, ...], held: list[tuple[SensorReading, int]], control_rate: int
@@ -62,7 +62,7 @@ def test_pattern_generator_keeps_to_limits_and_rates_and_never_sticks(
     assert control_rate != 50 or entered == set(Phase)
 
 
-@settings(max_examples=50, deadline=None, derandomize=True)
+@settings(max_examples=50, derandomize=True)
 @given(
     limits=st.tuples(*[RANGE] * 6),
     ticks=st.lists(st.tuples(READING, SECONDS, CHANGE, st.integers(1, 120)), max_size=12),

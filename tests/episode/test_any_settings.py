@@ -47,7 +47,7 @@ CONFIG = st.builds(
 )
 
 
-@settings(max_examples=30, deadline=None, derandomize=True)
+@settings(max_examples=30, derandomize=True)
 @given(config=CONFIG, v=V, seed=st.integers(0, 2**32 - 1))
 def test_extreme_but_legal_configurations_give_numbers(config: BalanceConfig, v: tuple[float, ...], seed: int) -> None:
     spec = EpisodeSpec(v, seed, "balance", config)
