@@ -2,7 +2,8 @@
 
 What follows a name are options: ``--quick`` for a size that takes seconds, ``--out FOLDER`` for the files, and those of
 the experiment, which ``python -m experiments NAME --help`` shows. An experiment that options change writes to
-build/experiments/ instead of results/.
+build/experiments/ instead of results/. One whose rows take hours writes each at once, and the same
+command goes on where it was stopped.
 
 ``python -m experiments stale WHY [NAME...]`` has the pages say of results that they are not of today's project.
 """
@@ -15,7 +16,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from experiments import record
-from experiments.experiment import Experiment
+from experiments.experiment import Experiment, RowByRow
 from experiments.made_with import differences, made_with
 from sarah.cli.options import parse_options, run_command
 from sarah.errors import ConfigurationError, unknown_name
@@ -70,17 +71,39 @@ def make(name: str, arguments: Sequence[str]) -> None:
     check_counts(experiment)
     if shared.out and shared.out.exists() and not shared.out.is_dir():
         raise ConfigurationError(f"--out must be a folder, and {shared.out} is a file")
-    rows = []
-    for row in experiment.rows():
-        print(", ".join(f"{column} {record.cell(value)}" for column, value in row.items()), flush=True)
-        rows.append(row)
     folder = shared.out or (record.RESULTS if makes_the_result(experiment, maker.experiment) else OTHER_RESULTS)
     folder.mkdir(parents=True, exist_ok=True)
     command = shlex.join([*COMMAND.split(), name, *arguments])
-    record.write(name, rows, maker.question, command, made_with() if maker.of_robot else None, folder)
+    begun = begun_result(name, folder, command)
+
+    def write(missing: int = 0) -> None:
+        fingerprint = made_with() if maker.of_robot else None
+        record.write(name, rows, maker.question, command, fingerprint, folder, missing, begun.commit if begun else "")
+
+    rows: list[record.Row] = [*begun.rows] if begun else []
+    for row in experiment.rows(rows) if isinstance(experiment, RowByRow) else experiment.rows():
+        print(", ".join(f"{column} {record.cell(value)}" for column, value in row.items()), flush=True)
+        rows.append(row)
+        if isinstance(experiment, RowByRow):
+            write(len(experiment.keys()) - len(rows))
+    write()
     print(folder / f"{name}.csv")
     if isinstance(experiment, ShippedParameters) and folder.resolve() == record.RESULTS:
         ship(record.read(name))
+
+
+def begun_result(name: str, folder: Path, command: str) -> record.Result | None:
+    """A result that this command has begun, and that today's project would go on with.
+
+    :param name: name of the result
+    :param folder: folder of the results
+    :param command: the command
+    """
+    if name not in record.names(folder):
+        return None
+    result = record.read(name, folder)
+    goes_on = result.missing and result.command == command and not result.stale and not is_outdated(result)
+    return result if goes_on else None
 
 
 def check_counts(experiment: Experiment) -> None:

@@ -12,7 +12,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from experiments import record
+from experiments.experiment import RowByRow
 from experiments.judge import Asked, Condition, Judge
+from experiments.made_with import differences, made_with
+from experiments.record import Row, cell
 from experiments.trainings import OfTrainings, kept
 from sarah.control.parameters import BALANCE_PARAMETERS, Parameters
 from sarah.episode.parameter_sets import PARAMETER_SETS
@@ -116,15 +120,68 @@ class OfSecondTrainings(OfTrainings):
         return (job.result() for job in jobs)
 
     def training(self, engine: Engine, seed: int) -> Training:
-        """A training, run or resumed in this process unless it is there.
+        """What a training learned: as the result ``balance_trainings`` says, or else by running it.
+
+        :param engine: physics engine
+        :param seed: seed of the training
+        """
+        key = self.key(engine, seed)
+        row = next((row for row in known_trainings() if all(row[name] == cell(key[name]) for name in key)), None)
+        if row is None:
+            row = {name: cell(value) for name, value in self.learned(engine, seed).items()}
+        recommended = tuple(float(row[name]) for name in BALANCE_NAMES)
+        return Training(f"naf seed {seed}", recommended, tuple(float(row[f"mu_{name}"]) for name in BALANCE_NAMES))
+
+    def key(self, engine: Engine, seed: int) -> Row:
+        """Columns that tell a training from all others.
+
+        :param engine: physics engine
+        :param seed: seed of the training
+        """
+        limit = self.balance(engine).time_limit
+        return {"engine": engine, "seed": seed, "episodes": self.budget, "time_limit_s": limit}
+
+    def learned(self, engine: Engine, seed: int) -> Row:
+        """Columns of what a training learns, which is run or resumed in this process unless it is there.
 
         :param engine: physics engine
         :param seed: seed of the training
         """
         config = TrainingConfig("balance", episodes=self.budget, seed=seed, slots=1, episode=self.balance(engine))
         run = self.trained(config)
-        mu = tuple(kept(run.path / "mu.json", network_says, run))
-        return Training(f"naf seed {seed}", run.parameters(), mu)
+        mu = kept(run.path / "mu.json", network_says, run)
+        return {
+            **dict(zip(BALANCE_NAMES, run.parameters(), strict=True)),
+            **{f"mu_{name}": value for name, value in zip(BALANCE_NAMES, mu, strict=True)},
+        }
+
+
+@dataclass(frozen=True)
+class BalanceTrainings(OfSecondTrainings, RowByRow):
+    """What each Second Training learns. Other experiments take it from this result and do not train again."""
+
+    def keys(self) -> list[Row]:
+        """Engine and seed of each training, and its size."""
+        seeds = range(self.first_seed, self.first_seed + self.seeds)
+        return [self.key(engine, seed) for engine in self.engines for seed in seeds]
+
+    def row(self, engine: Engine, seed: int, *size: float) -> Row:
+        """What a training learns.
+
+        :param engine: physics engine
+        :param seed: seed of the training
+        :param size: its size, which all trainings share
+        """
+        return self.learned(engine, seed)
+
+
+def known_trainings() -> list[dict[str, str]]:
+    """Rows of the result ``balance_trainings``, as far as they are of today's project."""
+    if (name := "balance_trainings") not in record.names():
+        return []
+    result = record.read(name)
+    assert result.made_with is not None
+    return [] if result.stale or differences(result.made_with, made_with()) else result.rows
 
 
 def network_says(run: RunFolder) -> Parameters:

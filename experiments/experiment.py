@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from collections.abc import Iterator, Mapping
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -13,6 +14,7 @@ from sarah.episode.evaluation import Evaluation
 from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS
+from sarah.episode.workers import Workers
 from sarah.reports.robustness import survival_interval
 
 
@@ -31,6 +33,31 @@ class OnWorkers:
     """
 
     workers: int = os.cpu_count() or 1
+
+
+class RowByRow(OnWorkers, ABC):
+    """An experiment of hours whose rows do not depend on each other: interrupted, it goes on after the last row."""
+
+    @abstractmethod
+    def keys(self) -> Sequence[Row]:
+        """What tells the rows apart: the first columns of each, in order."""
+
+    @abstractmethod
+    def row(self, *key: Any) -> Row:
+        """The other columns of a row, made in this process.
+
+        :param key: values of its first columns
+        """
+
+    def rows(self, known: Sequence[Row] = ()) -> Iterator[Row]:
+        """A row for each key, one for each worker at a time.
+
+        :param known: the first rows, if they are there already
+        """
+        with Workers(self.workers) as workers:
+            asked = [(key, workers.submit(self.row, *key.values())) for key in self.keys()[len(known) :]]
+            for key, job in asked:
+                yield {**key, **job.result()}
 
 
 @dataclass(frozen=True)

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator
+import itertools
 from dataclasses import dataclass
 from typing import Any
 
-from experiments.experiment import survival
+from experiments.experiment import RowByRow, survival
 from experiments.record import Row
 from experiments.trainings import OfTrainings
 from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.push import Push
 from sarah.episode.tasks import BALANCE, BalanceConfig
-from sarah.episode.workers import Workers
 from sarah.robot.dimensions import dimensions_alike
 from sarah.robot.scale import MASS
 from sarah.runs.config import TrainingConfig
@@ -52,7 +51,7 @@ class Robot:
 
 
 @dataclass(frozen=True)
-class OtherSizes(OfTrainings):
+class OtherSizes(OfTrainings, RowByRow):
     """First and Second Trainings by NAF, judged without pushes and with some by a third of the weight.
 
     :param robots: the robots, each with a step frequency near its natural one
@@ -70,25 +69,21 @@ class OtherSizes(OfTrainings):
     budgets: tuple[int, int] = (100, 300)
     episodes: int = 20
 
-    def rows(self) -> Iterator[Row]:
-        """A row for each robot, engine and seed."""
-        asked = [
-            (robot, engine, seed)
-            for seed in range(self.first_seed, self.first_seed + self.seeds)
-            for engine in self.engines
-            for robot in self.robots
-        ]
-        with Workers(self.workers) as workers:
-            for job in [workers.submit(self.row, *one) for one in asked]:
-                yield job.result()
+    def keys(self) -> list[Row]:
+        """Seed, engine and robot of each row."""
+        seeds = range(self.first_seed, self.first_seed + self.seeds)
+        names = [robot.name for robot in self.robots]
+        asked = itertools.product(seeds, self.engines, names)
+        return [{"seed": seed, "engine": engine, "robot": name} for seed, engine, name in asked]
 
-    def row(self, robot: Robot, engine: Engine, seed: int) -> Row:
-        """Columns of a robot, trained and judged in this process.
+    def row(self, seed: int, engine: Engine, name: str) -> Row:
+        """How a robot does after both trainings.
 
-        :param robot: the robot
-        :param engine: physics engine
         :param seed: seed of both trainings
+        :param engine: physics engine
+        :param name: name of the robot
         """
+        robot = next(robot for robot in self.robots if robot.name == name)
         stepping = self.episode("stepping", engine).for_robot(robot.dimensions)
         stepping = dataclasses.replace(stepping, step_frequency=robot.step_frequency)
         first, second = self.budgets
@@ -99,7 +94,7 @@ class OtherSizes(OfTrainings):
             stepping, stepping=stepped.parameters(), push=usual.push, time_limit=usual.time_limit
         )
         pushed = self.trained(TrainingConfig("balance", episodes=second, seed=seed, episode=balance))
-        return {"robot": robot.name, "engine": engine, "seed": seed, **self._judged(robot, stepped, pushed)}
+        return self._judged(robot, stepped, pushed)
 
     def _judged(self, robot: Robot, stepped: RunFolder, pushed: RunFolder) -> Row:
         unpushed = self._evaluated(stepped, UNSEEN_SEED)

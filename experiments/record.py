@@ -36,6 +36,7 @@ class Result:
     :param made_with: fingerprint of physics, controller and robot, see :mod:`experiments.made_with`; none if the
         rows do not depend on them
     :param stale: sentence that says why the rows stand here although they are not of today's project
+    :param missing: number of rows that are still to be made
     """
 
     name: str
@@ -47,6 +48,12 @@ class Result:
     versions: dict[str, str]
     made_with: dict[str, Any] | None
     stale: str | None = None
+    missing: int = 0
+
+    @property
+    def remark(self) -> str | None:
+        """Sentence that a page has to say about the rows, if there is one."""
+        return self.stale or (f"{self.missing} rows are still to be made." if self.missing else None)
 
     @property
     def columns(self) -> list[str]:
@@ -80,6 +87,8 @@ def write(
     command: str,
     made_with: dict[str, Any] | None,
     folder: Path = RESULTS,
+    missing: int = 0,
+    earlier: str = "",
 ) -> None:
     """Write a result in place of the one that was there.
 
@@ -89,9 +98,12 @@ def write(
     :param command: command that made them
     :param made_with: fingerprint from :func:`experiments.made_with.made_with`, or none
     :param folder: folder of the files
+    :param missing: number of rows that are still to be made
+    :param earlier: commits that made the first rows, if others did
     """
     from sarah.versions import versions
 
+    commits = dict.fromkeys([*earlier.split(), commit()])
     text = io.StringIO(newline="")
     writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
     writer.writeheader()
@@ -100,11 +112,13 @@ def write(
     about = {
         "question": question,
         "command": command,
-        "commit": commit(),
+        "commit": " ".join(commits),
         "date": time.strftime("%Y-%m-%d"),
         "versions": versions(),
         "made_with": made_with,
     }
+    if missing:
+        about["missing"] = missing
     write_json(folder / f"{name}.json", about)
 
 
@@ -120,10 +134,15 @@ def mark_stale(name: str, reason: str, folder: Path = RESULTS) -> None:
 
 
 def commit() -> str:
-    """Short hash of the project's commit, with a plus sign if files have been changed since."""
-    command = ["git", "-C", str(ROOT), "describe", "--always", "--exclude=*", "--dirty=+"]
-    process = subprocess.run(command, capture_output=True, text=True)
-    return process.stdout.strip() or "unknown"
+    """Short hash of the project's commit, with a plus sign if files other than results have been changed since."""
+    git = ["git", "-C", str(ROOT)]
+    head = subprocess.run([*git, "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
+    changed = subprocess.run(
+        [*git, "status", "--porcelain", "--untracked-files=no", "--", ":(exclude)results"],
+        capture_output=True,
+        text=True,
+    )
+    return head.stdout.strip() + "+" * bool(changed.stdout.strip()) or "unknown"
 
 
 def cell(value: Any) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from experiments.balance_trainings import BalanceTrainings
 from experiments.benchmarks.table import BENCHMARKS
 from experiments.box_limit import BoxLimit
 from experiments.ceiling import Ceiling
@@ -67,6 +68,11 @@ TABLE: dict[str, Maker] = {
             "budgets": (5, 5),
             "episodes": 1,
         },
+    ),
+    "balance_trainings": Maker(
+        "Which V1 to V4 does each Second Training recommend, and which does its network say?",
+        BalanceTrainings(),
+        BALANCED,
     ),
     "second_training": Maker(
         "Does the robot learn to come back after a push, and where do V1 to V4 settle?",

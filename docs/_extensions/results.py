@@ -61,17 +61,17 @@ class ResultDirective(SphinxDirective):
         return record.read(name)
 
     def banner(self, *results: record.Result) -> list[nodes.Node]:
-        """A note that results are not of today's project, once a page."""
+        """A note that results are not of today's project, or not complete, once a page."""
         said = self.env.temp_data.setdefault("stale_results", set())
-        stale = [result for result in results if result.stale and result.name not in said]
+        stale = [result for result in results if result.remark and result.name not in said]
         said.update(result.name for result in stale)
         if not stale:
             return []
-        text = nodes.paragraph("", " ".join(dict.fromkeys(str(result.stale) for result in stale)) + " Made again by ")
+        text = nodes.paragraph("", " ".join(dict.fromkeys(str(result.remark) for result in stale)) + " Made by ")
         for result in stale:
             text += nodes.literal("", f"make results NAME={result.name}")
             text += nodes.Text("." if result is stale[-1] else ", ")
-        title = nodes.title("", "Not of today's project")
+        title = nodes.title("", "Not of today's project" if any(result.stale for result in stale) else "Not complete")
         return [nodes.admonition("", title, text, classes=["warning"])]
 
     def source(self, result: record.Result) -> list[nodes.Node]:

@@ -2,6 +2,7 @@
 
 import dataclasses
 import shutil
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ from laboratory import need
 from experiments import record
 from experiments.__main__ import main, makes_the_result, mark_stale
 from experiments.endurance.protections import PROTECTIONS, Protection
+from experiments.experiment import Maker, RowByRow
 from experiments.made_with import made_with
 from experiments.table import TABLE
 from sarah.errors import ConfigurationError
@@ -51,7 +53,7 @@ def test_an_experiment_makes_the_columns_of_its_result(
     assert (made.made_with is None) == (published.made_with is None)
 
 
-PENDING = {"ceiling", "other_sizes", "second_training_summary", "shipping"}
+PENDING = {"balance_trainings", "ceiling", "other_sizes", "second_training_summary", "shipping"}
 """Results whose rows take hours and are not made yet."""
 
 
@@ -101,6 +103,46 @@ def test_an_unknown_name_is_one_line_with_the_nearest() -> None:
 def test_a_mistake_is_one_line_before_anything_is_computed(arguments: str, said: str) -> None:
     with pytest.raises(ConfigurationError, match=said):
         main(arguments.split())
+
+
+@dataclass(frozen=True)
+class Squares(RowByRow):
+    """Squares, of which one cannot be had at first.
+
+    :param made: file that gets a line for each square that is computed
+    :param fails_at: number whose square cannot be had
+    """
+
+    made: Path
+    fails_at: int
+
+    def keys(self) -> list[record.Row]:
+        """Four numbers."""
+        return [{"number": number} for number in range(4)]
+
+    def row(self, number: int) -> record.Row:
+        """A square."""
+        if number == self.fails_at:
+            raise KeyboardInterrupt
+        self.made.write_text(f"{self.made.read_text()}{number}")
+        return {"square": number * number}
+
+
+def test_an_interrupted_experiment_goes_on_after_its_last_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (made := tmp_path / "made").touch()
+    command = ["squares", "--out", str(tmp_path)]
+    monkeypatch.setitem(TABLE, "squares", Maker("How large?", Squares(made, 2, workers=0), of_robot=False))
+    with pytest.raises(KeyboardInterrupt):
+        main(command)
+    begun = record.read("squares", tmp_path)
+    assert ([row["square"] for row in begun.rows], begun.missing) == (["0", "1"], 2)
+    monkeypatch.setitem(TABLE, "squares", Maker("How large?", Squares(made, 9, workers=0), of_robot=False))
+    main(command)
+    whole = record.read("squares", tmp_path)
+    assert ([row["square"] for row in whole.rows], whole.missing) == (["0", "1", "4", "9"], 0)
+    assert made.read_text() == "0123"
+    main(command)
+    assert made.read_text() == "0123" * 2
 
 
 def test_only_the_full_experiment_makes_the_result() -> None:
