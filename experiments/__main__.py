@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from experiments import record
-from experiments.experiment import Experiment, RowByRow
+from experiments.experiment import Experiment, RowByRowExperiment
 from experiments.made_with import differences, made_with
 from sarah.cli.options import parse_options, run_command
 from sarah.errors import ConfigurationError, unknown_name
@@ -81,10 +81,10 @@ def make(name: str, arguments: Sequence[str]) -> None:
         record.write(name, rows, maker.question, command, fingerprint, folder, missing, begun.commit if begun else "")
 
     rows: list[record.Row] = [*begun.rows] if begun else []
-    for row in experiment.rows(rows) if isinstance(experiment, RowByRow) else experiment.rows():
+    for row in experiment.rows(rows) if isinstance(experiment, RowByRowExperiment) else experiment.rows():
         print(", ".join(f"{column} {record.cell(value)}" for column, value in row.items()), flush=True)
         rows.append(row)
-        if isinstance(experiment, RowByRow):
+        if isinstance(experiment, RowByRowExperiment):
             write(len(experiment.keys()) - len(rows))
     write()
     print(folder / f"{name}.csv")

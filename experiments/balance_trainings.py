@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from experiments import record
-from experiments.experiment import RowByRow
+from experiments.experiment import RowByRowExperiment
 from experiments.judge import Asked, Condition, Judge
 from experiments.made_with import differences, made_with
 from experiments.record import Row, cell
-from experiments.trainings import OfTrainings, kept
+from experiments.trainings import TrainingExperiment, kept
 from sarah.control.parameters import BALANCE_PARAMETERS, Parameters
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import Push
@@ -52,7 +52,7 @@ class Training(NamedTuple):
 
 
 @dataclass(frozen=True)
-class OfSecondTrainings(OfTrainings):
+class SecondTrainingExperiment(TrainingExperiment):
     """Options of an experiment that takes what Second Trainings by NAF have learned.
 
     :param engines: physics engines, in the order in which they are asked
@@ -157,7 +157,7 @@ class OfSecondTrainings(OfTrainings):
 
 
 @dataclass(frozen=True)
-class BalanceTrainings(OfSecondTrainings, RowByRow):
+class BalanceTrainings(SecondTrainingExperiment, RowByRowExperiment):
     """What each Second Training learns. Other experiments take it from this result and do not train again."""
 
     def keys(self) -> list[Row]:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from experiments.balance_trainings import CHOOSING_SEED, JUDGING_SEED, SHIPPED, OfSecondTrainings, Training
+from experiments.balance_trainings import CHOOSING_SEED, JUDGING_SEED, SHIPPED, SecondTrainingExperiment, Training
 from experiments.judge import Asked
 from sarah.control.parameters import BALANCE_PARAMETERS, Parameters
 from sarah.episode.workers import Executor
@@ -25,7 +25,7 @@ ROUNDS = ((1, 9), (4, 24), (16, 87), (32, 300))
 
 
 @dataclass(frozen=True)
-class OfBestKnown(OfSecondTrainings):
+class BestKnownExperiment(SecondTrainingExperiment):
     """Options of an experiment that compares sets with the best known one of an engine.
 
     :param judging: number of pushes that judge a set, and of those that choose the best one
@@ -56,7 +56,7 @@ class Found(NamedTuple):
     drawn: Parameters
 
 
-def best_known(options: OfBestKnown, engine: Engine, trainings: Sequence[Training], workers: Executor) -> Found:
+def best_known(options: BestKnownExperiment, engine: Engine, trainings: Sequence[Training], workers: Executor) -> Found:
     """Search for the best set of an engine. An outcome that is kept is not simulated again.
 
     :param options: size of the search

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import get_args
 
 from experiments.conditions import LATERAL, LEARNED, SAGITTAL, Situation, simulate
-from experiments.experiment import OnWorkers, survival
+from experiments.experiment import ParallelExperiment, survival
 from experiments.record import Row
 from sarah.episode.ending import paper_ending
 from sarah.episode.evaluation import Evaluation
@@ -39,7 +39,7 @@ BOXES = {"0.25 m": BALANCE, "0.5 m": replace(BALANCE, name="balance_in_wide_box"
 
 
 @dataclass(frozen=True)
-class BoxLimit(OnWorkers):
+class BoxLimit(ParallelExperiment):
     """Pushes that some robots do not survive, in the paper's box and in one twice as wide, with the shipped parameters.
 
     :param pushes: number of pushes of a row

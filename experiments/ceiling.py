@@ -6,14 +6,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from experiments.balance_trainings import BALANCE_NAMES, SHIPPED
-from experiments.best_known import OfBestKnown, best_known
+from experiments.best_known import BestKnownExperiment, best_known
 from experiments.interval import ratio, with_error
 from experiments.record import Row
 from sarah.episode.workers import Workers
 
 
 @dataclass(frozen=True)
-class Ceiling(OfBestKnown):
+class Ceiling(BestKnownExperiment):
     """The shipped set, the best training and what a search found, judged by pushes that chose none of them."""
 
     def rows(self) -> Iterator[Row]:

@@ -6,7 +6,7 @@ import random
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.record import Row
 from sarah.control.constants import ControllerConstants
 from sarah.episode.evaluation import SMALLEST_SENSOR_SHARE
@@ -22,7 +22,7 @@ TIME_OUTS = (ControllerConstants().time_out_seconds, 0.3)
 
 
 @dataclass(frozen=True)
-class Clock(OnWorkers):
+class Clock(ParallelExperiment):
     """Random parameters, and the fastest clocks that there are, with slow and with fast time-outs.
 
     :param random_sets: number of random parameter sets

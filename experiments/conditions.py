@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple, get_args
 
-from experiments.experiment import OnWorkers, survival
+from experiments.experiment import ParallelExperiment, survival
 from experiments.record import Row
 from sarah.episode.episode import Episode
 from sarah.episode.evaluation import Evaluation
@@ -97,7 +97,7 @@ def simulate(
 
 
 @dataclass(frozen=True)
-class Conditions(OnWorkers):
+class Conditions(ParallelExperiment):
     """The shipped parameters, and under pushes also V = 0, in both engines and at the reference physics.
 
     :param episodes: number of episodes of a row

@@ -20,7 +20,7 @@ import gymnasium
 import numpy as np
 
 from experiments.conditions import LEARNED
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.interval import with_interval
 from experiments.record import Row
 from experiments.trainings import identity, kept
@@ -105,7 +105,7 @@ Policy = Callable[[str, np.ndarray], tuple[float, ...]]
 
 
 @dataclass(frozen=True)
-class Contexts(OnWorkers):
+class Contexts(ParallelExperiment):
     """Controllers that choose V1 to V4 for all grounds alike, for each ground, or by what the robot feels.
 
     :param seeds: number of trainings of each controller

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import get_args
 
-from experiments.experiment import OnWorkers, settings_of
+from experiments.experiment import ParallelExperiment, settings_of
 from experiments.record import Row
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.evaluation import evaluate
@@ -29,7 +29,7 @@ ENGINES: tuple[Engine, ...] = get_args(Engine)
 
 
 @dataclass(frozen=True)
-class Engines(OnWorkers):
+class Engines(ParallelExperiment):
     """Parameter sets in both physics engines, on the same seeds and with the same pushes.
 
     :param seeds: number of episodes of each set in each engine

@@ -26,7 +26,7 @@ class Experiment(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True)
-class OnWorkers:
+class ParallelExperiment:
     """Options of an experiment whose episodes or trainings run in worker processes.
 
     :param workers: number of worker processes on this machine; with 0, this process does the work. No row depends on it
@@ -35,7 +35,7 @@ class OnWorkers:
     workers: int = os.cpu_count() or 1
 
 
-class RowByRow(OnWorkers, ABC):
+class RowByRowExperiment(ParallelExperiment, ABC):
     """An experiment of hours whose rows do not depend on each other: interrupted, it goes on after the last row."""
 
     @abstractmethod
@@ -78,7 +78,7 @@ class Maker:
     @property
     def quick_experiment(self) -> Experiment:
         """The experiment in a size that takes seconds, in this process."""
-        here = {"workers": 0} if isinstance(self.experiment, OnWorkers) else {}
+        here = {"workers": 0} if isinstance(self.experiment, ParallelExperiment) else {}
         return dataclasses.replace(self.experiment, **here, **self.quick)  # type: ignore[type-var]
 
 

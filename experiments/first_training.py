@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from experiments.record import Row
-from experiments.trainings import OfTrainings
+from experiments.trainings import TrainingExperiment
 from sarah.control.parameters import PAPER_STEPPING, STEPPING_PARAMETERS
 from sarah.episode.evaluation import evaluate
 from sarah.episode.settings import EpisodeConfig
@@ -17,7 +17,7 @@ from sarah.simulation.physics import PHYSICS
 
 
 @dataclass(frozen=True)
-class FirstTraining(OfTrainings):
+class FirstTraining(TrainingExperiment):
     """First Trainings by NAF, judged beside the paper's P1 to P5.
 
     :param seeds: number of trainings

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import get_args
 
-from experiments.experiment import OnWorkers, survival
+from experiments.experiment import ParallelExperiment, survival
 from experiments.record import Row
 from sarah.control.hip_law import LOCKED_HIPS, HipLaw
 from sarah.control.pattern_generator import PatternGenerator
@@ -86,7 +86,7 @@ def simulate(law: str, v3: float, seed: int, config: BalanceConfig) -> EpisodeRe
 
 
 @dataclass(frozen=True)
-class FlexionLaws(OnWorkers):
+class FlexionLaws(ParallelExperiment):
     """Flexion laws on pushes from front and back in turn, and without a push, in both engines.
 
     :param newtons: forces of the pushes, in N

@@ -24,7 +24,7 @@ from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
 from experiments.baselines import documented_noise
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.naf_variants import NoPull, Watched, policy_with
 from experiments.record import Row
 from experiments.several_actions import EVALUATION_SEED
@@ -183,7 +183,7 @@ OTHERS: dict[str, type[OffPolicyAlgorithm]] = {"ddpg": DDPG, "td3": TD3}
 
 
 @dataclass(frozen=True)
-class GoalTasks(OnWorkers):
+class GoalTasks(ParallelExperiment):
     """NAF, DDPG and TD3 on each task, with the defaults of their classes but for narrower layers.
 
     :param steps: number of steps of a training

@@ -13,7 +13,7 @@ import torch as th
 from stable_baselines3 import DDPG
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.record import Row
 from experiments.several_actions import EVALUATION_SEED, model
 from sarah.agents import NAF
@@ -36,7 +36,7 @@ class Moment(NamedTuple):
 
 
 @dataclass(frozen=True)
-class HeldActions(OnWorkers):
+class HeldActions(ParallelExperiment):
     """A random action is held for some steps of an episode of mu; then mu goes on.
 
     :param steps: number of steps of a training

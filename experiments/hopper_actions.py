@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.held_actions import TASK
 from experiments.record import Row
 from experiments.several_actions import SeveralActions
@@ -35,7 +35,7 @@ CHANGES = {
 
 
 @dataclass(frozen=True)
-class HopperActions(OnWorkers):
+class HopperActions(ParallelExperiment):
     """NAF and DDPG on Hopper, by what is changed of their actions.
 
     :param actions: names of changes

@@ -14,7 +14,7 @@ from stable_baselines3 import DDPG
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
 from experiments.baselines import documented_noise
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.known_tasks import TASKS, KnownTask
 from experiments.naf_variants import EXPLORATION_STD, LAYERS, VARIANTS, Watched, policy_with
 from experiments.record import Row
@@ -51,7 +51,7 @@ class Judgement:
 
 
 @dataclass(frozen=True)
-class KnownTruth(OnWorkers):
+class KnownTruth(ParallelExperiment):
     """Variants of NAF, and DDPG, on tasks whose truth is known.
 
     :param steps: number of steps of a training

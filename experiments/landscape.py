@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import tyro
 
 from experiments.engines import ENGINES
-from experiments.experiment import OnWorkers, settings_of
+from experiments.experiment import ParallelExperiment, settings_of
 from experiments.record import Row
 from sarah.episode.evaluation import evaluate
 from sarah.episode.tasks import TASKS
@@ -23,7 +23,7 @@ VALUES = {
 
 
 @dataclass(frozen=True)
-class Landscape(OnWorkers):
+class Landscape(ParallelExperiment):
     """One parameter at a time, in both engines: the median score, and survival if there are pushes.
 
     :param task: name of the task

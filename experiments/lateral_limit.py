@@ -18,7 +18,7 @@ from itertools import pairwise, product
 from typing import NamedTuple
 
 from experiments.conditions import HIPS, LATERAL, LEARNED
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.record import Row
 from sarah.control.constants import ControllerConstants
 from sarah.episode.episode import Episode
@@ -159,7 +159,7 @@ def simulate(controller: str, index: int, newtons: float, time_limit: float) -> 
 
 
 @dataclass(frozen=True)
-class LateralLimit(OnWorkers):
+class LateralLimit(ParallelExperiment):
     """Pushes to the right and to the left in turn, in PyBullet: the shipped parameters with their spread and without.
 
     :param newtons: forces of the pushes, in N

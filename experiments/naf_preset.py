@@ -19,7 +19,7 @@ import torch
 from gymnasium import spaces
 from stable_baselines3.common.callbacks import BaseCallback
 
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.record import Row
 from sarah.agents import NAF, PRESETS, LocalNAF, RankReplayBuffer
 from sarah.episode.workers import Workers
@@ -108,7 +108,7 @@ class Watch(BaseCallback):
 
 
 @dataclass(frozen=True)
-class NafPreset(OnWorkers):
+class NafPreset(ParallelExperiment):
     """Variants of NAF's preset on a stand-in for the robot, a training for each worker at a time.
 
     :param seeds: number of trainings of each variant

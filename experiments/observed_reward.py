@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import spearmanr
 
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.record import Row
 from sarah.episode.from_mapping import from_mapping
 from sarah.episode.workers import Workers
@@ -34,7 +34,7 @@ RESAMPLES = 1000
 
 
 @dataclass(frozen=True)
-class ObservedReward(OnWorkers):
+class ObservedReward(ParallelExperiment):
     """Parameter sets from near the shipped one to anywhere, each on a robot of its own.
 
     :param sets: number of sets on each ground

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from statistics import mean
 from typing import Any
 
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.interval import with_interval
 from experiments.record import Row
 from sarah.episode.from_mapping import from_mapping
@@ -39,7 +39,7 @@ FIRST_TUNING_SEED = 1000
 
 
 @dataclass(frozen=True)
-class Operation(OnWorkers):
+class Operation(ParallelExperiment):
     """Sessions of every learner on robots that differ, the same robots for all learners.
 
     :param engine: engine in which the robot runs; the parameters were learned in PyBullet

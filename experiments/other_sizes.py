@@ -7,9 +7,9 @@ import itertools
 from dataclasses import dataclass
 from typing import Any
 
-from experiments.experiment import RowByRow, survival
+from experiments.experiment import RowByRowExperiment, survival
 from experiments.record import Row
-from experiments.trainings import OfTrainings
+from experiments.trainings import TrainingExperiment
 from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.push import Push
 from sarah.episode.tasks import BALANCE, BalanceConfig
@@ -51,7 +51,7 @@ class Robot:
 
 
 @dataclass(frozen=True)
-class OtherSizes(OfTrainings, RowByRow):
+class OtherSizes(TrainingExperiment, RowByRowExperiment):
     """First and Second Trainings by NAF, judged without pushes and with some by a third of the weight.
 
     :param robots: the robots, each with a step frequency near its natural one

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from statistics import mean, stdev
 
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.record import Row
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.parameter_sets import PARAMETER_SETS
@@ -53,7 +53,7 @@ def parameter_sets() -> dict[str, tuple[tuple[float, ...], tuple[float, ...]]]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class AtEverySetting(OnWorkers):
+class AtEverySetting(ParallelExperiment):
     """What the experiments below share.
 
     :param seeds: number of episodes of each set at each setting, at least 2

@@ -10,7 +10,7 @@ from statistics import mean, stdev
 import tyro
 
 from experiments.record import Row
-from experiments.trainings import OfTrainings, identity
+from experiments.trainings import TrainingExperiment, identity
 from sarah.episode.workers import Workers
 from sarah.reports.judging import evaluations_of
 from sarah.reports.race import race
@@ -21,7 +21,7 @@ from sarah.runs.run_folder import RunFolder
 
 
 @dataclass(frozen=True)
-class Race(OfTrainings):
+class Race(TrainingExperiment):
     """Trainings by every algorithm in MuJoCo, a training for each worker at a time.
 
     :param task: name of the task

@@ -16,7 +16,7 @@ import numpy as np
 import torch
 from gymnasium import spaces
 
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.record import Row
 from sarah.agents import PRESETS, LocalNAF, RankReplayBuffer
 from sarah.episode.workers import Workers
@@ -61,7 +61,7 @@ class NoisyHill(gym.Env):
 
 
 @dataclass(frozen=True)
-class RankReplay(OnWorkers):
+class RankReplay(ParallelExperiment):
     """Trainings of the preset on noisy rewards, with ranked replay and without.
 
     :param seeds: number of trainings of each kind

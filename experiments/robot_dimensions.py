@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from statistics import mean
 
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.record import Row
 from sarah.control.constants import ControllerConstants
 from sarah.episode.push import Push
@@ -59,7 +59,7 @@ ROBOTS = (
 
 
 @dataclass(frozen=True)
-class RobotDimensions(OnWorkers):
+class RobotDimensions(ParallelExperiment):
     """Stepping without a push, and survival of 100 N, with one dimension away from the defaults.
 
     :param pushes: number of pushes in each pair of directions

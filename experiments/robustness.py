@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from experiments.record import Row
-from experiments.trainings import OfTrainings
+from experiments.trainings import TrainingExperiment
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.workers import Workers
 from sarah.reports.robustness import FORCES, push_many, robustness_table, survival_interval
@@ -14,7 +14,7 @@ from sarah.runs.config import TrainingConfig
 
 
 @dataclass(frozen=True)
-class Robustness(OfTrainings):
+class Robustness(TrainingExperiment):
     """Pushes of several forces, the same for a Second Training by NAF and for V = 0.
 
     :param seed: seed of the training

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple, get_args
 
 from experiments.conditions import HIPS, LEARNED
-from experiments.experiment import OnWorkers, survival
+from experiments.experiment import ParallelExperiment, survival
 from experiments.record import Row
 from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.push import Push
@@ -80,7 +80,7 @@ CASES = [
 
 
 @dataclass(frozen=True)
-class RoughGround(OnWorkers):
+class RoughGround(ParallelExperiment):
     """The shipped parameters on bumps and slippery ground, without a push and with one of 75 N.
 
     :param episodes: number of episodes of a row

@@ -16,7 +16,7 @@ import numpy as np
 import torch as th
 
 from experiments.baselines import NOISE
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.known_tasks import TASKS
 from experiments.known_truth import DDPG_NAME, FRESH, SATURATED, agent, score
 from experiments.naf_variants import EXPLORATION_STD
@@ -61,7 +61,7 @@ class Judged(NamedTuple):
 
 
 @dataclass(frozen=True)
-class ScaledActions(OnWorkers):
+class ScaledActions(ParallelExperiment):
     """NAF and DDPG on tasks whose truth is known, by the factor of their actions and the width of their noise.
 
     :param tasks: names of the tasks

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from experiments.balance_trainings import BALANCE_NAMES, JUDGING_SEED, SEEDS_OF_A_KIND, SHIPPED, Training
-from experiments.best_known import OfBestKnown, best_known
+from experiments.best_known import BestKnownExperiment, best_known
 from experiments.interval import crossed_bootstrap, ratio, with_error
 from experiments.judge import Asked
 from experiments.record import Row, cell
@@ -22,7 +22,7 @@ ENOUGH = 0.95
 
 
 @dataclass(frozen=True)
-class SecondTraining(OfBestKnown):
+class SecondTraining(BestKnownExperiment):
     """Second Trainings by NAF: what each recommends, what its network says, and how both do.
 
     :param surviving: number of pushes of 100 N by which survival is judged

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from statistics import mean
 from typing import Any, NamedTuple
 
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.record import Row
 from sarah.control.pattern_generator import PatternGenerator, PhaseChange
 from sarah.episode.episode import Episode
@@ -238,7 +238,7 @@ def simulate(name: str, hips: str, seed: int, time_limit: float) -> Outcome:
 
 
 @dataclass(frozen=True)
-class SensorFaults(OnWorkers):
+class SensorFaults(ParallelExperiment):
     """Faults of sensors and of the control loop, with locked hips and with the hip law, without a push.
 
     :param seeds: number of episodes

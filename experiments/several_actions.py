@@ -28,7 +28,7 @@ from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from torch.nn.utils import parameters_to_vector
 
 from experiments.baselines import NOISE, documented_noise
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.naf_variants import Watched
 from experiments.record import Row
 from sarah.episode.workers import Workers
@@ -57,7 +57,7 @@ Course = list[tuple[float, float]]
 
 
 @dataclass(frozen=True)
-class SeveralActions(OnWorkers):
+class SeveralActions(ParallelExperiment):
     """NAF, NAF as published and DDPG on tasks with several actions, a training for each worker at a time.
 
     :param tasks: names of the tasks

@@ -10,7 +10,7 @@ from itertools import product
 from typing import Any
 
 from experiments.engines import ENGINES
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.record import Row
 from sarah.control.pattern_generator import PatternGenerator, Phase, PhaseChange
 from sarah.episode.episode import Episode
@@ -58,7 +58,7 @@ class Watched(PatternGenerator):
 
 
 @dataclass(frozen=True)
-class ShiftEndings(OnWorkers):
+class ShiftEndings(ParallelExperiment):
     """The shipped parameters without a push, in both engines, with their own P3 and with others.
 
     :param p3: values of P3 to try beside a set's own

@@ -37,7 +37,7 @@ from experiments.balance_trainings import (
     OTHER_SEED,
     SHIPPED,
     TESTING_SEED,
-    OfSecondTrainings,
+    SecondTrainingExperiment,
 )
 from experiments.interval import with_error
 from experiments.judge import Asked, Condition, Judge
@@ -169,7 +169,7 @@ class Candidate:
 
 
 @dataclass(frozen=True)
-class Shipping(OfSecondTrainings):
+class Shipping(SecondTrainingExperiment):
     """The choice of the shipped V1 to V4.
 
     :param rounds: sizes of the rounds

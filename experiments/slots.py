@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from experiments.record import Row
-from experiments.trainings import OfTrainings
+from experiments.trainings import TrainingExperiment
 from sarah.episode.workers import Workers
 from sarah.runs.config import TrainingConfig
 
@@ -20,7 +20,7 @@ SLOTS_PER_WORKER = (1.0, 1.5, 2.0, 3.0, 4.0, 8.0)
 
 
 @dataclass(frozen=True)
-class SlotsSchedule(OfTrainings):
+class SlotsSchedule(TrainingExperiment):
     """Share of the time that workers simulate, by their number and the number of slots for each of them.
 
     :param seed: seed of the First Training whose episodes are scheduled

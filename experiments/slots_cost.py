@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from statistics import mean, median
 
 from experiments.record import Row
-from experiments.trainings import OfTrainings
+from experiments.trainings import TrainingExperiment
 from sarah.episode.evaluation import evaluate
 from sarah.episode.workers import Workers
 from sarah.runs.agent_settings import NAFSettings
@@ -19,7 +19,7 @@ WARM_UP = NAFSettings().learning_starts
 
 
 @dataclass(frozen=True)
-class SlotsCost(OfTrainings):
+class SlotsCost(TrainingExperiment):
     """First Trainings by NAF in MuJoCo with several numbers of slots.
 
     :param slots: numbers of episodes in flight

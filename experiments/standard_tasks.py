@@ -20,7 +20,7 @@ from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
 from experiments.baselines import documented_noise
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.naf_variants import NoPull, policy_with
 from experiments.record import Row
 from sarah.agents import NAF
@@ -40,7 +40,7 @@ EVALUATION_SEED = 10_000
 
 
 @dataclass(frozen=True)
-class StandardTask(OnWorkers):
+class StandardTask(ParallelExperiment):
     """Algorithms on a task of gymnasium, a training for each worker at a time.
 
     :param task: name of the task

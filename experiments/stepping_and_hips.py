@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.record import Row
 from sarah.control.constants import ControllerConstants
 from sarah.control.parameters import PAPER_STEPPING
@@ -46,7 +46,7 @@ TOLD = {
 
 
 @dataclass(frozen=True)
-class SteppingAndHips(OnWorkers):
+class SteppingAndHips(ParallelExperiment):
     """V1 under pushes, on the P1 to P5 of the paper, of the package and of ten trainings.
 
     :param v1: values of V1 beside 0

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import sarah
-from experiments.experiment import OnWorkers
+from experiments.experiment import ParallelExperiment
 from experiments.made_with import short_hash
 from sarah.cli.training_defaults import default_training
 from sarah.episode.settings import EpisodeConfig
@@ -36,7 +36,7 @@ EPISODES: dict[str, EpisodeConfig] = {name: default_training(task).episode for n
 
 
 @dataclass(frozen=True, kw_only=True)
-class OfTrainings(OnWorkers):
+class TrainingExperiment(ParallelExperiment):
     """Options of an experiment that takes what trainings have learned.
 
     :param runs: folder that keeps the trainings; one that is there is not run again

@@ -10,7 +10,7 @@ import tyro
 
 from experiments.engines import ENGINES
 from experiments.record import Row
-from experiments.trainings import OfTrainings
+from experiments.trainings import TrainingExperiment
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BalanceConfig
 from sarah.episode.workers import Workers
@@ -19,7 +19,7 @@ from sarah.runs.config import TrainingConfig
 
 
 @dataclass(frozen=True)
-class TransferBetweenEngines(OfTrainings):
+class TransferBetweenEngines(TrainingExperiment):
     """Trainings by NAF in each engine, evaluated in both.
 
     :param task: name of the task

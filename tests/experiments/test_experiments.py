@@ -11,7 +11,7 @@ from laboratory import need
 from experiments import record
 from experiments.__main__ import main, makes_the_result, mark_stale
 from experiments.endurance.protections import PROTECTIONS, Protection
-from experiments.experiment import Maker, RowByRow
+from experiments.experiment import Maker, RowByRowExperiment
 from experiments.made_with import made_with
 from experiments.table import TABLE
 from sarah.errors import ConfigurationError
@@ -106,7 +106,7 @@ def test_a_mistake_is_one_line_before_anything_is_computed(arguments: str, said:
 
 
 @dataclass(frozen=True)
-class Squares(RowByRow):
+class Squares(RowByRowExperiment):
     """Squares, of which one cannot be had at first.
 
     :param made: file that gets a line for each square that is computed
