@@ -1,23 +1,34 @@
-"""The race of all algorithms: what each would recommend along the way, on seeds that no training sees."""
+"""The race of all algorithms: what each would recommend along the way, on seeds that no training sees.
+
+All trainings together take most of a day. So the course of each is kept in a file beside the results, and not run again
+with the same settings, physics, controller and robot. Whoever changes a learner or the recommendation deletes these
+files.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from statistics import mean, stdev
+from typing import Any
 
 import tyro
 
+from experiments.made_with import made_with, short_hash
 from experiments.record import Row
-from experiments.trainings import TrainingExperiment, identity
+from experiments.trainings import TrainingExperiment, identity, kept
 from sarah.episode.workers import Workers
 from sarah.reports.judging import evaluations_of
-from sarah.reports.race import race
-from sarah.reports.race_entry import Entry, entries_of
+from sarah.reports.race import run_entry
+from sarah.reports.race_entry import Entry, RaceCurve, entries_of, read_curve
 from sarah.reports.rankings import rankings
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
+
+DIGITS = 5
+"""Decimals of the scores that are kept."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +42,7 @@ class Race(TrainingExperiment):
     :param algorithms: names of the algorithms
     :param evaluations: number of unseen episodes that judge a final recommendation; by default that of sarah-compare
     :param evaluations_along: number of these that judge one along the way; by default that of sarah-compare
+    :param courses: folder that keeps the courses of the trainings
     """
 
     task: tyro.conf.Suppress[str]
@@ -40,24 +52,44 @@ class Race(TrainingExperiment):
     algorithms: tuple[str, ...] = ALGORITHMS
     evaluations: int | None = None
     evaluations_along: int | None = None
+    courses: Path = Path("results/race")
 
     def rows(self) -> Iterator[Row]:
         """A row for each algorithm, the quickest first."""
-        episode = self.episode(self.task, "mujoco")
-        base = TrainingConfig(self.task, episodes=self.budget, slots=1, episode=episode)
+        base = TrainingConfig(self.task, episodes=self.budget, slots=1, episode=self.episode(self.task, "mujoco"))
         seeds = range(self.first_seed, self.first_seed + self.seeds)
-        folder = self.runs / f"race-{self.task}-{identity(base)}"
-        folder.mkdir(parents=True, exist_ok=True)
         evaluations = evaluations_of(base.task, self.evaluations, self.evaluations_along)
-        entries = entries_of(self.algorithms, seeds, base, evaluations, folder)
+        entries = entries_of(
+            self.algorithms, seeds, base, evaluations, self.runs / f"race-{self.task}-{identity(base)}"
+        )
         with Workers(self.workers) as workers:
-            table = rankings(race(entries, workers), reference="naf")
+            jobs = [workers.submit(kept, self._file(entry), course_of, entry) for entry in entries]
+            courses = [job.result() for job in jobs]
+        table = rankings([RaceCurve(**course["curve"]) for course in courses], reference="naf")
         for ranking in table.rows:
             row = table.columns(ranking)
             if self.task == "balance":
-                own = [entry for entry in entries if entry.config.algo == ranking.algo]
-                row |= while_learning([score_while_learning(entry) for entry in own])
+                own = [course for course in courses if course["curve"]["algo"] == ranking.algo]
+                row |= while_learning([course["score_while_learning"] for course in own])
             yield row
+
+    def _file(self, entry: Entry) -> Path:
+        """File of a training's course, whose name tells its settings and what it was made with."""
+        physics = [made_with()["physics"][part] for part in ("settings", "mujoco")]
+        fingerprint = [physics, made_with()["controller"], made_with()["robot"]]
+        settings = short_hash([repr(entry.config), repr(entry.evaluations), fingerprint])
+        return self.courses / f"{self.task}-{entry.folder.name}-{settings}.json"
+
+
+def course_of(entry: Entry) -> dict[str, Any]:
+    """What a race knows of a training, which is run, or resumed, and judged in this process unless it is there.
+
+    :param entry: a training of the race
+    """
+    run_entry(entry)
+    curve = read_curve(entry)
+    scores = {name: [round(score, DIGITS) for score in getattr(curve, name)] for name in ("scores", "final")}
+    return {"curve": vars(curve) | scores, "score_while_learning": score_while_learning(entry)}
 
 
 def while_learning(scores: Sequence[float]) -> Row:

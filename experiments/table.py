@@ -47,6 +47,7 @@ from experiments.transfer import TransferBetweenEngines
 
 SHORT = {"time_limit": 2.0}
 TRAINED = {**SHORT, "budget": 5}
+RACED = {**TRAINED, "seeds": 1, "algorithms": ("cma-es",), "courses": Path("build/experiments/race")}
 BALANCED = {**TRAINED, "engines": ("mujoco",), "seeds": 1}
 BEST_KNOWN = {**BALANCED, "judging": 3, "candidates": 4}
 
@@ -144,12 +145,12 @@ TABLE: dict[str, Maker] = {
     "race_stepping": Maker(
         "Which algorithm learns to step in the fewest episodes?",
         Race("stepping", budget=60, first_seed=100),
-        {**TRAINED, "seeds": 1, "evaluations": 1, "algorithms": ("cma-es",)},
+        {**RACED, "evaluations": 1},
     ),
     "race_balance": Maker(
         "Which algorithm learns to come back after a push in the fewest episodes?",
         Race("balance", budget=150, first_seed=300, evaluations_along=12),
-        {**TRAINED, "seeds": 1, "evaluations": 1, "evaluations_along": 1, "algorithms": ("cma-es",)},
+        {**RACED, "evaluations": 1, "evaluations_along": 1},
     ),
     "naf_preset": Maker(
         "What is each part of NAF's preset for episodes of one step worth?",
