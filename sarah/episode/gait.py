@@ -9,7 +9,7 @@ from typing import Any
 from sarah.control.pattern_generator import Phase, PhaseChange
 
 WINDOW_SECONDS = 2.0
-"""Length of the window in which steps are counted, in s."""
+"""Length of the window in which the default robot's steps are counted, in s."""
 SHORTEST_WINDOW_SECONDS = 0.5
 """Shortest length of that window while the episode begins, in s."""
 
@@ -18,13 +18,14 @@ class GaitRecord:
     """Record of one episode's gait. Ticks are control ticks since the pattern generator's start.
 
     :param control_rate: control ticks per second
+    :param time_scale: ratio of the robot's times to those of the default robot
     """
 
-    def __init__(self, control_rate: int) -> None:
+    def __init__(self, control_rate: int, time_scale: float = 1.0) -> None:
         self.steps = 0
         self._control_rate = control_rate
-        self._window = round(WINDOW_SECONDS * control_rate)
-        self._shortest_window = round(SHORTEST_WINDOW_SECONDS * control_rate)
+        self._window = round(WINDOW_SECONDS * time_scale * control_rate)
+        self._shortest_window = round(SHORTEST_WINDOW_SECONDS * time_scale * control_rate)
         self._recent: deque[int] = deque()
         self._swing_height = 0.0
         self._clearances: list[float] = []

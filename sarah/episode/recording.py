@@ -43,7 +43,7 @@ class Recording:
 
     def __init__(self, robot: RunningRobot, begin: float, returned: Return, record_trace: bool = True) -> None:
         physics = robot.config.physics
-        self.gait = GaitRecord(physics.control_rate)
+        self.gait = GaitRecord(physics.control_rate, robot.config.scale.time)
         self.start = robot.torso.position
         """Position of the torso's centre at the beginning, in m."""
         self.ticks = 0

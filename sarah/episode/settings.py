@@ -126,14 +126,19 @@ class EpisodeConfig:
         :param usual: settings from which those that were set by hand differ: they stay; by default all settings follow
         """
         dimensions, usual = check_dimensions(dimensions), usual or self
-        before, after = (usual._at(scale_of(robot), self) for robot in (self.dimensions, dimensions))
+        before, after = (usual._at(scale_of(robot), self.engine) for robot in (self.dimensions, dimensions))
+        if (control_rate := self.physics.control_rate) != before.physics.control_rate:  # set by hand
+            before, after = (one._with_control_rate(control_rate) for one in (before, after))
         return replace(_following(self, before, after), dimensions=dimensions)
 
-    def _at(self, scale: Scale, other: EpisodeConfig) -> EpisodeConfig:
-        """These settings for a robot of a size, in the engine and at the control rate of others."""
-        physics = physics_for(other.engine, self.physics, self.scale).at_control_rate(other.physics.control_rate)
+    def _at(self, scale: Scale, engine: Engine) -> EpisodeConfig:
+        """These settings for a robot of a size, in an engine."""
         ratio = scale.over(self.scale)
-        return replace(ratio.scaled(self), engine=other.engine, physics=physics.at_scale(ratio))
+        physics = physics_for(engine, self.physics, self.scale).at_scale(ratio)
+        return replace(ratio.scaled(self), engine=engine, physics=physics)
+
+    def _with_control_rate(self, control_rate: int) -> EpisodeConfig:
+        return replace(self, physics=self.physics.at_control_rate(control_rate))
 
     def check_for_training(self) -> None:
         """Refuse settings with which there is nothing to learn.

@@ -104,7 +104,7 @@ class WindowRecord:
         self._reward_rate = partial(
             reward_rate, half_width=config.reward_half_width, step_frequency=config.step_frequency
         )
-        self._gait = GaitRecord(config.physics.control_rate)
+        self._gait = GaitRecord(config.physics.control_rate, config.scale.time)
         self._odometry = LegOdometry(height, self._dt)
         self._ticks = 0
         self._first: TorsoState | None = None

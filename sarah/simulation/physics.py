@@ -11,6 +11,10 @@ from sarah.ranges import Within, check_ranges
 from sarah.robot.scale import DIGITS, Scale, Sized
 
 CONTROL_RATES = Within(50, 1000, "Hz")
+CONTROL_STEP = 50
+"""Control rates of robots of another size are multiples of this, in Hz."""
+LITTLE_CONTROL_STEP = 0.3
+"""Share of such a step that a robot of another size does without: one that is little smaller has the same rate."""
 LITTLE_PAIR = 0.05
 """Share of a pair of physics steps in a control tick that a robot of another size does without. Steps come in pairs, so
 that the control rate can be doubled."""
@@ -50,14 +54,18 @@ class Physics:
         return replace(self, rate=multiple * control_rate, control_rate=control_rate)
 
     def at_scale(self: PhysicsType, scale: Scale) -> PhysicsType:
-        """Physics for a robot of another size: what is over sooner needs more steps per second.
+        """Physics for a robot of another size: what is over sooner needs more steps and control ticks per second.
 
         :param scale: size of the robot as ratios to that of the robot which this physics is for
         """
         if scale.length == 1.0:
             return scale.scaled(self)
-        pairs = round(self.rate * scale.factor("per second") / (2 * self.control_rate), DIGITS)
-        return replace(scale.scaled(self), rate=2 * self.control_rate * max(1, math.ceil(pairs - LITTLE_PAIR)))
+        faster = scale.factor("per second")
+        control_steps = round(self.control_rate * faster / CONTROL_STEP, DIGITS)
+        control_rate = CONTROL_STEP * max(1, math.ceil(control_steps - LITTLE_CONTROL_STEP))
+        pairs = round(self.rate * faster / (2 * control_rate), DIGITS)
+        rate = 2 * control_rate * max(1, math.ceil(pairs - LITTLE_PAIR))
+        return replace(scale.scaled(self), rate=rate, control_rate=control_rate)
 
     @property
     def control_dt(self) -> float:
@@ -96,7 +104,7 @@ def named_physics(name: str, scale: Scale, control_rate: int) -> PyBulletPhysics
     :param scale: size of the robot
     :param control_rate: control ticks per second
     """
-    return PHYSICS[name].at_control_rate(control_rate).at_scale(scale)
+    return PHYSICS[name].at_scale(scale).at_control_rate(control_rate)
 
 
 def physics_for(engine: str, physics: Physics, scale: Scale) -> Physics:

@@ -4,8 +4,8 @@ An agent's own choice tends to stop at the edge of a plateau, and the best singl
 does not show a robot that steps to a clock or drags its feet, so an episode without a valid gait has less merit here
 than its score. For all algorithms, therefore, parameters are judged by the merit that a Gaussian process expects,
 without the part that known disturbances explain. Its maximum is looked for in the whole box of the parameters. The last
-episodes of a budget try it, and then the best of what was simulated, which may be the same: where the process errs, one
-of both is good. Their gait must be valid, and their hips must not chatter.
+episodes of a budget try it, and then the best of what was simulated elsewhere: where the process errs, one of both is
+good. Their gait must be valid, and their hips must not chatter.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from sarah.episode.tasks import Task
 from sarah.errors import LearningError
 
 DISTINCT = 0.2
-"""Distance within which parameters count as those that failed, scaled to [-1, 1]."""
+"""Distance within which parameters count as those of an earlier trial, scaled to [-1, 1]."""
 LARGEST_MERIT = 1e100
 """Largest merit by amount: larger ones, of a reward of your own, would overflow."""
 
@@ -94,13 +94,14 @@ class Tried:
         """
         return self._box.unscaled(self._expectation().best(np.array([self._box.scaled(choice)])))
 
-    def best_tried(self, failed: Sequence[Parameters]) -> Parameters:
+    def best_simulated(self, trials: Sequence[Parameters]) -> Parameters:
         """Find the parameters of which the highest merit is expected among those of the episodes.
 
-        :param failed: parameters that failed when they were tried, whose surroundings are avoided
+        :param trials: parameters of earlier trials, whose surroundings are avoided: a trial of the same parameters
+            would repeat the same episodes
         """
         expected = self._expectation().expected(np.array(self._places))
-        for parameters in failed:
+        for parameters in trials:
             distances = np.linalg.norm(np.array(self._places) - self._box.scaled(parameters), axis=1)
             expected[distances < DISTINCT] = -np.inf
         return self._parameters[int(np.argmax(expected))]

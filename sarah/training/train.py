@@ -142,7 +142,7 @@ def _recommended(
     generator: np.random.Generator,
     workers: Executor,
 ) -> Parameters:
-    """Try the parameters of which most is expected, first of all and then of those that were simulated.
+    """Try the parameters of which most is expected, first of all and then of those that were simulated elsewhere.
 
     Of those which are valid the ones are returned of which most is expected in the end.
 
@@ -156,7 +156,7 @@ def _recommended(
     baseline = None if neutral is None else evaluate(config.task, neutral, config.episode, seeds, workers)
     valid, failed = list[Parameters](), list[Parameters]()
     for trial in range(stage.trials):
-        candidate = recorder.tried.best_tried(failed) if trial else recorder.tried.best(choice)
+        candidate = recorder.tried.best_simulated([*valid, *failed]) if trial else recorder.tried.best(choice)
         specs = [EpisodeSpec(candidate, seed, config.task, config.episode) for seed in seeds]
         results = tuple(workers.simulate_all(specs))
         for spec, result in zip(specs, results, strict=True):

@@ -88,9 +88,9 @@ def test_disturbances_of_another_number_are_one_line() -> None:
 
 def test_what_failed_is_avoided() -> None:
     episodes = random_episodes(60)
-    first = after(episodes).best_tried([])
-    second = after(episodes).best_tried([first])
-    third = after(episodes).best_tried([first, second])
+    first = after(episodes).best_simulated([])
+    second = after(episodes).best_simulated([first])
+    third = after(episodes).best_simulated([first, second])
     assert {first, second, third} < {parameters for parameters, _ in episodes}
     assert min(distance(first, second), distance(first, third), distance(second, third)) >= DISTINCT
     assert after(episodes).best_of([third, second, first]) == first
@@ -100,7 +100,7 @@ def test_where_the_best_expected_disappoints_the_best_of_what_was_simulated_is_t
     """A cliff beside the best makes the process promise too much beyond it."""
     episodes = [(around(*CHOICE, offset=0.02 * step), 0.9 if step < 5 else 0.1 * step) for step in range(10)]
     promised = after(episodes).best(CHOICE)
-    found = after([*episodes, *[(promised, 0.5)] * 5]).best_tried([])
+    found = after([*episodes, *[(promised, 0.5)] * 5]).best_simulated([])
     assert distance(found, promised) > 0.0 and dict(episodes)[found] >= 0.8
 
 
