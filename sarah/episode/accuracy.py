@@ -8,6 +8,8 @@ from sarah.control.hip_law import LOCKED_HIPS
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.task_answers import controller_of
 from sarah.episode.tasks import Task
+from sarah.robot.dimensions import all_dimensions
+from sarah.robot.scale import MASS
 from sarah.simulation.physics import PHYSICS
 
 LOW_P1 = 0.1
@@ -16,6 +18,9 @@ LOWEST_ROUGH_RATE = 200
 """Physics steps per second below which PyBullet's feet get through bumps, in Hz."""
 LATE_SECONDS = 0.015
 """Delay of the signals from which a robot with a low P1 and locked hips steps too fast, in s."""
+
+LIGHT_FOOT = 0.015
+"""Share of the robot's mass below which a foot is so light that PyBullet's solver does not hold it."""
 
 
 def physics_warning(task: Task[Any], parameters: tuple[float, ...], config: EpisodeConfig) -> str | None:
@@ -33,4 +38,14 @@ def physics_warning(task: Task[Any], parameters: tuple[float, ...], config: Epis
         return f"P1 below {LOW_P1:g} can score far off here: check it with --physics reference"
     if config.engine == "pybullet" and config.terrain.roughness[1] > 0.0 and config.physics.rate < LOWEST_ROUGH_RATE:
         return f"below {LOWEST_ROUGH_RATE} Hz PyBullet's feet sink into bumps: take more steps per second"
+    if config.engine == "pybullet" and _foot_share(config) < LIGHT_FOOT:
+        return (
+            f"PyBullet errs with feet below {LIGHT_FOOT:.1%} of the robot's mass: check it with --engine mujoco"
+        )
     return None
+
+
+def _foot_share(config: EpisodeConfig) -> float:
+    """Mass of a foot as a share of the robot's."""
+    dimensions = all_dimensions(config.dimensions)
+    return (dimensions["forefoot_mass"] + dimensions["hindfoot_mass"]) / (config.scale.mass * MASS)

@@ -10,6 +10,8 @@ from terminal import run
 from sarah.episode.accuracy import physics_warning
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
+from sarah.robot.dimensions import default_dimensions
+from sarah.simulation.engines import Engine
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import Randomisation
 from sarah.simulation.terrain import Terrain
@@ -59,6 +61,16 @@ def test_hips_that_move_are_doubted_with_any_delay(
 def test_bumps_at_a_low_physics_rate_are_doubted(rate: int, roughness: float, warns: bool) -> None:
     physics = replace(PHYSICS["standard"], rate=rate)
     config = EpisodeConfig(engine="pybullet", physics=physics, terrain=Terrain(roughness=(roughness, roughness)))
+    assert (physics_warning(STEPPING, PAPER, config) is not None) == warns
+
+
+@NEEDS_PYBULLET
+@pytest.mark.parametrize(
+    ("share", "engine", "warns"), [(0.1, "pybullet", True), (0.1, "mujoco", False), (1.0, "pybullet", False)]
+)
+def test_light_feet_are_doubted_in_pybullet(share: float, engine: Engine, warns: bool) -> None:
+    dimensions = {name: share * default_dimensions()[name] for name in ("forefoot_mass", "hindfoot_mass")}
+    config = EpisodeConfig(engine=engine, dimensions=dimensions)
     assert (physics_warning(STEPPING, PAPER, config) is not None) == warns
 
 
