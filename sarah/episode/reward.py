@@ -53,7 +53,8 @@ def equation_2(tick: Tick, config: EpisodeConfig) -> float:
 def natural_step_frequency(config: EpisodeConfig) -> float:
     """Steps per second of a robot that rocks by itself, as a pendulum of its height: 3 for the default robot.
 
-    Its width is left out: with the same P1 and P2, robots whose hips are closer than 0.1 m step more slowly than that.
+    Its width and where its mass lies are left out: robots whose hips are closer than 0.1 m, or whose torso has most of
+    the mass, step more slowly than that.
 
     :param config: settings of the episodes, whose shortest phases are an upper bound
     """
