@@ -147,7 +147,7 @@ class Episode(HoldsWorld):
             recording.start,
             robot.torso,
             recording.gait.steps,
-            recording.gait.steps_per_second(recording.ticks),
+            recording.gait.steps_per_second(recording.gait.ticks),
             robot.generator.phase,
             robot.generator.stance,
             robot.truth,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
-from typing import Protocol
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, PhaseChange, SteppingParameters
@@ -21,8 +20,8 @@ from sarah.simulation.terrain import draw_ground
 from sarah.simulation.world import HoldsWorld
 
 
-class Observer(Protocol):
-    """Something that records what a robot does, in each tick at the two moments of the loop that count."""
+class Observer:
+    """Something that records what a robot does, in each tick at one or both moments of the loop that count."""
 
     def sensed(self, robot: RunningRobot) -> None:
         """Record what the robot feels; phase and targets are those of the tick before.

@@ -14,7 +14,7 @@ from sarah.control.pattern_generator import Phase, PhaseChange
 from sarah.episode.gait import GaitRecord
 from sarah.episode.recording import Return
 from sarah.episode.reward import highest_return, reward_rate
-from sarah.episode.running_robot import RunningRobot
+from sarah.episode.running_robot import Observer, RunningRobot
 from sarah.operation.odometry import LegOdometry
 from sarah.operation.settings import Parameters
 from sarah.robot.reading import GRAVITY, Vector
@@ -84,8 +84,8 @@ class Window:
         return dataclasses.replace(window, parameters=tuple(window.parameters), felt=tuple(window.felt))
 
 
-class WindowRecord:
-    """:class:`~sarah.episode.running_robot.Observer` of one window: what the robot feels, and what it is worth.
+class WindowRecord(Observer):
+    """Observer of one window: what the robot feels, and what it is worth.
 
     :param robot: robot that runs
     :param settle: ticks that are not measured

@@ -1,5 +1,8 @@
 """Step detection and equation 2 against hand-computed values."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -7,8 +10,15 @@ from hypothesis import strategies as st
 from sarah.control.pattern_generator import Phase, PhaseChange
 from sarah.episode.gait import GaitRecord
 from sarah.episode.reward import highest_return, reward_rate
+from sarah.robot.reading import Side
 
 STEP = PhaseChange(Phase.LAND, by_sensors=True, is_step=True)
+
+
+def swinging(height: float) -> Any:
+    """A robot whose left foot swings, so high."""
+    generator = SimpleNamespace(phase=Phase.LIFT, swing=Side.LEFT)
+    return SimpleNamespace(generator=generator, simulation=SimpleNamespace(sole_height={Side.LEFT: height}.get))
 
 
 def record_of_steps(ticks: list[int]) -> GaitRecord:
@@ -42,10 +52,10 @@ def test_clearance_is_the_median_of_each_steps_highest() -> None:
     gait = GaitRecord(100)
     for heights in ((0.001, 0.010, 0.004), (0.020,), (0.012, 0.011)):
         for height in heights:
-            gait.swing(height)
+            gait.sensed(swinging(height))
         gait.phase_change(100, STEP)
-    assert gait.sole_clearance == 0.012
-    assert GaitRecord(100).sole_clearance == 0.0
+    assert gait.metrics(0.0).sole_clearance == 0.012
+    assert GaitRecord(100).metrics(0.0).sole_clearance == 0.0
 
 
 @pytest.mark.parametrize("highest", [[-0.00001], [0.030, -0.00001, -0.00002]])
@@ -53,9 +63,9 @@ def test_a_foot_that_stays_in_the_floors_give_clears_nothing(highest: list[float
     """Soles sink in by micrometres. Every step begins anew, so a high one lends nothing to the next."""
     gait = GaitRecord(100)
     for height in highest:
-        gait.swing(height)
+        gait.sensed(swinging(height))
         gait.phase_change(100, STEP)
-    assert gait.sole_clearance == 0.0
+    assert gait.metrics(0.0).sole_clearance == 0.0
 
 
 @pytest.mark.parametrize("phase", [Phase.SHIFT, Phase.LIFT, Phase.LAND])
