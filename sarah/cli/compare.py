@@ -59,7 +59,7 @@ class CompareOptions:
     :param algorithms: names of different algorithms: {algorithms}
     :param seeds: number of trainings of each algorithm
     :param first_seed: seed of the first training of each algorithm; the others follow
-    :param task: task to learn: ``stepping``, ``balance``, or that of a file of yours, such as my_task.py:JUMP
+    :param task: task to learn, as for ``sarah-train``: one of the package, or of a file such as my_task.py:JUMP
     :param episodes: budget of each training, in episodes; by default that of ``sarah-train``
     :param slots: number of episodes in flight in each training
     :param episode: settings of the episodes; by default those of ``sarah-train``, whose help also names the paper's

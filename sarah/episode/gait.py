@@ -5,16 +5,31 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass
 from statistics import median
+from typing import Annotated
 
 from sarah.control.pattern_generator import Phase, PhaseChange
 from sarah.episode.metric import metric
+from sarah.episode.robot_settings import RobotSettings
 from sarah.episode.running_robot import Observer, RunningRobot
 from sarah.robot.reading import Vector
+from sarah.robot.scale import Sized
 
 WINDOW_SECONDS = 2.0
 """Length of the window in which steps are counted, in s."""
 SHORTEST_WINDOW_SECONDS = 0.5
 """Shortest length of that window while the episode begins, in s."""
+LEAST_CLEARANCE = 0.010
+"""Sole clearance of the default robot below which a gait is a shuffle, in m."""
+
+
+@dataclass(frozen=True)
+class GaitSettings(RobotSettings):
+    """Settings of what counts as a gait.
+
+    :param least_clearance: sole clearance below which a gait is a shuffle, and not valid, in m
+    """
+
+    least_clearance: Annotated[float, Sized(0.0, 1.0, "m", usual=LEAST_CLEARANCE)] = None  # type: ignore[assignment]
 
 
 @dataclass(frozen=True)
@@ -34,20 +49,10 @@ class GaitMetrics:
         "duration", "s", "simulated time, the first second of standing included", group="robot", shown=(1.0, 1, "s")
     )
     shifts_by_sensors: float = metric(
-        "SHIFT by sensors",
-        "",
-        "share of the SHIFT phases that sensors ended",
-        "mean",
-        group="robot",
-        shown=(100.0, 1, "%"),
+        "SHIFT by sensors", "", "share of SHIFT phases that sensors ended", "mean", group="robot", shown=(100.0, 1, "%")
     )
     lifts_by_sensors: float = metric(
-        "LIFT by sensors",
-        "",
-        "share of the LIFT phases that sensors ended",
-        "mean",
-        group="robot",
-        shown=(100.0, 1, "%"),
+        "LIFT by sensors", "", "share of LIFT phases that sensors ended", "mean", group="robot", shown=(100.0, 1, "%")
     )
     sole_clearance: float = metric(
         "sole clearance",
@@ -114,24 +119,18 @@ class GaitRecord(Observer):
             self._recent.popleft()
         return len(self._recent) * self._control_rate / max(self._shortest_window, min(self._window, ticks))
 
-    def by_sensors(self, phase: Phase) -> float:
-        """Share of a phase's ends that its sensor condition caused, and not its time-out; 0 if it never ended.
-
-        :param phase: SHIFT, LIFT or LAND
-        """
-        return self._ends_by_sensors[phase] / self._ends[phase] if self._ends[phase] else 0.0
-
     def metrics(self, before: float) -> GaitMetrics:
         """Metrics of the gait so far.
 
         :param before: time before the first tick that counts to the duration, in s
         """
         elapsed = self.ticks * (1.0 / self._control_rate)
+        by_sensors = {phase: self._ends_by_sensors[phase] / max(1, ends) for phase, ends in self._ends.items()}
         return GaitMetrics(
             steps_per_second=self.steps / elapsed if elapsed else 0.0,
             steps=self.steps,
             duration=round(before + elapsed, 9),
-            shifts_by_sensors=self.by_sensors(Phase.SHIFT),
-            lifts_by_sensors=self.by_sensors(Phase.LIFT),
+            shifts_by_sensors=by_sensors[Phase.SHIFT],
+            lifts_by_sensors=by_sensors[Phase.LIFT],
             sole_clearance=median(self._clearances or [0.0]),
         )

@@ -39,12 +39,7 @@ class MotionMetrics:
         shown=(1.0, 1, "m²/s⁴"),
     )
     actuator_power: float = metric(
-        "actuator power",
-        "W",
-        "mean mechanical power of the six actuators together, with braking counted like driving",
-        "mean",
-        group="robot",
-        shown=(1.0, 0, "W"),
+        "actuator power", "W", "mean mechanical power of all six actuators", "mean", group="robot", shown=(1.0, 0, "W")
     )
     peak_hip_rate: float = metric("peak hip rate", "rad/s", "fastest hip motion", "max", shown=(1.0, 1, "rad/s"))
     peak_leg_speed: float = metric(
@@ -81,7 +76,7 @@ class MotionRecord(Observer):
         speeds, efforts = np.array(self._speeds), np.array(self._efforts)
         return MotionMetrics(
             vibration=power_within(np.array(self._accelerations), self._control_rate, self._band),
-            actuator_power=float(np.abs(speeds * efforts).sum(axis=1).mean()),
+            actuator_power=float(np.abs(speeds * efforts).sum(axis=1).mean()),  # braking counts too
             peak_hip_rate=float(np.abs(speeds[:, IS_HIP]).max()),
             peak_leg_speed=float(np.abs(speeds[:, ~IS_HIP]).max()),
         )

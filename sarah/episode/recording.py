@@ -33,9 +33,9 @@ class Return:
 
 
 class Recording(Observer):
-    """Observer of gait, motion and, if it is wanted, every control tick.
+    """Record of gait, motion and, if it is wanted, every control tick.
 
-    :param robot: robot that it begins to observe
+    :param robot: robot that :attr:`observers` are to observe
     :param begin: time of the first tick, in s
     :param returned: return, which its owner adds to
     :param record_trace: whether to record every control tick in a trace
@@ -49,7 +49,6 @@ class Recording(Observer):
         self._begin, self._dt = begin, physics.control_dt
         self._returned = returned
         self._motion = MotionRecord(physics.control_rate, robot.config.scale.time)
-        self._records = (self.gait, self._motion)
         self._rows: list[dict[str, Any]] | None = [] if record_trace else None
 
     @property
@@ -57,24 +56,21 @@ class Recording(Observer):
         """Time at the end of the last tick, in s."""
         return self._begin + self.gait.ticks * self._dt
 
-    def sensed(self, robot: RunningRobot) -> None:
-        """Record what the robot feels."""
-        for record in self._records:
-            record.sensed(robot)
+    @property
+    def observers(self) -> tuple[Observer, ...]:
+        """The records of gait and motion, and then this one."""
+        return self.gait, self._motion, self
 
     def decided(self, robot: RunningRobot, change: PhaseChange | None, force: Vector | None) -> None:
-        """Record what the robot will do, and a row of the trace."""
-        time = self.time
-        for record in self._records:
-            record.decided(robot, change, force)
+        """Record a row of the trace."""
         if self._rows is not None:
-            self._rows.append(self._row(robot, time, force))
+            self._rows.append(self._row(robot, force))
 
-    def _row(self, robot: RunningRobot, time: float, force: Vector | None) -> dict[str, Any]:
+    def _row(self, robot: RunningRobot, force: Vector | None) -> dict[str, Any]:
         """Row of a :class:`~sarah.episode.trace.Trace`."""
         generator, reading = robot.generator, robot.last_reading
         return {
-            "time": time,
+            "time": self._begin + (self.gait.ticks - 1) * self._dt,
             "position": robot.torso.position,
             "orientation": robot.torso.orientation,
             "joints": robot.truth.joints,

@@ -16,8 +16,8 @@ from sarah.errors import SimulationError
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """What an episode comes to.
+class ScoreMetrics:
+    """How an episode ended, and what it was worth.
 
     :param termination: way in which it ended, one of :data:`~sarah.episode.ending.TERMINATIONS`
     :param final_position: position of the torso's centre at the end, x and y relative to the start, z over the floor,
@@ -41,7 +41,7 @@ class Outcome:
 
 
 @dataclass(frozen=True)
-class EpisodeResult(MotionMetrics, GaitMetrics, Outcome):  # whose fields come from the last one on
+class EpisodeResult(MotionMetrics, GaitMetrics, ScoreMetrics):  # whose fields come from the last one on
     """The result of an episode. Every number is a metric, and :data:`METRICS` explains it.
 
     :param trace: record of every control tick, if it was asked for
