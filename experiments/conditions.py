@@ -14,7 +14,7 @@ from sarah.episode.evaluation import Evaluation
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import Push
 from sarah.episode.result import EpisodeResult
-from sarah.episode.running_robot import conditions_of
+from sarah.episode.robot_settings import conditions_of
 from sarah.episode.spec import FIRST_EVALUATION_SEED
 from sarah.episode.tasks import BALANCE, BalanceConfig, Task
 from sarah.episode.workers import Workers

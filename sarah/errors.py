@@ -138,19 +138,6 @@ def check_type(key: str, value: object, expected: type) -> None:
         raise ConfigurationError(f"{key} must be a {expected.__name__}, not {shortened(value)}")
 
 
-def check_types(config: object, **types: type) -> None:
-    """Refuse a configuration if one of its fields is of another type.
-
-    :param config: frozen configuration to check, while it is made
-    :param types: type of each field, by name
-    :raises ConfigurationError: naming field, type and value
-    """
-    for name, expected in types.items():
-        value = plain(getattr(config, name))
-        check_type(name, value, expected)
-        object.__setattr__(config, name, value)
-
-
 def one_line(error: BaseException) -> str:
     """What an exception says, on one line that begins with its type.
 

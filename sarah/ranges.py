@@ -7,12 +7,13 @@ and each of several numbers: ``layers: tuple[Annotated[int, Within(1, 1000)], ..
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, is_dataclass
+from functools import cache, partial
 from types import NoneType
-from typing import Annotated, Any, NamedTuple, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Literal, NamedTuple, get_args, get_origin, get_type_hints
 
-from sarah.errors import check_ends, check_range, check_whole
+from sarah.errors import ConfigurationError, check_ends, check_range, check_type, check_whole, unknown_name
+from sarah.number import plain
 
 Range = tuple[float, float]
 """Type of a setting that is a range: its ends, for which one number may stand."""
@@ -57,6 +58,8 @@ def ranges_of(config_type: type) -> Mapping[str, Within]:
 def check_ranges(key: str, config: object) -> None:
     """Refuse settings of which one is not within its range, and make their numbers Python's own.
 
+    The same holds for names of a ``Literal``, for ``bool`` and for settings within settings.
+
     :param key: beginning of the fields' names in messages
     :param config: settings to check while they are made, a frozen dataclass
     :raises ConfigurationError: naming key, value and range
@@ -79,7 +82,22 @@ def _read(config_type: type) -> _Hints:
     annotated = get_type_hints(config_type, include_extras=True)
     ranges = {name: within for name, kind in annotated.items() if (within := _range_in(kind))}
     checks = {name: _check_of(annotated[name], within) for name, within in ranges.items()}
+    checks |= {name: partial(_checked, kind) for name, kind in annotated.items() if _is_checked(kind)}
     return _Hints(get_type_hints(config_type), annotated, ranges, checks)
+
+
+def _is_checked(kind: Any) -> bool:
+    return kind is bool or is_dataclass(kind) or get_origin(kind) is Literal
+
+
+def _checked(kind: Any, key: str, value: Any) -> Any:
+    """A value that has no range: it has to be of its type, or one of its names."""
+    value = plain(value)
+    if get_origin(kind) is not Literal:
+        check_type(key, value, kind)
+    elif value not in get_args(kind):
+        raise ConfigurationError(unknown_name(key, str(value), get_args(kind)))
+    return value
 
 
 def _range_in(kind: Any) -> Within | None:

@@ -47,12 +47,13 @@ def settings_page() -> Iterator[str]:
     pybullet_only = own_fields(type(physics), Physics)
     yield from section("`episode.physics`: PyBullet", "episode.physics.", pybullet_only, {"default": physics})
     yield from groups("episode.", EpisodeConfig(), leave_out="physics")
+    of_tasks: dict[str, Any] = {}
     for task in TASKS.values():
         names = own_fields(type(task.episode), EpisodeConfig)
         title = f"`episode`: `--task {task.name}`"
         yield from section(title, "episode.", names, {"default": task.episode})
-        own = {name: getattr(task.episode, name) for name in vars(task.episode) if not hasattr(EpisodeConfig(), name)}
-        yield from groups("episode.", own)
+        of_tasks |= {name: value for name, value in vars(task.episode).items() if not hasattr(EpisodeConfig(), name)}
+    yield from groups("episode.", of_tasks)
 
 
 def defaults_page() -> Iterator[str]:

@@ -25,7 +25,7 @@ from sarah.cli.next_steps import say_next, to_open, to_see, to_watch
 from sarah.cli.options import parse_options, pushed_words, run_command, say_engine
 from sarah.cli.training_defaults import default_training
 from sarah.episode.settings import EpisodeConfig
-from sarah.episode.tasks import BALANCE, STEPPING, Task, load_task
+from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task, load_task
 from sarah.errors import ConfigurationError, check_range
 from sarah.files import make_folder
 from sarah.reports.judging import PUSHED, UNPUSHED, evaluations_of
@@ -59,7 +59,7 @@ class CompareOptions:
     :param algorithms: names of different algorithms: {algorithms}
     :param seeds: number of trainings of each algorithm
     :param first_seed: seed of the first training of each algorithm; the others follow
-    :param task: task to learn: ``stepping``, ``balance``, or that of a file of yours, such as my_task.py:JUMP
+    :param task: task to learn: {tasks}, or that of a file of yours, such as my_task.py:JUMP
     :param episodes: budget of each training, in episodes; by default that of ``sarah-train``
     :param slots: number of episodes in flight in each training
     :param episode: settings of the episodes; by default those of ``sarah-train``, whose help also names the paper's
@@ -92,6 +92,7 @@ class CompareOptions:
 
 CompareOptions.__doc__ = str(CompareOptions.__doc__).format(  # read by the help
     algorithms=", ".join(ALGORITHMS),
+    tasks=", ".join(f"``{name}``" for name in TASKS),
     pushed_final=PUSHED.final,
     pushed_along=PUSHED.along,
     still_final=UNPUSHED.final,

@@ -147,7 +147,7 @@ def _train(arguments: Sequence[str]) -> None:
             say_differences(options.from_run, config.episode)
         named = given_options(arguments, "task") if config.task.file is not None else {}
         learned = _learned(config, run, workers, " ".join(f" --task {quoted(task)}" for task in named.values()))
-    say_learned(config.task, learned, run.path)
+    say_learned(config, learned, run.path)
     typed = [word for value in named.values() for word in ("--task", value)]
     say_next(to_see(run.path, *typed), to_test(run.path, *typed), to_watch(run.path))
 

@@ -3,27 +3,26 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from sarah.episode.tasks import BALANCE, Task
+from sarah.episode.tasks import BALANCE
+from sarah.runs.config import TrainingConfig
 
 if TYPE_CHECKING:
     from sarah.training.train import Learned
 
 
-def say_learned(task: Task[Any], learned: Learned, path: Path) -> None:
+def say_learned(config: TrainingConfig, learned: Learned, path: Path) -> None:
     """Print what a training has learned, and how good it is.
 
-    :param task: task of the training
+    :param config: settings of the training
     :param learned: what was learned
     :param path: path of the run folder
     """
     from sarah.episode.accuracy import physics_warning
-    from sarah.runs.run_folder import RunFolder
     from sarah.training.plan import plan_of
 
-    config = RunFolder.open(path).config()
-    evaluation, baseline = learned.evaluation, learned.baseline
+    task, evaluation, baseline = config.task, learned.evaluation, learned.baseline
     named = zip(task.parameter_names, learned.parameters, strict=True)
     print("\nlearned     " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
     print(f"warm-up     {plan_of(config).warm_up_words()}")

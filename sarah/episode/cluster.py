@@ -196,17 +196,13 @@ def _client_in_time(address: str) -> Client:
         raise WorkersError(f"no Dask scheduler answers at {address!r}: the port is open, but silent") from error
 
 
+@_in_one_line("no workers can start on this machine")
 def start(count: int) -> tuple[LocalCluster, Client]:
     """Start workers on this machine.
 
     :param count: number of worker processes
     :raises WorkersError: if they cannot start
     """
-    with _in_one_line("no workers can start on this machine"):
-        return _started(count)
-
-
-def _started(count: int) -> tuple[LocalCluster, Client]:
     import dask
     from distributed import Client, LocalCluster, WorkerPlugin
 

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from typing import Annotated
 
-from sarah.episode.settings import EpisodeConfig
+from sarah.episode.robot_settings import RobotSettings
 from sarah.episode.tick import Tick
+from sarah.robot.scale import Sized
 
 OSCILLATION_SECONDS = 5.0
 """Simulated time by which the robot must oscillate, in s; the paper's third criterion."""
@@ -26,7 +29,17 @@ TERMINATIONS = {
 degrees, and a state or signal that is not finite or far beyond what a robot can have. A task can add its own."""
 
 
-def paper_ending(tick: Tick, config: EpisodeConfig) -> str | None:
+@dataclass(frozen=True)
+class EndingSettings(RobotSettings):
+    """Settings of the end of an episode, beside its time limit.
+
+    :param box_half_width: displacement along any axis at which an episode ends, in m; the paper's second criterion
+    """
+
+    box_half_width: Annotated[float, Sized(0.001, 100.0, "m", usual=0.25)] = None  # type: ignore[assignment]
+
+
+def paper_ending(tick: Tick, config: EndingSettings) -> str | None:
     """Check the paper's second and third criterion, and whether the robot has fallen: the endings of both its tasks.
 
     :param tick: what is known at the end of a control tick

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
+
 from sarah.control.hip_law import LOCKED_HIPS
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.push import PUSH_SHOWN_SECONDS
@@ -21,7 +23,7 @@ from sarah.simulation.randomisation import Conditions
 from sarah.simulation.world import HoldsWorld
 
 
-class Episode(HoldsWorld):
+class Episode(HoldsWorld, AbstractContextManager["Episode"]):
     """An episode of a robot: :meth:`stand`, then :meth:`run`. The end of a ``with`` block closes its world.
 
     To observe the robot in between, call :meth:`start` and then :meth:`tick` until :attr:`termination` says how the
@@ -34,7 +36,7 @@ class Episode(HoldsWorld):
     :param build: function that makes the simulator from robot, physics and conditions; by default that of the
         configuration's engine
     :param conditions: properties of robot and world; by default those that
-        :func:`~sarah.episode.running_robot.conditions_of` draws from the seed
+        :func:`~sarah.episode.robot_settings.conditions_of` draws from the seed
     """
 
     def __init__(
@@ -53,7 +55,7 @@ class Episode(HoldsWorld):
         """Robot in its world, with what it senses, its controller and its simulation."""
         seconds = config.time_limit - STAND_SECONDS
         self._return = Return(
-            highest_return(self.robot.description.standing_height, seconds, config.reward_half_width)
+            highest_return(self.robot.description.standing_height, seconds, config)
             if task.best_reward is None
             else task.best_reward * seconds
         )
@@ -71,10 +73,6 @@ class Episode(HoldsWorld):
         check_type("spec", spec, EpisodeSpec)
         return cls(spec.config, spec.seed, spec.task, record_trace)
 
-    def __enter__(self) -> Episode:
-        """Do nothing: the world is there."""
-        return self
-
     def __exit__(self, *error: object) -> None:
         """Close the world."""
         self.close()
@@ -90,7 +88,7 @@ class Episode(HoldsWorld):
         :return: the last reading of that second, which an agent acts on
         """
         reading = self.robot.stand()
-        self.robot.observers = (self._recording,)
+        self.robot.observers = self._recording.observers
         return reading
 
     def run(self, parameters: tuple[float, ...]) -> EpisodeResult:
@@ -147,7 +145,7 @@ class Episode(HoldsWorld):
             recording.start,
             robot.torso,
             recording.gait.steps,
-            recording.gait.steps_per_second(recording.ticks),
+            recording.gait.steps_per_second(recording.gait.ticks),
             robot.generator.phase,
             robot.generator.stance,
             robot.truth,

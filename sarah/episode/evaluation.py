@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from statistics import mean, median, pstdev
 from typing import Any
 
+from sarah.episode.gait import LEAST_CLEARANCE
 from sarah.episode.result import METRICS, EpisodeResult
-from sarah.episode.settings import LEAST_CLEARANCE, EpisodeConfig
+from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task, task_named
 from sarah.episode.workers import Executor, executor_of

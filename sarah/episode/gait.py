@@ -3,18 +3,68 @@
 from __future__ import annotations
 
 from collections import deque
+from dataclasses import dataclass
 from statistics import median
-from typing import Any
+from typing import Annotated
 
 from sarah.control.pattern_generator import Phase, PhaseChange
+from sarah.episode.metric import metric
+from sarah.episode.robot_settings import RobotSettings
+from sarah.episode.running_robot import Observer, RunningRobot
+from sarah.robot.reading import Vector
+from sarah.robot.scale import Sized
 
 WINDOW_SECONDS = 2.0
 """Length of the window in which the default robot's steps are counted, in s."""
 SHORTEST_WINDOW_SECONDS = 0.5
 """Shortest length of that window while the episode begins, in s."""
+LEAST_CLEARANCE = 0.010
+"""Sole clearance of the default robot below which a gait is a shuffle, in m."""
 
 
-class GaitRecord:
+@dataclass(frozen=True)
+class GaitSettings(RobotSettings):
+    """Settings of what counts as a gait.
+
+    :param least_clearance: sole clearance below which a gait is a shuffle, and not valid, in m
+    """
+
+    least_clearance: Annotated[float, Sized(0.0, 1.0, "m", usual=LEAST_CLEARANCE)] = None  # type: ignore[assignment]
+
+
+@dataclass(frozen=True)
+class GaitMetrics:
+    """How a robot steps, and for how long."""
+
+    steps_per_second: float = metric(
+        "steps per second",
+        "1/s",
+        "mean number of completed steps per second while the pattern generator ran",
+        *("median", "mean", "std"),
+        group="episode",
+        paper="3 to 5, a human's",
+    )
+    steps: int = metric("steps", "", "number of completed steps", shown=(1.0, 0, ""))
+    duration: float = metric(
+        "duration", "s", "simulated time, the first second of standing included", group="robot", shown=(1.0, 1, "s")
+    )
+    shifts_by_sensors: float = metric(
+        "SHIFT by sensors", "", "share of SHIFT phases that sensors ended", "mean", group="robot", shown=(100.0, 1, "%")
+    )
+    lifts_by_sensors: float = metric(
+        "LIFT by sensors", "", "share of LIFT phases that sensors ended", "mean", group="robot", shown=(100.0, 1, "%")
+    )
+    sole_clearance: float = metric(
+        "sole clearance",
+        "m",
+        "median over the steps of the swing foot's largest height over the floor",
+        "mean",
+        group="robot",
+        shown=(1000.0, 1, "mm"),
+    )
+
+
+class GaitRecord(Observer):
     """Record of one episode's gait. Ticks are control ticks since the pattern generator's start.
 
     :param control_rate: control ticks per second
@@ -22,7 +72,7 @@ class GaitRecord:
     """
 
     def __init__(self, control_rate: int, time_scale: float = 1.0) -> None:
-        self.steps = 0
+        self.steps = self.ticks = 0
         self._control_rate = control_rate
         self._window = round(WINDOW_SECONDS * time_scale * control_rate)
         self._shortest_window = round(SHORTEST_WINDOW_SECONDS * time_scale * control_rate)
@@ -32,12 +82,17 @@ class GaitRecord:
         self._ends = {Phase.SHIFT: 0, Phase.LIFT: 0, Phase.LAND: 0}
         self._ends_by_sensors = {Phase.SHIFT: 0, Phase.LIFT: 0, Phase.LAND: 0}
 
-    def swing(self, sole_height: float) -> None:
-        """Record the height of the swing foot's lowest sole contact, while a foot swings.
+    def sensed(self, robot: RunningRobot) -> None:
+        """Record the height of the swing foot's lowest sole contact, while a foot swings."""
+        generator = robot.generator
+        if generator.phase in (Phase.LIFT, Phase.LAND):
+            self._swing_height = max(self._swing_height, robot.simulation.sole_height(generator.swing))
 
-        :param sole_height: height over the floor, in m
-        """
-        self._swing_height = max(self._swing_height, sole_height)
+    def decided(self, robot: RunningRobot, change: PhaseChange | None, force: Vector | None) -> None:
+        """Record the end of a phase, and count the tick."""
+        if change is not None:
+            self.phase_change(self.ticks, change)
+        self.ticks += 1
 
     def phase_change(self, tick: int, change: PhaseChange) -> None:
         """Record the end of a phase, and the step that it may complete.
@@ -65,23 +120,18 @@ class GaitRecord:
             self._recent.popleft()
         return len(self._recent) * self._control_rate / max(self._shortest_window, min(self._window, ticks))
 
-    def by_sensors(self, phase: Phase) -> float:
-        """Share of a phase's ends that its sensor condition caused, and not its time-out; 0 if it never ended.
+    def metrics(self, before: float) -> GaitMetrics:
+        """Metrics of the gait so far.
 
-        :param phase: SHIFT, LIFT or LAND
+        :param before: time before the first tick that counts to the duration, in s
         """
-        return self._ends_by_sensors[phase] / self._ends[phase] if self._ends[phase] else 0.0
-
-    @property
-    def sole_clearance(self) -> float:
-        """Median over the steps of the largest height of the swing foot's lowest sole contact, in m."""
-        return median(self._clearances) if self._clearances else 0.0
-
-    def metrics(self) -> dict[str, Any]:
-        """Metrics of :class:`~sarah.episode.result.EpisodeResult` that follow from the gait."""
-        return {
-            "steps": self.steps,
-            "shifts_by_sensors": self.by_sensors(Phase.SHIFT),
-            "lifts_by_sensors": self.by_sensors(Phase.LIFT),
-            "sole_clearance": self.sole_clearance,
-        }
+        elapsed = self.ticks * (1.0 / self._control_rate)
+        by_sensors = {phase: self._ends_by_sensors[phase] / max(1, ends) for phase, ends in self._ends.items()}
+        return GaitMetrics(
+            steps_per_second=self.steps / elapsed if elapsed else 0.0,
+            steps=self.steps,
+            duration=round(before + elapsed, 9),
+            shifts_by_sensors=by_sensors[Phase.SHIFT],
+            lifts_by_sensors=by_sensors[Phase.LIFT],
+            sole_clearance=median(self._clearances or [0.0]),
+        )

@@ -7,10 +7,12 @@ show that, but the torso's acceleration from 20 to 50 Hz does.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
+from sarah.episode.metric import metric
+from sarah.episode.running_robot import Observer, RunningRobot
 from sarah.robot.reading import ACTUATED_JOINTS, Vector
 
 CHATTER_BAND = (20.0, 50.0)
@@ -24,7 +26,28 @@ IS_HIP = np.array([not name.endswith("leg_length") for name in ACTUATED_JOINTS])
 """Mask of the actuators that turn; the others are the prismatic legs."""
 
 
-class MotionRecord:
+@dataclass(frozen=True)
+class MotionMetrics:
+    """How a robot's torso and actuators move."""
+
+    vibration: float = metric(
+        "vibration",
+        "m²/s⁴",
+        "mean square of the torso's acceleration from 20 to 50 Hz: chatter",
+        "median",
+        group="robot",
+        shown=(1.0, 1, "m²/s⁴"),
+    )
+    actuator_power: float = metric(
+        "actuator power", "W", "mean mechanical power of all six actuators", "mean", group="robot", shown=(1.0, 0, "W")
+    )
+    peak_hip_rate: float = metric("peak hip rate", "rad/s", "fastest hip motion", "max", shown=(1.0, 1, "rad/s"))
+    peak_leg_speed: float = metric(
+        "peak leg speed", "m/s", "fastest change of a leg's length", "max", shown=(1.0, 2, "m/s")
+    )
+
+
+class MotionRecord(Observer):
     """Record of one episode's torso acceleration and actuators.
 
     :param control_rate: control ticks per second
@@ -39,50 +62,24 @@ class MotionRecord:
         self._speeds: list[Sequence[float]] = []
         self._efforts: list[Sequence[float]] = []
 
-    def tick(self, acceleration: Vector, speeds: Sequence[float], efforts: Sequence[float]) -> None:
-        """Record one control tick.
-
-        :param acceleration: true specific force in the torso's frame, in m/s^2
-        :param speeds: speeds of the actuators in the order of ``ACTUATED_JOINTS``, in rad/s and m/s
-        :param efforts: efforts of the actuators in the same order, in Nm and N
-        """
-        self._accelerations.append(acceleration)
+    def sensed(self, robot: RunningRobot) -> None:
+        """Record the torso's true specific force, and speeds and efforts of the actuators."""
+        speeds, efforts = robot.simulation.actuator_motion()
+        self._accelerations.append(robot.truth.acceleration)
         self._speeds.append(speeds)
         self._efforts.append(efforts)
 
-    @property
-    def actuator_power(self) -> float:
-        """Mechanical power of the six actuators, in W: mean over the ticks, with braking counted like driving."""
+    def metrics(self) -> MotionMetrics:
+        """Metrics of the motion so far."""
         if not self._speeds:
-            return 0.0
-        return float(np.abs(np.array(self._speeds) * np.array(self._efforts)).sum(axis=1).mean())
-
-    @property
-    def peak_hip_rate(self) -> float:
-        """Largest speed of a hip joint, in rad/s."""
-        return self._peak_speed(IS_HIP)
-
-    @property
-    def peak_leg_speed(self) -> float:
-        """Largest speed of a leg's length, in m/s."""
-        return self._peak_speed(~IS_HIP)
-
-    def _peak_speed(self, which: np.ndarray) -> float:
-        return float(np.abs(np.array(self._speeds)[:, which]).max()) if self._speeds else 0.0
-
-    @property
-    def vibration(self) -> float:
-        """Mean square of the torso's acceleration from 20 to 50 Hz, all axes together, in m^2/s^4; 0 below 0.5 s."""
-        return power_within(np.array(self._accelerations), self._control_rate, self._band)
-
-    def metrics(self) -> dict[str, Any]:
-        """Metrics of :class:`~sarah.episode.result.EpisodeResult` that follow from the motion."""
-        return {
-            "vibration": self.vibration,
-            "actuator_power": self.actuator_power,
-            "peak_hip_rate": self.peak_hip_rate,
-            "peak_leg_speed": self.peak_leg_speed,
-        }
+            return MotionMetrics(0.0, 0.0, 0.0, 0.0)
+        speeds, efforts = np.array(self._speeds), np.array(self._efforts)
+        return MotionMetrics(
+            vibration=power_within(np.array(self._accelerations), self._control_rate, self._band),
+            actuator_power=float(np.abs(speeds * efforts).sum(axis=1).mean()),  # braking counts too
+            peak_hip_rate=float(np.abs(speeds[:, IS_HIP]).max()),
+            peak_leg_speed=float(np.abs(speeds[:, ~IS_HIP]).max()),
+        )
 
 
 def power_within(signals: np.ndarray, rate: int, band: tuple[float, float]) -> float:

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from sarah.control.pattern_generator import STAND_SECONDS
-from sarah.episode.settings import LONGEST_EPISODE, EpisodeConfig
-from sarah.errors import ConfigurationError, check_types
+from sarah.episode.robot_settings import LONGEST_EPISODE
+from sarah.episode.settings import EpisodeConfig
+from sarah.errors import ConfigurationError
 from sarah.number import is_finite, plain, to_floats
 from sarah.ranges import Range, Within, check_ranges
 from sarah.robot.reading import Vector
@@ -129,9 +130,6 @@ class PushedConfig(EpisodeConfig):
     def __post_init__(self) -> None:
         """Refuse settings that cannot be simulated, and a push shorter than a control tick."""
         super().__post_init__()
-        if self.push is None:
-            object.__setattr__(self, "push", self.scale.scaled(Push()))
-        check_types(self, push=Push)
         if self.push.duration < self.physics.control_dt:
             tick = f"a control tick, {self.physics.control_dt:g} s"
             raise ConfigurationError(f"push.duration must be at least {tick}, not {self.push.duration!r}")

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from sarah.control.pattern_generator import Phase, PhaseChange
+from sarah.control.pattern_generator import PhaseChange
 from sarah.episode.gait import GaitRecord
 from sarah.episode.motion import MotionRecord
 from sarah.episode.result import EpisodeResult
-from sarah.episode.running_robot import RunningRobot
+from sarah.episode.running_robot import Observer, RunningRobot
 from sarah.episode.trace import Trace
 from sarah.robot.description import ANKLE_JOINTS
 from sarah.robot.reading import Vector
@@ -32,10 +32,10 @@ class Return:
         return self.value / self.ceiling
 
 
-class Recording:
-    """:class:`~sarah.episode.running_robot.Observer` of gait, motion and, if it is wanted, every control tick.
+class Recording(Observer):
+    """Record of gait, motion and, if it is wanted, every control tick.
 
-    :param robot: robot that it begins to observe
+    :param robot: robot that :attr:`observers` are to observe
     :param begin: time of the first tick, in s
     :param returned: return, which its owner adds to
     :param record_trace: whether to record every control tick in a trace
@@ -46,8 +46,6 @@ class Recording:
         self.gait = GaitRecord(physics.control_rate, robot.config.scale.time)
         self.start = robot.torso.position
         """Position of the torso's centre at the beginning, in m."""
-        self.ticks = 0
-        """Number of ticks so far."""
         self._begin, self._dt = begin, physics.control_dt
         self._returned = returned
         self._motion = MotionRecord(physics.control_rate, robot.config.scale.time)
@@ -56,28 +54,23 @@ class Recording:
     @property
     def time(self) -> float:
         """Time at the end of the last tick, in s."""
-        return self._begin + self.ticks * self._dt
+        return self._begin + self.gait.ticks * self._dt
 
-    def sensed(self, robot: RunningRobot) -> None:
-        """Record motion and efforts, and the height of a foot that swings."""
-        simulation, generator = robot.simulation, robot.generator
-        self._motion.tick(robot.truth.acceleration, *simulation.actuator_motion())
-        if generator.phase in (Phase.LIFT, Phase.LAND):
-            self.gait.swing(simulation.sole_height(generator.swing))
+    @property
+    def observers(self) -> tuple[Observer, ...]:
+        """The records of gait and motion, and then this one."""
+        return self.gait, self._motion, self
 
     def decided(self, robot: RunningRobot, change: PhaseChange | None, force: Vector | None) -> None:
-        """Record the end of a phase, and a row of the trace."""
-        if change is not None:
-            self.gait.phase_change(self.ticks, change)
+        """Record a row of the trace."""
         if self._rows is not None:
             self._rows.append(self._row(robot, force))
-        self.ticks += 1
 
     def _row(self, robot: RunningRobot, force: Vector | None) -> dict[str, Any]:
         """Row of a :class:`~sarah.episode.trace.Trace`."""
         generator, reading = robot.generator, robot.last_reading
         return {
-            "time": self.time,
+            "time": self._begin + (self.gait.ticks - 1) * self._dt,
             "position": robot.torso.position,
             "orientation": robot.torso.orientation,
             "joints": robot.truth.joints,
@@ -91,7 +84,7 @@ class Recording:
             "stable_x": generator.stable_x,
             "tilt": generator.tilt,
             "rate": generator.rate,
-            "steps_per_second": self.gait.steps_per_second(self.ticks + 1),  # as the tick's reward has it
+            "steps_per_second": self.gait.steps_per_second(self.gait.ticks),  # as the tick's reward has it
             "push": force or (0.0, 0.0, 0.0),
             "score": self._returned.score,
         }
@@ -104,16 +97,13 @@ class Recording:
         :param before: time before the first tick that counts to the duration, in s
         :raises SimulationError: if there is nothing to trace
         """
-        elapsed = self.ticks * self._dt
         (x, y, z), (start_x, start_y, _) = robot.torso.position, self.start
         return EpisodeResult(
             termination=termination,
             final_position=(x - start_x, y - start_y, z),
             score=self._returned.score,
-            steps_per_second=self.gait.steps / elapsed if elapsed else 0.0,
             episode_return=self._returned.value,
-            duration=round(before + elapsed, 9),
             trace=None if self._rows is None else Trace.of(self._rows),
-            **self.gait.metrics(),
-            **self._motion.metrics(),
+            **vars(self.gait.metrics(before)),
+            **vars(self._motion.metrics()),
         )

@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Sequence
-from typing import Protocol
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, PhaseChange, SteppingParameters
-from sarah.episode.settings import EpisodeConfig
+from sarah.episode.robot_settings import RobotSettings, conditions_of
 from sarah.robot.description import describe_robot
-from sarah.robot.dimensions import all_dimensions
 from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, SensorReading, Vector
 from sarah.simulation.build import BuildSimulator, simulator_of
-from sarah.simulation.randomisation import Conditions, draw_conditions
+from sarah.simulation.randomisation import Conditions
 from sarah.simulation.sensors import ImperfectSensors
 from sarah.simulation.simulator import TorsoState
-from sarah.simulation.terrain import draw_ground
 from sarah.simulation.world import HoldsWorld
 
 
-class Observer(Protocol):
-    """Something that records what a robot does, in each tick at the two moments of the loop that count."""
+class Observer:
+    """Something that records what a robot does, in each tick at one or both moments of the loop that count."""
 
     def sensed(self, robot: RunningRobot) -> None:
         """Record what the robot feels; phase and targets are those of the tick before.
@@ -46,7 +42,7 @@ class RunningRobot(HoldsWorld):
     :param seed: seed of the conditions
     :param build: function that makes the simulator from robot, physics and conditions; by default that of the
         configuration's engine
-    :param conditions: properties of robot and world; by default those that :func:`conditions_of` draws from the seed
+    :param conditions: properties of robot and world; by default those that the seed draws
     """
 
     generator: PatternGenerator
@@ -60,7 +56,7 @@ class RunningRobot(HoldsWorld):
 
     def __init__(
         self,
-        config: EpisodeConfig,
+        config: RobotSettings,
         seed: int,
         build: BuildSimulator | None = None,
         conditions: Conditions | None = None,
@@ -124,18 +120,3 @@ class RunningRobot(HoldsWorld):
     def close(self) -> None:
         """Give the physics engine's resources back."""
         self.simulation.close()
-
-
-def conditions_of(config: EpisodeConfig, seed: int) -> Conditions:
-    """Draw an episode's robot and world.
-
-    :param config: settings of the episode
-    :param seed: seed of the episode
-    """
-    drawn = draw_conditions(config.randomisation, seed)
-    ground = draw_ground(config.terrain, seed)
-    if not config.payload:
-        return dataclasses.replace(drawn, ground=ground)
-    torso = all_dimensions(config.dimensions)["torso_mass"]
-    loaded = drawn.mass_factors["torso"] + config.payload / torso
-    return dataclasses.replace(drawn, ground=ground, mass_factors={**drawn.mass_factors, "torso": loaded})

@@ -25,7 +25,7 @@ class EpisodeSpec:
 
     :param parameters: values of the task's parameters, in order: P1 to P5, or V1 to V4
     :param seed: seed of the conditions, the push and the sensor noise; a whole number, not negative
-    :param task: task, or the name of one of this package: ``"stepping"`` or ``"balance"``
+    :param task: task, or the name of one of this package, such as ``"stepping"``
     :param config: settings that all episodes of an experiment share; by default the task's own
     :raises ConfigurationError: for an unknown task, another task's settings, parameters out of their box, or an
         invalid seed

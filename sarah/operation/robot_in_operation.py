@@ -12,7 +12,8 @@ from sarah.episode.ending import LEAST_UPRIGHT
 from sarah.episode.push import Push, draw_push
 from sarah.episode.recording import Recording
 from sarah.episode.result import EpisodeResult
-from sarah.episode.running_robot import RunningRobot, conditions_of
+from sarah.episode.robot_settings import conditions_of
+from sarah.episode.running_robot import RunningRobot
 from sarah.operation.settings import BOX, OperationConfig, Parameters, controller_parameters
 from sarah.operation.window import Window, WindowRecord
 from sarah.recorded.journal import Journal
@@ -166,16 +167,16 @@ class RobotInOperation:
     ) -> tuple[Window, EpisodeResult | None]:
         dt = robot.config.physics.control_dt
         settle, measure = round(self.config.settle_seconds / dt), round(self.config.measure_seconds / dt)
-        push = self.config.robot_after(self._changes).push
+        config = self.config.robot_after(self._changes)
         stood = STAND_SECONDS if stands else 0.0
         first = round((begin + stood) / dt)
-        record = WindowRecord(robot, settle, measure)
+        record = WindowRecord(robot, config, settle, measure)
         recording = Recording(robot, first * dt, record.true) if record_trace else None
-        robot.observers = (record,) if recording is None else (record, recording)
+        robot.observers = (record,) if recording is None else (record, *recording.observers)
         robot.generator.set_parameters(*controller_parameters(parameters))
         ticks = 0
         while ticks < settle + measure and robot.termination is None:
-            robot.tick(self._force(push, first + ticks, dt))
+            robot.tick(self._force(config.push, first + ticks, dt))
             if robot.termination is None:
                 record.judge(robot.torso)
                 if robot.generator.has_fallen or robot.torso.upright(robot.vertical) < LEAST_UPRIGHT:

@@ -14,13 +14,7 @@ from sarah.control.pattern_generator import SteppingParameters
 from sarah.episode.from_mapping import changed_alone, convert_fields
 from sarah.episode.push import Push, PushedConfig
 from sarah.episode.shipped import shipped_parameters
-from sarah.errors import (
-    ConfigurationError,
-    check_extended_from,
-    check_type,
-    check_types,
-    shortened,
-)
+from sarah.errors import ConfigurationError, check_extended_from, check_type, shortened
 from sarah.number import plain
 from sarah.ranges import Within, check_ranges
 from sarah.robot.description import describe_robot
@@ -90,7 +84,8 @@ class OperationConfig:
 
     def __post_init__(self) -> None:
         """Refuse settings that cannot be simulated, also those of robots that come later."""
-        check_types(self, robot=PushedConfig, changes=tuple, extended_from=tuple)
+        check_type("changes", self.changes, tuple)
+        check_type("extended_from", self.extended_from, tuple)
         if type(self.robot) is not PushedConfig:  # the file of a session holds no settings of a task
             raise ConfigurationError(f"robot must be a PushedConfig, not a {type(self.robot).__name__}")
         check_ranges("operation.", self)

@@ -13,8 +13,8 @@ import numpy as np
 from sarah.control.pattern_generator import Phase, PhaseChange
 from sarah.episode.gait import GaitRecord
 from sarah.episode.recording import Return
-from sarah.episode.reward import highest_return, reward_rate
-from sarah.episode.running_robot import RunningRobot
+from sarah.episode.reward import RewardSettings, highest_return, reward_rate
+from sarah.episode.running_robot import Observer, RunningRobot
 from sarah.operation.odometry import LegOdometry
 from sarah.operation.settings import Parameters
 from sarah.robot.reading import GRAVITY, Vector
@@ -84,26 +84,25 @@ class Window:
         return dataclasses.replace(window, parameters=tuple(window.parameters), felt=tuple(window.felt))
 
 
-class WindowRecord:
-    """:class:`~sarah.episode.running_robot.Observer` of one window: what the robot feels, and what it is worth.
+class WindowRecord(Observer):
+    """Observer of one window: what the robot feels, and what it is worth.
 
     :param robot: robot that runs
+    :param config: settings of the robot, with those of the reward; its form is always the symmetric one
     :param settle: ticks that are not measured
     :param measure: ticks that are
     """
 
-    def __init__(self, robot: RunningRobot, settle: int, measure: int) -> None:
-        config, height = robot.config, robot.description.standing_height
+    def __init__(self, robot: RunningRobot, config: RewardSettings, settle: int, measure: int) -> None:
+        height = robot.description.standing_height
         self._dt = config.physics.control_dt
         self._settle, self._measure = settle, measure
-        ceiling = highest_return(height, measure * self._dt, config.reward_half_width)
+        ceiling = highest_return(height, measure * self._dt, config)
         self.true, self.observed = Return(ceiling), Return(ceiling)
         """Equation 2 by the torso's motion since the measurement began, and with the displacement that the legs tell
         and the height of standing."""
         self._height = height
-        self._reward_rate = partial(
-            reward_rate, half_width=config.reward_half_width, step_frequency=config.step_frequency
-        )
+        self._reward_rate = partial(reward_rate, config=dataclasses.replace(config, reward_form="symmetric"))
         self._gait = GaitRecord(config.physics.control_rate, config.scale.time)
         self._odometry = LegOdometry(height, self._dt)
         self._ticks = 0

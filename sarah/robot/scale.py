@@ -57,9 +57,11 @@ class Sized(Within):
     """Range of a setting that goes with the robot's size.
 
     :param goes_by: unit whose factor the setting goes by, if it is not that of its limits
+    :param usual: value of the default robot, from which that of any robot follows where none is given
     """
 
     goes_by: str = ""
+    usual: float = math.nan
 
 
 class Scale(NamedTuple):

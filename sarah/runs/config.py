@@ -12,7 +12,7 @@ from typing import Annotated, Any
 from sarah.episode.from_mapping import convert_fields
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED
-from sarah.episode.tasks import STEPPING, Task, task_named
+from sarah.episode.tasks import STEPPING, TASKS, Task, task_named
 from sarah.errors import ConfigurationError, check_extended_from
 from sarah.ranges import Within, check_ranges
 from sarah.runs.agent_settings import AGENT_SETTINGS, AgentSettings, LearnerSettings, NAFSettings, settings_of
@@ -31,9 +31,7 @@ OPTIMISERS = tuple(algo for algo in ALGORITHMS if algo not in AGENTS)
 class TrainingConfig:
     """The settings of a training.
 
-    :param task: task: ``stepping`` learns P1 to P5 of the pattern generator, as the paper's First Training; ``balance``
-        learns V1 to V4 of the hip law under pushes, as its Second Training; ``my_task.py:JUMP`` is the task JUMP of a
-        file of yours
+    :param task: task: {tasks}, or ``my_task.py:JUMP`` for the task JUMP of a file of yours
     :param algo: algorithm: {agents}, which learn with networks, or an optimiser that sees returns only: {optimisers}
     :param episodes: budget of the training; an episode is one action of the agent, and up to 30 s of the robot
     :param seed: seed of the training and of all its episodes
@@ -105,6 +103,7 @@ class TrainingConfig:
 
 TrainingConfig.__doc__ = (  # the help of the commands and the page of settings read it
     str(TrainingConfig.__doc__)
+    .replace("{tasks}", ", ".join(f"``{name}`` ({task.title})" for name, task in TASKS.items()))
     .replace("{agents}", ", ".join(f"``{algo}``" for algo in AGENTS))
     .replace("{optimisers}", ", ".join(f"``{algo}``" for algo in OPTIMISERS))
 )

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Annotated
 
-from sarah.errors import ConfigurationError, check_types
+from sarah.errors import ConfigurationError
 from sarah.ranges import Range, Within, check_ranges
 from sarah.robot.description import GROUPS
 from sarah.robot.reading import Side, Vector
@@ -65,7 +65,6 @@ class Randomisation:
 
     def __post_init__(self) -> None:
         """Refuse ranges that no robot has."""
-        check_types(self, enabled=bool)
         check_ranges("randomisation.", self)
 
 

@@ -18,8 +18,8 @@ from sarah.agents.corrections import corrected
 from sarah.agents.gaussian_process import GaussianProcess
 from sarah.control.parameters import Parameters
 from sarah.episode.evaluation import SMALLEST_SENSOR_SHARE, Evaluation
+from sarah.episode.gait import LEAST_CLEARANCE
 from sarah.episode.result import EpisodeResult
-from sarah.episode.settings import LEAST_CLEARANCE
 from sarah.episode.tasks import Task
 from sarah.errors import LearningError
 

@@ -11,7 +11,7 @@ from typing import Any
 import viser
 
 from sarah.episode.result import EpisodeResult
-from sarah.episode.running_robot import conditions_of
+from sarah.episode.robot_settings import conditions_of
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, Task
 from sarah.robot.reading import Side

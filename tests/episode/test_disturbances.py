@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import sarah
-from sarah.episode.running_robot import conditions_of
+from sarah.episode.robot_settings import conditions_of
 from sarah.episode.task_answers import disturbances_of
 from sarah.episode.tasks import TASKS
 from sarah.episode.trial import try_task

@@ -11,7 +11,7 @@ from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.result import EpisodeResult
-from sarah.episode.running_robot import conditions_of
+from sarah.episode.robot_settings import conditions_of
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.simulation.physics import PHYSICS, Physics

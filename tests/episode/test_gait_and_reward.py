@@ -1,14 +1,25 @@
 """Step detection and equation 2 against hand-computed values."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from sarah.control.pattern_generator import Phase, PhaseChange
 from sarah.episode.gait import GaitRecord
-from sarah.episode.reward import highest_return, reward_rate
+from sarah.episode.reward import RewardSettings, highest_return, reward_rate
+from sarah.robot.reading import Side
 
 STEP = PhaseChange(Phase.LAND, by_sensors=True, is_step=True)
+PRINTED = RewardSettings(reward_form="printed")
+
+
+def swinging(height: float) -> Any:
+    """A robot whose left foot swings, so high."""
+    generator = SimpleNamespace(phase=Phase.LIFT, swing=Side.LEFT)
+    return SimpleNamespace(generator=generator, simulation=SimpleNamespace(sole_height={Side.LEFT: height}.get))
 
 
 def record_of_steps(ticks: list[int]) -> GaitRecord:
@@ -42,10 +53,10 @@ def test_clearance_is_the_median_of_each_steps_highest() -> None:
     gait = GaitRecord(100)
     for heights in ((0.001, 0.010, 0.004), (0.020,), (0.012, 0.011)):
         for height in heights:
-            gait.swing(height)
+            gait.sensed(swinging(height))
         gait.phase_change(100, STEP)
-    assert gait.sole_clearance == 0.012
-    assert GaitRecord(100).sole_clearance == 0.0
+    assert gait.metrics(0.0).sole_clearance == 0.012
+    assert GaitRecord(100).metrics(0.0).sole_clearance == 0.0
 
 
 @pytest.mark.parametrize("highest", [[-0.00001], [0.030, -0.00001, -0.00002]])
@@ -53,32 +64,27 @@ def test_a_foot_that_stays_in_the_floors_give_clears_nothing(highest: list[float
     """Soles sink in by micrometres. Every step begins anew, so a high one lends nothing to the next."""
     gait = GaitRecord(100)
     for height in highest:
-        gait.swing(height)
+        gait.sensed(swinging(height))
         gait.phase_change(100, STEP)
-    assert gait.sole_clearance == 0.0
+    assert gait.metrics(0.0).sole_clearance == 0.0
 
 
-@pytest.mark.parametrize("phase", [Phase.SHIFT, Phase.LIFT, Phase.LAND])
-def test_share_by_sensors_counts_its_own_phase_only(phase: Phase) -> None:
-    gait = GaitRecord(100)
-    shares = []
+@pytest.mark.parametrize(
+    ("phase", "own", "other"),
+    [
+        (Phase.SHIFT, "shifts_by_sensors", "lifts_by_sensors"),
+        (Phase.LIFT, "lifts_by_sensors", "shifts_by_sensors"),
+    ],
+)
+def test_share_by_sensors_counts_its_own_phase_only(phase: Phase, own: str, other: str) -> None:
+    gait, shares = GaitRecord(100), []
     for by_sensors in (True, False, False, True, True):
-        gait.phase_change(0, PhaseChange(phase, by_sensors))
-        shares.append(gait.by_sensors(phase))
+        for change in (PhaseChange(phase, by_sensors), STEP, PhaseChange(Phase.STAND, by_sensors=False)):
+            gait.phase_change(0, change)
+        metrics = gait.metrics(0.0)
+        shares.append(getattr(metrics, own))
+        assert getattr(metrics, other) == 0.0
     assert shares == [1.0, 1 / 2, 1 / 3, 2 / 4, 3 / 5]
-    others = {Phase.SHIFT, Phase.LIFT, Phase.LAND} - {phase}
-    assert [gait.by_sensors(other) for other in others] == [0.0, 0.0]
-
-
-def test_shares_of_phases_that_sensors_ended() -> None:
-    gait = GaitRecord(100)
-    for by_sensors in (True, True, True, False):
-        gait.phase_change(0, PhaseChange(Phase.SHIFT, by_sensors))
-    gait.phase_change(0, PhaseChange(Phase.LIFT, by_sensors=False))
-    gait.phase_change(0, PhaseChange(Phase.STAND, by_sensors=False))
-    assert gait.by_sensors(Phase.SHIFT) == 0.75
-    assert gait.by_sensors(Phase.LIFT) == 0.0
-    assert gait.by_sensors(Phase.LAND) == 0.0
 
 
 @pytest.mark.parametrize(
@@ -98,9 +104,9 @@ def test_equation_2_symmetric(x: float, y: float, height: float, frequency: floa
 
 
 def test_equation_2_as_printed_rewards_drifting_to_one_side() -> None:
-    assert reward_rate(0.1, 0.2, 0.8, 3.0, "printed") == pytest.approx(0.4 * 0.3 * 0.8)
-    assert reward_rate(-0.1, -0.2, 0.8, 3.0, "printed") == pytest.approx(0.6 * 0.7 * 0.8)
-    assert reward_rate(-0.1, -0.2, 0.8, 4.0, "printed") == pytest.approx(0.6 * 0.7 * 0.5 * 0.8)
+    assert reward_rate(0.1, 0.2, 0.8, 3.0, PRINTED) == pytest.approx(0.4 * 0.3 * 0.8)
+    assert reward_rate(-0.1, -0.2, 0.8, 3.0, PRINTED) == pytest.approx(0.6 * 0.7 * 0.8)
+    assert reward_rate(-0.1, -0.2, 0.8, 4.0, PRINTED) == pytest.approx(0.6 * 0.7 * 0.5 * 0.8)
 
 
 def test_ceiling_of_the_return_is_a_quarter_of_height_times_time() -> None:

@@ -1,5 +1,8 @@
 """Vibration and actuators' work against hand-made motion."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -11,6 +14,12 @@ RATE = 100
 def sine(hertz: float, amplitude: float, seconds: float = 10.0) -> np.ndarray:
     time = np.arange(round(seconds * RATE)) / RATE
     return amplitude * np.sin(2 * np.pi * hertz * time)
+
+
+def moving(*motion: tuple[float, ...]) -> Any:
+    """A robot whose actuators have these speeds and efforts."""
+    truth = SimpleNamespace(acceleration=(0.0, 0.0, 9.81))
+    return SimpleNamespace(truth=truth, simulation=SimpleNamespace(actuator_motion=lambda: motion))
 
 
 def test_power_of_a_fast_sine_is_half_its_amplitude_squared() -> None:
@@ -43,7 +52,8 @@ def test_too_short_for_a_spectrum_is_zero() -> None:
 
 def test_actuators_work_and_peaks() -> None:
     record = MotionRecord(RATE)
-    record.tick((0.0, 0.0, 9.81), (0.5, 0.0, -2.0, 0.0, 0.3, 0.0), (10.0, 5.0, 4.0, 0.0, -100.0, 90.0))
-    record.tick((0.0, 0.0, 9.81), (0.0,) * 6, (0.0,) * 6)
-    assert record.actuator_power == pytest.approx((5.0 + 8.0 + 30.0) / 2)
-    assert record.peak_hip_rate == 2.0 and record.peak_leg_speed == 0.3
+    record.sensed(moving((0.5, 0.0, -2.0, 0.0, 0.3, 0.0), (10.0, 5.0, 4.0, 0.0, -100.0, 90.0)))
+    record.sensed(moving((0.0,) * 6, (0.0,) * 6))
+    motion = record.metrics()
+    assert motion.actuator_power == pytest.approx((5.0 + 8.0 + 30.0) / 2)
+    assert motion.peak_hip_rate == 2.0 and motion.peak_leg_speed == 0.3

@@ -2,7 +2,8 @@
 
 import pytest
 
-from sarah.episode.running_robot import RunningRobot, conditions_of
+from sarah.episode.robot_settings import conditions_of
+from sarah.episode.running_robot import RunningRobot
 from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError
 from sarah.robot.reading import GRAVITY

@@ -1,12 +1,15 @@
-"""The tasks: one file each, and an entry here. A task of your own needs no entry: it is a file of yours.
+"""The tasks: each is a file here, which is found. A task of your own can be a file anywhere.
 
 A task may import errors, robot, control, and from the episode its settings, push, disturbances,
 ending, reward, tick and shipped parameters.
 """
 
 import copyreg
+from collections.abc import Iterable
 from dataclasses import fields
+from importlib import import_module
 from pathlib import Path
+from pkgutil import iter_modules
 from typing import Any
 
 from sarah.episode.tasks.balance import BALANCE, BalanceConfig
@@ -15,7 +18,20 @@ from sarah.episode.tasks.task import Task, TaskFile
 from sarah.episode.tasks.task_file import SETTINGS_TYPES, read_task, task_of_text
 from sarah.errors import ConfigurationError, check_type, unknown_name
 
-TASKS: dict[str, Task[Any]] = {task.name: task for task in (STEPPING, BALANCE)}
+
+def tasks_in(folders: Iterable[str]) -> dict[str, Task[Any]]:
+    """Tasks of this package, by name: the paper's two, and those of all modules.
+
+    :param folders: paths of the folders with the modules
+    """
+    tasks: list[Task[Any]] = [STEPPING, BALANCE]
+    for module in iter_modules(folders):
+        values = vars(import_module(f"{__name__}.{module.name}")).values()
+        tasks += [value for value in values if isinstance(value, Task)]
+    return {task.name: task for task in tasks}
+
+
+TASKS = tasks_in(__path__)
 """Tasks of this package, by name."""
 
 

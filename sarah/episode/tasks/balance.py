@@ -7,9 +7,7 @@ from dataclasses import dataclass
 from sarah.control.hip_law import BalanceParameters
 from sarah.control.parameters import BALANCE_PARAMETERS, STEPPING_PARAMETERS
 from sarah.control.pattern_generator import SteppingParameters
-from sarah.episode.ending import paper_ending
 from sarah.episode.push import PushedConfig
-from sarah.episode.reward import equation_2
 from sarah.episode.shipped import shipped_parameters
 from sarah.episode.tasks.stepping import STEPPING
 from sarah.episode.tasks.task import ControllerParameters, Task
@@ -43,8 +41,6 @@ BALANCE: Task[BalanceConfig] = Task(
     parameters=BALANCE_PARAMETERS,
     episode=BalanceConfig(),
     controller_parameters=_controller_parameters,
-    reward=equation_2,
-    ending=paper_ending,
     baseline=(0.0, 0.0, 0.0, 0.0),
     baseline_label="baseline: V = 0, hips locked",
     neutral=(0.0, 0.0, 0.0, 0.0),

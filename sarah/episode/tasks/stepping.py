@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from sarah.control.parameters import PAPER_STEPPING, STEPPING_PARAMETERS
 from sarah.control.pattern_generator import SteppingParameters
-from sarah.episode.ending import paper_ending
-from sarah.episode.reward import equation_2
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks.task import ControllerParameters, Task
 
@@ -20,8 +18,6 @@ STEPPING = Task(
     parameters=STEPPING_PARAMETERS,
     episode=EpisodeConfig(),
     controller_parameters=_controller_parameters,
-    reward=equation_2,
-    ending=paper_ending,
     baseline=PAPER_STEPPING,
     baseline_label="baseline: the paper's parameters, simulated here",
 )
