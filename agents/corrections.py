@@ -54,14 +54,11 @@ def corrected(returns: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
     targets = bounded(returns[fitted]) / scale
     targets -= targets.mean()
     disturbances = disturbances[:, _telling(disturbances[fitted], targets)]
-    features = _Features(disturbances[fitted])
-    if not features.number:
+    known_features, features = _features(disturbances[fitted], disturbances)
+    if not features.shape[1]:
         return returns
-    known_features = features.of(disturbances[fitted])
-    products = known_features.T @ known_features + PENALTY * np.eye(features.number)
-    weights = np.linalg.solve(products, known_features.T @ targets)
-    blocks = [disturbances[start : start + MOST_FITTED] for start in range(0, len(disturbances), MOST_FITTED)]
-    explained = np.concatenate([features.of(block) @ weights for block in blocks])
+    products = known_features.T @ known_features + PENALTY * np.eye(features.shape[1])
+    explained = features @ np.linalg.solve(products, known_features.T @ targets)
     explained -= explained[known].mean()  # not 0 where the fit leaves some out
     without: np.ndarray = returns - scale * explained
     return without
@@ -76,70 +73,44 @@ def _telling(disturbances: np.ndarray, targets: np.ndarray) -> np.ndarray:
     :param disturbances: Disturbances, one row an episode
     :param targets: Returns with mean 0
     """
-    standard = _Standard(disturbances)
-    lines = standard.of(disturbances)
+    kept, lines, _ = _standard(disturbances, disturbances)
     curves = lines**2 - 1
     curves -= lines * (lines * curves).mean(axis=0)  # What a line would explain as well
     curves /= np.sqrt((curves**2).mean(axis=0)) + SMALLEST_DEVIATION  # 0 if there are two values only
     explained = sum((parts.T @ targets) ** 2 for parts in (lines, curves)) / (len(targets) * (targets @ targets))
     probabilities = (1 - np.minimum(explained, 1)) ** ((len(targets) - 3) / 2)
-    telling: np.ndarray = standard.kept[probabilities < CHANCE]
+    telling: np.ndarray = kept[probabilities < CHANCE]
     return telling
 
 
-class _Features:
+def _features(fitted: np.ndarray, every: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
     Disturbances, and their products of two, each with mean 0 and standard deviation 1 in what is fitted.
 
     :param fitted: Disturbances of the episodes that are fitted, one row an episode
+    :param every: Disturbances of all episodes
+    :return: Features of the episodes that are fitted, and of all
     """
-
-    def __init__(self, fitted: np.ndarray) -> None:
-        self._plain = _Standard(fitted)
-        self._first, self._second = np.triu_indices(self._plain.number)
-        self._products = _Standard(self._products_of(self._plain.of(fitted)))
-        self.number = self._plain.number + self._products.number
-
-    def of(self, disturbances: np.ndarray) -> np.ndarray:
-        """
-        Features of some episodes.
-
-        :param disturbances: Disturbances, one row an episode
-        """
-        plain = self._plain.of(disturbances)
-        return np.hstack([plain, self._products.of(self._products_of(plain))])
-
-    def _products_of(self, plain: np.ndarray) -> np.ndarray:
-        products: np.ndarray = plain[:, self._first] * plain[:, self._second]
-        return products
+    _, *plain = _standard(fitted, every)
+    first, second = np.triu_indices(plain[0].shape[1])
+    _, *products = _standard(*(columns[:, first] * columns[:, second] for columns in plain))
+    return np.hstack([plain[0], products[0]]), np.hstack([plain[1], products[1]])
 
 
-class _Standard:
+def _standard(fitted: np.ndarray, every: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """
-    Columns with mean 0 and standard deviation 1; constant ones are left out.
+    Columns with mean 0 and standard deviation 1 in the rows that are fitted, and within the range that they have there:
+    beyond it, squares and products would say anything.
 
-    :param columns: Columns whose mean and deviation are taken
+    :param fitted: Rows that are fitted
+    :param every: All rows
+    :return: Indices of the columns that are not constant, those columns of the fitted rows, and those of all rows
     """
-
-    def __init__(self, columns: np.ndarray) -> None:
-        # As shares of the largest amount: squares of large numbers would overflow
-        largest = np.abs(columns).max(axis=0)
-        largest[largest == 0] = 1.0
-        shares = columns / largest
-        deviations = shares.std(axis=0)
-        self.kept = np.flatnonzero(deviations > SMALLEST_DEVIATION)
-        self._largest, self._means = largest[self.kept], shares.mean(axis=0)[self.kept]
-        self._deviations = deviations[self.kept]
-        standard = (shares[:, self.kept] - self._means) / self._deviations
-        self._ends = (standard.min(axis=0), standard.max(axis=0)) if len(self.kept) else (0.0, 0.0)
-        self.number = len(self.kept)
-
-    def of(self, columns: np.ndarray) -> np.ndarray:
-        """
-        Those of other rows, with the same means and deviations, and within the same range: beyond it, squares and
-        products would say anything.
-
-        :param columns: As many columns as were given first
-        """
-        standard: np.ndarray = (columns[:, self.kept] / self._largest - self._means) / self._deviations
-        return standard.clip(*self._ends)
+    # As shares of the largest amount: squares of large numbers would overflow
+    largest = np.abs(fitted).max(axis=0)
+    largest[largest == 0] = 1.0
+    shares = fitted / largest
+    means, deviations = shares.mean(axis=0), shares.std(axis=0)
+    kept = np.flatnonzero(deviations > SMALLEST_DEVIATION)
+    standard, of_every = ((rows[:, kept] / largest[kept] - means[kept]) / deviations[kept] for rows in (fitted, every))
+    return kept, standard, of_every.clip(standard.min(axis=0), standard.max(axis=0))

@@ -55,7 +55,6 @@ EXCLUDED = (
 """Cosmic Ray's operators whose mutants say nothing: they would be killed by almost any test, or by none."""
 
 AS_FLOATS = ".clip(-1, 1).astype(np.float32)"
-AT_ONCE = "the generator's numbers do not depend on how many are drawn at once"
 FIRST_TICK = "the first tick ends STAND, whatever this is, and sets it"
 NO_CURVATURE = "a curvature of 0 adds nothing, and none is negative"
 NOT_COUNTED = "an exponential average does not ask how many it has averaged"
@@ -79,8 +78,6 @@ EXPLAINED: dict[str, dict[str, str]] = {
         "if tick.upright <= LEAST_UPRIGHT:": "differs at 45 degrees to the last bit only",
     },
     "sarah/simulation/sensors.py": {
-        "TICKS_AT_ONCE = 257": AT_ONCE,
-        "TICKS_AT_ONCE = 255": AT_ONCE,
         "self._imu_gain = low_pass_gain(1.0 / (2.0 * math.pi * imu_bandwidth), dt) if imu_bandwidth != math.inf "
         "else 1.0": "no bandwidth is above infinity",
         "if gain >= 1.0:": "no gain is above 1",

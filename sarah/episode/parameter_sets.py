@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.from_mapping import from_mapping
-from sarah.episode.shipped import FILE, shipped, shipped_parameters, shipped_value
+from sarah.episode.shipped import shipped, shipped_parameters
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING, task_named
-from sarah.errors import ConfigurationError
 
 
 @dataclass(frozen=True)
@@ -24,25 +24,16 @@ class ParameterSet:
     origin: str
 
 
-def learned_set(name: str) -> ParameterSet:
-    """A set of the package's file.
-
-    :param name: name of the set
-    :raises ConfigurationError: naming the file and what is wrong in it
-    """
-    reference, settings = [shipped_value(name, key) for key in ("task", "settings")]
-    command, commit, date = [shipped_value(name, "origin", key) for key in ("command", "commit", "date")]
-    try:
-        task = task_named(str(reference))
-        config = from_mapping(task.episode, settings)
-    except ConfigurationError as error:
-        raise ConfigurationError(f"{FILE}: {name}: {error}") from error
+def _learned(name: str, content: dict[str, Any]) -> ParameterSet:
+    """A set of the package's file."""
+    task, origin = task_named(content["task"]), content["origin"]
+    config = from_mapping(task.episode, content["settings"])
     spec = EpisodeSpec(shipped_parameters(name, task.parameters), 0, task, config)
-    return ParameterSet(spec, f"{command}, commit {commit}, {date}")
+    return ParameterSet(spec, f"{origin['command']}, commit {origin['commit']}, {origin['date']}")
 
 
 PARAMETER_SETS = {
     "paper": ParameterSet(EpisodeSpec(PAPER_STEPPING, 0, STEPPING), "P1 to P3 of the paper, with P4 = P5 = 1"),
-    **{name: learned_set(name) for name in shipped()},
+    **{name: _learned(name, content) for name, content in shipped().items()},
 }
 """Shipped parameters, by the name that commands take."""

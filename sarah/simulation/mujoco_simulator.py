@@ -13,8 +13,7 @@ import numpy as np
 from sarah.errors import SimulationError
 from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Side, Vector
-from sarah.scenery.ground import Ground
-from sarah.simulation.mujoco_model import WITHOUT_WARNINGS, check_callbacks, model_of, sole_name
+from sarah.simulation.mujoco_model import check_callbacks, model_of, sole_name, without_warnings
 from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.randomisation import NOMINAL, Conditions
 from sarah.simulation.simulator import TorsoState, rotate_to_world, specific_force
@@ -55,10 +54,10 @@ class MujocoSimulator(HoldsWorld):
         self.robot = robot
         self.time = 0.0
         self._dt = physics.control_dt
-        self._ground = conditions.ground
+        self.ground = conditions.ground
         self._substeps = math.ceil(max(physics.rate, LOWEST_RATE) / physics.control_rate)
         rate = self._substeps * physics.control_rate
-        nodes = len(self._ground.heights)
+        nodes = len(self.ground.heights)
         self.model = model_of(robot, rate, physics.solver_iterations, nodes)
         self.data = mujoco.MjData(self.model)
         self._feet = {
@@ -78,7 +77,7 @@ class MujocoSimulator(HoldsWorld):
         shares = [damping / limit for damping, limit in zip(self._damping, self._limits, strict=True)]
         self._servos = list(zip(shares, self._positions, self._speeds, strict=True))
         self._before = np.empty(mujoco.mj_stateSize(self.model, STATE))
-        self.data.qpos[2] = robot.standing_height + self._ground.lift(robot)
+        self.data.qpos[2] = robot.standing_height + self.ground.lift(robot)
         # These are views of MuJoCo's memory.
         self._qpos, self._qvel, self._pads = self.data.qpos, self.data.qvel, self.data.sensordata
         self._pushed = self.data.xfrc_applied[self.model.body("torso").id, :3]
@@ -104,8 +103,8 @@ class MujocoSimulator(HoldsWorld):
             model.pair_friction[of_side, :2] = conditions.friction_under(side)
         if conditions.is_slippery:  # otherwise pyramids, the default, are as good
             model.opt.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-        model.opt.gravity[:] = self._ground.gravity
-        if self._ground.is_rough:
+        model.opt.gravity[:] = self.ground.gravity
+        if self.ground.is_rough:
             self._shape_ground()
         # MuJoCo takes the position at a step's end. With this rate a servo is the same first-order lag at every rate.
         self._rate = (math.exp(conditions.actuator_bandwidth / rate) - 1.0) * rate
@@ -128,7 +127,7 @@ class MujocoSimulator(HoldsWorld):
 
         MuJoCo divides a cell along the other diagonal than the ground does, so its field is turned by 90 degrees.
         """
-        heights, reach = np.array(self._ground.heights), self._ground.reach
+        heights, reach = np.array(self.ground.heights), self.ground.reach
         self.model.hfield_size[0, :2] = reach
         self.model.hfield_data[:] = (0.5 + 0.5 * heights[:, ::-1].T / LARGEST_ROUGHNESS).ravel()
 
@@ -158,7 +157,7 @@ class MujocoSimulator(HoldsWorld):
         """Simulate one control tick."""
         model, data, before = self.model, self.data, self._before
         self._velocity_before = self._torso.velocity
-        with WITHOUT_WARNINGS:
+        with without_warnings():
             for _ in range(self._substeps):
                 mujoco.mj_getState(model, data, before, STATE)
                 mujoco.mj_step(model, data)
@@ -224,7 +223,7 @@ class MujocoSimulator(HoldsWorld):
         positions = self._qpos.tolist()
         self._check_world(positions[:7])
         return SensorReading(
-            specific_force(self._torso, self._velocity_before, self._dt, self._ground.gravity),
+            specific_force(self._torso, self._velocity_before, self._dt, self.ground.gravity),
             self._angular_rate,
             tuple(self._pads[::3].tolist()),  # the first of three components is the normal force
             tuple([positions[index] for index in self._positions]),
@@ -257,19 +256,11 @@ class MujocoSimulator(HoldsWorld):
         efforts = [share * limit for share, limit in zip(self._shares, self._limits, strict=True)]
         return tuple([speeds[index] for index in self._speeds]), tuple(efforts)
 
-    @property
-    def ground(self) -> Ground:
-        """Ground under the robot."""
-        return self._ground
-
     def sole_height(self, side: Side) -> float:
         """Height of a foot's lowest sole contact over the ground, in m."""
         mujoco.mj_kinematics(self.model, self.data)  # a step leaves the link positions of its beginning
-        if self._ground.is_rough:
-            centres = self.data.geom_xpos.tolist()
-            return min([self._ground.distance(centres[sole]) for sole in self._feet[side]]) - self.robot.contact_radius
-        heights = self.data.geom_xpos[:, 2].tolist()
-        return min([heights[sole] for sole in self._feet[side]]) - self.robot.contact_radius
+        centres = self.data.geom_xpos.tolist()
+        return min([self.ground.distance(centres[sole]) for sole in self._feet[side]]) - self.robot.contact_radius
 
     def close(self) -> None:
         """Do nothing: MuJoCo's memory is freed with the object."""

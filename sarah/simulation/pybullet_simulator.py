@@ -8,13 +8,11 @@ from __future__ import annotations
 
 import math
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Iterator
 from itertools import product
 
 from sarah.errors import SimulationError
 from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Side, Vector
-from sarah.scenery.ground import Ground
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
 from sarah.simulation.pybullet_world import PyBulletWorld, pybullet
 from sarah.simulation.randomisation import NOMINAL, Conditions
@@ -57,7 +55,7 @@ class PyBulletSimulator(HoldsWorld):
         self.robot = robot
         self.time = 0.0
         self._dt = physics.control_dt
-        self._ground = conditions.ground
+        self.ground = conditions.ground
         self._substeps = physics.rate // physics.control_rate
         self._world = PyBulletWorld()
         self.client = self._world.client
@@ -80,11 +78,11 @@ class PyBulletSimulator(HoldsWorld):
             enableFileCaching=0,
             physicsClientId=self.client,
         )
-        pybullet.setGravity(*self._ground.gravity, physicsClientId=self.client)
+        pybullet.setGravity(*self.ground.gravity, physicsClientId=self.client)
         self._build_floor()
         self.body, self.links = self._world.load_robot(
             self._urdf(conditions),
-            self.robot.standing_height + self._ground.lift(self.robot),
+            self.robot.standing_height + self.ground.lift(self.robot),
             flags=pybullet.URDF_USE_INERTIA_FROM_FILE
             | pybullet.URDF_IGNORE_VISUAL_SHAPES
             # PyBullet reports contact between parent and child (pad and plate) only with both of these flags.
@@ -132,14 +130,14 @@ class PyBulletSimulator(HoldsWorld):
         return ElementTree.tostring(root, encoding="unicode")
 
     def _build_floor(self) -> None:
-        if self._ground.is_rough:
-            heights = [height for row in self._ground.heights for height in row]
+        if self.ground.is_rough:
+            heights = [height for row in self.ground.heights for height in row]
             shape = pybullet.createCollisionShape(
                 pybullet.GEOM_HEIGHTFIELD,
-                meshScale=(self._ground.cell, self._ground.cell, 1.0),
+                meshScale=(self.ground.cell, self.ground.cell, 1.0),
                 heightfieldData=heights,
-                numHeightfieldRows=len(self._ground.heights),
-                numHeightfieldColumns=len(self._ground.heights),
+                numHeightfieldRows=len(self.ground.heights),
+                numHeightfieldColumns=len(self.ground.heights),
                 physicsClientId=self.client,
             )
             middle = (min(heights) + max(heights)) / 2  # where PyBullet puts the frame of the shape
@@ -249,7 +247,7 @@ class PyBulletSimulator(HoldsWorld):
         self._world.check(self._pose)
         torso = self._torso
         return SensorReading(
-            specific_force(torso, self._velocity_before, self._dt, self._ground.gravity),
+            specific_force(torso, self._velocity_before, self._dt, self.ground.gravity),
             rotate_to_body(torso.orientation, torso.angular_velocity),
             self._loads,
             self._positions,
@@ -295,36 +293,17 @@ class PyBulletSimulator(HoldsWorld):
             loads[self._pads[contact[3], contact[4]]] += contact[9] * self._substeps
         return (loads[0], loads[1], loads[2], loads[3])
 
-    @property
-    def ground(self) -> Ground:
-        """Ground under the robot."""
-        return self._ground
-
     def sole_height(self, side: Side) -> float:
         """Height of a foot's lowest sole contact over the ground, in m."""
-        if self._ground.is_rough:
-            return min(map(self._ground.distance, self._sole_centres(side))) - self.robot.contact_radius
         lowest = math.inf
         links, soles = self._feet[side]
         states = pybullet.getLinkStates(self.body, links, computeForwardKinematics=1, physicsClientId=self.client)
         for state, contacts in zip(states, soles, strict=True):
-            frame_height, (x, y, z, w) = state[4][2], state[5]
-            up_x, up_y, up_z = 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
-            for sole_x, sole_y, sole_z in contacts:
-                height = frame_height + (up_x * sole_x + up_y * sole_y + up_z * sole_z)
-                if height < lowest:
-                    lowest = height
-        return lowest - self.robot.contact_radius
-
-    def _sole_centres(self, side: Side) -> Iterator[Vector]:
-        """Centres of a foot's sole contacts, in the world's frame, in m."""
-        links, soles = self._feet[side]
-        states = pybullet.getLinkStates(self.body, links, computeForwardKinematics=1, physicsClientId=self.client)
-        for state, contacts in zip(states, soles, strict=True):
-            x, y, z = state[4]
+            (x, y, z), orientation = state[4], state[5]
             for contact in contacts:
-                along_x, along_y, along_z = rotate_to_world(state[5], contact)
-                yield (x + along_x, y + along_y, z + along_z)
+                along_x, along_y, along_z = rotate_to_world(orientation, contact)
+                lowest = min(lowest, self.ground.distance((x + along_x, y + along_y, z + along_z)))
+        return lowest - self.robot.contact_radius
 
     def close(self) -> None:
         """Give PyBullet's client back; the simulator cannot be used after that."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -12,9 +11,6 @@ import numpy as np
 from sarah.robot.filters import low_pass_gain
 from sarah.robot.reading import SensorReading, Vector
 from sarah.simulation.randomisation import SensorConditions
-
-TICKS_AT_ONCE = 256
-"""Number of control ticks for which noise is drawn at once."""
 
 
 class ImperfectSensors:
@@ -35,7 +31,6 @@ class ImperfectSensors:
         )
         self._deviations = np.array(deviations)
         self._generator = np.random.default_rng(conditions.seed)
-        self._noise: Iterator[list[float]] = iter(())
         self._conditions = conditions
         self._rotation = _rotation(*conditions.imu_tilt)
         ticks = conditions.delay_seconds / dt
@@ -56,7 +51,7 @@ class ImperfectSensors:
             wx, wy, wz = _rotated(self._rotation, (wx, wy, wz))
         (bax, bay, baz), (bwx, bwy, bwz) = conditions.acceleration_bias, conditions.angular_rate_bias
         ga, gb, gc, gd = conditions.pad_gains
-        nax, nay, naz, nwx, nwy, nwz, na, nb, nc, nd = self._next_noise()
+        nax, nay, naz, nwx, nwy, nwz, na, nb, nc, nd = (self._generator.standard_normal(10) * self._deviations).tolist()
         return SensorReading(
             (ax + bax + nax, ay + bay + nay, az + baz + naz),
             (wx + bwx + nwx, wy + bwy + nwy, wz + bwz + nwz),
@@ -80,26 +75,11 @@ class ImperfectSensors:
         gain = self._imu_gain
         if gain == 1.0:
             return truth
-        (ax, ay, az), (wx, wy, wz), pressures, joints = truth
-        x, y, z, about_x, about_y, about_z = self._imu or (*truth.acceleration, *truth.angular_rate)
-        # The same filter as LowPass: six calls of it would cost a microsecond per tick.
-        x += gain * (ax - x)
-        y += gain * (ay - y)
-        z += gain * (az - z)
-        about_x += gain * (wx - about_x)
-        about_y += gain * (wy - about_y)
-        about_z += gain * (wz - about_z)
-        self._imu = (x, y, z, about_x, about_y, about_z)
-        return SensorReading((x, y, z), (about_x, about_y, about_z), pressures, joints)
-
-    def _next_noise(self) -> list[float]:
-        """Noise of the ten noisy signals in one tick. It is drawn for many ticks at once, which is faster."""
-        noise = next(self._noise, None)
-        if noise is None:
-            drawn = self._generator.standard_normal((TICKS_AT_ONCE, len(self._deviations)))
-            self._noise = iter((drawn * self._deviations).tolist())
-            noise = next(self._noise)
-        return noise
+        signals = (*truth.acceleration, *truth.angular_rate)
+        before = self._imu or signals
+        self._imu = tuple([last + gain * (now - last) for last, now in zip(before, signals, strict=True)])
+        x, y, z, about_x, about_y, about_z = self._imu
+        return truth._replace(acceleration=(x, y, z), angular_rate=(about_x, about_y, about_z))
 
 
 Rotation = tuple[Vector, Vector, Vector]

@@ -64,19 +64,15 @@ def check_loaded(
     :param gravity: acceleration of gravity in the engine, in m/s^2
     :raises SimulationError: naming the first number that differs
     """
-    wanted: dict[str, float | None] = {"number of joints": len(robot.limits)}
-    found: dict[str, float | None] = {"number of joints": len(limits)}
+    numbers: list[tuple[str, float, float | None]] = [("number of joints", len(robot.limits), len(limits))]
     for link, mass in robot.masses.items():
-        wanted[f"mass of {link}"] = mass * conditions.mass_factors.get(link, 1.0)
-        found[f"mass of {link}"] = masses.get(link)
+        numbers.append((f"mass of {link}", mass * conditions.mass_factors.get(link, 1.0), masses.get(link)))
     for joint, ends in robot.limits.items():
-        for name, end, there in zip(("lower", "upper"), ends, limits.get(joint, (None, None)), strict=True):
-            wanted[f"{name} limit of {joint}"], found[f"{name} limit of {joint}"] = end, there
-    for axis, strength, there in zip("xyz", conditions.ground.gravity, gravity, strict=True):
-        wanted[f"gravity along {axis}"], found[f"gravity along {axis}"] = strength, there
-    for name, value in wanted.items():
-        there = found[name]
-        if there is None or value is None or not abs(there - value) <= TOLERANCE * max(1.0, abs(value)):
+        names = f"lower limit of {joint}", f"upper limit of {joint}"
+        numbers.extend(zip(names, ends, limits.get(joint, (None, None)), strict=True))
+    numbers.extend(zip([f"gravity along {axis}" for axis in "xyz"], conditions.ground.gravity, gravity, strict=True))
+    for name, value, there in numbers:
+        if there is None or not abs(there - value) <= TOLERANCE * max(1.0, abs(value)):
             raise SimulationError(
                 f"{engine} loaded another robot than the one described: {name} is {there!r} there, and should be "
                 f"{value!r}; something else in this process changes how it reads numbers, or the engine itself"
