@@ -121,7 +121,8 @@ def _train(arguments: Sequence[str]) -> None:
         if run.is_finished and config.episodes == run.config().episodes:
             print(finished_words(options.resume, "--episodes", config.episodes))
             return
-        run.check_origin(run.config())
+        with run.journal_of(run.config()):  # what cannot go on is refused before workers start
+            pass
 
     from sarah.episode.trial import try_task
 

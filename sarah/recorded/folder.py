@@ -8,11 +8,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from sarah.errors import RunFolderError
+from sarah.errors import ResumeError, RunFolderError
 from sarah.files import check_name, quoted, read_text, replace_text, write_command
 from sarah.recorded.journal import Journal
 from sarah.recorded.kind import Kind
-from sarah.versions import versions
+from sarah.versions import differences, versions
 
 LONGEST_REASON = 200
 """Length up to which a message quotes the error of a file or a row, in characters."""
@@ -109,22 +109,19 @@ class Folder:
         :param most_requests: number of requests that such a program has at most
         :raises ResumeError: if it was begun with other settings, code or versions, or is in use
         """
-        with self._journal(settings, most_requests) as journal:
+        origin = {**settings, **versions()}
+        with Journal(self.journal_path, origin, self.kind, most_requests) as journal:
             if journal.is_new:
                 self._write_versions()  # they may not be those that the folder was made with
             yield journal
 
-    def check_journal(self, settings: Mapping[str, Any]) -> None:
-        """Refuse a journal that was begun with other settings, code or versions.
+    def check_versions(self) -> None:
+        """Refuse what was begun with other code or versions.
 
-        :param settings: settings by name, as JSON has them, without those that change no outcome
         :raises ResumeError: naming what differs, here and there
         """
-        self._journal(settings, 0).check()
-
-    def _journal(self, settings: Mapping[str, Any], most_requests: int) -> Journal:
-        origin = {**settings, **versions()}
-        return Journal(self.journal_path, origin, self.kind, most_requests)
+        if different := differences(versions(), self.versions(), f"in this {self.kind.name}"):
+            raise ResumeError(f"{self.path} cannot be resumed: {different}")
 
     def versions(self) -> dict[str, str]:
         """Read the versions with which it began, by name of the package.

@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, TypeVar
 
 from sarah.errors import ResumeError, SarahError
-from sarah.files import open_locked, open_regular, quoted
+from sarah.files import open_locked, quoted
 from sarah.recorded.kind import Kind
 from sarah.versions import differences
 
@@ -166,19 +166,6 @@ class Journal:
         self._file.truncate(0)
         self._append(expected)
         self._seed = _checksum_seed(expected)
-
-    def check(self) -> None:
-        """Refuse a file that was begun with something else; it is neither locked nor changed.
-
-        :raises ResumeError: naming what differs, here and there
-        """
-        try:
-            with open_regular(self._path, os.O_RDONLY) as file:
-                first = file.readline(LONGEST_ROW)
-        except OSError as error:
-            raise self._refusal(str(error)) from error
-        if not _first_row(self._origin).startswith(first):  # what was cut in its first row begins anew
-            self._check_first_row(first)
 
     def _check_first_row(self, first: bytes) -> None:
         there = _read_first_row(first)

@@ -58,7 +58,7 @@ def race(entries: Sequence[Entry], workers: Workers, progress_bar: bool = False)
     if left := [entry for entry in entries if not is_evaluated(entry)]:
         for entry in entries:  # otherwise nothing of today comes into the table
             if entry.folder.exists():
-                RunFolder(entry.folder).check_origin(entry.config)
+                RunFolder(entry.folder).check_versions()
         progress_bar = progress_bar and sys.stderr is not None
         if progress_bar:
             print(_work(left), file=sys.stderr)

@@ -119,15 +119,10 @@ class RunFolder(Folder):
         :param config: settings of the training
         :raises ResumeError: if it was begun with other settings, code or versions, or is in use
         """
-        return self.journal(_settings_of(config), config.episodes + EPISODES_BESIDE)
-
-    def check_origin(self, config: TrainingConfig) -> None:
-        """Refuse a training that was begun with other settings, code or versions.
-
-        :param config: settings of the training
-        :raises ResumeError: naming what differs, here and there
-        """
-        self.check_journal(_settings_of(config))
+        settings = settings_by_key(replace(config, episodes=config.stages[0], extended_from=()))
+        for name in ("pictures", "extended_from"):  # pictures change no result, and the journal has its extensions
+            del settings[name]
+        return self.journal(settings, config.episodes + EPISODES_BESIDE)
 
     def config(self) -> TrainingConfig:
         """Read the training's configuration.
@@ -252,11 +247,3 @@ def _append_row(path: Path, fields: Sequence[str], row: Mapping[str, Any]) -> No
         if is_new:
             writer.writeheader()
         writer.writerow(row)
-
-
-def _settings_of(config: TrainingConfig) -> dict[str, Any]:
-    """Settings by name that decide what a training does: its journal has a row for each extension."""
-    settings = settings_by_key(replace(config, episodes=config.stages[0], extended_from=()))
-    for name in ("pictures", "extended_from"):  # pictures change no result
-        del settings[name]
-    return settings
