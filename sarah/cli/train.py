@@ -129,7 +129,7 @@ def _train(arguments: Sequence[str]) -> None:
     try_task(config.task, config.episode)
     with Workers(options.workers, options.scheduler) as workers:
         if options.resume is not None:
-            run = RunFolder.resumable(options.resume, config.task)
+            run = RunFolder.open(options.resume, unfinished=True, task=config.task)
             if run.is_finished:  # only now that somebody can simulate
                 config = _extended(run, config)
         else:
@@ -157,7 +157,7 @@ def _resumed(path: Path, options: TrainOptions, config: TrainingConfig) -> RunFo
     """Open the run folder to go on with."""
     from sarah.runs.run_folder import RunFolder
 
-    run = RunFolder.resumable(path, config.task)
+    run = RunFolder.open(path, unfinished=True, task=config.task)
     if options.out is not None or options.config is not None or options.from_run is not None:
         raise ConfigurationError("--resume goes on with a training as it is: leave --out, --config and --from out")
     there = dataclasses.replace(run.config(), pictures=config.pictures)  # they change no result
@@ -226,12 +226,12 @@ def _resumed_defaults(path: Path, given: Mapping[str, str]) -> TrainOptions:
     from sarah.runs.run_folder import RunFolder
 
     check_of_training(path)
-    task, training = None, RunFolder.resumable(path).config()
+    task, training = None, RunFolder.open(path, unfinished=True).config()
     if "task" in given:
         task = load_task(given["task"])
         if task.file is None:
             check_same(path, "training", "task", training.task.reference, task.reference)
-        training = RunFolder.resumable(path, task).config()
+        training = RunFolder.open(path, unfinished=True, task=task).config()
     if isinstance(training.task, RecordedTask):
         raise ConfigurationError(f"--resume {path}: its task is that of a file: add --task {training.task.reference}")
     engine = given.get("engine", given.get("episode.engine", training.episode.engine))

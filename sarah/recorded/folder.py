@@ -90,17 +90,6 @@ class Folder:
                 hint = f", and {inside.parent} has one" if inside else ""
                 raise RunFolderError(f"{self.path} is not the folder of a {kind}: it has no {file.name}{hint}")
 
-    def check_resumable(self) -> None:
-        """Refuse a folder that lacks a file which it would go on from.
-
-        :raises RunFolderError: naming what is missing
-        """
-        if not self.path.is_dir():
-            raise RunFolderError(f"{self.kind.folder} {self.path} does not exist")
-        for file in (self.specification_path, self.journal_path):
-            if not file.is_file():
-                raise RunFolderError(f"{self.path} cannot be resumed: it has no {file.name}")
-
     @contextmanager
     def journal(self, settings: Mapping[str, Any], most_requests: int) -> Iterator[Journal]:
         """The journal, as a context in which no other process can use it.

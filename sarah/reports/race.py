@@ -87,7 +87,7 @@ def _work(left: Sequence[Entry]) -> str:
 def _check_settings(entry: Entry) -> None:
     """Refuse a folder that this training did not make."""
     try:
-        there = RunFolder.resumable(entry.folder, entry.config.task).config()
+        there = RunFolder.open(entry.folder, unfinished=True, task=entry.config.task).config()
     except RunFolderError as error:
         raise RunFolderError(f"{entry.folder} is not of a race: name another folder") from error
     if difference := first_difference(entry.config, there):

@@ -94,18 +94,6 @@ class RunFolder(Folder):
         run.check(finished=not unfinished)
         return run
 
-    @classmethod
-    def resumable(cls, path: Path, task: Task[Any] | None = None) -> RunFolder:
-        """Open the folder of a training that was interrupted, or is finished.
-
-        :param path: path of the folder
-        :param task: task of the training, which only a task of a file needs
-        :raises RunFolderError: if the folder does not exist, or lacks a file that a training is resumed from
-        """
-        run = cls(path, task)
-        run.check_resumable()
-        return run
-
     def extend(self, config: TrainingConfig) -> None:
         """Make a finished training an unfinished one with a larger budget.
 

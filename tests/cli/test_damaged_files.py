@@ -89,7 +89,7 @@ def test_a_file_that_is_no_text(answer: Callable[[str], str], tmp_path: Path) ->
         ("episodes.csv", EPISODE + "1,1\n", "sarah-figures", "cannot be read"),
         ("episodes.csv", "", "sarah-figures", "no episodes to draw"),
         ("episodes.csv", "a,b\n\udcff\n", "sarah-figures", "cannot be read"),
-        ("journal.jsonl", None, "sarah-train --resume", "cannot be resumed: it has no journal.jsonl"),
+        ("journal.jsonl", None, "sarah-train --episodes 200 --resume", "cannot be resumed: it has no journal.jsonl"),
         ("config.yaml", "slots: 9", "sarah-train --slots 4 --resume", "slots is 9 in this training, not 4"),
         ("config.yaml", "algo: sac", "sarah-train --algo td3 --resume", "algo is 'sac' in this training, not 'td3'"),
         ("config.yaml", "task: balance", "sarah-train --task stepping --resume", "task is 'balance' in this training"),

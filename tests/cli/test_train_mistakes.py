@@ -101,7 +101,7 @@ MISTAKES = {
         ("--out full", "run folder full is not empty: name another with --out"),
         ("--out full/precious.txt", "cannot write run folder"),
         ("--out x --simulations=0", "episodes must be between 1"),
-        ("--resume full", "full cannot be resumed: it has no config.yaml"),
+        ("--resume full", "full is not the folder of a training: it has no config.yaml"),
         ("--resume nowhere", "run folder nowhere does not exist"),
         ("--task balance --from nowhere", "run folder nowhere does not exist"),
         ("--task balance --from full", "not the folder of a finished training"),
