@@ -50,10 +50,11 @@ class Folder:
         check_name(self.path)
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            if any(self.path.iterdir()) or not self._claim():
+            if any(self.path.iterdir()):
                 can_go_on = self.specification_path.is_file() and self.journal_path.is_file() and not self.is_finished
                 go_on = f", or {self.go_on}" if can_go_on else ""
                 raise RunFolderError(f"{self.kind.folder} {self.path} is not empty: name another with --out{go_on}")
+            self.journal_path.touch(exist_ok=False)  # of two processes at once, one has the folder
             write_command(self.path / "command.txt")
             self._write_versions()
             write_specification()
@@ -61,14 +62,6 @@ class Folder:
             raise
         except OSError as error:
             raise RunFolderError(f"cannot write {self.kind.folder} {self.path}: {error.strerror or error}") from error
-
-    def _claim(self) -> bool:
-        """Make the journal's file, unless another process made it at the same time."""
-        try:
-            self.journal_path.touch(exist_ok=False)
-        except FileExistsError:
-            return False
-        return True
 
     @property
     def go_on(self) -> str:
@@ -126,14 +119,6 @@ class Folder:
     def _write_versions(self) -> None:
         lines = (f"{name} {version}\n" for name, version in versions().items())
         replace_text(self._versions_path, "".join(lines))
-
-    def reopen(self, write_specification: Callable[[], None]) -> None:
-        """Make what is finished unfinished, with a larger budget.
-
-        :param write_specification: function that writes the specification with the larger budget
-        """
-        self.result_path.unlink(missing_ok=True)  # first: with it, what was before would only be finished again
-        write_specification()
 
     def event_files(self) -> list[Path]:
         """Paths of TensorBoard's files, whatever they are: a FIFO of that name would block who opens it."""

@@ -104,7 +104,8 @@ class SessionFolder(Folder):
         """
         if self.frozen is not None:
             self.frozen.result_path.unlink(missing_ok=True)
-        self.reopen(lambda: write_config(spec, self.specification_path))
+        self.result_path.unlink(missing_ok=True)  # first: with it, what was before would only be finished again
+        write_config(spec, self.specification_path)
 
     def journal_of(self, spec: SessionSpec) -> AbstractContextManager[Journal]:
         """Journal of the session, as a context.
