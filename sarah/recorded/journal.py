@@ -106,14 +106,13 @@ class Journal:
             _log.warning("%s: damaged rows: 1; what it has is asked again", self._path)
             return None
 
-    def add(self, request: Mapping[str, Any], outcome: Any, at_once: bool = True) -> None:
-        """Write an outcome.
+    def add(self, request: Mapping[str, Any], outcome: Any) -> None:
+        """Write an outcome, which is on the disk when this returns.
 
         :param request: what the program asked for
         :param outcome: outcome, as JSON has it
-        :param at_once: whether it is on the disk when this returns; what is cheap need not be
         """
-        self._append(_checksummed({**request, "outcome": outcome}, self._seed), at_once)
+        self._append(_checksummed({**request, "outcome": outcome}, self._seed))
 
     def extend(self, index: int, budget: float) -> None:
         """Note that the program goes on to a larger budget, or check that it did so before.
@@ -192,13 +191,12 @@ class Journal:
             self._file.truncate(whole)  # a row that was cut has no end
             _log.warning("%s: damaged rows: %d; what they have is asked again", self._path, damaged)
 
-    def _append(self, row: bytes, at_once: bool = True) -> None:
-        """Append a row as a whole; if ``at_once``, it is on the disk when this returns."""
+    def _append(self, row: bytes) -> None:
+        """Append a row as a whole."""
         left = memoryview(row)
         while left:  # a disk that is nearly full takes only a part
             left = left[self._file.write(left) :]
-        if at_once:
-            os.fsync(self._file.fileno())
+        os.fsync(self._file.fileno())
 
     def _other_request(self, here: Mapping[str, Any], there: Mapping[str, Any]) -> ResumeError:
         """Error of a program that does not ask what it asked before."""
