@@ -1,8 +1,7 @@
-"""YAML and JSON that somebody wrote: each key once, plain numbers, texts, lists and mappings, and nothing else."""
+"""YAML that somebody wrote: each key once, plain numbers, texts, lists and mappings, and nothing else."""
 
 from __future__ import annotations
 
-import json
 import re
 from functools import lru_cache
 from typing import Any, NoReturn
@@ -90,27 +89,3 @@ def _loader() -> Any:
 
 def _refuse(place: Any, reason: str) -> NoReturn:
     raise ConfigurationError(f"line {place.start_mark.line + 1}: {reason}")
-
-
-def read_json(text: str) -> Any:
-    """Value of a JSON text.
-
-    :param text: text of a file
-    :raises ValueError: for a key that is given twice, NaN and infinities, depth without end, and for what is not JSON
-    """
-    try:
-        return json.loads(text, object_pairs_hook=_each_once, parse_constant=_no_number)
-    except RecursionError:
-        raise ValueError("lists and mappings lie too deep in each other") from None
-
-
-def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    content = dict(pairs)
-    if len(content) < len(pairs):
-        names = [name for name, _ in pairs]
-        raise ValueError(f"key {shortened(next(name for name in names if names.count(name) > 1))} is given twice")
-    return content
-
-
-def _no_number(text: str) -> NoReturn:
-    raise ValueError(f"{text} is no number")

@@ -19,7 +19,7 @@ from sarah.control.pattern_generator import PatternGenerator, Phase, SteppingPar
 from sarah.envs.operation_env import SarahOperationEnv
 from sarah.episode.from_mapping import from_mapping
 from sarah.errors import ConfigurationError
-from sarah.formats import read_json, read_yaml
+from sarah.formats import read_yaml
 from sarah.number import finite_number, number, whole_number
 from sarah.robot.description import describe_robot
 from sarah.robot.reading import SensorReading
@@ -165,9 +165,3 @@ def test_yaml_has_no_other_types() -> None:
     texts = {"a": "off", "b": "y", "c": "2026-11-28", "d": "=", "<<": "<<", "e": "1:30", "f": "010"}
     assert read_yaml("\ufeff" + "\r\n".join(f"{name}: {text}" for name, text in texts.items())) == texts
     assert read_yaml("[~, null, true, False, '5']") == [None, None, True, False, "5"]
-
-
-@pytest.mark.parametrize("text", ['{"a": 1, "a": 2}', "[NaN]", "-Infinity", "[" * 60_000, "9" * 5000, "\ufeff{}", ""])
-def test_json_with_a_second_meaning_is_refused(text: str) -> None:
-    with pytest.raises(ValueError, match=r"."):
-        read_json(text)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -9,7 +10,6 @@ from typing import Any
 
 from sarah.control.parameters import Parameter
 from sarah.errors import ConfigurationError, check_range
-from sarah.formats import read_json
 
 FILE = Path(__file__).with_name("parameter_sets.json")
 
@@ -21,7 +21,7 @@ def shipped() -> dict[str, dict[str, Any]]:
     :raises ConfigurationError: naming the file, if it cannot be read
     """
     try:
-        content: Any = read_json(FILE.read_text(encoding="utf-8"))
+        content: Any = json.loads(FILE.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise ConfigurationError(f"cannot read {FILE}: {getattr(error, 'strerror', None) or error}") from error
     if not isinstance(content, dict):

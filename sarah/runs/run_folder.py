@@ -30,7 +30,6 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task, is_portable
 from sarah.errors import ConfigurationError, RunFolderError, shortened
 from sarah.files import read_lines, read_text, replace_text
-from sarah.formats import read_json
 from sarah.recorded.folder import Folder, unreadable
 from sarah.recorded.journal import Journal
 from sarah.runs.config import TrainingConfig
@@ -209,14 +208,14 @@ class RunFolder(Folder):
         task = (config or self.config()).task
         names = task.parameter_names
         try:
-            learned = read_json(read_text(self.result_path))["parameters"]
+            learned = json.loads(read_text(self.result_path))["parameters"]
             if set(learned) != set(names):
                 found = shortened(", ".join(map(str, learned)))
                 raise ValueError(f"it names {found} instead of {', '.join(names)}")
             return task.box.checked([learned[name] for name in names])
         except OSError as error:
             raise unreadable(self.result_path, error) from error
-        except (ValueError, KeyError, TypeError) as error:
+        except (ValueError, KeyError, TypeError, RecursionError) as error:
             raise RunFolderError(f"{self.result_path} does not hold learned parameters: {error}") from error
 
     def _rows(self, path: Path, config: TrainingConfig | None = None) -> Iterator[dict[str, str]]:

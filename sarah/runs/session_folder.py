@@ -20,7 +20,6 @@ from pathlib import Path
 
 from sarah.errors import RunFolderError
 from sarah.files import read_lines, read_text, replace_text
-from sarah.formats import read_json
 from sarah.number import finite_number, whole_number
 from sarah.operation.settings import BOX, PARAMETERS, Parameters
 from sarah.operation.window import FELT, Window
@@ -179,9 +178,9 @@ class SessionFolder(Folder):
     def _left(self) -> Parameters | None:
         """Parameters that the robot was left with; ``None`` if there are none, or if the file is damaged."""
         try:
-            values = read_json(read_text(self.result_path))["parameters"]
+            values = json.loads(read_text(self.result_path))["parameters"]
             return BOX.checked([values[name] for name in NAMES])
-        except (OSError, ValueError, KeyError, TypeError):
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
             return None
 
 

@@ -76,7 +76,7 @@ def test_a_file_that_is_no_text(answer: Callable[[str], str], tmp_path: Path) ->
             "parameters.json",
             json.dumps({"parameters": {**PARAMETERS, "P3": float("nan")}}),
             "sarah-eval",
-            "NaN is no number",
+            "P3 must be between",
         ),
         ("parameters.json", json.dumps({"parameters": {**PARAMETERS, "P2": 2.5}}), "sarah-eval", "P2 must be between"),
         ("parameters.json", json.dumps({"parameters": {**PARAMETERS, "P2": "1"}}), "sarah-eval", "P2 must be between"),
