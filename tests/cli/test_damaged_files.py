@@ -46,7 +46,7 @@ EPISODE = "index,return,steps_per_second,x,y,P1,P2,P3,P4,P5\n0,1,1,0,0,1,1,1,1,1
             "a: &a [x, x, x, x]\nb: &b [*a, *a, *a, *a]\nepisode: [*b, *b, *b]",
             "anchors and aliases are not allowed, such as 'a'",
         ),
-        ("[" * 5000, "lists and mappings must lie at most 20 deep in each other"),
+        ("[" * 5000, "it is not YAML: maximum recursion depth exceeded"),
         ("episodes: !!int '0100'", "tags are not allowed, such as 'tag:yaml.org,2002:int'"),
         ("episodes: 1" + ":1" * 5000 + ".5", "episodes must be a whole number, not '1:1:1"),
         (f"episode: {{dimensions: {{{'x' * 1000}: [1]}}}}", "must be a number, not [1]"),
