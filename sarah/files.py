@@ -13,7 +13,6 @@ import io
 import os
 import shlex
 import stat
-import sys
 import tempfile
 import unicodedata
 import uuid
@@ -95,14 +94,6 @@ def quoted(path: Path | str) -> str:
     return shlex.quote(f"./{path}" if str(path).startswith("-") else str(path))
 
 
-def write_command(path: Path) -> None:
-    """Write the command of this process, whatever its words are.
-
-    :param path: path of the file
-    """
-    replace_text(path, f"{shlex.join(sys.argv)}\n".encode(errors="backslashreplace").decode())
-
-
 @contextmanager
 def replacing(path: Path) -> Iterator[BinaryIO]:
     """Write a file that replaces the old one only when it is complete.
@@ -129,10 +120,10 @@ def replace_text(path: Path, text: str) -> None:
     """Replace a text file as a whole.
 
     :param path: path of the file
-    :param text: new content
+    :param text: new content; what UTF-8 lacks, such as a byte of a program's name, is escaped
     """
     with replacing(path) as file:
-        file.write(text.encode())
+        file.write(text.encode(errors="backslashreplace"))
 
 
 def open_regular(path: Path, flags: int = os.O_RDONLY) -> BinaryIO:

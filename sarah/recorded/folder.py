@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import itertools
+import shlex
+import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from sarah.errors import ResumeError, RunFolderError
-from sarah.files import check_name, quoted, read_text, replace_text, write_command
+from sarah.files import check_name, quoted, read_text, replace_text
 from sarah.recorded.journal import Journal
 from sarah.recorded.kind import Kind
 from sarah.versions import differences, versions
@@ -55,7 +57,7 @@ class Folder:
                 go_on = f", or {self.go_on}" if can_go_on else ""
                 raise RunFolderError(f"{self.kind.folder} {self.path} is not empty: name another with --out{go_on}")
             self.journal_path.touch(exist_ok=False)  # of two processes at once, one has the folder
-            write_command(self.path / "command.txt")
+            replace_text(self.path / "command.txt", f"{shlex.join(sys.argv)}\n")
             self._write_versions()
             write_specification()
         except RunFolderError:
