@@ -16,8 +16,8 @@ _PLAIN = {float, int, bool, str}
 WHOLE = re.compile(rf"[-+]?{_DIGITS}\Z")
 """A whole number: decimal, without leading zeros, which YAML 1.1 takes for octal, and without underscores."""
 _DECIMAL = rf"(?:{_DIGITS}(?:\.[0-9]{{0,999}})?|\.[0-9]{{1,999}})(?:e[-+]?[0-9]{{1,9}})?"
-NUMBER = re.compile(rf"[-+]?(?:{_DECIMAL}|\.?inf|\.?nan)\Z", re.IGNORECASE)
-"""A number, such as ``3``, ``.5`` or ``1e-4``; infinities and NaN are left for ranges to refuse."""
+NUMBER = re.compile(rf"[-+]?{_DECIMAL}\Z", re.IGNORECASE)
+"""A number, such as ``3``, ``.5`` or ``1e-4``."""
 
 
 def whole_number(text: str) -> int:
@@ -35,23 +35,11 @@ def number(text: str) -> float:
     """Read a number.
 
     :param text: text that a user gave
-    :raises ValueError: if it is none, with the rest of a sentence that begins with the name
+    :raises ValueError: if it is none that a float can hold, with the rest of a sentence that begins with the name
     """
-    if not NUMBER.match(text):
+    if not NUMBER.match(text) or math.isinf(float(text)):
         raise ValueError(f"must be a number, not {_short(text)}")
-    return float(text.lower().replace(".i", "i").replace(".n", "n"))
-
-
-def finite_number(text: str) -> float:
-    """Read a number of a table, which is finite.
-
-    :param text: text of a file
-    :raises ValueError: if it is none, as in :func:`number`
-    """
-    value = number(text)
-    if not math.isfinite(value):
-        raise ValueError(f"must be a finite number, not {_short(text)}")
-    return value
+    return float(text)
 
 
 def plain(value: Any) -> Any:

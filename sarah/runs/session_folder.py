@@ -20,7 +20,7 @@ from pathlib import Path
 
 from sarah.errors import RunFolderError
 from sarah.files import read_lines, read_text, replace_text
-from sarah.number import finite_number, whole_number
+from sarah.number import number, whole_number
 from sarah.operation.settings import BOX, PARAMETERS, Parameters
 from sarah.operation.window import FELT, Window
 from sarah.recorded.folder import Folder, unreadable
@@ -196,12 +196,12 @@ def _row(window: Window) -> tuple[object, ...]:
 def _window(row: Mapping[str, str]) -> Window:
     return Window(
         index=whole_number(row["index"]),
-        begin=finite_number(row["begin"]),
-        seconds=finite_number(row["seconds"]),
+        begin=number(row["begin"]),
+        seconds=number(row["seconds"]),
         changes=whole_number(row["changes"]),
-        parameters=BOX.checked([finite_number(row[name]) for name in NAMES]),
-        score=finite_number(row["score"]),
-        observed_reward=finite_number(row["observed_reward"]),
+        parameters=BOX.checked([number(row[name]) for name in NAMES]),
+        score=number(row["score"]),
+        observed_reward=number(row["observed_reward"]),
         fell=row["fell"] == "1",
-        felt=tuple(finite_number(row[name]) for name in FELT),
+        felt=tuple(number(row[name]) for name in FELT),
     )

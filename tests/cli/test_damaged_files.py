@@ -40,7 +40,7 @@ EPISODE = "index,return,steps_per_second,x,y,P1,P2,P3,P4,P5\n0,1,1,0,0,1,1,1,1,1
         ("episode: {dimensions: {tigh_length: 0.3}}", "did you mean 'thigh_length'?"),
         ("episode: {dimensions: {thigh_length: '${__import__(\"os\").getcwd()}'}}", "must be a number, not"),
         ("{task: balance, episode: {stepping: [1, 1, 1, 1]}}", "stepping must be a list of 5 values"),
-        ("{task: balance, episode: {stepping: [1, 1, 1, 1, .inf]}}", "P5 must be between 0 and 2, not inf"),
+        ("{task: balance, episode: {stepping: [1, 1, 1, 1, .inf]}}", "stepping must be a number, not '.inf'"),
         ("!!python/object/apply:os.system ['touch hacked']", "tags are not allowed"),
         (
             "a: &a [x, x, x, x]\nb: &b [*a, *a, *a, *a]\nepisode: [*b, *b, *b]",
@@ -85,7 +85,7 @@ def test_a_file_that_is_no_text(answer: Callable[[str], str], tmp_path: Path) ->
         ("config.yaml", "task: stepp", "sarah-eval", "config.yaml: unknown task 'stepp', did you mean 'stepping'?"),
         ("config.yaml", "episods: 5", "sarah-figures", "config.yaml: unknown key 'episods'"),
         ("episodes.csv", EPISODE.replace("0,1,1", "0,x,1"), "sarah-figures", "cannot be read"),
-        ("episodes.csv", EPISODE.replace("0,1,1", "0,nan,1"), "sarah-figures", "must be a finite number, not 'nan'"),
+        ("episodes.csv", EPISODE.replace("0,1,1", "0,nan,1"), "sarah-figures", "must be a number, not 'nan'"),
         ("episodes.csv", EPISODE + "1,1\n", "sarah-figures", "cannot be read"),
         ("episodes.csv", "", "sarah-figures", "no episodes to draw"),
         ("episodes.csv", "a,b\n\udcff\n", "sarah-figures", "cannot be read"),
