@@ -7,12 +7,9 @@ from __future__ import annotations
 
 import math
 import re
-from decimal import Decimal
-from numbers import Integral, Real
 from typing import Any
 
 _DIGITS = "(?:0|[1-9][0-9]{0,999})"
-_PLAIN = {float, int, bool, str}
 WHOLE = re.compile(rf"[-+]?{_DIGITS}\Z")
 """A whole number: decimal, without leading zeros, which YAML 1.1 takes for octal, and without underscores."""
 _DECIMAL = rf"(?:{_DIGITS}(?:\.[0-9]{{0,999}})?|\.[0-9]{{1,999}})(?:e[-+]?[0-9]{{1,9}})?"
@@ -43,29 +40,14 @@ def number(text: str) -> float:
 
 
 def plain(value: Any) -> Any:
-    """Python's own value for one of numpy's, for an array or a fraction. What is none of these stays as it is.
+    """Python's own value for one of numpy's, or for an array. What is neither stays as it is.
 
     A setting of numpy's single precision would make a whole episode one of single precision.
 
     :param value: value of any type
     :return: ``int``, ``float``, ``bool`` or ``str``; a list for an array, unless it has no dimensions
     """
-    if type(value) in _PLAIN:  # as nearly always
-        return value
-    if getattr(getattr(value, "dtype", None), "kind", None) in ("m", "M"):  # times, which numpy counts as whole numbers
-        return value
-    if hasattr(value, "tolist"):
-        value = value.tolist()
-    if isinstance(value, bool):
-        return value
-    if isinstance(value, Integral):
-        return int(value)
-    if isinstance(value, (Real, Decimal)):
-        try:
-            return float(value)
-        except (OverflowError, ValueError):  # a fraction beyond all floats, a signalling NaN
-            return value
-    return str.__str__(value) if isinstance(value, str) else value
+    return value.tolist() if hasattr(value, "tolist") else value
 
 
 def is_number(value: object) -> bool:

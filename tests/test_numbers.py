@@ -3,7 +3,6 @@
 import json
 from collections.abc import Callable
 from decimal import Decimal
-from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -28,8 +27,8 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import read_config, settings_by_key, write_config
 
 EIGHTS = [
-    *(kind(8) for kind in (np.float16, np.float32, np.float64, np.longdouble, np.int8, np.uint64, int)),
-    *(np.array(8), np.array(8.0, np.float16), Fraction(8), Decimal("8.0")),
+    *(kind(8) for kind in (np.float16, np.float32, np.float64, np.int8, np.uint64, int)),
+    *(np.array(8), np.array(8.0, np.float16)),
 ]
 SETTINGS: dict[str, Callable[[Any], object]] = {
     "episode": lambda eight: sarah.EpisodeConfig(
