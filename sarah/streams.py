@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import codecs
 import contextlib
 import errno
 import io
@@ -14,7 +13,8 @@ from typing import Any
 
 NAMES = {1: "stdout", 2: "stderr"}
 """Streams that a command writes to, by the number of their file."""
-ENCODING_ERRORS = "sarah.as_bytes_or_escaped"
+ENCODING_ERRORS = "backslashreplace"
+"""What becomes of a letter that the encoding lacks, or of a byte of a file's name: it is escaped."""
 
 
 class _Kept(io.FileIO):
@@ -49,16 +49,6 @@ def _put_null(number: int) -> None:
         os.close(null)
 
 
-def _as_bytes_or_escaped(error: UnicodeError) -> tuple[str | bytes, int]:
-    """Encode a letter that the encoding lacks: a byte of a file's name as it is, and any other letter escaped."""
-    if not isinstance(error, UnicodeEncodeError):
-        raise error
-    letter = error.object[error.start]
-    is_byte = "\udc80" <= letter <= "\udcff"
-    encoded = letter.encode("ascii", "surrogateescape" if is_byte else "backslashreplace")
-    return encoded if is_byte else encoded.decode(), error.start + 1
-
-
 def keep_streams() -> None:
     """Let this process have all standard streams, and let nothing that becomes of them stop it.
 
@@ -71,7 +61,6 @@ def keep_streams() -> None:
         except OSError:
             _put_null(number)
     sys.stdin = sys.stdin or os.fdopen(0, closefd=False)
-    codecs.register_error(ENCODING_ERRORS, _as_bytes_or_escaped)
     for number, name in NAMES.items():
         before = getattr(sys, name)
         if before is getattr(sys, f"__{name}__"):
