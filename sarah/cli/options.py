@@ -226,7 +226,7 @@ def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
     os.environ["MPLBACKEND"] = "Agg"  # figures are files, also where there is a display
     keep_streams()
     try:
-        _check_surroundings()
+        os.getcwd()  # torch ends the process if the working folder is gone
         main(sys.argv[1:])
     except (SarahError, OSError) as error:
         fail(command, str(error))
@@ -234,19 +234,3 @@ def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
         print(f"\n{command}: interrupted", file=sys.stderr)
         raise SystemExit(130) from None
     say_lost_output(command)
-
-
-def _check_surroundings() -> None:
-    """Refuse what a library of ours would not survive.
-
-    :raises ConfigurationError: naming what it is
-    """
-    try:
-        os.getcwd()
-    except OSError:
-        raise ConfigurationError("the working folder does not exist any more: change to another one") from None
-    if any(name.startswith("TQDM_") for name in os.environ):
-        try:
-            import tqdm  # noqa: F401
-        except ValueError as error:
-            raise ConfigurationError(f"a variable TQDM_... of the environment has a wrong value: {error}") from None
