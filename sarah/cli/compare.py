@@ -83,9 +83,9 @@ class CompareOptions:
     slots: int = 1
     episode: EpisodeConfig = EpisodeConfig()
     engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
-    evaluations: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
-    evaluations_along: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
-    best_known: Annotated[float | None, tyro.conf.arg(metavar="FLOAT")] = None
+    evaluations: int | None = None
+    evaluations_along: int | None = None
+    best_known: float | None = None
     workers: int = 0
     scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
 

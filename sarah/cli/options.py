@@ -36,12 +36,6 @@ PYTHON_WORDS = {
     r"^Error parsing (\S+): Could not parse arguments (.*) into tuple type .*": r"\1 must be numbers, not \2",
     r"^Error parsing (--forces): Could not find valid parse for arguments: (.*)": r"\1 must be numbers, not \2",
     r"^Error parsing (\S+): Could not find valid parse for arguments: (.*)": r"\1 must be whole numbers, not \2",
-    r"^Error parsing (\S+): no type matching \{None\}\|INT could be instantiated from \[(.*?)\]\.\s+Got errors.*": (
-        r"\1 must be a whole number, not \2"
-    ),
-    r"^Error parsing (\S+): no type matching \{None\}\|FLOAT could be instantiated from \[(.*?)\]\.\s+Got errors.*": (
-        r"\1 must be a number, not \2"
-    ),
     r"^Error parsing (\S+): no type matching (\S+) could be instantiated from (.*?)\.\s+Got errors.*": (
         r"\1 must be \2, not \3"
     ),

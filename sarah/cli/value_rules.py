@@ -5,13 +5,14 @@ from __future__ import annotations
 import dataclasses
 import functools
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, get_args
+from types import NoneType, UnionType
+from typing import Annotated, Any, Union, get_args
 
 import docstring_parser
 import tyro
 
 from sarah.episode.tasks import Task, load_task
-from sarah.number import is_number, number, whole_number
+from sarah.number import number, whole_number
 from sarah.ranges import ranges_of, types_of
 
 
@@ -42,14 +43,15 @@ def _range_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.
 
 
 def _number_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
-    """How tyro reads a number: tyro itself takes Python's spellings, such as ``0100`` and ``1_000``."""
-    if info.type not in (int, float):
+    """How tyro reads a number that may be none: it takes Python's spellings itself, such as ``0100`` and ``1_000``."""
+    kind, *others = get_args(info.type) if info.type_origin in (Union, UnionType) else (info.type,)
+    if kind not in (int, float) or others not in ([], [NoneType]):
         return None
     return tyro.constructors.PrimitiveConstructorSpec(
         nargs=1,
-        metavar="INT" if info.type is int else "FLOAT",
-        instance_from_str=lambda words: (whole_number if info.type is int else number)(words[0]),
-        is_instance=lambda value: is_number(value) and (info.type is float or isinstance(value, int)),
+        metavar="INT" if kind is int else "FLOAT",
+        instance_from_str=lambda words: (whole_number if kind is int else number)(words[0]),
+        is_instance=lambda value: isinstance(value, info.type),
         str_from_instance=lambda value: [str(value)],
     )
 

@@ -47,7 +47,7 @@ class VideoOptions(EpisodeOptions):
     ] = None
     out: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="(required)")] = None
     which: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
-    seed: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
+    seed: int | None = None
     seconds: Annotated[tuple[float, float], tyro.conf.arg(metavar="BEGIN END")] = (0.0, math.inf)
     speed: float = 1.0
 

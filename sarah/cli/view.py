@@ -49,7 +49,7 @@ class ViewOptions(EpisodeOptions):
 
     subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"
     which: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
-    seed: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
+    seed: int | None = None
     out: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     host: str = "127.0.0.1"
     port: int = DEFAULT_PORT

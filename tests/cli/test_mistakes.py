@@ -20,7 +20,7 @@ MISTAKES = {
         ("--out race --algorithms naf naf", "algorithms must be different ones"),
         ("--out race --algorithms naf tpee", "unknown algo 'tpee', did you mean 'tpe'?"),
         ("--out race --best-known high", "--best-known"),
-        ("--out race --best-known nan", "--best-known must be a number, not nan"),
+        ("--out race --best-known nan", "--best-known must be a number, not 'nan'"),
         ("--out race --engine bullet", "unknown engine 'bullet', did you mean 'pybullet'?"),
         ("--out race --episode.dimensions thigh_length 33", "must be a number between 0.033 and 3.3 m, not 33.0"),
         ("--out race --episode.push.newtons 1 2", "--episode.push.newtons is for --task balance"),
