@@ -25,6 +25,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from sarah.control.parameters import Box, Parameters
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task, is_portable
@@ -199,24 +200,14 @@ class RunFolder(Folder):
         """
         replace_text(self.result_path, json.dumps(content, indent=2) + "\n")
 
-    def parameters(self, config: TrainingConfig | None = None) -> tuple[float, ...]:
+    def parameters(self, config: TrainingConfig | None = None) -> Parameters:
         """Read the learned parameters, in the order of the task.
 
         :param config: settings of the training, if they have been read
         :raises RunFolderError: if the file does not contain exactly the task's parameters
         """
         task = (config or self.config()).task
-        names = task.parameter_names
-        try:
-            learned = json.loads(read_text(self.result_path))["parameters"]
-            if set(learned) != set(names):
-                found = shortened(", ".join(map(str, learned)))
-                raise ValueError(f"it names {found} instead of {', '.join(names)}")
-            return task.box.checked([learned[name] for name in names])
-        except OSError as error:
-            raise unreadable(self.result_path, error) from error
-        except (ValueError, KeyError, TypeError, RecursionError) as error:
-            raise RunFolderError(f"{self.result_path} does not hold learned parameters: {error}") from error
+        return read_parameters(self.result_path, task.box)
 
     def _rows(self, path: Path, config: TrainingConfig | None = None) -> Iterator[dict[str, str]]:
         """Read a table, which has at most a row for each episode of the training."""
@@ -226,6 +217,25 @@ class RunFolder(Folder):
             yield from csv.DictReader(read_lines(path, (config or self.config()).episodes + 1))
         except (OSError, csv.Error) as error:
             raise unreadable(path, error) from error
+
+
+def read_parameters(path: Path, box: Box) -> Parameters:
+    """Read the parameters that a training or a session has learned.
+
+    :param path: path of its ``parameters.json``
+    :param box: ranges of the parameters
+    :raises RunFolderError: if the file does not contain exactly these parameters
+    """
+    try:
+        learned = json.loads(read_text(path))["parameters"]
+        if set(learned) != set(box.names):
+            found = shortened(", ".join(map(str, learned)))
+            raise ValueError(f"it names {found} instead of {', '.join(box.names)}")
+        return box.checked([learned[name] for name in box.names])
+    except OSError as error:
+        raise unreadable(path, error) from error
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
+        raise RunFolderError(f"{path} does not hold learned parameters: {error}") from error
 
 
 def _append_row(path: Path, fields: Sequence[str], row: Mapping[str, Any]) -> None:

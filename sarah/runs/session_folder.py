@@ -18,8 +18,7 @@ from contextlib import AbstractContextManager
 from dataclasses import asdict
 from pathlib import Path
 
-from sarah.errors import RunFolderError
-from sarah.files import read_lines, read_text, replace_text
+from sarah.files import read_lines, replace_text
 from sarah.number import number, whole_number
 from sarah.operation.settings import BOX, PARAMETERS, Parameters
 from sarah.operation.window import FELT, Window
@@ -27,6 +26,7 @@ from sarah.recorded.folder import Folder, unreadable
 from sarah.recorded.journal import Journal
 from sarah.runs.config_files import read_config, settings_by_key, write_config
 from sarah.runs.kinds import SESSION
+from sarah.runs.run_folder import read_parameters
 from sarah.runs.session import SessionSpec
 
 NAMES = tuple(parameter.name for parameter in PARAMETERS)
@@ -77,11 +77,6 @@ class SessionFolder(Folder):
         folder = cls(path)
         folder.check()
         return folder
-
-    @property
-    def is_finished(self) -> bool:
-        """Whether the session has finished, with parameters that can be read."""
-        return self._left() is not None
 
     @property
     def frozen(self) -> SessionFolder | None:
@@ -168,20 +163,10 @@ class SessionFolder(Folder):
     def parameters(self) -> Parameters:
         """Read the parameters that the robot was left with.
 
-        :raises RunFolderError: if the session is not finished, or the file is damaged, which going on mends
+        :raises RunFolderError: if the session is not finished, or the file is damaged
         """
-        left = self._left()
-        if left is None:
-            raise RunFolderError(f"{self.path} is not the folder of a finished session: {self.go_on}")
-        return left
-
-    def _left(self) -> Parameters | None:
-        """Parameters that the robot was left with; ``None`` if there are none, or if the file is damaged."""
-        try:
-            values = json.loads(read_text(self.result_path))["parameters"]
-            return BOX.checked([values[name] for name in NAMES])
-        except (OSError, ValueError, KeyError, TypeError, RecursionError):
-            return None
+        self.check(finished=True)
+        return read_parameters(self.result_path, BOX)
 
 
 def _row(window: Window) -> tuple[object, ...]:

@@ -167,14 +167,6 @@ def test_every_change_counts_and_a_session_keeps_its_pushes(tmp_path: Path) -> N
     assert "- 10.0" in (tmp_path / "again/session.yaml").read_text().split("newtons")[1][:20]
 
 
-def test_damaged_parameters_are_written_again(operated: Path, tmp_path: Path) -> None:
-    shutil.copytree(operated, tmp_path / "mine")
-    (tmp_path / "mine/parameters.json").write_text("[1")
-    process = run("sarah-operate", "--resume", "mine", cwd=tmp_path)
-    assert process.returncode == 0, process.stderr
-    assert (tmp_path / "mine/parameters.json").read_bytes() == (operated / "parameters.json").read_bytes()
-
-
 def test_a_session_that_cannot_go_on_does_not_recommend_to_go_on(operated: Path, tmp_path: Path) -> None:
     shutil.copytree(operated, tmp_path / "mine")
     (tmp_path / "mine/parameters.json").unlink()
