@@ -45,17 +45,12 @@ class EpisodeOptions:
 
     :param task: task of the numbers, or of a run folder whose task is that of a file, such as my_task.py:JUMP. By
         default five numbers are P1 to P5, and four are V1 to V4
-    :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
     :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default as in the training
-    :param randomisation: whether friction, masses, sensors and so on vary by seed, or stay as designed: short for
-        --episode.randomisation.enabled
     :param episode: settings of the episodes; by default those of the run folder, or the task's own
     """
 
     task: Annotated[str | None, tyro.conf.arg(metavar="TASK")] = None
-    engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
     physics: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
-    randomisation: Annotated[bool, tyro.conf.arg(help_behavior_hint="(default: they vary)")] = True
     episode: EpisodeConfig = EpisodeConfig()
 
     def applied_to(self, spec: EpisodeSpec) -> EpisodeSpec:
@@ -68,14 +63,12 @@ class EpisodeOptions:
 
         if isinstance(spec.task, RecordedTask):
             refuse_to_simulate(spec.task)
-        config = with_engine(self.episode, self.engine)
+        config = self.episode
         if self.physics is not None:
             if self.physics not in PHYSICS:
                 raise ConfigurationError(unknown_name("physics", self.physics, PHYSICS))
             chosen = named_physics(self.physics, config.scale, config.physics.control_rate)
             config = dataclasses.replace(config, physics=chosen)
-        if not self.randomisation:
-            config = dataclasses.replace(config, randomisation=dataclasses.replace(config.randomisation, enabled=False))
         if isinstance(config, PushedConfig) and not spec.task.has_push and config.push.newtons == NO_PUSH.newtons:
             config = spec.task.config_of(config)
         if isinstance(config, PushedConfig) and config.push.newtons != NO_PUSH.newtons:
@@ -85,15 +78,6 @@ class EpisodeOptions:
 
 OptionsType = TypeVar("OptionsType", bound=EpisodeOptions)
 ConfigType = TypeVar("ConfigType", bound=EpisodeConfig)
-
-
-def with_engine(episode: EpisodeConfig, engine: str | None) -> EpisodeConfig:
-    """Episode settings with the physics engine that a command was given.
-
-    :param episode: settings of episodes
-    :param engine: value of --engine; if ``None``, the settings keep their engine
-    """
-    return episode if engine is None else dataclasses.replace(episode, engine=engine)  # type: ignore[arg-type]  # checked
 
 
 def parse_episode_options(
@@ -208,8 +192,10 @@ def with_given_engine(episode: EpisodeConfig, given: Mapping[str, str]) -> Episo
     :param episode: settings of episodes
     :param given: values of the options that were given, by name; ``engine`` and ``episode.engine`` are used
     """
-    engine = given.get("engine", given.get("episode.engine"))
-    return with_engine(episode, engine if engine in get_args(Engine) else None)  # the real parser reports others
+    engine: Any = given.get("engine", given.get("episode.engine"))
+    if engine not in get_args(Engine):  # the real parser reports others
+        return episode
+    return dataclasses.replace(episode, engine=engine)
 
 
 def for_given_robot(episode: ConfigType, arguments: Sequence[str], usual: EpisodeConfig | None = None) -> ConfigType:

@@ -132,7 +132,7 @@ def _evaluate(arguments: Sequence[str]) -> None:
         if options.out is not None:
             say_next(*_next_steps(options, arguments))
             return
-        say_engine(spec.config, options.engine)
+        say_engine(spec.config)
         shown = partial(tqdm, total=options.episodes, unit=" episodes", leave=False, disable=None)
         evaluation = evaluate(spec.task, spec.parameters, spec.config, options.seeds, workers, shown)
         neutral = spec.task.neutral
@@ -171,7 +171,7 @@ def _show_robustness(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions
 
     folder, neutral, parameters, config = options.out, BALANCE.neutral, spec.parameters, spec.config
     assert folder is not None and neutral is not None and isinstance(config, BalanceConfig)
-    say_engine(config, options.engine)
+    say_engine(config)
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
     forces = options.forces or forces_for(config.scale)
     pushed = push_many((neutral, parameters), config, workers, forces, options.episodes, options.first_seed)
@@ -222,7 +222,7 @@ def _show_terrain(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions, w
 
     folder = options.out
     assert folder is not None
-    say_engine(spec.config, options.engine)
+    say_engine(spec.config)
     tried = list(situations(spec.config.scale))
     progress = partial(tqdm, total=len(tried) * options.episodes, unit=" episodes")
     rows = try_terrain(spec.task, spec.parameters, spec.config, options.seeds, workers, tried, progress)

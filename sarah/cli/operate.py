@@ -127,7 +127,7 @@ def _begun(options: OperateOptions) -> SessionFolder:
         check_engine(spec.config.robot_after(count).engine)
     path = options.out or new_path("operation", f"{spec.learner}-s{spec.seed}")
     folder = SessionFolder.create(path, spec, options.compare_frozen)
-    say_engine(spec.config.robot, options.engine)
+    say_engine(spec.config.robot)
     if Path(options.subject).is_dir() or is_shipped(options.subject):  # numbers have no settings
         of_subject = episode_of(options.subject, None, named_task(options.task)).spec
         say_differences(options.subject, of_subject, spec.config.robot)

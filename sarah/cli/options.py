@@ -163,14 +163,15 @@ def parse_options(
     help_text = io.StringIO()
     with contextlib.redirect_stdout(help_text), contextlib.suppress(SystemExit):
         parse(args=["--help"])
-    fail(command, _one_line(errors.getvalue(), re.findall(r"(?m)^[│\s]*--([\w-]+)(?![\w.-])", help_text.getvalue())))
+    names = " ".join(line for line in help_text.getvalue().splitlines() if line.startswith(("│ --", "  --")))
+    fail(command, _one_line(errors.getvalue(), re.findall(r"--[\w.-]+", names)))
 
 
-def _one_line(box: str, ungrouped: Sequence[str]) -> str:
-    """Message in tyro's frame, with the name that is nearest: one that is in no group, or what tyro suggests.
+def _one_line(box: str, options: Sequence[str]) -> str:
+    """Message in tyro's frame, with the option that is nearest to an unknown one.
 
     :param box: what tyro printed
-    :param ungrouped: names of the options that are in no group
+    :param options: all options
     """
     # The title is dropped. A terminal without frames gets plain rules, and one of them comes first.
     text = " ".join(line.strip("╭╮╰╯│ ") for line in box.splitlines()[1:])
@@ -181,14 +182,12 @@ def _one_line(box: str, ungrouped: Sequence[str]) -> str:
     for pattern, words in PYTHON_WORDS.items():
         message = re.sub(pattern, words, message)
     message = re.sub(r"^(Unrecognized options: --[^,]*),.*", r"\1", message)
-    unknown = re.match(r"Unrecognized options: --(?!no-)([\w-]+)$", message)
-    if unknown and (nearest := get_close_matches(unknown[1], ungrouped, n=1, cutoff=0.8)):
-        return f"{message}, did you mean --{nearest[0]}?"
-    meant = re.search(r"Perhaps you meant:\s+(--[\w.-]+)(?:, (--[\w.-]*no-[\w.-]+))?", text)
-    if not meant:
+    unknown = message.removeprefix("Unrecognized options: ")
+    if unknown == message:
         return message
-    is_negative = re.match(r"Unrecognized options: --([\w.-]+\.)?no[-_]", message)
-    return f"{message}, did you mean {meant[2] if meant[2] and is_negative else meant[1]}?"
+    longer = sorted((option for option in options if option.startswith(unknown)), key=len)
+    nearest = longer or get_close_matches(unknown, options, n=1, cutoff=0.8)
+    return f"{message}, did you mean {nearest[0]}?" if nearest else message
 
 
 def pushed_words(config: EpisodeConfig) -> str:
@@ -201,13 +200,12 @@ def pushed_words(config: EpisodeConfig) -> str:
     return f"pushed by {newtons}" if high else "not pushed"
 
 
-def say_engine(config: EpisodeConfig, asked: str | None) -> None:
-    """Print on standard error that MuJoCo simulates because PyBullet is missing, unless an engine was asked for.
+def say_engine(config: EpisodeConfig) -> None:
+    """Print on standard error that MuJoCo simulates because PyBullet is missing.
 
     :param config: settings of the episodes
-    :param asked: value of --engine, or ``None``
     """
-    if asked is None and config.engine == default_engine() != "pybullet":
+    if config.engine == default_engine() != "pybullet":
         print("PyBullet is not installed, so MuJoCo simulates", file=sys.stderr)
 
 

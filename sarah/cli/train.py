@@ -17,7 +17,6 @@ from sarah.cli.episode_options import (
     check_episode_options,
     for_given_robot,
     given_options,
-    with_engine,
     with_given_directions,
     with_given_engine,
 )
@@ -64,7 +63,6 @@ class TrainOptions:
     unless --from is given.
 
     :param training: settings of the training
-    :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
     :param out: run folder to write, new or empty; by default a new one, runs/<task>/<algo>-s<seed>
     :param config: YAML file of settings, like the config.yaml of any run folder
     :param resume: run folder of an interrupted training to go on with, with its settings; the result is the same as
@@ -76,7 +74,6 @@ class TrainOptions:
     """
 
     training: Annotated[TrainingConfig, tyro.conf.arg(name="")] = TrainingConfig()
-    engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
     out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     config: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     resume: Annotated[Path | None, tyro.conf.arg(metavar="RUN")] = None
@@ -97,7 +94,6 @@ def _train(arguments: Sequence[str]) -> None:
     arguments = with_out(COMMAND, arguments, {"--run-dir": "--out"})
     options = parse_options(TrainOptions, COMMAND, arguments, _defaults(arguments))
     config = options.training
-    config = dataclasses.replace(config, episode=with_engine(config.episode, options.engine))
     if options.from_run is not None and config.task is not BALANCE:
         same = f": to train again with its settings, say --config {quoted(options.from_run / 'config.yaml')}"
         raise ConfigurationError(f"--from is for --task {BALANCE.name}, not {config.task.reference!r}{same}")
@@ -134,7 +130,7 @@ def _train(arguments: Sequence[str]) -> None:
                 config = _extended(run, config)
         else:
             run = RunFolder.create(options.out or new_path(config.task.name, f"{config.algo}-s{config.seed}"), config)
-        say_engine(config.episode, options.engine)
+        say_engine(config.episode)
         pushed = f", {pushed_words(config.episode)}" if isinstance(config.episode, PushedConfig) else ""
         what = f"{config.algo} on {config.task.name}{pushed}"
         doing = "training" if options.resume is None else "resuming the training of"

@@ -15,6 +15,9 @@ from sarah.episode.tasks import Task, load_task
 from sarah.number import number, whole_number
 from sarah.ranges import ranges_of, types_of
 
+SHORT = {"engine": "--engine", "enabled": "--randomisation"}
+"""Short options of settings of episodes, by the settings' names."""
+
 
 def _task_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
     """How tyro reads a task from the command line, and shows one."""
@@ -92,6 +95,8 @@ def _settings_rule(info: tyro.constructors.StructTypeInfo) -> tyro.constructors.
         hint = f"({within}; default: {{}})".format
         types[name] = Annotated[types_of(info.type)[name], tyro.conf.arg(help_behavior_hint=hint)]
     for name, kind in types.items():
+        if name in SHORT:
+            kind = Annotated[kind, tyro.conf.arg(aliases=[SHORT[name]])]
         meaning = functools.partial(_meaning, info.type, name)
         fields.append(tyro.constructors.StructFieldSpec(name, kind, getattr(info.default, name), meaning))
     return tyro.constructors.StructConstructorSpec(info.type, tuple(fields))

@@ -114,7 +114,7 @@ def _serve(options: ViewOptions, choices: list[RunEpisode], chosen: RunEpisode) 
 
     with serving(options.host, options.port) as server:
         page = Page(server, choices, chosen)
-        say_engine(chosen.spec.config, options.engine)
+        say_engine(chosen.spec.config)
         if is_shipped(options.subject):
             print(f"{options.subject}: {PARAMETER_SETS[options.subject].origin}")
         if not _is_local(options.host):

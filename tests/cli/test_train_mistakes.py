@@ -13,7 +13,7 @@ MISTAKES = {
         ("--algo naff", "unknown algo 'naff', did you mean 'naf'?"),
         ("--algo NAF", "unknown algo 'NAF', did you mean 'naf'?"),
         ("--algo cmaes", "unknown algo 'cmaes', did you mean 'cma-es'?"),
-        ("--engine mujco", "unknown engine 'mujco', did you mean 'mujoco'?"),
+        ("--engine mujco", "unknown --engine/--episode.engine 'mujco', did you mean 'mujoco'?"),
         ("--episods 5", "did you mean --episodes?"),
         ("--episode 5", "did you mean --episodes?"),
         ("--fron run", "did you mean --from?"),
