@@ -138,18 +138,6 @@ def _settings_of(subject: str, which: str | None, task: Task[Any] | None) -> Epi
     return episode_of(subject, which, task).spec.config
 
 
-def check_has(config: EpisodeConfig, name: str, option: str) -> None:
-    """Refuse an option whose setting a task does not have.
-
-    :param config: settings of the task's episodes
-    :param name: name of the setting
-    :param option: name of the option, without dashes
-    """
-    if not hasattr(config, name):
-        tasks = " or ".join(task.name for task in TASKS.values() if hasattr(task.episode, name))
-        raise ConfigurationError(f"--{option} is for --task {tasks}")
-
-
 def check_episode_options(arguments: Sequence[str], config: EpisodeConfig) -> None:
     """Refuse ``--episode.…`` options whose settings only another task has, or that a short option sets as well.
 
@@ -163,10 +151,11 @@ def check_episode_options(arguments: Sequence[str], config: EpisodeConfig) -> No
     for short, long in SET_TWICE:
         if short in names and long in names:
             raise ConfigurationError(f"{short} and {long} set the same: give one of them")
-    for argument in arguments:
-        name = argument.removeprefix("--episode.").split(".")[0].replace("-", "_")
-        if argument.startswith("--episode.") and any(hasattr(task.episode, name) for task in TASKS.values()):
-            check_has(config, name, argument.removeprefix("--").split("=")[0])
+    for name in names:
+        setting = name.removeprefix("--episode.").partition(".")[0].replace("-", "_")
+        having = [task.name for task in TASKS.values() if hasattr(task.episode, setting)]
+        if name.startswith("--episode.") and having and not hasattr(config, setting):
+            raise ConfigurationError(f"{name} is for --task {' or '.join(having)}")
 
 
 def given_options(arguments: Sequence[str], *names: str) -> dict[str, str]:
