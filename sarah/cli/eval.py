@@ -14,7 +14,7 @@ import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.former_names import with_out
-from sarah.cli.next_steps import Step, passed_on, say_next, to_report, to_see
+from sarah.cli.next_steps import Step, passed_on, say_next, to_see
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import learned_of
 from sarah.episode.settings import EpisodeConfig
@@ -160,7 +160,8 @@ def _next_steps(options: EvalOptions, arguments: Sequence[str]) -> Iterator[Step
     first = ("--seed", str(options.first_seed))
     yield to_see(options.subject, *passed_on(arguments, options.subject, *NOT_OF_VIEW), *first)
     if Path(options.subject).is_dir() and not SESSION.owns(Path(options.subject)):
-        yield to_report(options.subject, *([] if options.task is None else ["--task", options.task]))
+        typed = [] if options.task is None else ["--task", options.task]
+        yield "have it on one page", ("sarah-report", options.subject, *typed)
 
 
 def _show_robustness(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions, workers: Workers) -> None:

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import tyro
 
-from sarah.cli.next_steps import say_next, to_open, to_report
+from sarah.cli.next_steps import say_next, to_open
 from sarah.cli.options import named_task, parse_options, run_command
 from sarah.cli.subjects import check_of_training
 from sarah.errors import ConfigurationError
@@ -62,5 +62,5 @@ def _draw(arguments: Sequence[str]) -> None:
     for file in files:
         print(file)
     typed = [] if options.task is None else ["--task", options.task]
-    reports = [to_report(options.runs[0], *typed)] if len(runs) == 1 else []
+    reports = [("have it on one page", ("sarah-report", options.runs[0], *typed))] if len(runs) == 1 else []
     say_next(to_open(next(file for file in files if file.suffix == ".png")), *reports)

@@ -24,7 +24,7 @@ from sarah.cli.former_names import with_out
 from sarah.cli.given_settings import say_differences, settings_of_file, settings_on_stepping
 from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import interruptible
-from sarah.cli.next_steps import say_next, to_see, to_test, to_watch
+from sarah.cli.next_steps import say_next, to_see, to_watch
 from sarah.cli.options import named_task, parse_options, pushed_words, run_command, say_engine
 from sarah.cli.subjects import check_of_training
 from sarah.cli.train_text import say_learned
@@ -146,7 +146,7 @@ def _train(arguments: Sequence[str]) -> None:
         learned = _learned(config, run, workers, " ".join(f" --task {quoted(task)}" for task in named.values()))
     say_learned(config.task, learned, run.path)
     typed = [word for value in named.values() for word in ("--task", value)]
-    say_next(to_see(run.path, *typed), to_test(run.path, *typed), to_watch(run.path))
+    say_next(to_see(run.path, *typed), ("test it", ("sarah-eval", run.path, *typed)), to_watch(run.path))
 
 
 def _resumed(path: Path, options: TrainOptions, config: TrainingConfig) -> RunFolder:
