@@ -35,8 +35,8 @@ MISTAKES = {
     ],
     "sarah-eval": [
         ("full", "not the folder of a finished training"),
-        ("full/precious.txt", "full/precious.txt is a file: name the run folder that it is in"),
-        ("runs/nowhere", "run folder runs/nowhere does not exist"),
+        ("full/precious.txt", "is neither a run folder, nor numbers separated by commas"),
+        ("runs/nowhere", "'runs/nowhere' is neither a run folder, nor numbers separated by commas"),
         ("nowhere", "'nowhere' is neither a run folder, nor numbers"),
         ("steping", "did you mean 'stepping'?"),
         ("balance --task stepping", "'balance' are parameters of task 'balance': give others, or leave --task out"),
