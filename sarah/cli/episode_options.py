@@ -22,9 +22,10 @@ from sarah.cli.subjects import episode_of, is_shipped, is_there
 from sarah.cli.value_rules import named_numbers
 from sarah.episode.push import NO_PUSH, PushedConfig
 from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import EpisodeSpec
+from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
 from sarah.errors import ConfigurationError, unknown_name
+from sarah.ranges import Within, check_ranges
 from sarah.simulation.engines import Engine
 from sarah.simulation.physics import PHYSICS, named_physics
 
@@ -53,6 +54,10 @@ class EpisodeOptions:
     physics: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
     episode: EpisodeConfig = EpisodeConfig()
 
+    def __post_init__(self) -> None:
+        """Refuse numbers outside their ranges."""
+        check_ranges("", self)
+
     def applied_to(self, spec: EpisodeSpec) -> EpisodeSpec:
         """Specification of an episode with the settings that the options ask for.
 
@@ -74,6 +79,28 @@ class EpisodeOptions:
         if isinstance(config, PushedConfig) and config.push.newtons != NO_PUSH.newtons:
             config.check_for_training()  # nor would anybody see a push after the end
         return dataclasses.replace(spec, config=config)
+
+
+@dataclass(frozen=True)
+class UnseenOptions(EpisodeOptions):
+    """Options of commands that simulate on seeds which no training has seen.
+
+    :param episodes: number of episodes; of a table, at each force, on each ground or in each engine
+    :param first_seed: seed of the first episode; the others follow. No training has seen the default: trainings draw
+        seeds from 2^31 up, and their summaries begin at 0
+    :param workers: number of processes on this machine that simulate; with 0, this process does. It changes no result
+    :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
+    """
+
+    episodes: Annotated[int, Within(1, 1_000_000)] = 20
+    first_seed: Annotated[int, Within(0, 2**32 - 1)] = FIRST_EVALUATION_SEED
+    workers: int = 0
+    scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
+
+    @property
+    def seeds(self) -> range:
+        """Seeds of the episodes."""
+        return range(self.first_seed, self.first_seed + self.episodes)
 
 
 OptionsType = TypeVar("OptionsType", bound=EpisodeOptions)

@@ -21,6 +21,7 @@ from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episodes_of, is_shipped
 from sarah.errors import ConfigurationError
 from sarah.files import check_file
+from sarah.ranges import Within
 
 if TYPE_CHECKING:
     from sarah.runs.run_episodes import RunEpisode
@@ -50,12 +51,7 @@ class ViewOptions(EpisodeOptions):
     seed: int | None = None
     out: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     host: str = "127.0.0.1"
-    port: int = DEFAULT_PORT
-
-    def __post_init__(self) -> None:
-        """Refuse impossible ports."""
-        if not 0 < self.port < 2**16:
-            raise ConfigurationError(f"port must be between 1 and {2**16 - 1}, not {self.port!r}")
+    port: Annotated[int, Within(1, 2**16 - 1)] = DEFAULT_PORT
 
 
 def main() -> None:

@@ -56,8 +56,8 @@ MISTAKES = {
         (f"{GIVEN} --episodes 0100", "--episodes must be a whole number, not '0100'"),
         (f"{GIVEN} --episodes 2.5", "--episodes must be a whole number, not '2.5'"),
         (f"{GIVEN} --terrain --out caf\udce9", "--out must be UTF-8 text without control characters, not 'caf\\udce9'"),
-        (f"{GIVEN} --first-seed -1", "first-seed must be between 0 and 4294967295, not -1"),
-        (f"{GIVEN} --first-seed 5000000000", "first-seed must be between 0 and 4294967295"),
+        (f"{GIVEN} --first-seed -1", "first_seed must be between 0 and 4294967295, not -1"),
+        (f"{GIVEN} --first-seed 5000000000", "first_seed must be between 0 and 4294967295"),
         (f"{GIVEN} --physic reference", "Unrecognized options: --physic"),
         (f"{GIVEN} --physics refrence", "unknown physics 'refrence', did you mean 'reference'?"),
         (f"{GIVEN} --engine mujoco --episode.engine=pybullet", "--engine and --episode.engine set the same"),
@@ -158,8 +158,8 @@ TRANSFER_MISTAKES = [
     ("full", "not the folder of a"),
     ("full full", "anything but one run needs a folder for table and figure: --out DIR"),
     ("balance", "anything but one run needs a folder for table and figure: --out DIR"),
-    ("full --episodes 0", "episodes must be at least 1, not 0"),
-    ("full --first-seed -1", "first-seed must not be negative, not -1"),
+    ("full --episodes 0", "episodes must be between 1 and 1000000, not 0"),
+    ("full --first-seed -1", "first_seed must be between 0 and 4294967295, not -1"),
 ]
 
 
