@@ -18,12 +18,12 @@ from typing import Annotated, Any, TypeVar, get_args
 import tyro
 
 from sarah.cli.options import dimension_words, named_task, parse_options
-from sarah.cli.subjects import episode_of, is_shipped, is_there
+from sarah.cli.subjects import episode_of, is_there
 from sarah.cli.value_rules import named_numbers
 from sarah.episode.push import NO_PUSH, PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
-from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
+from sarah.episode.tasks import BALANCE, STEPPING, TASKS
 from sarah.errors import ConfigurationError, unknown_name
 from sarah.ranges import Within, check_ranges
 from sarah.simulation.engines import Engine
@@ -125,7 +125,8 @@ def parse_episode_options(
     given = given_options(arguments, "task", "which", "engine", "episode.engine", *DIRECTIONS)
     task = named_task(given.get("task"))
     subject = subject or _subject_among(arguments, default, given)
-    own = adapted(_settings_of(subject, given.get("which"), task) if subject else (task or STEPPING).episode, subject)
+    shown = episode_of(subject, given.get("which"), task).spec.config if subject else (task or STEPPING).episode
+    own = adapted(shown, subject)
     if type(own) is EpisodeConfig:  # any robot can be pushed, whether its task has a push or not
         own = PushedConfig(**vars(own), push=own.scale.scaled(NO_PUSH))
     episode = with_given_directions(with_given_engine(own, given), given)
@@ -154,15 +155,6 @@ def _subject_among(arguments: Sequence[str], default: EpisodeOptions, given: Map
     subjects = getattr(options, "subjects", None)
     subject: str | None = subjects[0] if subjects else getattr(options, "subject", None)
     return subject if subject is not None and is_there(subject) else None
-
-
-def _settings_of(subject: str, which: str | None, task: Task[Any] | None) -> EpisodeConfig:
-    """Settings to begin from; those of shipped parameters are found without what run folders need."""
-    from sarah.episode.parameter_sets import PARAMETER_SETS
-
-    if task is None and is_shipped(subject):
-        return PARAMETER_SETS[subject].spec.config
-    return episode_of(subject, which, task).spec.config
 
 
 def check_episode_options(arguments: Sequence[str], config: EpisodeConfig) -> None:
