@@ -96,17 +96,6 @@ def dimension_words(arguments: Sequence[str]) -> list[str]:
     )
 
 
-def _with_all_dimensions(arguments: Sequence[str], config: Any) -> list[str]:
-    """Arguments whose dimensions come beside those that the default options have already."""
-    given = dimension_words(arguments)
-    if not given:
-        return list(arguments)
-    episode = config.episode if hasattr(config, "episode") else config.training.episode
-    index = len(arguments) - 1 - list(reversed(arguments)).index(DIMENSIONS)
-    kept = [word for name, value in episode.dimensions.items() if name not in given for word in (name, repr(value))]
-    return [*arguments[: index + 1], *kept, *arguments[index + 1 :]]
-
-
 def _checked(words: Sequence[str]) -> Sequence[str]:
     """Arguments, none of which is empty, or a name that no file, message or page could hold.
 
@@ -155,7 +144,7 @@ def parse_options(
     errors = io.StringIO()
     try:
         with contextlib.redirect_stderr(errors):
-            return parse(args=_checked(_with_both_ends(_with_all_dimensions(arguments, default), default)))
+            return parse(args=_checked(_with_both_ends(arguments, default)))
     except SystemExit as exit_request:
         if not exit_request.code:
             check_output()

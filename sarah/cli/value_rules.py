@@ -59,16 +59,12 @@ def _number_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors
     )
 
 
-def _dimensions_rule(
-    info: tyro.constructors.PrimitiveTypeInfo,
-) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
-    """How tyro reads dimensions: names and numbers in turn, also where some differ from their defaults already."""
-    if info.type_origin is not Mapping:
-        return None
+def _dimensions(given_already: Mapping[str, float]) -> tyro.constructors.PrimitiveConstructorSpec[Any]:
+    """How tyro reads dimensions: names and numbers in turn, beside those that differ from their defaults already."""
     return tyro.constructors.PrimitiveConstructorSpec(
         nargs="*",
         metavar="NAME FLOAT",
-        instance_from_str=named_numbers,
+        instance_from_str=lambda words: {**given_already, **named_numbers(words)},
         is_instance=lambda value: isinstance(value, Mapping),
         str_from_instance=lambda given: [word for name, value in given.items() for word in (name, f"{value:g}")],
     )
@@ -95,6 +91,8 @@ def _settings_rule(info: tyro.constructors.StructTypeInfo) -> tyro.constructors.
         hint = f"({within}; default: {{}})".format
         types[name] = Annotated[types_of(info.type)[name], tyro.conf.arg(help_behavior_hint=hint)]
     for name, kind in types.items():
+        if name == "dimensions":
+            kind = Annotated[kind, _dimensions(info.default.dimensions)]
         if name in SHORT:
             kind = Annotated[kind, tyro.conf.arg(aliases=[SHORT[name]])]
         meaning = functools.partial(_meaning, info.type, name)
@@ -119,7 +117,6 @@ def meanings_of(config_type: type) -> dict[str, str]:
 
 REGISTRY = tyro.constructors.ConstructorRegistry()
 """Rules for tyro."""
-REGISTRY.primitive_rule(_dimensions_rule)
 REGISTRY.primitive_rule(_number_rule)
 REGISTRY.primitive_rule(_task_rule)
 REGISTRY.primitive_rule(_range_rule)
