@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sarah.episode.tasks import Task
-from sarah.errors import ConfigurationError, RunFolderError, shortened, unknown_name
+from sarah.errors import ConfigurationError, shortened, unknown_name
 from sarah.number import number
 from sarah.runs.kinds import SESSION
 
@@ -116,16 +116,6 @@ def learned_of(subject: str, task: Task[Any] | None) -> tuple[EpisodeSpec, str |
         run = RunRecord(RunFolder.open(Path(subject), task=task))
         return learned_episode(run).spec, run.config.algo
     return episode_of(subject, None, task).spec, None
-
-
-def check_of_training(path: Path) -> None:
-    """Refuse the folder of a session, for what looks at trainings only.
-
-    :param path: path of a folder
-    :raises RunFolderError: if it is a session's
-    """
-    if SESSION.owns(path):
-        raise RunFolderError(f"{path} is the folder of a session, not of a training: session.png in it is its figure")
 
 
 def numbers(text: str) -> tuple[float, ...]:

@@ -26,7 +26,6 @@ from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import interruptible
 from sarah.cli.next_steps import say_next, to_see, to_watch
 from sarah.cli.options import named_task, parse_options, pushed_words, run_command, say_engine
-from sarah.cli.subjects import check_of_training
 from sarah.cli.train_text import say_learned
 from sarah.cli.training_defaults import default_training
 from sarah.episode.push import PushedConfig
@@ -221,7 +220,6 @@ def _resumed_defaults(path: Path, given: Mapping[str, str]) -> TrainOptions:
     from sarah.runs.recorded_task import RecordedTask
     from sarah.runs.run_folder import RunFolder
 
-    check_of_training(path)
     task, training = None, RunFolder.open(path, unfinished=True).config()
     if "task" in given:
         task = load_task(given["task"])

@@ -61,11 +61,8 @@ def test_other_commands_take_its_folder(operated: Path) -> None:
 )
 def test_what_is_for_trainings_says_so(operated: Path, command: str) -> None:
     process = run(*command.split(), "mine", cwd=operated.parent)
-    name, refusal = (
-        command.split()[0],
-        "mine is the folder of a session, not of a training: session.png in it is its figure",
-    )
-    assert process.returncode == 2 and process.stderr == f"{name}: error: {refusal}\n"
+    said = rf"{command.split()[0]}: error: mine is not the folder of a (finished )?training: it has no config.yaml\n"
+    assert process.returncode == 2 and re.fullmatch(said, process.stderr)
 
 
 def test_a_change_that_came_too_late_is_named(tmp_path: Path) -> None:
