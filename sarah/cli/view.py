@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
-import ipaddress
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -28,6 +27,7 @@ if TYPE_CHECKING:
 
 COMMAND = "sarah-view"
 DEFAULT_PORT = 8080
+LOCAL = ("127.0.0.1", "::1", "localhost")
 
 
 @dataclass(frozen=True)
@@ -113,16 +113,9 @@ def _serve(options: ViewOptions, choices: list[RunEpisode], chosen: RunEpisode) 
         say_engine(chosen.spec.config)
         if is_shipped(options.subject):
             print(f"{options.subject}: {PARAMETER_SETS[options.subject].origin}")
-        if not _is_local(options.host):
+        if options.host not in LOCAL:
             print(f"warning: everyone who can reach {options.host} can use this page, as there is no password")
         print(f"SARAH is at http://{options.host}:{server.get_port()} (Ctrl-C ends)", flush=True)
         with contextlib.suppress(KeyboardInterrupt):
             threading.Event().wait()
         page.close()
-
-
-def _is_local(host: str) -> bool:
-    try:
-        return host == "localhost" or ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False
