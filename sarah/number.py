@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import re
+import reprlib
 from typing import Any
 
 _DIGITS = "(?:0|[1-9][0-9]{0,999})"
@@ -24,7 +25,7 @@ def whole_number(text: str) -> int:
     :raises ValueError: if it is none, with the rest of a sentence that begins with the name
     """
     if not WHOLE.match(text):
-        raise ValueError(f"must be a whole number, not {_short(text)}")
+        raise ValueError(f"must be a whole number, not {reprlib.repr(text)}")
     return int(text)
 
 
@@ -35,7 +36,7 @@ def number(text: str) -> float:
     :raises ValueError: if it is none that a float can hold, with the rest of a sentence that begins with the name
     """
     if not NUMBER.match(text) or math.isinf(float(text)):
-        raise ValueError(f"must be a number, not {_short(text)}")
+        raise ValueError(f"must be a number, not {reprlib.repr(text)}")
     return float(text)
 
 
@@ -79,7 +80,3 @@ def to_floats(config: object, *names: str) -> None:
     for name in names:
         value = getattr(config, name)
         object.__setattr__(config, name, float(plain(value)) if is_finite(value) else plain(value))
-
-
-def _short(text: str) -> str:
-    return repr(text if len(text) <= 100 else f"{text[:50]}...{text[-50:]}")
