@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 import re
 import reprlib
+from decimal import Decimal
+from numbers import Real
 from typing import Any
 
 _DIGITS = "(?:0|[1-9][0-9]{0,999})"
@@ -41,14 +43,16 @@ def number(text: str) -> float:
 
 
 def plain(value: Any) -> Any:
-    """Python's own value for one of numpy's, or for an array. What is neither stays as it is.
+    """Python's own value for one of numpy's, for an array or a fraction. What is none of these stays as it is.
 
     A setting of numpy's single precision would make a whole episode one of single precision.
 
     :param value: value of any type
     :return: ``int``, ``float``, ``bool`` or ``str``; a list for an array, unless it has no dimensions
     """
-    return value.tolist() if hasattr(value, "tolist") else value
+    value = value.tolist() if hasattr(value, "tolist") else value
+    is_real = isinstance(value, (Real, Decimal)) and not isinstance(value, (int, float))
+    return float(value) if is_real else value
 
 
 def is_number(value: object) -> bool:
