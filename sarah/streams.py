@@ -87,27 +87,12 @@ def check_output() -> None:
     :raises OSError: if it could not be written
     :raises SystemExit: quietly, with the usual status of Unix, if its reader has left
     """
-    error = _lost_output()
+    sys.stdout.flush()
+    buffer = getattr(sys.stdout, "buffer", None)
+    kept = getattr(buffer, "raw", buffer)
+    error = kept.lost if isinstance(kept, _Kept) else None
     if error is None:
         return
     if error.errno == errno.EPIPE:
         raise SystemExit(128 + signal.SIGPIPE)
     raise OSError(error.errno, error.strerror, "standard output")
-
-
-def say_lost_output(command: str) -> None:
-    """Say it if standard output was lost to anything but a reader that has left, although the work is done.
-
-    :param command: name of the command
-    """
-    error = _lost_output()
-    if error is not None and error.errno != errno.EPIPE:
-        print(f"{command}: done, but standard output was lost: {error.strerror}", file=sys.stderr)
-
-
-def _lost_output() -> OSError | None:
-    """Write what is left of standard output, and return the error with which some of it was lost, if it was."""
-    sys.stdout.flush()
-    buffer = getattr(sys.stdout, "buffer", None)
-    kept = getattr(buffer, "raw", buffer)
-    return kept.lost if isinstance(kept, _Kept) else None

@@ -40,13 +40,6 @@ os.write(2, b"of other code")
     assert kept(program, shell, PYTHONUNBUFFERED=unbuffered).stderr == b"0\n"
 
 
-def test_it_is_said_that_standard_output_was_lost() -> None:
-    program = "print('text'); say_lost_output('sarah-train')"
-    said = b"sarah-train: done, but standard output was lost: No space left on device\n"
-    assert kept(program, '"$@" > /dev/full').stderr == said
-    assert kept(program, '"$@" | true').stderr == kept(program, '"$@" > /dev/null').stderr == b""
-
-
 def test_a_reader_in_no_hurry_gets_everything() -> None:
     """Also if somebody else has made the pipe non-blocking, as many programs do that share one."""
     program = "os.set_blocking(1, False); print('0123456789' * 100_000); check_output()"

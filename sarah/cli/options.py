@@ -25,7 +25,7 @@ from sarah.files import is_text
 from sarah.number import NUMBER
 from sarah.ranges import Range, types_of
 from sarah.simulation.engines import default_engine
-from sarah.streams import check_output, keep_streams, say_lost_output
+from sarah.streams import check_output, keep_streams
 
 OptionsType = TypeVar("OptionsType")
 USAGE_ERROR = 2
@@ -214,4 +214,3 @@ def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
     except KeyboardInterrupt:
         print(f"\n{command}: interrupted", file=sys.stderr)
         raise SystemExit(130) from None
-    say_lost_output(command)
