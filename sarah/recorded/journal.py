@@ -158,13 +158,13 @@ class Journal:
             first = reader.readline(LONGEST_ROW)
             if not expected.startswith(first) or first == expected:
                 self._check_first_row(first)
-                self._seed = _checksum_seed(first)
+                self._seed = int(first[:8], 16)
                 self._read_rows(reader)
                 return
         self.is_new = True
         self._file.truncate(0)
         self._append(expected)
-        self._seed = _checksum_seed(expected)
+        self._seed = int(expected[:8], 16)
 
     def _check_first_row(self, first: bytes) -> None:
         there = _read_first_row(first)
@@ -227,11 +227,6 @@ def _read_first_row(first: bytes) -> dict[str, Any] | None:
     """What a first row says; ``None`` if it is damaged."""
     digest, _, text = first.rstrip(b"\n").partition(b" ")
     return _object(text) if digest == _digest(text) else None
-
-
-def _checksum_seed(first: bytes) -> int:
-    """Number that the checksums of all other rows begin from."""
-    return int(first[:8], 16)
 
 
 def _checksummed(row: Mapping[str, Any], seed: int) -> bytes:
