@@ -9,7 +9,7 @@ from typing import Annotated
 
 import tyro
 
-from sarah.cli.next_steps import say_next, to_open
+from sarah.cli.next_steps import Step, say_next, to_open
 from sarah.cli.options import named_task, parse_options, run_command
 from sarah.errors import ConfigurationError
 
@@ -59,5 +59,5 @@ def _draw(arguments: Sequence[str]) -> None:
     for file in files:
         print(file)
     typed = [] if options.task is None else ["--task", options.task]
-    reports = [("have it on one page", ("sarah-report", options.runs[0], *typed))] if len(runs) == 1 else []
+    reports: list[Step] = [("have it on one page", ("sarah-report", options.runs[0], *typed))] if len(runs) == 1 else []
     say_next(to_open(next(file for file in files if file.suffix == ".png")), *reports)
