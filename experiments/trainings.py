@@ -63,7 +63,7 @@ class TrainingExperiment(ParallelExperiment):
         """
         name = f"{config.task.name}-{config.algo}-{config.episodes}-s{config.seed}-{identity(config, TRAINING_CODE)}"
         path = self.runs / name
-        run = RunFolder.resumable(path) if path.exists() else RunFolder.create(path, config)
+        run = RunFolder.open(path, unfinished=True) if path.exists() else RunFolder.create(path, config)
         if not run.is_finished:
             train(config, run, workers)
         return run

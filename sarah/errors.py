@@ -11,7 +11,7 @@ from typing import Any
 from sarah.number import is_number, plain
 
 LONGEST_NAME = 100
-"""Length in characters up to which a name is shown whole, and the nearest valid one is looked for."""
+"""Length in characters up to which a name is shown whole."""
 
 
 class SarahError(Exception):
@@ -164,9 +164,8 @@ def unknown_name(kind: str, name: str, allowed: Iterable[str]) -> str:
     :return: one line for an exception's message
     """
     names = sorted(allowed)
-    if len(name) > LONGEST_NAME:
-        return f"unknown {kind} {shortened(name)} (allowed: {', '.join(names) or 'none'})"
+    given = repr(name) if len(name) <= LONGEST_NAME else shortened(name)
     by_lower_case = {allowed_name.lower(): allowed_name for allowed_name in names}
     nearest = get_close_matches(name.lower(), by_lower_case, n=1, cutoff=0.5)
     guess = f", did you mean {by_lower_case[nearest[0]]!r}?" if nearest else ""
-    return f"unknown {kind} {name!r}{guess} (allowed: {', '.join(names) or 'none'})"
+    return f"unknown {kind} {given}{guess} (allowed: {', '.join(names) or 'none'})"

@@ -13,12 +13,11 @@ import io
 import os
 import shlex
 import stat
-import sys
 import tempfile
 import unicodedata
 import uuid
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
@@ -29,7 +28,7 @@ SMALL = 65_536
 LONGEST_LINE = 16_384
 """Largest size of a line in a table, in bytes."""
 LARGEST = 2**30
-"""Largest size of any file but a journal, in bytes: the table of a million episodes is less than half of it."""
+"""Largest size of a file of TensorBoard's that is read, in bytes."""
 NO_TEXT = frozenset(("Cc", "Cs", "Zl", "Zp"))
 """Unicode's categories of control characters, of bytes that are not UTF-8, and of ends of lines and paragraphs."""
 
@@ -64,8 +63,6 @@ def check_file(path: Path) -> None:
             raise ConfigurationError(f"cannot write {path}: it is {'a folder' if path.is_dir() else 'no regular file'}")
         if not path.parent.is_dir():
             raise ConfigurationError(f"cannot write {path}: folder {path.parent} does not exist")
-        with suppress(FileNotFoundError):
-            path.lstat()  # a name can be too long
         with tempfile.TemporaryFile(dir=path.parent):
             pass
     except OSError as error:
@@ -95,14 +92,6 @@ def quoted(path: Path | str) -> str:
     return shlex.quote(f"./{path}" if str(path).startswith("-") else str(path))
 
 
-def write_command(path: Path) -> None:
-    """Write the command of this process, whatever its words are.
-
-    :param path: path of the file
-    """
-    replace_text(path, f"{shlex.join(sys.argv)}\n".encode(errors="backslashreplace").decode())
-
-
 @contextmanager
 def replacing(path: Path) -> Iterator[BinaryIO]:
     """Write a file that replaces the old one only when it is complete.
@@ -129,10 +118,10 @@ def replace_text(path: Path, text: str) -> None:
     """Replace a text file as a whole.
 
     :param path: path of the file
-    :param text: new content
+    :param text: new content; what UTF-8 lacks, such as a byte of a program's name, is escaped
     """
     with replacing(path) as file:
-        file.write(text.encode())
+        file.write(text.encode(errors="backslashreplace"))
 
 
 def open_regular(path: Path, flags: int = os.O_RDONLY) -> BinaryIO:
@@ -159,11 +148,8 @@ def read_text(path: Path, most_bytes: int = SMALL) -> str:
     :param most_bytes: largest size in bytes
     :raises OSError: if it is no regular file, larger, or no UTF-8 text
     """
-    with open_regular(path) as file:
-        _check_size(file, path, most_bytes)
-        content = b""
-        while len(content) <= most_bytes and (part := file.read(most_bytes + 1 - len(content))):
-            content += part
+    with io.BufferedReader(open_regular(path)) as file:  # type: ignore[type-var]  # it is a raw file
+        content = file.read(most_bytes + 1)
     if len(content) > most_bytes:
         raise _too_large(path, f"more than {most_bytes:,} bytes")
     return _decoded(content, path)
@@ -179,7 +165,6 @@ def read_lines(path: Path, most_lines: int, most_bytes: int = LONGEST_LINE) -> I
     :raises OSError: if it is no regular file, has more or longer lines, or is no UTF-8 text
     """
     with io.BufferedReader(open_regular(path)) as file:  # type: ignore[type-var]  # it is a raw file
-        _check_size(file, path, min(most_lines * most_bytes, LARGEST))
         for number in range(1, most_lines + 2):
             line = file.readline(most_bytes + 1)
             if not line:
@@ -222,12 +207,6 @@ def open_locked(path: Path, flags: int, wait: bool) -> BinaryIO | None:
     except BlockingIOError:
         file.close()
         return None
-    except OSError as error:
-        file.close()
-        raise OSError(error.errno, f"it cannot be locked ({error.strerror})", str(path)) from error
-    except BaseException:
-        file.close()
-        raise
     return file
 
 
@@ -236,12 +215,6 @@ def _decoded(content: bytes, path: Path) -> str:
         return content.decode()
     except UnicodeDecodeError as error:
         raise OSError(errno.EILSEQ, "it is not UTF-8 text", str(path)) from error
-
-
-def _check_size(file: BinaryIO, path: Path, most_bytes: int) -> None:
-    size = os.fstat(file.fileno()).st_size
-    if size > most_bytes:
-        raise _too_large(path, f"{size:,} bytes, and at most {most_bytes:,} are read")
 
 
 def _too_large(path: Path, found: str) -> OSError:

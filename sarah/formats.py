@@ -1,8 +1,7 @@
-"""YAML and JSON that somebody wrote: each key once, plain numbers, texts, lists and mappings, and nothing else."""
+"""YAML that somebody wrote: each key once, plain numbers, texts, lists and mappings, and nothing else."""
 
 from __future__ import annotations
 
-import json
 import re
 from functools import lru_cache
 from typing import Any, NoReturn
@@ -12,8 +11,6 @@ from sarah.number import NUMBER, WHOLE, number, whole_number
 
 LONGEST_REASON = 500
 """Length up to which a message quotes that of a parser, in characters."""
-DEEPEST = 20
-"""Largest number of lists and mappings in YAML that lie in each other."""
 TAG = "tag:yaml.org,2002:"
 SPELLINGS = {
     "null": re.compile(r"(?:~|null|Null|NULL|)\Z"),
@@ -38,7 +35,7 @@ def read_yaml(text: str) -> Any:
 
     try:
         return yaml.load(text, _loader())  # a safe loader, with less than the safe one has
-    except (yaml.YAMLError, ValueError) as error:
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
         if isinstance(error, ConfigurationError):
             raise
         reason = " ".join(str(error).split())[:LONGEST_REASON]
@@ -51,22 +48,15 @@ def _loader() -> Any:
     import yaml
 
     class Loader(yaml.SafeLoader):
-        depth = 0
-
         def compose_node(self, parent: Any, index: Any) -> Any:
-            """Refuse what makes a short text a large value: aliases, of which each can double it, and depth."""
+            """Refuse what makes a short text a large value: aliases, of which each can double it."""
             event = self.peek_event()
             anchor, tag = getattr(event, "anchor", None), getattr(event, "tag", None)
             if anchor is not None:
                 _refuse(event, f"anchors and aliases are not allowed, such as {shortened(anchor)}")
             if tag is not None:
                 _refuse(event, f"tags are not allowed, such as {shortened(tag)}")
-            if self.depth == DEEPEST and isinstance(event, yaml.CollectionStartEvent):
-                _refuse(event, f"lists and mappings must lie at most {DEEPEST} deep in each other")
-            self.depth += 1
-            node = super().compose_node(parent, index)
-            self.depth -= 1
-            return node
+            return super().compose_node(parent, index)
 
     def mapping(loader: Loader, node: Any) -> dict[str, Any]:
         content: dict[str, Any] = {}
@@ -90,27 +80,3 @@ def _loader() -> Any:
 
 def _refuse(place: Any, reason: str) -> NoReturn:
     raise ConfigurationError(f"line {place.start_mark.line + 1}: {reason}")
-
-
-def read_json(text: str) -> Any:
-    """Value of a JSON text.
-
-    :param text: text of a file
-    :raises ValueError: for a key that is given twice, NaN and infinities, depth without end, and for what is not JSON
-    """
-    try:
-        return json.loads(text, object_pairs_hook=_each_once, parse_constant=_no_number)
-    except RecursionError:
-        raise ValueError("lists and mappings lie too deep in each other") from None
-
-
-def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    content = dict(pairs)
-    if len(content) < len(pairs):
-        names = [name for name, _ in pairs]
-        raise ValueError(f"key {shortened(next(name for name in names if names.count(name) > 1))} is given twice")
-    return content
-
-
-def _no_number(text: str) -> NoReturn:
-    raise ValueError(f"{text} is no number")

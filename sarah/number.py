@@ -7,17 +7,17 @@ from __future__ import annotations
 
 import math
 import re
+import reprlib
 from decimal import Decimal
-from numbers import Integral, Real
+from numbers import Real
 from typing import Any
 
 _DIGITS = "(?:0|[1-9][0-9]{0,999})"
-_PLAIN = {float, int, bool, str}
 WHOLE = re.compile(rf"[-+]?{_DIGITS}\Z")
 """A whole number: decimal, without leading zeros, which YAML 1.1 takes for octal, and without underscores."""
 _DECIMAL = rf"(?:{_DIGITS}(?:\.[0-9]{{0,999}})?|\.[0-9]{{1,999}})(?:e[-+]?[0-9]{{1,9}})?"
-NUMBER = re.compile(rf"[-+]?(?:{_DECIMAL}|\.?inf|\.?nan)\Z", re.IGNORECASE)
-"""A number, such as ``3``, ``.5`` or ``1e-4``; infinities and NaN are left for ranges to refuse."""
+NUMBER = re.compile(rf"[-+]?{_DECIMAL}\Z", re.IGNORECASE)
+"""A number, such as ``3``, ``.5`` or ``1e-4``."""
 
 
 def whole_number(text: str) -> int:
@@ -27,7 +27,7 @@ def whole_number(text: str) -> int:
     :raises ValueError: if it is none, with the rest of a sentence that begins with the name
     """
     if not WHOLE.match(text):
-        raise ValueError(f"must be a whole number, not {_short(text)}")
+        raise ValueError(f"must be a whole number, not {reprlib.repr(text)}")
     return int(text)
 
 
@@ -35,23 +35,11 @@ def number(text: str) -> float:
     """Read a number.
 
     :param text: text that a user gave
-    :raises ValueError: if it is none, with the rest of a sentence that begins with the name
+    :raises ValueError: if it is none that a float can hold, with the rest of a sentence that begins with the name
     """
-    if not NUMBER.match(text):
-        raise ValueError(f"must be a number, not {_short(text)}")
-    return float(text.lower().replace(".i", "i").replace(".n", "n"))
-
-
-def finite_number(text: str) -> float:
-    """Read a number of a table, which is finite.
-
-    :param text: text of a file
-    :raises ValueError: if it is none, as in :func:`number`
-    """
-    value = number(text)
-    if not math.isfinite(value):
-        raise ValueError(f"must be a finite number, not {_short(text)}")
-    return value
+    if not NUMBER.match(text) or math.isinf(float(text)):
+        raise ValueError(f"must be a number, not {reprlib.repr(text)}")
+    return float(text)
 
 
 def plain(value: Any) -> Any:
@@ -62,22 +50,9 @@ def plain(value: Any) -> Any:
     :param value: value of any type
     :return: ``int``, ``float``, ``bool`` or ``str``; a list for an array, unless it has no dimensions
     """
-    if type(value) in _PLAIN:  # as nearly always
-        return value
-    if getattr(getattr(value, "dtype", None), "kind", None) in ("m", "M"):  # times, which numpy counts as whole numbers
-        return value
-    if hasattr(value, "tolist"):
-        value = value.tolist()
-    if isinstance(value, bool):
-        return value
-    if isinstance(value, Integral):
-        return int(value)
-    if isinstance(value, (Real, Decimal)):
-        try:
-            return float(value)
-        except (OverflowError, ValueError):  # a fraction beyond all floats, a signalling NaN
-            return value
-    return str.__str__(value) if isinstance(value, str) else value
+    value = value.tolist() if hasattr(value, "tolist") else value
+    is_real = isinstance(value, (Real, Decimal)) and not isinstance(value, (int, float))
+    return float(value) if is_real else value
 
 
 def is_number(value: object) -> bool:
@@ -109,7 +84,3 @@ def to_floats(config: object, *names: str) -> None:
     for name in names:
         value = getattr(config, name)
         object.__setattr__(config, name, float(plain(value)) if is_finite(value) else plain(value))
-
-
-def _short(text: str) -> str:
-    return repr(text if len(text) <= 100 else f"{text[:50]}...{text[-50:]}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import codecs
 import contextlib
 import errno
 import io
@@ -14,7 +13,8 @@ from typing import Any
 
 NAMES = {1: "stdout", 2: "stderr"}
 """Streams that a command writes to, by the number of their file."""
-ENCODING_ERRORS = "sarah.as_bytes_or_escaped"
+ENCODING_ERRORS = "backslashreplace"
+"""What becomes of a letter that the encoding lacks, or of a byte of a file's name: it is escaped."""
 
 
 class _Kept(io.FileIO):
@@ -49,16 +49,6 @@ def _put_null(number: int) -> None:
         os.close(null)
 
 
-def _as_bytes_or_escaped(error: UnicodeError) -> tuple[str | bytes, int]:
-    """Encode a letter that the encoding lacks: a byte of a file's name as it is, and any other letter escaped."""
-    if not isinstance(error, UnicodeEncodeError):
-        raise error
-    letter = error.object[error.start]
-    is_byte = "\udc80" <= letter <= "\udcff"
-    encoded = letter.encode("ascii", "surrogateescape" if is_byte else "backslashreplace")
-    return encoded if is_byte else encoded.decode(), error.start + 1
-
-
 def keep_streams() -> None:
     """Let this process have all standard streams, and let nothing that becomes of them stop it.
 
@@ -71,7 +61,6 @@ def keep_streams() -> None:
         except OSError:
             _put_null(number)
     sys.stdin = sys.stdin or os.fdopen(0, closefd=False)
-    codecs.register_error(ENCODING_ERRORS, _as_bytes_or_escaped)
     for number, name in NAMES.items():
         before = getattr(sys, name)
         if before is getattr(sys, f"__{name}__"):
@@ -98,27 +87,12 @@ def check_output() -> None:
     :raises OSError: if it could not be written
     :raises SystemExit: quietly, with the usual status of Unix, if its reader has left
     """
-    error = _lost_output()
+    sys.stdout.flush()
+    buffer = getattr(sys.stdout, "buffer", None)
+    kept = getattr(buffer, "raw", buffer)
+    error = kept.lost if isinstance(kept, _Kept) else None
     if error is None:
         return
     if error.errno == errno.EPIPE:
         raise SystemExit(128 + signal.SIGPIPE)
     raise OSError(error.errno, error.strerror, "standard output")
-
-
-def say_lost_output(command: str) -> None:
-    """Say it if standard output was lost to anything but a reader that has left, although the work is done.
-
-    :param command: name of the command
-    """
-    error = _lost_output()
-    if error is not None and error.errno != errno.EPIPE:
-        print(f"{command}: done, but standard output was lost: {error.strerror}", file=sys.stderr)
-
-
-def _lost_output() -> OSError | None:
-    """Write what is left of standard output, and return the error with which some of it was lost, if it was."""
-    sys.stdout.flush()
-    buffer = getattr(sys.stdout, "buffer", None)
-    kept = getattr(buffer, "raw", buffer)
-    return kept.lost if isinstance(kept, _Kept) else None

@@ -25,7 +25,6 @@ MISTAKES: dict[str, Callable[[], Any]] = {
     r"payload must be between 0 and 100 kg, not \(1, 2\)": lambda: EpisodeConfig(payload=(1, 2)),  # type: ignore
     r"operation.minutes must be between .*, not \(1, 2\)": lambda: OperationConfig(minutes=(1, 2)),  # type: ignore
     r"a change must be a Change, not 'a'": lambda: OperationConfig(changes=("a",)),  # type: ignore
-    r"time_limit must be between .*timedelta64": lambda: EpisodeConfig(time_limit=np.timedelta64(4, "ns")),  # type: ignore
     r"workers must be between 0 and 256, not \(0, 1\)": lambda: Workers((0, 1)),  # type: ignore
     r"scheduler must be an address, such as .*, not ''": lambda: Workers(scheduler=""),
     r"dt must be between 0.0001 and 0.1 s": lambda: PatternGenerator(STEPPING, dt=(0.01, 0.01)),  # type: ignore

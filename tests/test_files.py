@@ -1,6 +1,5 @@
 """What is replaced is whole or as before; a long run leaves nothing open."""
 
-import errno
 import gc
 import os
 import shlex
@@ -16,7 +15,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Workers
 from sarah.errors import ConfigurationError
-from sarah.files import check_file, locked, make_folder, quoted, replace_text, replacing
+from sarah.files import check_file, make_folder, quoted, replace_text, replacing
 from sarah.pictures.style import save
 from sarah.pictures.video import write_video
 from sarah.reports.report import write_report
@@ -120,15 +119,3 @@ def test_memory_and_open_files_stay_flat() -> None:
     memory, files = usage_after(60)
     later_memory, later_files = usage_after(200)
     assert later_files <= files and later_memory - memory < 8 * 2**20
-
-
-def test_a_file_system_without_locks_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def lockless(file: object, operation: int) -> None:
-        raise OSError(errno.ENOLCK, "No locks available")
-
-    monkeypatch.setattr("fcntl.flock", lockless)
-    with (
-        pytest.raises(OSError, match=r"it cannot be locked \(No locks available\): '.*/lock'"),
-        locked(tmp_path / "lock"),
-    ):
-        pass

@@ -19,8 +19,8 @@ from sarah.control.pattern_generator import PatternGenerator, Phase, SteppingPar
 from sarah.envs.operation_env import SarahOperationEnv
 from sarah.episode.from_mapping import from_mapping
 from sarah.errors import ConfigurationError
-from sarah.formats import read_json, read_yaml
-from sarah.number import finite_number, number, whole_number
+from sarah.formats import read_yaml
+from sarah.number import number, whole_number
 from sarah.robot.description import describe_robot
 from sarah.robot.reading import SensorReading
 from sarah.runs.agent_settings import NAFSettings
@@ -71,7 +71,7 @@ def test_settings_hold_numbers_of_python_whatever_they_are_given(name: str) -> N
 
 
 def test_what_is_no_number_is_refused_in_any_type() -> None:
-    for value in (True, np.bool_(True), "8", np.array([8.0]), None, 8j, np.float32("nan"), Decimal("sNaN")):
+    for value in (True, np.bool_(True), "8", np.array([8.0]), None, 8j, np.float32("nan"), Decimal("nan")):
         with pytest.raises(ConfigurationError, match="time_limit must be between 1 and 3600 s"):
             sarah.EpisodeConfig(time_limit=value)  # type: ignore[arg-type]
         with pytest.raises(ConfigurationError, match=r"physics\.rate must be"):
@@ -113,13 +113,13 @@ def test_single_precision_ends_where_settings_and_readings_begin() -> None:
 
 
 ACCEPTED = {"8": 8.0, "+8": 8.0, "8.": 8.0, "8.0": 8.0, ".5": 0.5, "1e-4": 1e-4, "1E1": 10.0, "1.0e-05": 1e-5, "0": 0.0}
-REFUSED = ("0100", "00", "1:30", "1_000", "0x10", "0b1", "0o7", "08.5", "१", "1e", "Infinity", "5kg", "9" * 2000)
+REFUSED = ("0100", "00", "1:30", "1_000", "0x10", "0b1", "0o7", "08.5", "१", "1e", "inf", ".nan", "5kg", "9" * 2000)
 
 
 @pytest.mark.parametrize("text", ACCEPTED)
 def test_spellings_of_numbers_are_the_same_everywhere(text: str) -> None:
     value = ACCEPTED[text]
-    assert number(text) == finite_number(text) == read_yaml(f"a: {text}")["a"] == numbers("it", text)[0] == value
+    assert number(text) == read_yaml(f"a: {text}")["a"] == numbers(text)[0] == value
     assert parse_options(EvalOptions, "", ["--episode.payload", text], EvalOptions()).episode.payload == value
     assert change_of(f"{text}: payload={text}").settings == {"payload": value}
     assert value == int(value) or not text.isdigit()
@@ -127,7 +127,7 @@ def test_spellings_of_numbers_are_the_same_everywhere(text: str) -> None:
 
 @pytest.mark.parametrize("text", REFUSED)
 def test_other_spellings_are_refused_by_name_everywhere(text: str, capsys: pytest.CaptureFixture[str]) -> None:
-    for read in (number, whole_number, finite_number, lambda text: numbers("it", text)):
+    for read in (number, whole_number, lambda text: numbers(text)):
         with pytest.raises(ValueError, match=r"must be (a (whole )?number|numbers separated by commas), not '"):
             read(text)
     with pytest.raises(ConfigurationError, match="time_limit must be a number, not '"):
@@ -165,9 +165,3 @@ def test_yaml_has_no_other_types() -> None:
     texts = {"a": "off", "b": "y", "c": "2026-11-28", "d": "=", "<<": "<<", "e": "1:30", "f": "010"}
     assert read_yaml("\ufeff" + "\r\n".join(f"{name}: {text}" for name, text in texts.items())) == texts
     assert read_yaml("[~, null, true, False, '5']") == [None, None, True, False, "5"]
-
-
-@pytest.mark.parametrize("text", ['{"a": 1, "a": 2}', "[NaN]", "-Infinity", "[" * 60_000, "9" * 5000, "\ufeff{}", ""])
-def test_json_with_a_second_meaning_is_refused(text: str) -> None:
-    with pytest.raises(ValueError, match=r"."):
-        read_json(text)

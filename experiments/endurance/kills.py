@@ -75,7 +75,7 @@ def begin_or_resume(config: TrainingConfig, folder: Path) -> None:
     :param folder: its run folder
     """
     if (folder / "config.yaml").exists():
-        run = RunFolder.resumable(folder)
+        run = RunFolder.open(folder, unfinished=True)
     else:  # killed before there was anything to resume
         shutil.rmtree(folder, ignore_errors=True)
         run = RunFolder.create(folder, config)

@@ -249,7 +249,7 @@ PROTECTIONS = (
     Protection(
         "a race does not mix states of the code",
         "reports/race.py",
-        "RunFolder(entry.folder).check_origin(entry.config)",
+        "RunFolder(entry.folder).check_versions()",
         "pass",
         "test_a_race_does_not_mix_states_of_the_code",
     ),

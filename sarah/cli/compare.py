@@ -16,7 +16,6 @@ from sarah.cli.episode_options import (
     check_episode_options,
     for_given_robot,
     given_options,
-    with_engine,
     with_given_directions,
     with_given_engine,
 )
@@ -30,7 +29,6 @@ from sarah.errors import ConfigurationError, check_range
 from sarah.files import make_folder
 from sarah.reports.judging import PUSHED, UNPUSHED, evaluations_of
 from sarah.runs.config import ALGORITHMS, TrainingConfig
-from sarah.runs.kinds import SESSION
 
 if TYPE_CHECKING:
     from sarah.reports.race_entry import Entry, RaceCurve
@@ -63,7 +61,6 @@ class CompareOptions:
     :param episodes: budget of each training, in episodes; by default that of ``sarah-train``
     :param slots: number of episodes in flight in each training
     :param episode: settings of the episodes; by default those of ``sarah-train``, whose help also names the paper's
-    :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
     :param evaluations: number of unseen episodes that judge every final recommendation; by default {pushed_final} if
         the task has a push, and {still_final} if not
     :param evaluations_along: number of these that judge every recommendation along the way; by default {pushed_along}
@@ -82,10 +79,9 @@ class CompareOptions:
     episodes: Annotated[int, tyro.conf.arg(aliases=["--simulations"])] = 100
     slots: int = 1
     episode: EpisodeConfig = EpisodeConfig()
-    engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
-    evaluations: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
-    evaluations_along: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
-    best_known: Annotated[float | None, tyro.conf.arg(metavar="FLOAT")] = None
+    evaluations: int | None = None
+    evaluations_along: int | None = None
+    best_known: float | None = None
     workers: int = 0
     scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
 
@@ -121,20 +117,18 @@ def _compare(arguments: Sequence[str]) -> None:
     options = parse_options(CompareOptions, COMMAND, arguments, _defaults(arguments))
     if options.out is None:
         raise ConfigurationError("give a folder for the race: --out DIR")
-    if SESSION.owns(options.out):
-        raise ConfigurationError(f"{options.out} is the folder of a session: name another for the race")
     check_range("seeds", options.seeds, 1, MOST_SEEDS)
     evaluations = evaluations_of(options.task, options.evaluations, options.evaluations_along)
     if options.best_known is not None:
         check_range("best-known", options.best_known, *SCORES)
     if not options.algorithms or len(set(options.algorithms)) < len(options.algorithms):
         raise ConfigurationError(f"algorithms must be different ones, at least one, not {options.algorithms!r}")
-    episode = with_engine(options.episode, options.engine)
+    episode = options.episode
     base = TrainingConfig(task=options.task, episodes=options.episodes, slots=options.slots, episode=episode)
     from sarah.robot.description import describe_robot
     from sarah.simulation.engines import check_engine
 
-    describe_robot(options.episode.dimensions)
+    describe_robot(episode.dimensions)
     check_engine(episode.engine)
     from sarah.episode.trial import try_task
     from sarah.episode.workers import Workers
@@ -148,7 +142,7 @@ def _compare(arguments: Sequence[str]) -> None:
     try_task(options.task, episode)
     make_folder(options.out)
     with Workers(options.workers, options.scheduler) as workers:
-        say_engine(episode, options.engine)
+        say_engine(episode)
         try:
             curves = race(entries, workers, progress_bar=True)
         except KeyboardInterrupt:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +15,6 @@ from sarah.cli.episode_options import (
     for_given_robot,
     given_options,
     parse_episode_options,
-    with_engine,
 )
 from sarah.cli.next_steps import passed_on, say_next
 from sarah.cli.options import named_task, run_command
@@ -79,13 +79,13 @@ def _describe(arguments: Sequence[str]) -> None:
     from sarah.robot.description import describe_robot
     from sarah.robot.dimensions import all_dimensions
 
-    config = with_engine(options.episode, options.engine)
+    config = options.episode
     robot = describe_robot(config.dimensions)
     make_folder(options.out)
     picture, urdf = options.out / f"{NAME}.png", options.out / f"{NAME}.urdf"
     for file in (picture, urdf):
         check_file(file)
-    print("\n".join(lines_of(config, with_engine((task or STEPPING).episode, config.engine))))
+    print("\n".join(lines_of(config, dataclasses.replace((task or STEPPING).episode, engine=config.engine))))
     replace_text(urdf, robot.urdf)
     draw_dimensions(robot, all_dimensions(config.dimensions), picture)
     print(picture)

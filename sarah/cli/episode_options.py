@@ -18,13 +18,14 @@ from typing import Annotated, Any, TypeVar, get_args
 import tyro
 
 from sarah.cli.options import dimension_words, named_task, parse_options
-from sarah.cli.subjects import episode_of, is_shipped, is_there
+from sarah.cli.subjects import episode_of, is_there
 from sarah.cli.value_rules import named_numbers
 from sarah.episode.push import NO_PUSH, PushedConfig
 from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
+from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
+from sarah.episode.tasks import BALANCE, STEPPING, TASKS
 from sarah.errors import ConfigurationError, unknown_name
+from sarah.ranges import Within, check_ranges
 from sarah.simulation.engines import Engine
 from sarah.simulation.physics import PHYSICS, named_physics
 
@@ -45,18 +46,17 @@ class EpisodeOptions:
 
     :param task: task of the numbers, or of a run folder whose task is that of a file, such as my_task.py:JUMP. By
         default five numbers are P1 to P5, and four are V1 to V4
-    :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
     :param physics: ``standard``, or ``reference``: 1 kHz and 100 solver iterations; by default as in the training
-    :param randomisation: whether friction, masses, sensors and so on vary by seed, or stay as designed: short for
-        --episode.randomisation.enabled
     :param episode: settings of the episodes; by default those of the run folder, or the task's own
     """
 
     task: Annotated[str | None, tyro.conf.arg(metavar="TASK")] = None
-    engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
     physics: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
-    randomisation: Annotated[bool, tyro.conf.arg(help_behavior_hint="(default: they vary)")] = True
     episode: EpisodeConfig = EpisodeConfig()
+
+    def __post_init__(self) -> None:
+        """Refuse numbers outside their ranges."""
+        check_ranges("", self)
 
     def applied_to(self, spec: EpisodeSpec) -> EpisodeSpec:
         """Specification of an episode with the settings that the options ask for.
@@ -68,14 +68,12 @@ class EpisodeOptions:
 
         if isinstance(spec.task, RecordedTask):
             refuse_to_simulate(spec.task)
-        config = with_engine(self.episode, self.engine)
+        config = self.episode
         if self.physics is not None:
             if self.physics not in PHYSICS:
                 raise ConfigurationError(unknown_name("physics", self.physics, PHYSICS))
             chosen = named_physics(self.physics, config.scale, config.physics.control_rate)
             config = dataclasses.replace(config, physics=chosen)
-        if not self.randomisation:
-            config = dataclasses.replace(config, randomisation=dataclasses.replace(config.randomisation, enabled=False))
         if isinstance(config, PushedConfig) and not spec.task.has_push and config.push.newtons == NO_PUSH.newtons:
             config = spec.task.config_of(config)
         if isinstance(config, PushedConfig) and config.push.newtons != NO_PUSH.newtons:
@@ -83,17 +81,30 @@ class EpisodeOptions:
         return dataclasses.replace(spec, config=config)
 
 
+@dataclass(frozen=True)
+class UnseenOptions(EpisodeOptions):
+    """Options of commands that simulate on seeds which no training has seen.
+
+    :param episodes: number of episodes; of a table, at each force, on each ground or in each engine
+    :param first_seed: seed of the first episode; the others follow. No training has seen the default: trainings draw
+        seeds from 2^31 up, and their summaries begin at 0
+    :param workers: number of processes on this machine that simulate; with 0, this process does. It changes no result
+    :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
+    """
+
+    episodes: Annotated[int, Within(1, 1_000_000)] = 20
+    first_seed: Annotated[int, Within(0, 2**32 - 1)] = FIRST_EVALUATION_SEED
+    workers: int = 0
+    scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
+
+    @property
+    def seeds(self) -> range:
+        """Seeds of the episodes."""
+        return range(self.first_seed, self.first_seed + self.episodes)
+
+
 OptionsType = TypeVar("OptionsType", bound=EpisodeOptions)
 ConfigType = TypeVar("ConfigType", bound=EpisodeConfig)
-
-
-def with_engine(episode: EpisodeConfig, engine: str | None) -> EpisodeConfig:
-    """Episode settings with the physics engine that a command was given.
-
-    :param episode: settings of episodes
-    :param engine: value of --engine; if ``None``, the settings keep their engine
-    """
-    return episode if engine is None else dataclasses.replace(episode, engine=engine)  # type: ignore[arg-type]  # checked
 
 
 def parse_episode_options(
@@ -114,7 +125,8 @@ def parse_episode_options(
     given = given_options(arguments, "task", "which", "engine", "episode.engine", *DIRECTIONS)
     task = named_task(given.get("task"))
     subject = subject or _subject_among(arguments, default, given)
-    own = adapted(_settings_of(subject, given.get("which"), task) if subject else (task or STEPPING).episode, subject)
+    shown = episode_of(subject, given.get("which"), task).spec.config if subject else (task or STEPPING).episode
+    own = adapted(shown, subject)
     if type(own) is EpisodeConfig:  # any robot can be pushed, whether its task has a push or not
         own = PushedConfig(**vars(own), push=own.scale.scaled(NO_PUSH))
     episode = with_given_directions(with_given_engine(own, given), given)
@@ -145,27 +157,6 @@ def _subject_among(arguments: Sequence[str], default: EpisodeOptions, given: Map
     return subject if subject is not None and is_there(subject) else None
 
 
-def _settings_of(subject: str, which: str | None, task: Task[Any] | None) -> EpisodeConfig:
-    """Settings to begin from; those of shipped parameters are found without what run folders need."""
-    from sarah.episode.parameter_sets import PARAMETER_SETS
-
-    if task is None and is_shipped(subject):
-        return PARAMETER_SETS[subject].spec.config
-    return episode_of(subject, which, task).spec.config
-
-
-def check_has(config: EpisodeConfig, name: str, option: str) -> None:
-    """Refuse an option whose setting a task does not have.
-
-    :param config: settings of the task's episodes
-    :param name: name of the setting
-    :param option: name of the option, without dashes
-    """
-    if not hasattr(config, name):
-        tasks = " or ".join(task.name for task in TASKS.values() if hasattr(task.episode, name))
-        raise ConfigurationError(f"--{option} is for --task {tasks}")
-
-
 def check_episode_options(arguments: Sequence[str], config: EpisodeConfig) -> None:
     """Refuse ``--episode.…`` options whose settings only another task has, or that a short option sets as well.
 
@@ -179,10 +170,11 @@ def check_episode_options(arguments: Sequence[str], config: EpisodeConfig) -> No
     for short, long in SET_TWICE:
         if short in names and long in names:
             raise ConfigurationError(f"{short} and {long} set the same: give one of them")
-    for argument in arguments:
-        name = argument.removeprefix("--episode.").split(".")[0].replace("-", "_")
-        if argument.startswith("--episode.") and any(hasattr(task.episode, name) for task in TASKS.values()):
-            check_has(config, name, argument.removeprefix("--").split("=")[0])
+    for name in names:
+        setting = name.removeprefix("--episode.").partition(".")[0].replace("-", "_")
+        having = [task.name for task in TASKS.values() if hasattr(task.episode, setting)]
+        if name.startswith("--episode.") and having and not hasattr(config, setting):
+            raise ConfigurationError(f"{name} is for --task {' or '.join(having)}")
 
 
 def given_options(arguments: Sequence[str], *names: str) -> dict[str, str]:
@@ -208,8 +200,10 @@ def with_given_engine(episode: EpisodeConfig, given: Mapping[str, str]) -> Episo
     :param episode: settings of episodes
     :param given: values of the options that were given, by name; ``engine`` and ``episode.engine`` are used
     """
-    engine = given.get("engine", given.get("episode.engine"))
-    return with_engine(episode, engine if engine in get_args(Engine) else None)  # the real parser reports others
+    engine: Any = given.get("engine", given.get("episode.engine"))
+    if engine not in get_args(Engine):  # the real parser reports others
+        return episode
+    return dataclasses.replace(episode, engine=engine)
 
 
 def for_given_robot(episode: ConfigType, arguments: Sequence[str], usual: EpisodeConfig | None = None) -> ConfigType:

@@ -12,16 +12,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
+from sarah.cli.episode_options import UnseenOptions, parse_episode_options
 from sarah.cli.former_names import with_out
-from sarah.cli.next_steps import Step, passed_on, say_next, to_report, to_see
+from sarah.cli.next_steps import Step, passed_on, say_next, to_see
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import learned_of
 from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
+from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
-from sarah.errors import ConfigurationError, check_range
+from sarah.errors import ConfigurationError
 from sarah.files import make_folder
+from sarah.ranges import Within
 from sarah.runs.kinds import SESSION
 from sarah.streams import check_output
 
@@ -31,10 +32,6 @@ if TYPE_CHECKING:
 COMMAND = "sarah-eval"
 NOT_OF_VIEW = ("robustness", "terrain", "out", "forces", "episodes", "first-seed", "json", "workers", "scheduler")
 """Options that the viewer has not."""
-LARGEST_SEED = 2**32 - 1
-MOST_EPISODES = 1_000_000
-SMALLEST_FORCE, LARGEST_FORCE = 0.01, 10_000.0
-"""Range of the forces of pushes, in N."""
 REPLACED = {
     "terrain": ("--episode.terrain.", "--episode.push.", "--episode.time-limit"),
     "robustness": (
@@ -46,45 +43,32 @@ REPLACED = {
 
 
 @dataclass(frozen=True)
-class EvalOptions(EpisodeOptions):
+class EvalOptions(UnseenOptions):
     """Simulate learned, given or shipped parameters on unseen seeds, and summarise the episodes.
 
     :param subject: run folder of a finished training, numbers separated by commas (P1 to P5 for stepping, or V1 to V4
         for the task balance), or the name of shipped parameters: ``paper``, ``stepping`` or ``balance``, which comes
         back from a push
     :param robustness: whether to write a table and a polar plot of survival by force and direction of the push, for
-        these parameters and the baseline. --episodes is the number at each force
+        these parameters and the baseline
     :param forces: forces of the pushes of --robustness, in N; by default 25 to 150 N for the default robot, and as
         much of its weight for another
     :param terrain: whether to write a table and a picture of score, steps and survival on slopes, bumps and slippery
-        ground, for 10 s without a push, and with one of 75 N for 30 kg at 2 to 4 s. --episodes is the number on each
-        ground
+        ground, for 10 s without a push, and with one of 75 N for 30 kg at 2 to 4 s
     :param out: folder for the table and the picture of --robustness or --terrain
-    :param episodes: number of episodes
-    :param first_seed: seed of the first episode; the others follow. No training has seen the default: trainings draw
-        seeds from 2^31 up, and their summaries begin at 0
     :param json: whether to print one JSON object
-    :param workers: number of processes on this machine that simulate; with 0, this process does. It changes no result
-    :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
     """
 
     subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"
     robustness: bool = False
     terrain: bool = False
     out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
-    forces: Annotated[tuple[float, ...], tyro.conf.arg(metavar="FLOAT...", help_behavior_hint="(by weight)")] = ()
-    episodes: int = 20
-    first_seed: int = FIRST_EVALUATION_SEED
+    forces: tuple[Annotated[float, Within(0.01, 10_000.0, "N")], ...] = ()
     json: bool = False
-    workers: int = 0
-    scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
 
     def __post_init__(self) -> None:
         """Refuse numbers outside their ranges, and outputs that exclude each other."""
-        check_range("episodes", self.episodes, 1, MOST_EPISODES)
-        check_range("first-seed", self.first_seed, 0, LARGEST_SEED)
-        for newtons in self.forces:
-            check_range("forces", newtons, SMALLEST_FORCE, LARGEST_FORCE, "N")
+        super().__post_init__()
         tables = [f"--{option}" for option in ("robustness", "terrain") if getattr(self, option)]
         if self.json and tables:
             raise ConfigurationError(f"{tables[0]} prints a table, not JSON: leave --json out")
@@ -92,11 +76,6 @@ class EvalOptions(EpisodeOptions):
             raise ConfigurationError(f"{tables[0]} needs a folder for table and picture: --out DIR")
         if self.out is not None and not tables:
             raise ConfigurationError("--out is the folder of --robustness or --terrain: give one of them")
-
-    @property
-    def seeds(self) -> range:
-        """Seeds of the episodes."""
-        return range(self.first_seed, self.first_seed + self.episodes)
 
 
 def main() -> None:
@@ -132,7 +111,7 @@ def _evaluate(arguments: Sequence[str]) -> None:
         if options.out is not None:
             say_next(*_next_steps(options, arguments))
             return
-        say_engine(spec.config, options.engine)
+        say_engine(spec.config)
         shown = partial(tqdm, total=options.episodes, unit=" episodes", leave=False, disable=None)
         evaluation = evaluate(spec.task, spec.parameters, spec.config, options.seeds, workers, shown)
         neutral = spec.task.neutral
@@ -160,7 +139,8 @@ def _next_steps(options: EvalOptions, arguments: Sequence[str]) -> Iterator[Step
     first = ("--seed", str(options.first_seed))
     yield to_see(options.subject, *passed_on(arguments, options.subject, *NOT_OF_VIEW), *first)
     if Path(options.subject).is_dir() and not SESSION.owns(Path(options.subject)):
-        yield to_report(options.subject, *([] if options.task is None else ["--task", options.task]))
+        typed = [] if options.task is None else ["--task", options.task]
+        yield "have it on one page", ("sarah-report", options.subject, *typed)
 
 
 def _show_robustness(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions, workers: Workers) -> None:
@@ -171,7 +151,7 @@ def _show_robustness(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions
 
     folder, neutral, parameters, config = options.out, BALANCE.neutral, spec.parameters, spec.config
     assert folder is not None and neutral is not None and isinstance(config, BalanceConfig)
-    say_engine(config, options.engine)
+    say_engine(config)
     names = ("V = 0", f"V = ({', '.join(f'{value:.2f}' for value in parameters)})")
     forces = options.forces or forces_for(config.scale)
     pushed = push_many((neutral, parameters), config, workers, forces, options.episodes, options.first_seed)
@@ -222,7 +202,7 @@ def _show_terrain(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions, w
 
     folder = options.out
     assert folder is not None
-    say_engine(spec.config, options.engine)
+    say_engine(spec.config)
     tried = list(situations(spec.config.scale))
     progress = partial(tqdm, total=len(tried) * options.episodes, unit=" episodes")
     rows = try_terrain(spec.task, spec.parameters, spec.config, options.seeds, workers, tried, progress)

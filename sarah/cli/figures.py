@@ -9,9 +9,8 @@ from typing import Annotated
 
 import tyro
 
-from sarah.cli.next_steps import say_next, to_open, to_report
+from sarah.cli.next_steps import Step, say_next, to_open
 from sarah.cli.options import named_task, parse_options, run_command
-from sarah.cli.subjects import check_of_training
 from sarah.errors import ConfigurationError
 
 COMMAND = "sarah-figures"
@@ -48,8 +47,6 @@ def _draw(arguments: Sequence[str]) -> None:
         raise ConfigurationError("give at least one run folder")
     if options.out is None and len(options.runs) > 1:
         raise ConfigurationError("several runs need a folder for their figures: --out DIR")
-    for path in options.runs:
-        check_of_training(path)
     from sarah.runs.run_folder import RunFolder
     from sarah.runs.run_record import RunRecord
 
@@ -62,5 +59,5 @@ def _draw(arguments: Sequence[str]) -> None:
     for file in files:
         print(file)
     typed = [] if options.task is None else ["--task", options.task]
-    reports = [to_report(options.runs[0], *typed)] if len(runs) == 1 else []
+    reports: list[Step] = [("have it on one page", ("sarah-report", options.runs[0], *typed))] if len(runs) == 1 else []
     say_next(to_open(next(file for file in files if file.suffix == ".png")), *reports)

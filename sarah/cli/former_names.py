@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping, Sequence
 
-from sarah.errors import ConfigurationError
 from sarah.files import quoted
 
 OUT = "--out"
@@ -20,11 +19,10 @@ def with_out(
     :param arguments: arguments after the command's name
     :param former: words that take the place of a former option, by its name; the last of them is ``--out``
     :param bare: number of words at the beginning, none of them an option, behind which the place to write stood alone
-    :raises ConfigurationError: if former options give two places to write to
     """
     if OUT in (argument.partition("=")[0] for argument in arguments):
         return list(arguments)
-    words, places = list[str](), list[str]()
+    words = list[str]()
     for index, argument in enumerate(arguments):
         option, equals, value = argument.partition("=")
         place = value if equals else "".join(arguments[index + 1 : index + 2])
@@ -33,13 +31,10 @@ def with_out(
             words += [OUT, argument]
             say_present(command, argument, OUT, argument)
         elif present is not None and place and (equals or not place.startswith("-")):
-            places.append(place)
             words += [*present.split(), *([value] if equals else [])]
             say_present(command, f"{option} {place}", present, place)
         else:
             words.append(argument)
-    if len(set(places)) > 1:
-        raise ConfigurationError(f"give one {OUT} instead of {' and '.join(places)}")
     return words
 
 

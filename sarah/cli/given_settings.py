@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sarah.cli.episode_options import for_given_robot
-from sarah.cli.subjects import check_of_training
 from sarah.cli.training_defaults import BALANCE_TRAINING
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, Task
 from sarah.errors import ConfigurationError
@@ -68,7 +67,6 @@ def say_differences(path: Path, episode: BalanceConfig) -> None:
 def _first_training(path: Path) -> RunFolder:
     from sarah.runs.run_folder import RunFolder
 
-    check_of_training(path)
     run = RunFolder.open(path)
     learned = run.config().task
     if learned is not STEPPING:

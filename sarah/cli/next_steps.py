@@ -39,30 +39,12 @@ def to_see(subject: str | Path, *others: str) -> Step:
     return "see it", ("sarah-view", *words) if find_spec("viser") else ("sarah-video", *words, "--out", "episode.gif")
 
 
-def to_test(subject: Path, *others: str) -> Step:
-    """Step to more episodes, on unseen seeds.
-
-    :param subject: folder of a training or a session
-    :param others: other words of the command
-    """
-    return "test it", ("sarah-eval", subject, *others)
-
-
 def to_watch(folder: Path) -> Step:
     """Step to the curves in TensorBoard.
 
     :param folder: folder of a training or a session, or a folder of some
     """
     return "watch its curves", ("tensorboard", "--logdir", folder)
-
-
-def to_report(run: str | Path, *others: str) -> Step:
-    """Step to a page about a training.
-
-    :param run: run folder
-    :param others: other words of the command
-    """
-    return "have it on one page", ("sarah-report", run, *others)
 
 
 def to_open(file: Path) -> Step:

@@ -15,7 +15,7 @@ from sarah.cli.episode_options import EpisodeOptions, given_options, parse_episo
 from sarah.cli.former_names import say_present, with_out
 from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import interruptible
-from sarah.cli.next_steps import say_next, to_see, to_test, to_watch
+from sarah.cli.next_steps import say_next, to_see, to_watch
 from sarah.cli.operated import OperatedConfig, say_differences, settings_in_operation, times_of_session
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episode_of, is_shipped
@@ -109,7 +109,7 @@ def _operate(arguments: Sequence[str]) -> None:
     if folder.frozen is not None:
         frozen = _watched(partial(compare_frozen, folder, spec, result), spec, folder.path, "without learning ")
     _summarise(result, frozen, spec, folder.path)
-    say_next(to_see(folder.path), to_test(folder.path), to_watch(folder.path))
+    say_next(to_see(folder.path), ("test it", ("sarah-eval", folder.path)), to_watch(folder.path))
 
 
 def _begun(options: OperateOptions) -> SessionFolder:
@@ -127,7 +127,7 @@ def _begun(options: OperateOptions) -> SessionFolder:
         check_engine(spec.config.robot_after(count).engine)
     path = options.out or new_path("operation", f"{spec.learner}-s{spec.seed}")
     folder = SessionFolder.create(path, spec, options.compare_frozen)
-    say_engine(spec.config.robot, options.engine)
+    say_engine(spec.config.robot)
     if Path(options.subject).is_dir() or is_shipped(options.subject):  # numbers have no settings
         of_subject = episode_of(options.subject, None, named_task(options.task)).spec
         say_differences(options.subject, of_subject, spec.config.robot)

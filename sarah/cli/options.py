@@ -25,7 +25,7 @@ from sarah.files import is_text
 from sarah.number import NUMBER
 from sarah.ranges import Range, types_of
 from sarah.simulation.engines import default_engine
-from sarah.streams import check_output, keep_streams, say_lost_output
+from sarah.streams import check_output, keep_streams
 
 OptionsType = TypeVar("OptionsType")
 USAGE_ERROR = 2
@@ -36,12 +36,6 @@ PYTHON_WORDS = {
     r"^Error parsing (\S+): Could not parse arguments (.*) into tuple type .*": r"\1 must be numbers, not \2",
     r"^Error parsing (--forces): Could not find valid parse for arguments: (.*)": r"\1 must be numbers, not \2",
     r"^Error parsing (\S+): Could not find valid parse for arguments: (.*)": r"\1 must be whole numbers, not \2",
-    r"^Error parsing (\S+): no type matching \{None\}\|INT could be instantiated from \[(.*?)\]\.\s+Got errors.*": (
-        r"\1 must be a whole number, not \2"
-    ),
-    r"^Error parsing (\S+): no type matching \{None\}\|FLOAT could be instantiated from \[(.*?)\]\.\s+Got errors.*": (
-        r"\1 must be a number, not \2"
-    ),
     r"^Error parsing (\S+): no type matching (\S+) could be instantiated from (.*?)\.\s+Got errors.*": (
         r"\1 must be \2, not \3"
     ),
@@ -102,17 +96,6 @@ def dimension_words(arguments: Sequence[str]) -> list[str]:
     )
 
 
-def _with_all_dimensions(arguments: Sequence[str], config: Any) -> list[str]:
-    """Arguments whose dimensions come beside those that the default options have already."""
-    given = dimension_words(arguments)
-    if not given:
-        return list(arguments)
-    episode = config.episode if hasattr(config, "episode") else config.training.episode
-    index = len(arguments) - 1 - list(reversed(arguments)).index(DIMENSIONS)
-    kept = [word for name, value in episode.dimensions.items() if name not in given for word in (name, repr(value))]
-    return [*arguments[: index + 1], *kept, *arguments[index + 1 :]]
-
-
 def _checked(words: Sequence[str]) -> Sequence[str]:
     """Arguments, none of which is empty, or a name that no file, message or page could hold.
 
@@ -161,7 +144,7 @@ def parse_options(
     errors = io.StringIO()
     try:
         with contextlib.redirect_stderr(errors):
-            return parse(args=_checked(_with_both_ends(_with_all_dimensions(arguments, default), default)))
+            return parse(args=_checked(_with_both_ends(arguments, default)))
     except SystemExit as exit_request:
         if not exit_request.code:
             check_output()
@@ -169,14 +152,15 @@ def parse_options(
     help_text = io.StringIO()
     with contextlib.redirect_stdout(help_text), contextlib.suppress(SystemExit):
         parse(args=["--help"])
-    fail(command, _one_line(errors.getvalue(), re.findall(r"(?m)^[│\s]*--([\w-]+)(?![\w.-])", help_text.getvalue())))
+    names = " ".join(line for line in help_text.getvalue().splitlines() if line.startswith(("│ --", "  --")))
+    fail(command, _one_line(errors.getvalue(), re.findall(r"--[\w.-]+", names)))
 
 
-def _one_line(box: str, ungrouped: Sequence[str]) -> str:
-    """Message in tyro's frame, with the name that is nearest: one that is in no group, or what tyro suggests.
+def _one_line(box: str, options: Sequence[str]) -> str:
+    """Message in tyro's frame, with the option that is nearest to an unknown one.
 
     :param box: what tyro printed
-    :param ungrouped: names of the options that are in no group
+    :param options: all options
     """
     # The title is dropped. A terminal without frames gets plain rules, and one of them comes first.
     text = " ".join(line.strip("╭╮╰╯│ ") for line in box.splitlines()[1:])
@@ -187,14 +171,12 @@ def _one_line(box: str, ungrouped: Sequence[str]) -> str:
     for pattern, words in PYTHON_WORDS.items():
         message = re.sub(pattern, words, message)
     message = re.sub(r"^(Unrecognized options: --[^,]*),.*", r"\1", message)
-    unknown = re.match(r"Unrecognized options: --(?!no-)([\w-]+)$", message)
-    if unknown and (nearest := get_close_matches(unknown[1], ungrouped, n=1, cutoff=0.8)):
-        return f"{message}, did you mean --{nearest[0]}?"
-    meant = re.search(r"Perhaps you meant:\s+(--[\w.-]+)(?:, (--[\w.-]*no-[\w.-]+))?", text)
-    if not meant:
+    unknown = message.removeprefix("Unrecognized options: ")
+    if unknown == message:
         return message
-    is_negative = re.match(r"Unrecognized options: --([\w.-]+\.)?no[-_]", message)
-    return f"{message}, did you mean {meant[2] if meant[2] and is_negative else meant[1]}?"
+    longer = sorted((option for option in options if option.startswith(unknown)), key=len)
+    nearest = longer or get_close_matches(unknown, options, n=1, cutoff=0.8)
+    return f"{message}, did you mean {nearest[0]}?" if nearest else message
 
 
 def pushed_words(config: EpisodeConfig) -> str:
@@ -207,13 +189,12 @@ def pushed_words(config: EpisodeConfig) -> str:
     return f"pushed by {newtons}" if high else "not pushed"
 
 
-def say_engine(config: EpisodeConfig, asked: str | None) -> None:
-    """Print on standard error that MuJoCo simulates because PyBullet is missing, unless an engine was asked for.
+def say_engine(config: EpisodeConfig) -> None:
+    """Print on standard error that MuJoCo simulates because PyBullet is missing.
 
     :param config: settings of the episodes
-    :param asked: value of --engine, or ``None``
     """
-    if asked is None and config.engine == default_engine() != "pybullet":
+    if config.engine == default_engine() != "pybullet":
         print("PyBullet is not installed, so MuJoCo simulates", file=sys.stderr)
 
 
@@ -226,27 +207,10 @@ def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
     os.environ["MPLBACKEND"] = "Agg"  # figures are files, also where there is a display
     keep_streams()
     try:
-        _check_surroundings()
+        os.getcwd()  # torch ends the process if the working folder is gone
         main(sys.argv[1:])
     except (SarahError, OSError) as error:
         fail(command, str(error))
     except KeyboardInterrupt:
         print(f"\n{command}: interrupted", file=sys.stderr)
         raise SystemExit(130) from None
-    say_lost_output(command)
-
-
-def _check_surroundings() -> None:
-    """Refuse what a library of ours would not survive.
-
-    :raises ConfigurationError: naming what it is
-    """
-    try:
-        os.getcwd()
-    except OSError:
-        raise ConfigurationError("the working folder does not exist any more: change to another one") from None
-    if any(name.startswith("TQDM_") for name in os.environ):
-        try:
-            import tqdm  # noqa: F401
-        except ValueError as error:
-            raise ConfigurationError(f"a variable TQDM_... of the environment has a wrong value: {error}") from None

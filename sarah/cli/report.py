@@ -11,7 +11,6 @@ import tyro
 
 from sarah.cli.next_steps import say_next, to_open, to_see
 from sarah.cli.options import named_task, parse_options, run_command
-from sarah.cli.subjects import check_of_training
 from sarah.errors import ConfigurationError
 
 COMMAND = "sarah-report"
@@ -58,7 +57,6 @@ def _report(arguments: Sequence[str]) -> None:
     options = parse_options(ReportOptions, COMMAND, arguments, ReportOptions())
     if options.run is None:
         raise ConfigurationError("give a run folder")
-    check_of_training(options.run)
     from sarah.episode.workers import Workers
     from sarah.reports.report import write_report
     from sarah.runs.run_folder import RunFolder

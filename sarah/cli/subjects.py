@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sarah.episode.tasks import Task
-from sarah.errors import ConfigurationError, RunFolderError, shortened, unknown_name
+from sarah.errors import ConfigurationError, shortened, unknown_name
 from sarah.number import number
 from sarah.runs.kinds import SESSION
 
@@ -67,12 +67,8 @@ def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tupl
                 f"{subject!r} are parameters of task {given.spec.task.name!r}: give others, or leave --task out"
             )
     elif subject.strip(" +-.")[:1].isdigit():
-        given = episode_of_parameters(numbers("parameters", subject), task)
+        given = episode_of_parameters(numbers(subject), task)
     else:
-        if Path(subject).is_file():
-            raise ConfigurationError(f"{subject} is a file: name the run folder that it is in")
-        if "/" in subject:
-            raise ConfigurationError(f"run folder {subject:.300} does not exist")
         names = unknown_name("name of parameters", subject, PARAMETER_SETS)
         raise ConfigurationError(
             f"{shortened(subject)} is neither a run folder, nor numbers separated by commas: {names}"
@@ -108,11 +104,10 @@ def learned_of(subject: str, task: Task[Any] | None) -> tuple[EpisodeSpec, str |
     :raises RunFolderError: if the folder has no learned parameters
     """
     if SESSION.owns(Path(subject)):
+        from sarah.runs.session_episodes import learned_of_session
         from sarah.runs.session_folder import SessionFolder
 
-        session = SessionFolder.open(Path(subject))
-        session.parameters()
-        return episode_of(subject, None, task).spec, session.spec().learner
+        return learned_of_session(Path(subject)).spec, SessionFolder.open(Path(subject)).spec().learner
     if Path(subject).is_dir():
         from sarah.runs.run_episodes import learned_episode
         from sarah.runs.run_folder import RunFolder
@@ -123,24 +118,13 @@ def learned_of(subject: str, task: Task[Any] | None) -> tuple[EpisodeSpec, str |
     return episode_of(subject, None, task).spec, None
 
 
-def check_of_training(path: Path) -> None:
-    """Refuse the folder of a session, for what looks at trainings only.
+def numbers(text: str) -> tuple[float, ...]:
+    """Read parameters, as numbers that are separated by commas.
 
-    :param path: path of a folder
-    :raises RunFolderError: if it is a session's
-    """
-    if SESSION.owns(path):
-        raise RunFolderError(f"{path} is the folder of a session, not of a training: session.png in it is its figure")
-
-
-def numbers(name: str, text: str) -> tuple[float, ...]:
-    """Read numbers that are separated by commas.
-
-    :param name: name of the option in messages
     :param text: text that a user gave
     :raises ConfigurationError: if one of them is not a number
     """
     try:
         return tuple(number(value.strip(" ")) for value in text.split(","))
     except ValueError:
-        raise ConfigurationError(f"{name} must be numbers separated by commas, not {shortened(text)}") from None
+        raise ConfigurationError(f"parameters must be numbers separated by commas, not {shortened(text)}") from None

@@ -17,7 +17,6 @@ from sarah.cli.episode_options import (
     check_episode_options,
     for_given_robot,
     given_options,
-    with_engine,
     with_given_directions,
     with_given_engine,
 )
@@ -25,9 +24,8 @@ from sarah.cli.former_names import with_out
 from sarah.cli.given_settings import say_differences, settings_of_file, settings_on_stepping
 from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import interruptible
-from sarah.cli.next_steps import say_next, to_see, to_test, to_watch
+from sarah.cli.next_steps import say_next, to_see, to_watch
 from sarah.cli.options import named_task, parse_options, pushed_words, run_command, say_engine
-from sarah.cli.subjects import check_of_training
 from sarah.cli.train_text import say_learned
 from sarah.cli.training_defaults import default_training
 from sarah.episode.push import PushedConfig
@@ -64,7 +62,6 @@ class TrainOptions:
     unless --from is given.
 
     :param training: settings of the training
-    :param engine: physics engine, ``pybullet`` or ``mujoco``: short for --episode.engine
     :param out: run folder to write, new or empty; by default a new one, runs/<task>/<algo>-s<seed>
     :param config: YAML file of settings, like the config.yaml of any run folder
     :param resume: run folder of an interrupted training to go on with, with its settings; the result is the same as
@@ -76,7 +73,6 @@ class TrainOptions:
     """
 
     training: Annotated[TrainingConfig, tyro.conf.arg(name="")] = TrainingConfig()
-    engine: Annotated[str | None, tyro.conf.arg(metavar="STR")] = None
     out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     config: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     resume: Annotated[Path | None, tyro.conf.arg(metavar="RUN")] = None
@@ -97,7 +93,6 @@ def _train(arguments: Sequence[str]) -> None:
     arguments = with_out(COMMAND, arguments, {"--run-dir": "--out"})
     options = parse_options(TrainOptions, COMMAND, arguments, _defaults(arguments))
     config = options.training
-    config = dataclasses.replace(config, episode=with_engine(config.episode, options.engine))
     if options.from_run is not None and config.task is not BALANCE:
         same = f": to train again with its settings, say --config {quoted(options.from_run / 'config.yaml')}"
         raise ConfigurationError(f"--from is for --task {BALANCE.name}, not {config.task.reference!r}{same}")
@@ -121,19 +116,20 @@ def _train(arguments: Sequence[str]) -> None:
         if run.is_finished and config.episodes == run.config().episodes:
             print(finished_words(options.resume, "--episodes", config.episodes))
             return
-        run.check_origin(run.config())
+        with run.journal_of(run.config()):  # what cannot go on is refused before workers start
+            pass
 
     from sarah.episode.trial import try_task
 
     try_task(config.task, config.episode)
     with Workers(options.workers, options.scheduler) as workers:
         if options.resume is not None:
-            run = RunFolder.resumable(options.resume, config.task)
+            run = RunFolder.open(options.resume, unfinished=True, task=config.task)
             if run.is_finished:  # only now that somebody can simulate
                 config = _extended(run, config)
         else:
             run = RunFolder.create(options.out or new_path(config.task.name, f"{config.algo}-s{config.seed}"), config)
-        say_engine(config.episode, options.engine)
+        say_engine(config.episode)
         pushed = f", {pushed_words(config.episode)}" if isinstance(config.episode, PushedConfig) else ""
         what = f"{config.algo} on {config.task.name}{pushed}"
         doing = "training" if options.resume is None else "resuming the training of"
@@ -149,14 +145,14 @@ def _train(arguments: Sequence[str]) -> None:
         learned = _learned(config, run, workers, " ".join(f" --task {quoted(task)}" for task in named.values()))
     say_learned(config, learned, run.path)
     typed = [word for value in named.values() for word in ("--task", value)]
-    say_next(to_see(run.path, *typed), to_test(run.path, *typed), to_watch(run.path))
+    say_next(to_see(run.path, *typed), ("test it", ("sarah-eval", run.path, *typed)), to_watch(run.path))
 
 
 def _resumed(path: Path, options: TrainOptions, config: TrainingConfig) -> RunFolder:
     """Open the run folder to go on with."""
     from sarah.runs.run_folder import RunFolder
 
-    run = RunFolder.resumable(path, config.task)
+    run = RunFolder.open(path, unfinished=True, task=config.task)
     if options.out is not None or options.config is not None or options.from_run is not None:
         raise ConfigurationError("--resume goes on with a training as it is: leave --out, --config and --from out")
     there = dataclasses.replace(run.config(), pictures=config.pictures)  # they change no result
@@ -224,13 +220,12 @@ def _resumed_defaults(path: Path, given: Mapping[str, str]) -> TrainOptions:
     from sarah.runs.recorded_task import RecordedTask
     from sarah.runs.run_folder import RunFolder
 
-    check_of_training(path)
-    task, training = None, RunFolder.resumable(path).config()
+    task, training = None, RunFolder.open(path, unfinished=True).config()
     if "task" in given:
         task = load_task(given["task"])
         if task.file is None:
             check_same(path, "training", "task", training.task.reference, task.reference)
-        training = RunFolder.resumable(path, task).config()
+        training = RunFolder.open(path, unfinished=True, task=task).config()
     if isinstance(training.task, RecordedTask):
         raise ConfigurationError(f"--resume {path}: its task is that of a file: add --task {training.task.reference}")
     engine = given.get("engine", given.get("episode.engine", training.episode.engine))

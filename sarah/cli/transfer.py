@@ -10,11 +10,11 @@ from typing import Annotated
 
 import tyro
 
-from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
+from sarah.cli.episode_options import UnseenOptions, parse_episode_options
 from sarah.cli.next_steps import say_next, to_open
 from sarah.cli.options import named_task, run_command
 from sarah.cli.subjects import learned_of
-from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
+from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError
 from sarah.files import make_folder
 
@@ -22,7 +22,7 @@ COMMAND = "sarah-transfer"
 
 
 @dataclass(frozen=True)
-class TransferOptions(EpisodeOptions):
+class TransferOptions(UnseenOptions):
     """Simulate the learned parameters of trainings in both physics engines, on the same unseen seeds and pushes.
 
     A table of mean scores, survival, steps per second and vibration is printed, and written to a folder. A figure shows
@@ -32,10 +32,6 @@ class TransferOptions(EpisodeOptions):
     :param subjects: run folders of finished trainings, of any engine and task; numbers separated by commas; or names of
         shipped parameters. Each keeps its own settings, unless an option changes them
     :param out: folder for the table and the figure; by default ``figures`` in the run folder, if there is one run
-    :param episodes: number of episodes in each engine
-    :param first_seed: seed of the first episode; the others follow. Trainings use seeds from 2^31 up
-    :param workers: number of processes on this machine that simulate; with 0, this process does. It changes no result
-    :param scheduler: address of a Dask scheduler whose workers simulate instead, such as tcp://10.0.0.1:8786
     """
 
     subjects: Annotated[
@@ -44,10 +40,6 @@ class TransferOptions(EpisodeOptions):
         tyro.conf.arg(metavar="RUN|NUMBERS|NAME...", help_behavior_hint="(required)"),
     ] = ()
     out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
-    episodes: int = 20
-    first_seed: int = FIRST_EVALUATION_SEED
-    workers: int = 0
-    scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
 
 
 def main() -> None:
@@ -59,10 +51,6 @@ def _transfer(arguments: Sequence[str]) -> None:
     options = parse_episode_options(COMMAND, arguments, TransferOptions())
     if not options.subjects:
         raise ConfigurationError("give at least one run folder, numbers or a name")
-    if options.episodes < 1:
-        raise ConfigurationError(f"episodes must be at least 1, not {options.episodes!r}")
-    if options.first_seed < 0:
-        raise ConfigurationError(f"first-seed must not be negative, not {options.first_seed!r}")
     from sarah.reports.transfer import ENGINES
     from sarah.simulation.engines import check_engine
 
@@ -80,9 +68,8 @@ def _transfer(arguments: Sequence[str]) -> None:
     learned = [_learned(subject, spec, arguments) for subject, spec in zip(options.subjects, own, strict=True)]
     out = options.out or RunFolder(first).figures_path
     make_folder(out)
-    seeds = range(options.first_seed, options.first_seed + options.episodes)
     with Workers(options.workers, options.scheduler) as workers:
-        transfers = transfer(learned, seeds, workers)
+        transfers = transfer(learned, options.seeds, workers)
     table = "\n".join([as_markdown(transfers), "", *_about_settings(learned, own)])
     print(table)
     (out / "transfer.md").write_text(table + "\n", encoding="utf-8")

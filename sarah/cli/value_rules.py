@@ -5,14 +5,18 @@ from __future__ import annotations
 import dataclasses
 import functools
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, get_args
+from types import NoneType, UnionType
+from typing import Annotated, Any, Union, get_args
 
 import docstring_parser
 import tyro
 
 from sarah.episode.tasks import Task, load_task
-from sarah.number import is_number, number, whole_number
+from sarah.number import number, whole_number
 from sarah.ranges import ranges_of, types_of
+
+SHORT = {"engine": "--engine", "enabled": "--randomisation"}
+"""Short options of settings of episodes, by the settings' names."""
 
 
 def _task_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
@@ -42,28 +46,25 @@ def _range_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.
 
 
 def _number_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
-    """How tyro reads a number: tyro itself takes Python's spellings, such as ``0100`` and ``1_000``."""
-    if info.type not in (int, float):
+    """How tyro reads a number that may be none: it takes Python's spellings itself, such as ``0100`` and ``1_000``."""
+    kind, *others = get_args(info.type) if info.type_origin in (Union, UnionType) else (info.type,)
+    if kind not in (int, float) or others not in ([], [NoneType]):
         return None
     return tyro.constructors.PrimitiveConstructorSpec(
         nargs=1,
-        metavar="INT" if info.type is int else "FLOAT",
-        instance_from_str=lambda words: (whole_number if info.type is int else number)(words[0]),
-        is_instance=lambda value: is_number(value) and (info.type is float or isinstance(value, int)),
+        metavar="INT" if kind is int else "FLOAT",
+        instance_from_str=lambda words: (whole_number if kind is int else number)(words[0]),
+        is_instance=lambda value: isinstance(value, info.type),
         str_from_instance=lambda value: [str(value)],
     )
 
 
-def _dimensions_rule(
-    info: tyro.constructors.PrimitiveTypeInfo,
-) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
-    """How tyro reads dimensions: names and numbers in turn, also where some differ from their defaults already."""
-    if info.type_origin is not Mapping:
-        return None
+def _dimensions(given_already: Mapping[str, float]) -> tyro.constructors.PrimitiveConstructorSpec[Any]:
+    """How tyro reads dimensions: names and numbers in turn, beside those that differ from their defaults already."""
     return tyro.constructors.PrimitiveConstructorSpec(
         nargs="*",
         metavar="NAME FLOAT",
-        instance_from_str=named_numbers,
+        instance_from_str=lambda words: {**given_already, **named_numbers(words)},
         is_instance=lambda value: isinstance(value, Mapping),
         str_from_instance=lambda given: [word for name, value in given.items() for word in (name, f"{value:g}")],
     )
@@ -90,6 +91,10 @@ def _settings_rule(info: tyro.constructors.StructTypeInfo) -> tyro.constructors.
         hint = f"({within}; default: {{}})".format
         types[name] = Annotated[types_of(info.type)[name], tyro.conf.arg(help_behavior_hint=hint)]
     for name, kind in types.items():
+        if name == "dimensions":
+            kind = Annotated[kind, _dimensions(info.default.dimensions)]
+        if name in SHORT:
+            kind = Annotated[kind, tyro.conf.arg(aliases=[SHORT[name]])]
         meaning = functools.partial(_meaning, info.type, name)
         fields.append(tyro.constructors.StructFieldSpec(name, kind, getattr(info.default, name), meaning))
     return tyro.constructors.StructConstructorSpec(info.type, tuple(fields))
@@ -112,7 +117,6 @@ def meanings_of(config_type: type) -> dict[str, str]:
 
 REGISTRY = tyro.constructors.ConstructorRegistry()
 """Rules for tyro."""
-REGISTRY.primitive_rule(_dimensions_rule)
 REGISTRY.primitive_rule(_number_rule)
 REGISTRY.primitive_rule(_task_rule)
 REGISTRY.primitive_rule(_range_rule)

@@ -18,6 +18,7 @@ from sarah.cli.next_steps import passed_on, say_next, to_open, to_see
 from sarah.cli.options import named_task, run_command
 from sarah.cli.subjects import episode_of
 from sarah.errors import ConfigurationError
+from sarah.ranges import Within
 
 if TYPE_CHECKING:
     from sarah.episode.result import EpisodeResult
@@ -47,14 +48,13 @@ class VideoOptions(EpisodeOptions):
     ] = None
     out: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="(required)")] = None
     which: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
-    seed: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
+    seed: int | None = None
     seconds: Annotated[tuple[float, float], tyro.conf.arg(metavar="BEGIN END")] = (0.0, math.inf)
-    speed: float = 1.0
+    speed: Annotated[float, Within(0.01, 10.0)] = 1.0
 
     def __post_init__(self) -> None:
         """Refuse numbers outside their ranges."""
-        if not 0.01 <= self.speed <= 10.0:
-            raise ConfigurationError(f"speed must be between 0.01 and 10, not {self.speed!r}")
+        super().__post_init__()
         if not self.seconds[0] < self.seconds[1]:
             raise ConfigurationError(f"seconds must be two times in rising order, not {self.seconds!r}")
 

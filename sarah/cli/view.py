@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
-import ipaddress
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,16 +18,16 @@ from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import say_next, to_open
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episodes_of, is_shipped
-from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError
 from sarah.files import check_file
-from sarah.runs.config_files import changed_alike
+from sarah.ranges import Within
 
 if TYPE_CHECKING:
     from sarah.runs.run_episodes import RunEpisode
 
 COMMAND = "sarah-view"
 DEFAULT_PORT = 8080
+LOCAL = ("127.0.0.1", "::1", "localhost")
 
 
 @dataclass(frozen=True)
@@ -49,15 +48,10 @@ class ViewOptions(EpisodeOptions):
 
     subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"
     which: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
-    seed: Annotated[int | None, tyro.conf.arg(metavar="INT")] = None
+    seed: int | None = None
     out: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     host: str = "127.0.0.1"
-    port: int = DEFAULT_PORT
-
-    def __post_init__(self) -> None:
-        """Refuse impossible ports."""
-        if not 0 < self.port < 2**16:
-            raise ConfigurationError(f"port must be between 1 and {2**16 - 1}, not {self.port!r}")
+    port: Annotated[int, Within(1, 2**16 - 1)] = DEFAULT_PORT
 
 
 def main() -> None:
@@ -74,7 +68,11 @@ def _view(arguments: Sequence[str]) -> None:
     choices, chosen = episodes_of(options.subject, options.which, task)
     changed = options.applied_to(chosen.spec)
     if changed != chosen.spec:
-        choices = [choice.of(_changed_as(choice.spec, chosen.spec, changed)) for choice in choices]
+        own = chosen.spec.config  # windows of a session have settings each, and stay as they were
+        choices = [
+            choice.of(dataclasses.replace(choice.spec, config=changed.config)) if choice.spec.config == own else choice
+            for choice in choices
+        ]
         chosen = chosen.of(changed)
     from sarah.simulation.engines import check_engine
 
@@ -87,13 +85,6 @@ def _view(arguments: Sequence[str]) -> None:
         _export(options.out, chosen)
     else:
         _serve(options, choices, chosen)
-
-
-def _changed_as(spec: EpisodeSpec, chosen: EpisodeSpec, changed: EpisodeSpec) -> EpisodeSpec:
-    """Specification of an episode with the changes of the chosen one. The windows of a session have settings each."""
-    if spec.config == chosen.config:
-        return dataclasses.replace(spec, config=changed.config)
-    return dataclasses.replace(spec, config=changed_alike(spec.config, chosen.config, changed.config))
 
 
 def _export(path: Path, chosen: RunEpisode) -> None:
@@ -119,19 +110,12 @@ def _serve(options: ViewOptions, choices: list[RunEpisode], chosen: RunEpisode) 
 
     with serving(options.host, options.port) as server:
         page = Page(server, choices, chosen)
-        say_engine(chosen.spec.config, options.engine)
+        say_engine(chosen.spec.config)
         if is_shipped(options.subject):
             print(f"{options.subject}: {PARAMETER_SETS[options.subject].origin}")
-        if not _is_local(options.host):
+        if options.host not in LOCAL:
             print(f"warning: everyone who can reach {options.host} can use this page, as there is no password")
         print(f"SARAH is at http://{options.host}:{server.get_port()} (Ctrl-C ends)", flush=True)
         with contextlib.suppress(KeyboardInterrupt):
             threading.Event().wait()
         page.close()
-
-
-def _is_local(host: str) -> bool:
-    try:
-        return host == "localhost" or ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False

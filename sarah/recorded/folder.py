@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import itertools
+import shlex
+import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from sarah.errors import RunFolderError
-from sarah.files import check_name, quoted, read_text, replace_text, write_command
+from sarah.errors import ResumeError, RunFolderError
+from sarah.files import check_name, quoted, read_text, replace_text
 from sarah.recorded.journal import Journal
 from sarah.recorded.kind import Kind
-from sarah.versions import versions
+from sarah.versions import differences, versions
 
 LONGEST_REASON = 200
 """Length up to which a message quotes the error of a file or a row, in characters."""
@@ -50,25 +52,18 @@ class Folder:
         check_name(self.path)
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            if any(self.path.iterdir()) or not self._claim():
+            if any(self.path.iterdir()):
                 can_go_on = self.specification_path.is_file() and self.journal_path.is_file() and not self.is_finished
                 go_on = f", or {self.go_on}" if can_go_on else ""
                 raise RunFolderError(f"{self.kind.folder} {self.path} is not empty: name another with --out{go_on}")
-            write_command(self.path / "command.txt")
+            self.journal_path.touch(exist_ok=False)  # of two processes at once, one has the folder
+            replace_text(self.path / "command.txt", f"{shlex.join(sys.argv)}\n")
             self._write_versions()
             write_specification()
         except RunFolderError:
             raise
         except OSError as error:
             raise RunFolderError(f"cannot write {self.kind.folder} {self.path}: {error.strerror or error}") from error
-
-    def _claim(self) -> bool:
-        """Make the journal's file, unless another process made it at the same time."""
-        try:
-            self.journal_path.touch(exist_ok=False)
-        except FileExistsError:
-            return False
-        return True
 
     @property
     def go_on(self) -> str:
@@ -90,17 +85,6 @@ class Folder:
                 hint = f", and {inside.parent} has one" if inside else ""
                 raise RunFolderError(f"{self.path} is not the folder of a {kind}: it has no {file.name}{hint}")
 
-    def check_resumable(self) -> None:
-        """Refuse a folder that lacks a file which it would go on from.
-
-        :raises RunFolderError: naming what is missing
-        """
-        if not self.path.is_dir():
-            raise RunFolderError(f"{self.kind.folder} {self.path} does not exist")
-        for file in (self.specification_path, self.journal_path):
-            if not file.is_file():
-                raise RunFolderError(f"{self.path} cannot be resumed: it has no {file.name}")
-
     @contextmanager
     def journal(self, settings: Mapping[str, Any], most_requests: int) -> Iterator[Journal]:
         """The journal, as a context in which no other process can use it.
@@ -109,22 +93,19 @@ class Folder:
         :param most_requests: number of requests that such a program has at most
         :raises ResumeError: if it was begun with other settings, code or versions, or is in use
         """
-        with self._journal(settings, most_requests) as journal:
+        origin = {**settings, **versions()}
+        with Journal(self.journal_path, origin, self.kind, most_requests) as journal:
             if journal.is_new:
                 self._write_versions()  # they may not be those that the folder was made with
             yield journal
 
-    def check_journal(self, settings: Mapping[str, Any]) -> None:
-        """Refuse a journal that was begun with other settings, code or versions.
+    def check_versions(self) -> None:
+        """Refuse what was begun with other code or versions.
 
-        :param settings: settings by name, as JSON has them, without those that change no outcome
         :raises ResumeError: naming what differs, here and there
         """
-        self._journal(settings, 0).check()
-
-    def _journal(self, settings: Mapping[str, Any], most_requests: int) -> Journal:
-        origin = {**settings, **versions()}
-        return Journal(self.journal_path, origin, self.kind, most_requests)
+        if different := differences(versions(), self.versions(), f"in this {self.kind.name}"):
+            raise ResumeError(f"{self.path} cannot be resumed: {different}")
 
     def versions(self) -> dict[str, str]:
         """Read the versions with which it began, by name of the package.
@@ -140,14 +121,6 @@ class Folder:
     def _write_versions(self) -> None:
         lines = (f"{name} {version}\n" for name, version in versions().items())
         replace_text(self._versions_path, "".join(lines))
-
-    def reopen(self, write_specification: Callable[[], None]) -> None:
-        """Make what is finished unfinished, with a larger budget.
-
-        :param write_specification: function that writes the specification with the larger budget
-        """
-        self.result_path.unlink(missing_ok=True)  # first: with it, what was before would only be finished again
-        write_specification()
 
     def event_files(self) -> list[Path]:
         """Paths of TensorBoard's files, whatever they are: a FIFO of that name would block who opens it."""

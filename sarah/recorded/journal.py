@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, TypeVar
 
 from sarah.errors import ResumeError, SarahError
-from sarah.files import open_locked, open_regular, quoted
+from sarah.files import open_locked, quoted
 from sarah.recorded.kind import Kind
 from sarah.versions import differences
 
@@ -106,14 +106,13 @@ class Journal:
             _log.warning("%s: damaged rows: 1; what it has is asked again", self._path)
             return None
 
-    def add(self, request: Mapping[str, Any], outcome: Any, at_once: bool = True) -> None:
-        """Write an outcome.
+    def add(self, request: Mapping[str, Any], outcome: Any) -> None:
+        """Write an outcome, which is on the disk when this returns.
 
         :param request: what the program asked for
         :param outcome: outcome, as JSON has it
-        :param at_once: whether it is on the disk when this returns; what is cheap need not be
         """
-        self._append(_checksummed({**request, "outcome": outcome}, self._seed), at_once)
+        self._append(_checksummed({**request, "outcome": outcome}, self._seed))
 
     def extend(self, index: int, budget: float) -> None:
         """Note that the program goes on to a larger budget, or check that it did so before.
@@ -159,26 +158,13 @@ class Journal:
             first = reader.readline(LONGEST_ROW)
             if not expected.startswith(first) or first == expected:
                 self._check_first_row(first)
-                self._seed = _checksum_seed(first)
+                self._seed = int(first[:8], 16)
                 self._read_rows(reader)
                 return
         self.is_new = True
         self._file.truncate(0)
         self._append(expected)
-        self._seed = _checksum_seed(expected)
-
-    def check(self) -> None:
-        """Refuse a file that was begun with something else; it is neither locked nor changed.
-
-        :raises ResumeError: naming what differs, here and there
-        """
-        try:
-            with open_regular(self._path, os.O_RDONLY) as file:
-                first = file.readline(LONGEST_ROW)
-        except OSError as error:
-            raise self._refusal(str(error)) from error
-        if not _first_row(self._origin).startswith(first):  # what was cut in its first row begins anew
-            self._check_first_row(first)
+        self._seed = int(expected[:8], 16)
 
     def _check_first_row(self, first: bytes) -> None:
         there = _read_first_row(first)
@@ -205,13 +191,12 @@ class Journal:
             self._file.truncate(whole)  # a row that was cut has no end
             _log.warning("%s: damaged rows: %d; what they have is asked again", self._path, damaged)
 
-    def _append(self, row: bytes, at_once: bool = True) -> None:
-        """Append a row as a whole; if ``at_once``, it is on the disk when this returns."""
+    def _append(self, row: bytes) -> None:
+        """Append a row as a whole."""
         left = memoryview(row)
         while left:  # a disk that is nearly full takes only a part
             left = left[self._file.write(left) :]
-        if at_once:
-            os.fsync(self._file.fileno())
+        os.fsync(self._file.fileno())
 
     def _other_request(self, here: Mapping[str, Any], there: Mapping[str, Any]) -> ResumeError:
         """Error of a program that does not ask what it asked before."""
@@ -242,11 +227,6 @@ def _read_first_row(first: bytes) -> dict[str, Any] | None:
     """What a first row says; ``None`` if it is damaged."""
     digest, _, text = first.rstrip(b"\n").partition(b" ")
     return _object(text) if digest == _digest(text) else None
-
-
-def _checksum_seed(first: bytes) -> int:
-    """Number that the checksums of all other rows begin from."""
-    return int(first[:8], 16)
 
 
 def _checksummed(row: Mapping[str, Any], seed: int) -> bytes:

@@ -26,7 +26,7 @@ from sarah.episode.evaluation import evaluate
 from sarah.episode.workers import Workers
 from sarah.errors import RunFolderError
 from sarah.files import locked, read_text, replace_text
-from sarah.number import finite_number, whole_number
+from sarah.number import number, whole_number
 from sarah.recorded.folder import unreadable
 from sarah.reports.race_entry import RACE_FILE, SCORES_FILE, Entry, RaceCurve, is_evaluated, read_curve
 from sarah.runs.config_files import first_difference
@@ -58,7 +58,7 @@ def race(entries: Sequence[Entry], workers: Workers, progress_bar: bool = False)
     if left := [entry for entry in entries if not is_evaluated(entry)]:
         for entry in entries:  # otherwise nothing of today comes into the table
             if entry.folder.exists():
-                RunFolder(entry.folder).check_origin(entry.config)
+                RunFolder(entry.folder).check_versions()
         progress_bar = progress_bar and sys.stderr is not None
         if progress_bar:
             print(_work(left), file=sys.stderr)
@@ -87,7 +87,7 @@ def _work(left: Sequence[Entry]) -> str:
 def _check_settings(entry: Entry) -> None:
     """Refuse a folder that this training did not make."""
     try:
-        there = RunFolder.resumable(entry.folder, entry.config.task).config()
+        there = RunFolder.open(entry.folder, unfinished=True, task=entry.config.task).config()
     except RunFolderError as error:
         raise RunFolderError(f"{entry.folder} is not of a race: name another folder") from error
     if difference := first_difference(entry.config, there):
@@ -138,7 +138,7 @@ def _train(entry: Entry, run: RunFolder) -> None:
 def _seconds(path: Path) -> float:
     """Wall time of a training so far, in s."""
     try:
-        return finite_number(read_text(path).strip())
+        return number(read_text(path).strip())
     except FileNotFoundError:
         return 0.0
     except (OSError, ValueError) as error:
@@ -150,7 +150,7 @@ def _evaluate_recommendations(entry: Entry, run: RunFolder) -> None:
     config, count, names = entry.config, entry.evaluations, entry.config.task.parameter_names
     try:
         along = [
-            (whole_number(row["episodes"]), tuple(finite_number(row[name]) for name in names), count.along)
+            (whole_number(row["episodes"]), tuple(number(row[name]) for name in names), count.along)
             for row in run.recommendations()
         ]
     except (KeyError, TypeError, ValueError) as error:

@@ -10,7 +10,7 @@ from pathlib import Path
 from statistics import mean
 
 from sarah.files import read_lines
-from sarah.number import finite_number, whole_number
+from sarah.number import number, whole_number
 from sarah.recorded.folder import unreadable
 from sarah.reports.judging import MOST_EVALUATIONS, Evaluations
 from sarah.runs.agent_settings import settings_of
@@ -104,10 +104,10 @@ def read_curve(entry: Entry) -> RaceCurve:
         return RaceCurve(
             entry.config.algo,
             tuple(whole_number(row["episodes"]) for row in [*along, last]),
-            (*(finite_number(row["score"]) for row in along), mean(final[:count])),
+            (*(number(row["score"]) for row in along), mean(final[:count])),
             final,
             count,
-            finite_number(last["seconds"]),
+            number(last["seconds"]),
         )
     except (KeyError, TypeError, ValueError) as error:
         raise unreadable(entry.folder / RACE_FILE, error) from error
@@ -122,7 +122,7 @@ def _scores(entry: Entry) -> tuple[float, ...]:
         rows = list(csv.DictReader(read_lines(path, MOST_EVALUATIONS + 1)))
         if [row["seed"] for row in rows] != [str(seed) for seed in range(len(rows))]:
             raise ValueError("its seeds are not 0, 1, 2 and so on")
-        return tuple(finite_number(row["score"]) for row in rows)
+        return tuple(number(row["score"]) for row in rows)
     except (OSError, csv.Error, KeyError, TypeError, ValueError) as error:
         raise unreadable(path, error) from error
 

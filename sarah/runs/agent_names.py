@@ -35,7 +35,7 @@ def unknown_option(algo: str, option: str) -> str | None:
         given = option if len(option) <= LONGEST_NAME else shortened(option)
         wrong = f"unknown option {given} of --algo {algo}"
     nearest = [meant for names in ALIKE if name in names for meant in own if meant in names]
-    if not nearest and not others and len(name) <= LONGEST_NAME:
+    if not nearest and not others:
         nearest = get_close_matches(name, own, n=1)
     guess = f", did you mean {' or '.join(map(_option, nearest))}?" if nearest else ""
     return f"{wrong}{guess} (allowed: {', '.join(map(_option, own)) or 'none'})"

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field, replace
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal
 
 from sarah.episode.from_mapping import convert_fields
 from sarah.errors import ConfigurationError, shortened, unknown_name
@@ -42,7 +42,6 @@ PRESETS: dict[str, dict[str, Any]] = {
 }
 """Defaults of NAF that a preset decides: local NAF, or plain NAF with the paper's networks."""
 
-MOST_LAYERS = 20
 WARM_UP = 5
 """Default number of episodes before an algorithm uses what it knows: the same for all, which makes races fair."""
 Share = Annotated[float, Within(0.0, 1.0)]
@@ -59,9 +58,6 @@ class AgentSettings:
     def __post_init__(self) -> None:
         """Refuse values of another type or out of their range."""
         convert_fields(self, "agent.")
-        for name, value in vars(self).items():
-            if name.endswith("layers") and len(value) > MOST_LAYERS:
-                raise ConfigurationError(f"agent.{name} must be at most {MOST_LAYERS} layers, not {len(value)}")
         check_ranges("agent.", self)
 
 
@@ -143,13 +139,9 @@ class NAFSettings(LearnerSettings):
 
     def __post_init__(self) -> None:
         """Take what is not given from the preset, and refuse unknown names and values out of their range."""
-        if self.preset not in PRESETS:
-            raise ConfigurationError(unknown_name("agent.preset", self.preset, PRESETS))
-        for name, value in PRESETS[self.preset].items():
+        for name, value in PRESETS.get(self.preset, {}).items():
             if getattr(self, name) is None:
                 object.__setattr__(self, name, value)
-        if self.activation not in get_args(Activation):
-            raise ConfigurationError(unknown_name("agent.activation", self.activation, get_args(Activation)))
         super().__post_init__()
         if self.gamma > 0 and (self.temperature > 0 or self.elite_share > 0):
             raise ConfigurationError(

@@ -110,12 +110,8 @@ def _drawn(ranges: Terrain, usual: Terrain, seed: int) -> Terrain:
     """Ground as an episode's seed draws it, to three digits, where its ranges are not the usual ones."""
     drawn = draw_terrain(ranges, seed)
     names = {name for name in vars(ranges) if getattr(ranges, name) != getattr(usual, name)}
-    if drawn.slope_degrees == (0.0, 0.0):
-        names.discard("direction_degrees")
-    elif "slope_degrees" in names:
+    if "slope_degrees" in names:
         names.add("direction_degrees")
-    if drawn.roughness == (0.0, 0.0):
-        names -= {"cell", "reach"}
     values = {name: getattr(drawn, name) for name in names}
     ranges_of_drawn = {name: value for name, value in values.items() if isinstance(value, tuple)}
     rounded = {name: (float(f"{value:.3g}"),) * 2 for name, (value, _) in ranges_of_drawn.items()}

@@ -111,8 +111,7 @@ class RecordedEpisodes(Executor):
     def _new(self, kind: _Kind, request: dict[str, Any], job: Job) -> Any:
         with self.outside():
             outcome = job.result()
-        # Standing is cheap to simulate again.
-        self.journal.add(request, kind.plain(outcome), at_once=kind is not _KINDS[begin_episode])
+        self.journal.add(request, kind.plain(outcome))
         self._stop_if_interrupted()
         return outcome
 

@@ -15,7 +15,6 @@ from sarah.control.parameters import Parameter
 from sarah.episode.tasks import SETTINGS_TYPES, Task, TaskFile
 from sarah.errors import ConfigurationError, RunFolderError, SarahError
 from sarah.files import read_text, replace_text
-from sarah.formats import read_json
 
 SOURCE, DESCRIPTION = "task.py", "task.json"
 
@@ -75,7 +74,7 @@ def recorded_task(folder: Path) -> Task[Any] | None:
     if not path.exists():
         return None
     try:
-        content = read_json(read_text(path))
+        content = json.loads(read_text(path))
         parameters = tuple(Parameter(**parameter) for parameter in content.pop("parameters"))
         file = TaskFile(content.pop("file"), content.pop("attribute"), read_text(folder / SOURCE))
         episode = SETTINGS_TYPES[content.pop("settings")]()
@@ -99,6 +98,6 @@ def recorded_task(folder: Path) -> Task[Any] | None:
             **content,
         )
         return task
-    except (OSError, ValueError, LookupError, TypeError, AttributeError, SarahError) as error:
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError, SarahError) as error:
         reason = getattr(error, "strerror", None) or " ".join(str(error).split())[:200]
         raise RunFolderError(f"the task of {folder} cannot be read: {reason}") from error

@@ -12,7 +12,7 @@ from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
 from sarah.errors import ConfigurationError, RunFolderError
-from sarah.number import finite_number, whole_number
+from sarah.number import number, whole_number
 from sarah.runs.run_folder import RunFolder
 from sarah.runs.run_record import RunRecord
 
@@ -67,9 +67,9 @@ def episodes_of_run(run: RunFolder) -> list[RunEpisode]:
     simulated = []
     for row in record.episodes:
         with record.naming_folder():
-            parameters = tuple(finite_number(row[name]) for name in task.parameter_names)
+            parameters = tuple(number(row[name]) for name in task.parameter_names)
             spec = EpisodeSpec(parameters, whole_number(row["seed"]), task, record.config.episode)
-            score, ending = finite_number(row["score"]), ending_words(row["termination"])
+            score, ending = number(row["score"]), ending_words(row["termination"])
             label = f"episode {row['index']} · score {score:.2f} · {ending}"
             simulated.append(RunEpisode(row["index"], label, spec, score))
     if simulated:

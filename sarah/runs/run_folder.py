@@ -25,12 +25,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from sarah.control.parameters import Box, Parameters
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task, is_portable
 from sarah.errors import ConfigurationError, RunFolderError, shortened
 from sarah.files import read_lines, read_text, replace_text
-from sarah.formats import read_json
 from sarah.recorded.folder import Folder, unreadable
 from sarah.recorded.journal import Journal
 from sarah.runs.config import TrainingConfig
@@ -94,24 +94,13 @@ class RunFolder(Folder):
         run.check(finished=not unfinished)
         return run
 
-    @classmethod
-    def resumable(cls, path: Path, task: Task[Any] | None = None) -> RunFolder:
-        """Open the folder of a training that was interrupted, or is finished.
-
-        :param path: path of the folder
-        :param task: task of the training, which only a task of a file needs
-        :raises RunFolderError: if the folder does not exist, or lacks a file that a training is resumed from
-        """
-        run = cls(path, task)
-        run.check_resumable()
-        return run
-
     def extend(self, config: TrainingConfig) -> None:
         """Make a finished training an unfinished one with a larger budget.
 
         :param config: settings with the larger budget
         """
-        self.reopen(lambda: write_config(config, self.specification_path))
+        self.result_path.unlink(missing_ok=True)  # first: with it, what was before would only be finished again
+        write_config(config, self.specification_path)
 
     def journal_of(self, config: TrainingConfig) -> AbstractContextManager[Journal]:
         """Journal of the training, as a context.
@@ -119,15 +108,10 @@ class RunFolder(Folder):
         :param config: settings of the training
         :raises ResumeError: if it was begun with other settings, code or versions, or is in use
         """
-        return self.journal(_settings_of(config), config.episodes + EPISODES_BESIDE)
-
-    def check_origin(self, config: TrainingConfig) -> None:
-        """Refuse a training that was begun with other settings, code or versions.
-
-        :param config: settings of the training
-        :raises ResumeError: naming what differs, here and there
-        """
-        self.check_journal(_settings_of(config))
+        settings = settings_by_key(replace(config, episodes=config.stages[0], extended_from=()))
+        for name in ("pictures", "extended_from"):  # pictures change no result, and the journal has its extensions
+            del settings[name]
+        return self.journal(settings, config.episodes + EPISODES_BESIDE)
 
     def config(self) -> TrainingConfig:
         """Read the training's configuration.
@@ -216,24 +200,14 @@ class RunFolder(Folder):
         """
         replace_text(self.result_path, json.dumps(content, indent=2) + "\n")
 
-    def parameters(self, config: TrainingConfig | None = None) -> tuple[float, ...]:
+    def parameters(self, config: TrainingConfig | None = None) -> Parameters:
         """Read the learned parameters, in the order of the task.
 
         :param config: settings of the training, if they have been read
         :raises RunFolderError: if the file does not contain exactly the task's parameters
         """
         task = (config or self.config()).task
-        names = task.parameter_names
-        try:
-            learned = read_json(read_text(self.result_path))["parameters"]
-            if set(learned) != set(names):
-                found = shortened(", ".join(map(str, learned)))
-                raise ValueError(f"it names {found} instead of {', '.join(names)}")
-            return task.box.checked([learned[name] for name in names])
-        except OSError as error:
-            raise unreadable(self.result_path, error) from error
-        except (ValueError, KeyError, TypeError) as error:
-            raise RunFolderError(f"{self.result_path} does not hold learned parameters: {error}") from error
+        return read_parameters(self.result_path, task.box)
 
     def _rows(self, path: Path, config: TrainingConfig | None = None) -> Iterator[dict[str, str]]:
         """Read a table, which has at most a row for each episode of the training."""
@@ -245,6 +219,25 @@ class RunFolder(Folder):
             raise unreadable(path, error) from error
 
 
+def read_parameters(path: Path, box: Box) -> Parameters:
+    """Read the parameters that a training or a session has learned.
+
+    :param path: path of its ``parameters.json``
+    :param box: ranges of the parameters
+    :raises RunFolderError: if the file does not contain exactly these parameters
+    """
+    try:
+        learned = json.loads(read_text(path))["parameters"]
+        if set(learned) != set(box.names):
+            found = shortened(", ".join(map(str, learned)))
+            raise ValueError(f"it names {found} instead of {', '.join(box.names)}")
+        return box.checked([learned[name] for name in box.names])
+    except OSError as error:
+        raise unreadable(path, error) from error
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
+        raise RunFolderError(f"{path} does not hold learned parameters: {error}") from error
+
+
 def _append_row(path: Path, fields: Sequence[str], row: Mapping[str, Any]) -> None:
     is_new = not path.exists()
     with path.open("a", newline="", encoding="utf-8") as file:
@@ -252,11 +245,3 @@ def _append_row(path: Path, fields: Sequence[str], row: Mapping[str, Any]) -> No
         if is_new:
             writer.writeheader()
         writer.writerow(row)
-
-
-def _settings_of(config: TrainingConfig) -> dict[str, Any]:
-    """Settings by name that decide what a training does: its journal has a row for each extension."""
-    settings = settings_by_key(replace(config, episodes=config.stages[0], extended_from=()))
-    for name in ("pictures", "extended_from"):  # pictures change no result
-        del settings[name]
-    return settings

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from sarah.errors import RunFolderError
-from sarah.number import finite_number
+from sarah.number import number
 from sarah.recorded.folder import LONGEST_REASON
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
@@ -65,4 +65,4 @@ class RunRecord:
         :raises RunFolderError: if a column is missing, or has something else than numbers
         """
         with self.naming_folder():
-            return {name: [finite_number(row[name]) for row in rows] for name in names}
+            return {name: [number(row[name]) for row in rows] for name in names}

@@ -18,16 +18,15 @@ from contextlib import AbstractContextManager
 from dataclasses import asdict
 from pathlib import Path
 
-from sarah.errors import RunFolderError
-from sarah.files import read_lines, read_text, replace_text
-from sarah.formats import read_json
-from sarah.number import finite_number, whole_number
+from sarah.files import read_lines, replace_text
+from sarah.number import number, whole_number
 from sarah.operation.settings import BOX, PARAMETERS, Parameters
 from sarah.operation.window import FELT, Window
 from sarah.recorded.folder import Folder, unreadable
 from sarah.recorded.journal import Journal
 from sarah.runs.config_files import read_config, settings_by_key, write_config
 from sarah.runs.kinds import SESSION
+from sarah.runs.run_folder import read_parameters
 from sarah.runs.session import SessionSpec
 
 NAMES = tuple(parameter.name for parameter in PARAMETERS)
@@ -80,11 +79,6 @@ class SessionFolder(Folder):
         return folder
 
     @property
-    def is_finished(self) -> bool:
-        """Whether the session has finished, with parameters that can be read."""
-        return self._left() is not None
-
-    @property
     def frozen(self) -> SessionFolder | None:
         """Folder of the same session without learning; ``None`` if there is none."""
         return SessionFolder(self.frozen_path) if SESSION.owns(self.frozen_path) else None
@@ -104,7 +98,8 @@ class SessionFolder(Folder):
         """
         if self.frozen is not None:
             self.frozen.result_path.unlink(missing_ok=True)
-        self.reopen(lambda: write_config(spec, self.specification_path))
+        self.result_path.unlink(missing_ok=True)  # first: with it, what was before would only be finished again
+        write_config(spec, self.specification_path)
 
     def journal_of(self, spec: SessionSpec) -> AbstractContextManager[Journal]:
         """Journal of the session, as a context.
@@ -168,20 +163,10 @@ class SessionFolder(Folder):
     def parameters(self) -> Parameters:
         """Read the parameters that the robot was left with.
 
-        :raises RunFolderError: if the session is not finished, or the file is damaged, which going on mends
+        :raises RunFolderError: if the session is not finished, or the file is damaged
         """
-        left = self._left()
-        if left is None:
-            raise RunFolderError(f"{self.path} is not the folder of a finished session: {self.go_on}")
-        return left
-
-    def _left(self) -> Parameters | None:
-        """Parameters that the robot was left with; ``None`` if there are none, or if the file is damaged."""
-        try:
-            values = read_json(read_text(self.result_path))["parameters"]
-            return BOX.checked([values[name] for name in NAMES])
-        except (OSError, ValueError, KeyError, TypeError):
-            return None
+        self.check(finished=True)
+        return read_parameters(self.result_path, BOX)
 
 
 def _row(window: Window) -> tuple[object, ...]:
@@ -196,12 +181,12 @@ def _row(window: Window) -> tuple[object, ...]:
 def _window(row: Mapping[str, str]) -> Window:
     return Window(
         index=whole_number(row["index"]),
-        begin=finite_number(row["begin"]),
-        seconds=finite_number(row["seconds"]),
+        begin=number(row["begin"]),
+        seconds=number(row["seconds"]),
         changes=whole_number(row["changes"]),
-        parameters=BOX.checked([finite_number(row[name]) for name in NAMES]),
-        score=finite_number(row["score"]),
-        observed_reward=finite_number(row["observed_reward"]),
+        parameters=BOX.checked([number(row[name]) for name in NAMES]),
+        score=number(row["score"]),
+        observed_reward=number(row["observed_reward"]),
         fell=row["fell"] == "1",
-        felt=tuple(finite_number(row[name]) for name in FELT),
+        felt=tuple(number(row[name]) for name in FELT),
     )

@@ -49,9 +49,9 @@ def test_eval_of_a_second_training_compares_with_v_at_zero(balanced: Path) -> No
 
 def test_options_reach_the_episodes() -> None:
     own = BalanceConfig(engine="pybullet", physics=PyBulletPhysics(rate=400, control_rate=200))
-    options = EpisodeOptions(physics="reference", randomisation=False, episode=own)
+    options = EpisodeOptions(physics="reference", episode=own)
     config = options.applied_to(EpisodeSpec((0.0,) * 4, 0, BALANCE)).config
-    assert config.physics == PyBulletPhysics(1000, 100, 200, 0.0) and not config.randomisation.enabled
+    assert config.physics == PyBulletPhysics(1000, 100, 200, 0.0)
 
 
 def test_any_robot_can_be_pushed(tmp_path: Path) -> None:

@@ -55,8 +55,3 @@ def test_a_former_name_is_understood(
     Path("full/precious.txt").touch()
     _, said = ended("sarah-train --run-dir full", monkeypatch, capsys)
     assert said.splitlines()[-1].endswith("run folder full is not empty: name another with --out")
-
-
-def test_two_former_folders_are_not_one(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    _, said = ended("sarah-eval --robustness one --terrain two", monkeypatch, capsys)
-    assert said.splitlines()[-1] == "sarah-eval: error: give one --out instead of one and two"

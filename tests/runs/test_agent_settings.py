@@ -62,7 +62,6 @@ def test_settings_of_another_algorithm_are_refused() -> None:
         ({"activation": "tan"}, "unknown agent.activation 'tan', did you mean 'tanh'?"),
         ({"device": "gpu"}, "agent.device must be 'cpu', 'cuda', 'cuda:' and a number, or 'auto', not 'gpu'"),
         ({"device": "cuda:"}, "agent.device must be"),
-        ({"v_layers": (8,) * 21}, "agent.v_layers must be at most 20 layers, not 21"),
     ],
 )
 def test_unknown_names_are_refused(settings: dict[str, Any], message: str) -> None:

@@ -114,7 +114,7 @@ def test_what_a_task_and_an_engine_have_of_their_own_is_read(tmp_path: Path) -> 
         ("algo: 3", "algo must be a text, not 3"),
         ("episode: 5", "episode must hold keys and values, not 5"),
         ("[1, 2]", "the file must hold keys and values"),
-        ("episode: {time_limit: .inf}", "time_limit must be between 1 and 3600 s, not inf"),
+        ("episode: {time_limit: .inf}", "time_limit must be a number, not '.inf'"),
         ("episode: {time_limit: 1}", "time_limit must be above the 1 s of standing, not 1.0"),
         ("episode: {engine: mujco}", "engine 'mujco', did you mean 'mujoco'?"),
         ("episode: {reward_form: printd}", "unknown episode.reward_form 'printd', did you mean 'printed'"),
@@ -132,7 +132,7 @@ def test_what_a_task_and_an_engine_have_of_their_own_is_read(tmp_path: Path) -> 
             "friction must be one number, or a list of 2 for a range, not [0.9]",
         ),
         ("episode: {randomisation: {friction: [1.0, 0.7]}}", "friction must be between 0 and 5 and in rising order"),
-        ("episode: {randomisation: {friction: [.nan, 0.7]}}", "friction must be between 0 and 5 and in rising order"),
+        ("episode: {randomisation: {friction: [.nan, 0.7]}}", "friction must be a number, not '.nan'"),
         ("episode: {randomisation: {mass_deviation: 1.0}}", "mass_deviation must be between 0 and 0.9, not 1.0"),
         (
             "episode: {randomisation: {actuator_bandwidth: [0, 50]}}",

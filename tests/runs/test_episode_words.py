@@ -49,8 +49,6 @@ def test_nothing_is_told_of_what_is_as_usual(trace: Trace) -> None:
         ),
         ({"stepping": (0.4, 1.3, 0.1, 1.0, 1.0)}, ["P1 to P5 0.40, 1.30, 0.10, 1.00, 1.00"]),
         ({"terrain": Terrain(friction_left=0.2)}, ["terrain.friction_left 0.2"]),
-        ({"terrain": Terrain(direction_degrees=90.0)}, []),  # level ground has no direction
-        ({"terrain": Terrain(reach=0.9)}, []),  # and no end
         ({"terrain": Terrain(roughness=0.01, reach=0.9)}, ["terrain.roughness 0.01", "terrain.reach 0.9"]),
     ],
 )
