@@ -15,9 +15,9 @@ from matplotlib.patheffects import withStroke
 from sarah.pictures.dimension_marks import CENTRE_OF_MASS, Mark, Side, marks
 from sarah.pictures.link_shapes import outlines
 from sarah.pictures.style import own_style
-from sarah.robot.description import RobotDescription, model_of
+from sarah.robot.description import RobotDescription
 from sarah.robot.dimensions import known_dimensions
-from sarah.robot.standing import links_of, together
+from sarah.robot.standing import links_of, model_of, together
 
 WIDTH, HEIGHT = 7.6, 6.3
 """Size of the figure, in inches; so are all lengths below."""
@@ -130,7 +130,7 @@ class _View:
         (left, low), (right, high), gap = *self._frame, GAP * self._inch
         corner, size = (left - gap, low - gap), (right - left + 2 * gap, high - low + 2 * gap)
         frame = Rectangle(corner, *size, transform=self._axis.transData)
-        links = [link for link in model_of(robot.urdf).link_map if not self.panel.links or link.startswith("right")]
+        links = [link for link in model_of(robot).link_map if not self.panel.links or link.startswith("right")]
         for outline in self._outlines(robot, links):
             colour = LIGHTER + (1.0 - LIGHTER) * np.array(outline.colour)
             shape = Polygon(outline.corners, facecolor=colour, edgecolor=0.7 * colour, linewidth=0.3)
@@ -184,7 +184,7 @@ class _View:
             self._axis.text(x + gap * self._inch, height, texts[name], ha=align, va="center", weight=weight)
 
     def _outlines(self, robot: RobotDescription, links: Sequence[str]) -> Any:
-        return outlines(model_of(robot.urdf), links, robot.standing_height, self.panel.axes)
+        return outlines(model_of(robot), links, robot.standing_height, self.panel.axes)
 
     def _seen(self, points: np.ndarray) -> np.ndarray:
         """Points of the world to the right and up."""

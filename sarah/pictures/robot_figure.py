@@ -15,7 +15,8 @@ from matplotlib.patheffects import withStroke
 from sarah.pictures.colours import LEFT, RIGHT
 from sarah.pictures.link_shapes import points_around
 from sarah.pictures.style import COLUMN_WIDTH, own_style, save
-from sarah.robot.description import ANKLE_JOINTS, GROUPS, JOINT_AXES, JOINT_TYPES, RobotDescription, model_of
+from sarah.robot.description import ANKLE_JOINTS, GROUPS, JOINT_AXES, JOINT_TYPES, RobotDescription
+from sarah.robot.standing import model_of
 from sarah.scenery.camera import Camera, View
 from sarah.simulation.renderer import Renderer
 
@@ -52,7 +53,7 @@ def labels_of(robot: RobotDescription) -> list[Label]:
 
     :param robot: robot, which stands with all joints at zero
     """
-    model = model_of(robot.urdf)
+    model = model_of(robot)
     torso = np.array((0.0, 0.0, robot.standing_height))
 
     def at(link: str, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> np.ndarray:

@@ -1,13 +1,15 @@
 """The robot: from the xacro to a checked URDF text.
 
-PyBullet crashes on some malformed URDFs and silently accepts others. So yourdfpy checks every text before an engine
-sees it. That the robot is SARAH is for the tests of the xacro: dimensions change its numbers only.
+PyBullet crashes on some malformed URDFs and silently accepts others. So every text is checked here before an engine
+sees it: yourdfpy checks the syntax, and this module's own rules check that the robot is SARAH.
 """
 
 from __future__ import annotations
 
 import io
+import math
 import threading
+import xml.etree.ElementTree as ElementTree
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -103,7 +105,7 @@ def _describe_cached(dimensions: tuple[tuple[str, float], ...]) -> RobotDescript
     given = dict(dimensions)
     if scale_of(given) != Scale():
         given = {name: value for name, value in all_dimensions(given).items() if name in given or name in SCALED}
-    return _read_off(_expand_xacro(given))
+    return check_urdf(_expand_xacro(given))
 
 
 def _expand_xacro(dimensions: Mapping[str, float]) -> str:
@@ -118,29 +120,113 @@ def _expand_xacro(dimensions: Mapping[str, float]) -> str:
     return document.documentElement.toprettyxml(indent="  ")
 
 
-@lru_cache(maxsize=4)
-def model_of(urdf: str) -> Any:
-    """Robot as yourdfpy reads it, which must not be changed.
+def check_urdf(urdf: str) -> RobotDescription:
+    """Check that a URDF text describes SARAH, and extract what a simulator needs.
 
     :param urdf: text of the URDF
-    :raises DescriptionError: naming what yourdfpy finds invalid
+    :return: the checked robot
+    :raises DescriptionError: naming the first rule that the text breaks
     """
+    try:
+        root = ElementTree.fromstring(urdf)
+    except ElementTree.ParseError as error:
+        raise DescriptionError(f"URDF is not well-formed XML: {error}") from error
+    _check_tree(root)
     import yourdfpy
 
-    model = yourdfpy.URDF.load(io.StringIO(urdf), load_meshes=False)
-    if not model.validate():
-        raise DescriptionError(f"yourdfpy finds the URDF invalid: {'; '.join(map(str, model.errors))}")
-    return model
+    try:
+        model = yourdfpy.URDF.load(io.StringIO(urdf), load_meshes=False)
+        valid = model.validate()
+    except Exception as error:  # yourdfpy lets through every exception of its XML parsing
+        raise DescriptionError(f"yourdfpy cannot read the URDF: {error}") from error
+    if not valid:
+        raise DescriptionError(
+            f"yourdfpy finds the URDF invalid: {'; '.join(str(problem) for problem in model.errors)}"
+        )
+    _check_joints(model)
+    _check_inertials(model)
+    return _read_off(urdf, model)
 
 
-def _read_off(urdf: str) -> RobotDescription:
-    model = model_of(urdf)
+def _check_tree(root: ElementTree.Element) -> None:
+    """Require unique names, known parents, and one root from which every link is reached."""
+    links = [link.get("name", "") for link in root.findall("link")]
+    joints = [joint.get("name", "") for joint in root.findall("joint")]
+    for kind, names in (("link", links), ("joint", joints)):
+        for name in names:
+            if names.count(name) > 1:
+                raise DescriptionError(f"URDF has more than one {kind} named {name!r}")
+    parent_of: dict[str, str] = {}
+    for joint in root.findall("joint"):
+        ends = [
+            element.get("link", "") if (element := joint.find(end)) is not None else "" for end in ("parent", "child")
+        ]
+        for link in ends:
+            if link not in links:
+                raise DescriptionError(f"URDF joint {joint.get('name')!r} names a link {link!r} that does not exist")
+        if ends[1] in parent_of:
+            raise DescriptionError(f"URDF link {ends[1]!r} has more than one parent")
+        parent_of[ends[1]] = ends[0]
+    roots = [link for link in links if link not in parent_of]
+    if len(roots) != 1:
+        raise DescriptionError(f"URDF must have one root link, not {len(roots)}: {', '.join(roots) or 'a loop'}")
+    for link in links:
+        visited = {link}
+        while link in parent_of:
+            link = parent_of[link]
+            if link in visited:
+                raise DescriptionError(f"URDF has a loop through link {link!r}")
+            visited.add(link)
+
+
+def _check_joints(model: Any) -> None:
+    """Require the ten joints, of the right kinds, with limits around zero."""
+    joints = model.joint_map
+    for name, kind in JOINT_TYPES.items():
+        if name not in joints:
+            raise DescriptionError(f"URDF has no joint {name!r}")
+        if joints[name].type != kind:
+            raise DescriptionError(f"URDF joint {name!r} must be {kind}, not {joints[name].type}")
+        if tuple(joints[name].axis) != JOINT_AXES[name]:
+            raise DescriptionError(f"URDF joint {name!r} must turn about {JOINT_AXES[name]}, not {joints[name].axis}")
+        limit = joints[name].limit
+        if limit is None or limit.lower is None or limit.upper is None or not limit.lower <= 0.0 <= limit.upper:
+            raise DescriptionError(f"URDF joint {name!r} must have limits with zero between them")
+    for name in joints:
+        if name not in JOINT_TYPES:
+            raise DescriptionError(f"URDF joint {name!r} is not one of the robot's ten")
+    for name in ACTUATED_JOINTS:
+        if not (joints[name].limit.effort or 0.0) > 0.0:
+            raise DescriptionError(f"URDF joint {name!r} must have a positive effort limit")
+
+
+def _check_inertials(model: Any) -> None:
+    """Require positive masses and positive definite inertias."""
+    import numpy as np
+
+    links = model.link_map
+    expected = {name for group in GROUPS.values() for name in group}
+    if set(links) != expected:
+        raise DescriptionError(f"URDF links differ from the robot's: {', '.join(sorted(set(links) ^ expected))}")
+    for name, link in links.items():
+        if link.inertial is None or link.inertial.mass is None or link.inertial.inertia is None:
+            raise DescriptionError(f"URDF link {name!r} has no mass or inertia")
+        mass, inertia = link.inertial.mass, link.inertial.inertia
+        if not (math.isfinite(mass) and mass > 0.0):
+            raise DescriptionError(f"URDF link {name!r} must have a positive mass, not {mass}")
+        if not np.isfinite(inertia).all() or not (np.linalg.eigvalsh(inertia) > 0.0).all():
+            raise DescriptionError(f"URDF link {name!r} must have a positive definite inertia")
+
+
+def _read_off(urdf: str, model: Any) -> RobotDescription:
     soles: dict[str, tuple[tuple[float, float, float], ...]] = {}
     standing_soles: list[tuple[float, float, float]] = []
     undersides: list[Underside] = []
     radius = 0.0
     for plate in ANKLE_JOINTS:
         spheres = [shape for shape in model.link_map[plate].collisions if shape.geometry.sphere is not None]
+        if not spheres:
+            raise DescriptionError(f"URDF link {plate!r} has no sole contact (a collision sphere)")
         radius = spheres[0].geometry.sphere.radius
         soles[plate] = tuple((float(s.origin[0, 3]), float(s.origin[1, 3]), float(s.origin[2, 3])) for s in spheres)
         to_torso = model.get_transform(plate, "torso")

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Iterable
-from typing import NamedTuple
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from sarah.robot.description import RobotDescription, model_of
+from sarah.robot.description import RobotDescription
 
 
 class MassProperties(NamedTuple):
@@ -25,12 +27,27 @@ class MassProperties(NamedTuple):
     inertia: np.ndarray
 
 
+def model_of(robot: RobotDescription) -> Any:
+    """Robot as yourdfpy reads it, which must not be changed.
+
+    :param robot: robot
+    """
+    return _model_of(robot.urdf)
+
+
+@lru_cache(maxsize=4)
+def _model_of(urdf: str) -> Any:
+    import yourdfpy
+
+    return yourdfpy.URDF.load(io.StringIO(urdf), load_meshes=False)
+
+
 def links_of(robot: RobotDescription) -> dict[str, MassProperties]:
     """Mass properties of each link of a standing robot, by the link's name.
 
     :param robot: robot
     """
-    model = model_of(robot.urdf)
+    model = model_of(robot)
     links = {}
     for name, link in model.link_map.items():
         inertial, to_torso = link.inertial, model.get_transform(name, "torso")

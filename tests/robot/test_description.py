@@ -1,11 +1,12 @@
 """The robot: what the xacro gives, and what is refused before any physics engine sees it."""
 
 import xml.etree.ElementTree as ElementTree
+from collections.abc import Callable
 
 import pytest
 
 from sarah.errors import DescriptionError
-from sarah.robot.description import ANKLE_JOINTS, GROUPS, JOINT_AXES, JOINT_TYPES, describe_robot, model_of
+from sarah.robot.description import ANKLE_JOINTS, GROUPS, check_urdf, describe_robot
 from sarah.robot.dimensions import default_dimensions, known_dimensions
 from sarah.robot.reading import ACTUATED_JOINTS
 from sarah.robot.scale import POWERS
@@ -14,6 +15,12 @@ from sarah.robot.scale import POWERS
 @pytest.fixture
 def urdf() -> str:
     return describe_robot().urdf
+
+
+def changed(urdf: str, change: Callable[[ElementTree.Element], None]) -> str:
+    root = ElementTree.fromstring(urdf)
+    change(root)
+    return ElementTree.tostring(root, encoding="unicode")
 
 
 def find(root: ElementTree.Element, kind: str, name: str) -> ElementTree.Element:
@@ -89,16 +96,89 @@ def test_bad_dimensions_are_refused_by_name(dimensions: dict[str, float], messag
     assert "\n" not in str(caught.value)
 
 
-def test_the_joints_turn_and_slide_as_the_package_says(urdf: str) -> None:
-    joints = model_of(urdf).joint_map
-    assert {name: joint.type for name, joint in joints.items()} == JOINT_TYPES
-    assert {name: tuple(joint.axis) for name, joint in joints.items()} == JOINT_AXES
+def second_root(root: ElementTree.Element) -> None:
+    ElementTree.SubElement(root, "link", name="stray")
 
 
-def test_an_invalid_urdf_is_refused(urdf: str) -> None:
-    root = ElementTree.fromstring(urdf)
+def duplicate_joint(root: ElementTree.Element) -> None:
+    root.append(find(root, "joint", "left_hip_flexion"))
+
+
+def duplicate_link(root: ElementTree.Element) -> None:
+    root.append(find(root, "link", "left_hip"))
+
+
+def loop(root: ElementTree.Element) -> None:
+    find(root, "joint", "left_hip_abduction").find("parent").set("link", "left_shank")  # type: ignore[union-attr]
+
+
+def missing_parent(root: ElementTree.Element) -> None:
+    find(root, "joint", "left_hip_flexion").find("parent").set("link", "nowhere")  # type: ignore[union-attr]
+
+
+def two_parents(root: ElementTree.Element) -> None:
+    find(root, "joint", "left_hip_flexion").find("child").set("link", "left_shank")  # type: ignore[union-attr]
+
+
+def negative_mass(root: ElementTree.Element) -> None:
+    find(root, "link", "left_hip").find("inertial/mass").set("value", "-1")  # type: ignore[union-attr]
+
+
+def flat_inertia(root: ElementTree.Element) -> None:
+    find(root, "link", "left_hip").find("inertial/inertia").set("ixx", "0")  # type: ignore[union-attr]
+
+
+def no_inertial(root: ElementTree.Element) -> None:
+    link = find(root, "link", "left_hip")
+    link.remove(link.find("inertial"))  # type: ignore[arg-type]
+
+
+def wrong_kind(root: ElementTree.Element) -> None:
+    find(root, "joint", "left_leg_length").set("type", "revolute")
+
+
+def renamed_joint(root: ElementTree.Element) -> None:
+    find(root, "joint", "left_leg_length").set("name", "left_knee")
+
+
+def no_limit(root: ElementTree.Element) -> None:
     joint = find(root, "joint", "left_leg_length")
     joint.remove(joint.find("limit"))  # type: ignore[arg-type]
-    with pytest.raises(DescriptionError, match=r"^yourdfpy finds the URDF invalid: .*limit") as caught:
-        model_of(ElementTree.tostring(root, encoding="unicode"))
+
+
+def flipped_axis(root: ElementTree.Element) -> None:
+    find(root, "joint", "left_leg_length").find("axis").set("xyz", "0 0 -1")  # type: ignore[union-attr]
+
+
+def powerless(root: ElementTree.Element) -> None:
+    find(root, "joint", "left_leg_length").find("limit").set("effort", "0")  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (second_root, "one root link, not 2"),
+        (duplicate_joint, "more than one joint named 'left_hip_flexion'"),
+        (duplicate_link, "more than one link named 'left_hip'"),
+        (loop, "loop"),
+        (missing_parent, "'left_hip_flexion' names a link 'nowhere'"),
+        (two_parents, "'left_shank' has more than one parent"),
+        (negative_mass, "'left_hip' must have a positive mass, not -1"),
+        (flat_inertia, "'left_hip' must have a positive definite inertia"),
+        (no_inertial, "'left_hip' has no mass or inertia"),
+        (wrong_kind, "'left_leg_length' must be prismatic, not revolute"),
+        (renamed_joint, "no joint 'left_leg_length'"),
+        (no_limit, "yourdfpy finds the URDF invalid: .*limit"),
+        (flipped_axis, "'left_leg_length' must turn about"),
+        (powerless, "'left_leg_length' must have a positive effort limit"),
+    ],
+)
+def test_broken_urdfs_are_refused(urdf: str, change: Callable[[ElementTree.Element], None], message: str) -> None:
+    with pytest.raises(DescriptionError, match=message) as caught:
+        check_urdf(changed(urdf, change))
     assert "\n" not in str(caught.value)
+
+
+def test_text_that_is_not_xml_is_refused() -> None:
+    with pytest.raises(DescriptionError, match="not well-formed"):
+        check_urdf("<robot>")
