@@ -26,8 +26,6 @@ PUSHED_BETWEEN = (2.0, 4.0)
 SECONDS_AFTER = 10.0
 """Time after the latest push that the robot must stay up, in s."""
 DIRECTIONS = ("all", "lateral", "sagittal")
-SECTORS = (16, 8, 4)
-"""Numbers of directions by which survival can be shown."""
 CONFIDENCE_QUANTILE = 1.96
 """Quantile of the normal distribution for intervals of 95 %."""
 
@@ -164,31 +162,3 @@ def wilson_interval(successes: int, trials: int) -> tuple[float, float]:
     centre = share + z2 / (2 * trials)
     half = CONFIDENCE_QUANTILE * math.sqrt(share * (1 - share) / trials + z2 / (4 * trials**2))
     return (max(0.0, (centre - half) / (1 + z2 / trials)), min(1.0, (centre + half) / (1 + z2 / trials)))
-
-
-def survival_by_direction(episodes: Sequence[PushedEpisode], sectors: int) -> dict[float, list[float | None]]:
-    """Share of episodes that survived, by force and sector of direction.
-
-    :param episodes: episodes of one controller
-    :param sectors: number of sectors; the first is centred on a push to the right, the others follow counter-clockwise
-    :return: shares of the sectors by force in N; ``None`` for a sector without pushes
-    """
-    table: dict[float, list[float | None]] = {}
-    for newtons in sorted({episode.newtons for episode in episodes}):
-        counts = [[0, 0] for _ in range(sectors)]
-        for episode in episodes:
-            if episode.newtons == newtons:
-                sector = round(episode.radians / (2 * math.pi) * sectors) % sectors
-                counts[sector][0] += episode.result.survived
-                counts[sector][1] += 1
-        table[newtons] = [survived / total if total else None for survived, total in counts]
-    return table
-
-
-def finest_sectors(episodes: Sequence[PushedEpisode]) -> int:
-    """Largest of :data:`SECTORS` with pushes in every sector; the smallest of them if there is none.
-
-    :param episodes: episodes of one controller
-    """
-    without_gaps = (n for n in SECTORS if all(None not in row for row in survival_by_direction(episodes, n).values()))
-    return next(without_gaps, SECTORS[-1])

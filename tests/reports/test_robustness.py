@@ -17,14 +17,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BalanceConfig
 from sarah.episode.workers import Workers
 from sarah.reports import robustness
-from sarah.reports.robustness import (
-    PushedEpisode,
-    finest_sectors,
-    push_many,
-    robustness_table,
-    survival_by_direction,
-    wilson_interval,
-)
+from sarah.reports.robustness import PushedEpisode, push_many, robustness_table, wilson_interval
 
 FALL = dataclasses.replace(RESULT, score=0.1, termination="left_box", final_position=(0.3, 0.0, 0.8))
 
@@ -87,16 +80,6 @@ def test_interval_holds_the_share_and_is_never_empty(episodes: int, data: st.Dat
     low, high = wilson_interval(survivors, episodes)
     share = survivors / episodes
     assert 0.0 <= low <= share + 1e-12 and share - 1e-12 <= high <= 1.0 and high - low > 0.0
-
-
-def test_sectors_are_centred_on_right_forward_left_and_back() -> None:
-    episodes = [pushed(5), pushed(-5, FALL), pushed(90), pushed(180, FALL), pushed(-175, FALL)]
-    assert survival_by_direction(episodes, 4) == {100.0: [0.5, 1.0, 0.0, None]}
-
-
-@pytest.mark.parametrize("step, sectors", [(22.5, 16), (30, 8), (45, 8), (90, 4), (180, 4)])
-def test_a_plot_has_no_more_sectors_than_pushes_point_to(step: float, sectors: int) -> None:
-    assert finest_sectors([pushed(step * index) for index in range(round(360 / step))]) == sectors
 
 
 def test_eval_prints_the_table_and_leaves_it_with_a_plot(
