@@ -10,6 +10,7 @@ import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.push import Push, draw_push
@@ -26,8 +27,7 @@ PUSHED_BETWEEN = (2.0, 4.0)
 SECONDS_AFTER = 10.0
 """Time after the latest push that the robot must stay up, in s."""
 DIRECTIONS = ("all", "lateral", "sagittal")
-CONFIDENCE_QUANTILE = 1.96
-"""Quantile of the normal distribution for intervals of 95 %."""
+CONFIDENCE = 0.95
 
 
 @dataclass(frozen=True)
@@ -47,20 +47,6 @@ class PushedEpisode:
     def direction(self) -> str:
         """Group of the push's direction: ``"lateral"`` or ``"sagittal"``."""
         return "lateral" if abs(math.cos(self.radians)) > abs(math.sin(self.radians)) else "sagittal"
-
-
-@dataclass(frozen=True)
-class Robustness:
-    """Episodes with pushes of one force in one group of directions.
-
-    :param newtons: force of the pushes, in N
-    :param direction: group of directions, one of :data:`DIRECTIONS`
-    :param evaluation: evaluation of the episodes
-    """
-
-    newtons: float
-    direction: str
-    evaluation: Evaluation
 
 
 def forces_for(scale: Scale) -> tuple[float, ...]:
@@ -129,18 +115,17 @@ def push_of_table(push: Push, newtons: float) -> Push:
     return dataclasses.replace(push, newtons=(newtons, newtons), at_seconds=PUSHED_BETWEEN, sagittal_share=0.0)
 
 
-def robustness_table(episodes: Sequence[PushedEpisode]) -> list[Robustness]:
-    """Summarise pushed episodes by force and direction.
+def robustness_table(episodes: Sequence[PushedEpisode]) -> dict[tuple[float, str], Evaluation]:
+    """Evaluations of pushed episodes by force in N and group of directions, one of :data:`DIRECTIONS`.
 
     :param episodes: episodes of one controller
     """
-    rows = []
-    for newtons in sorted({episode.newtons for episode in episodes}):
-        for direction in DIRECTIONS:
-            group = [e.result for e in episodes if e.newtons == newtons and direction in ("all", e.direction)]
-            if group:
-                rows.append(Robustness(newtons, direction, Evaluation(tuple(group))))
-    return rows
+    table = {}
+    for newtons, direction in product(sorted({episode.newtons for episode in episodes}), DIRECTIONS):
+        group = [e.result for e in episodes if e.newtons == newtons and direction in ("all", e.direction)]
+        if group:
+            table[newtons, direction] = Evaluation(tuple(group))
+    return table
 
 
 def survival_interval(evaluation: Evaluation) -> tuple[float, float]:
@@ -157,8 +142,7 @@ def wilson_interval(successes: int, trials: int) -> tuple[float, float]:
     :param successes: number of successes
     :param trials: number of trials
     """
-    z2 = CONFIDENCE_QUANTILE**2
-    share = successes / trials
-    centre = share + z2 / (2 * trials)
-    half = CONFIDENCE_QUANTILE * math.sqrt(share * (1 - share) / trials + z2 / (4 * trials**2))
-    return (max(0.0, (centre - half) / (1 + z2 / trials)), min(1.0, (centre + half) / (1 + z2 / trials)))
+    from scipy.stats import binomtest  # takes a second to import
+
+    interval = binomtest(successes, trials).proportion_ci(CONFIDENCE, "wilson")
+    return interval.low, interval.high
