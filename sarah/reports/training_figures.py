@@ -10,7 +10,6 @@ through them.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from scipy.ndimage import median_filter
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.tasks import BALANCE, STEPPING, Task
@@ -37,10 +37,6 @@ WINDOW = 15
 SURVIVAL_MARKS = {True: ("survived", ".", "#0072B2"), False: ("did not", "x", "#D55E00")}
 """Label, marker and colour of pushes that the robot survived, and of others."""
 WARM_UP_LABEL = "random warm-up"
-LEAST_IN_ROWS = 4
-"""Least number of entries for which a figure's legend has rows of two: more in a row would leave the picture."""
-LEGEND_ROW = 0.17
-"""Height of a row of a legend, in inches."""
 
 Panels = list[tuple[str, str]]
 """Column of ``episodes.csv`` and label of each panel, from top to bottom."""
@@ -97,7 +93,7 @@ def _draw(curves: Sequence[RunCurves], panels: Panels, path: Path) -> list[Path]
         1,
         sharex=True,
         squeeze=False,
-        figsize=(COLUMN_WIDTH, 0.6 + 1.1 * len(panels)),
+        figsize=(COLUMN_WIDTH, 1.0 + 1.1 * len(panels)),
         layout="constrained",
     )
     colours = algorithm_colours(curve.algorithm for curve in curves)
@@ -115,9 +111,7 @@ def _draw(curves: Sequence[RunCurves], panels: Panels, path: Path) -> list[Path]
     axes[-1, 0].set_xlabel("training steps (episodes)")
     figure.align_ylabels()
     handles, labels = axes[0, 0].get_legend_handles_labels()
-    columns = len(labels) if len(labels) < LEAST_IN_ROWS else 2
-    figure.set_figheight(figure.get_figheight() + LEGEND_ROW * (math.ceil(len(labels) / columns) - 1))
-    figure.legend(handles, labels, loc="outside upper right", ncols=columns, columnspacing=1.2, handlelength=1.5)
+    figure.legend(handles, labels, loc="outside upper right", ncols=2, columnspacing=1.2, handlelength=1.5)
     return save(figure, path)
 
 
@@ -134,7 +128,7 @@ def _mark_warm_up(axis: Axes, curves: Sequence[RunCurves]) -> None:
 def _draw_panel(axis: Axes, curves: RunCurves, column: str, label: str, colour: str) -> None:
     values, learned = curves.columns[column], slice(curves.warm_up, curves.learning)
     steps = np.arange(1, values.shape[1] + 1)
-    smooth = np.array([running_median(run) for run in values[:, learned]])
+    smooth = median_filter(values[:, learned], (1, WINDOW))
     if len(values) == 1:
         dots: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 1.6, "color": colour, "alpha": 0.5}
         axis.plot(steps[learned], values[0, learned], markeredgewidth=0, **dots)
@@ -153,16 +147,6 @@ def _draw_recommended(axis: Axes, curves: RunCurves, column: str) -> None:
     """Draw what the training would have recommended, each time until it was asked again."""
     episodes, values = curves.recommended["episodes"], curves.recommended[column]
     axis.plot(episodes, values, color="0.25", linewidth=0.9, drawstyle="steps-post", label="recommended")
-
-
-def running_median(values: np.ndarray) -> np.ndarray:
-    """Running median: of each value and those around it, which are fewer at both ends.
-
-    :param values: values of shape (n,)
-    :return: medians of shape (n,)
-    """
-    half = WINDOW // 2
-    return np.array([np.median(values[max(0, i - half) : i + half + 1]) for i in range(len(values))])
 
 
 def draw_race(curves: Sequence[RaceCurve], path: Path) -> list[Path]:
