@@ -20,7 +20,7 @@ from sarah.runs.run_episodes import RunEpisode
 from sarah.viewer.background import BackgroundSimulation, Wish
 from sarah.viewer.playback import Playback
 from sarah.viewer.plots import Plots
-from sarah.viewer.results import Shown, comparison, paragraph
+from sarah.viewer.results import comparison, paragraph
 from sarah.viewer.scenario import NO_PUSH, KnownPush, Scenario
 from sarah.viewer.scene import RobotScene, describe_tick
 
@@ -47,8 +47,7 @@ class Page:
         self._choices = {choice.label: choice for choice in choices}
         self._chosen = chosen
         self._wanted = Scenario.of(chosen.spec)
-        self._shown: Shown | None = None
-        self._before: Shown | None = None
+        self._shown: EpisodeResult | None = None
         self._lock = threading.RLock()
         self._is_seen = False
         self.frames = 0
@@ -228,14 +227,14 @@ class Page:
         """Play an episode that has just been simulated."""
         assert result.trace is not None
         with self._lock:
-            self._before, self._shown = self._shown, Shown(scenario, result, result.trace)
+            before, self._shown = self._shown, result
             begin, end = float(result.trace.time[0]), float(result.trace.time[-1])
             self._time.min, self._time.max = 0.0, end  # in between, an older minimum would lie above a new maximum
             self._time.min = begin
             self._scene.load(result.trace, spec)
             self._plots.load(result.trace, scenario)
             self._news.content = paragraph("")
-            table = comparison(self._shown, self._before, self._noted_score(scenario))
+            table = comparison(result, before, self._noted_score(scenario))
             self._table.content = table + paragraph(", ".join(told_settings(spec)))
         self._playback.load(begin, end, begin if play_from is None else play_from)
         if self._is_seen:
@@ -248,7 +247,7 @@ class Page:
     def _show(self, time: float) -> None:
         """Draw a frame."""
         with self._lock:
-            if self._shown is None:
+            if self._shown is None or self._shown.trace is None:
                 return
             tick = self._shown.trace.tick_at(time)
             self._scene.show(tick)
