@@ -218,7 +218,6 @@ def _show_terrain(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions, w
     from tqdm import tqdm
 
     from sarah.cli.eval_text import settings_of_table
-    from sarah.reports.markdown import code
     from sarah.reports.terrain import as_markdown, situations, try_terrain
     from sarah.reports.terrain_figure import draw_terrain
 
@@ -232,7 +231,7 @@ def _show_terrain(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions, w
     about = f"{spec.task.name} ({values}) in {spec.config.engine}, seeds {options.seeds[0]} to {options.seeds[-1]}"
     pushed_on_level = next(situation for situation in tried if situation.newtons).config(spec.task, spec.config)
     settings = settings_of_table(options.subject, pushed_on_level, own)
-    table = f"{about}: {code(command)}\n\n{settings}\n\n{as_markdown(evaluations)}"
+    table = f"{about}:\n\n    {command}\n\n{settings}\n\n{as_markdown(evaluations)}"
     print(table)
     (folder / "terrain.md").write_text(table + "\n", encoding="utf-8")
     for file in draw_terrain(evaluations, folder / "terrain"):
