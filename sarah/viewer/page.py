@@ -233,15 +233,12 @@ class Page:
             self._scene.load(result.trace, spec)
             self._plots.load(result.trace, scenario)
             self._news.content = paragraph("")
-            table = comparison(result, before, self._noted_score(scenario))
+            is_changed = scenario != Scenario.of(self._chosen.spec)
+            table = comparison(result, before, None if is_changed else self._chosen.score)
             self._table.content = table + paragraph(", ".join(told_settings(spec)))
         self._playback.load(begin, end, begin if play_from is None else play_from)
         if self._is_seen:
             self._playback.play()
-
-    def _noted_score(self, scenario: Scenario) -> float | None:
-        """Score of the chosen episode in the run folder, if nothing has been changed."""
-        return self._chosen.score if scenario == Scenario.of(self._chosen.spec) else None
 
     def _show(self, time: float) -> None:
         """Draw a frame."""
