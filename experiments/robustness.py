@@ -41,12 +41,12 @@ class Robustness(TrainingExperiment):
             }
             for controller, parameters in controllers.items():
                 (pushed,) = push_many([parameters], config, workers, self.forces, self.episodes)
-                for row in robustness_table(pushed):
-                    found, (low, high) = row.evaluation, survival_interval(row.evaluation)
+                for (newtons, direction), found in robustness_table(pushed).items():
+                    low, high = survival_interval(found)
                     yield {
                         "controller": controller,
-                        "push_n": f"{row.newtons:g}",
-                        "direction": row.direction,
+                        "push_n": f"{newtons:g}",
+                        "direction": direction,
                         "episodes": found.episodes,
                         "survival": found.survival_rate,
                         "survival_low": low,

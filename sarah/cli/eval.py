@@ -158,14 +158,16 @@ def _show_robustness(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions
     head = "".join(f" {name}: survival | score | drift | vibration |" for name in names)
     about = settings_of_table(options.subject, pushed_settings(config, max(forces)), own)
     lines = [about, "", f"| push | direction | episodes |{head}", "|---" * (3 + 4 * len(names)) + "|"]
-    for rows in zip(*map(robustness_table, pushed), strict=True):
+    tables = [robustness_table(episodes) for episodes in pushed]
+    for newtons, direction in tables[0]:
+        evaluations = [table[newtons, direction] for table in tables]
         cells = "".join(
             " {:.2f} ({:.2f} to {:.2f})".format(found.survival_rate, *survival_interval(found))
             + f" | {found.median('score'):.2f} | {100 * found.median('drift'):.1f} cm "
             + f"| {found.median('vibration'):.1f} |"
-            for found in (row.evaluation for row in rows)
+            for found in evaluations
         )
-        lines.append(f"| {rows[0].newtons:g} N | {rows[0].direction} | {rows[0].evaluation.episodes} |{cells}")
+        lines.append(f"| {newtons:g} N | {direction} | {evaluations[0].episodes} |{cells}")
     lines += [
         "",
         "- survival: share of the episodes (its 95 % interval)",
@@ -196,7 +198,6 @@ def _show_terrain(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions, w
     from tqdm import tqdm
 
     from sarah.cli.eval_text import settings_of_table
-    from sarah.reports.markdown import code
     from sarah.reports.terrain import as_markdown, situations, try_terrain
     from sarah.reports.terrain_figure import draw_terrain
 
@@ -205,13 +206,13 @@ def _show_terrain(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions, w
     say_engine(spec.config)
     tried = list(situations(spec.config.scale))
     progress = partial(tqdm, total=len(tried) * options.episodes, unit=" episodes")
-    rows = try_terrain(spec.task, spec.parameters, spec.config, options.seeds, workers, tried, progress)
+    evaluations = try_terrain(spec.task, spec.parameters, spec.config, options.seeds, workers, tried, progress)
     values = ", ".join(f"{value:g}" for value in spec.parameters)
     about = f"{spec.task.name} ({values}) in {spec.config.engine}, seeds {options.seeds[0]} to {options.seeds[-1]}"
     pushed_on_level = next(situation for situation in tried if situation.newtons).config(spec.task, spec.config)
     settings = settings_of_table(options.subject, pushed_on_level, own)
-    table = f"{about}: {code(command)}\n\n{settings}\n\n{as_markdown(rows)}"
+    table = f"{about}:\n\n    {command}\n\n{settings}\n\n{as_markdown(evaluations)}"
     print(table)
     (folder / "terrain.md").write_text(table + "\n", encoding="utf-8")
-    for file in draw_terrain(rows, folder / "terrain"):
+    for file in draw_terrain(evaluations, folder / "terrain"):
         print(file)

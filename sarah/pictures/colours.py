@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from zlib import crc32
+from itertools import cycle
 
 from sarah.scenery.push_arrow import PUSH as PUSH
 
@@ -27,19 +27,13 @@ SPARE_COLOURS = ("#332288", "#882255", "#999933", "#7F7F7F", "#8C564B", "#9BD770
 
 
 def algorithm_colours(algorithms: Iterable[str]) -> dict[str, str]:
-    """Colours of algorithms in one picture. Those without an entry get different ones, which depend on their names.
+    """Colours of algorithms in one picture. Those without an entry get spare ones, in the order of their names.
 
     :param algorithms: names of the algorithms, known or not
     :return: colours by name
     """
-    names = sorted(set(algorithms))
-    colours = {name: ALGORITHM_COLOURS[name] for name in names if name in ALGORITHM_COLOURS}
-    spare = list(SPARE_COLOURS)
-    for name in names:
-        if name not in colours:
-            spare = spare or list(SPARE_COLOURS)
-            colours[name] = spare.pop(crc32(name.encode()) % len(spare))
-    return colours
+    spare = cycle(SPARE_COLOURS)
+    return {name: ALGORITHM_COLOURS.get(name) or next(spare) for name in sorted(set(algorithms))}
 
 
 def algorithm_label(algorithm: str) -> str:

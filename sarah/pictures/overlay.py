@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
-import re
-from collections.abc import Iterator
+import textwrap
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -25,8 +23,8 @@ OUTLINE: dict[str, Any] = {"stroke_width": 2, "stroke_fill": "white"}
 """Outline of words that may stand before the robot."""
 LABEL_OFFSET = np.array((0.26, 0.20, 0.0))
 """Position of the arrow's label from the torso's centre: to the right, upward and ahead in the picture, in m."""
-MOST_LINES = 8
-"""Largest number of a caption's lines, above which it would reach the strip of phases."""
+MOST_LINES = 7
+"""Largest number of a caption's lines; of a longer one, an ellipsis follows. More would reach the strip of phases."""
 STRIP_SECONDS = 2.0
 """Length of the past that the strip of phases shows, in s."""
 
@@ -48,7 +46,9 @@ class Overlay:
         self._unit = view.height / LINES_OF_TEXT
         self._scale = scale
         width = caption_end - 1.5 * self._unit - OUTLINE["stroke_width"]
-        self._caption = wrapped(caption, _font(0.85 * self._unit), width)
+        characters = int(width / _font(0.85 * self._unit).getlength("0"))
+        lines = [line for paragraph in caption.splitlines() for line in textwrap.wrap(paragraph, characters)]
+        self._caption = lines[:MOST_LINES] + ["…"] * (len(lines) > MOST_LINES)
 
     def draw(self, picture: Image.Image, tick: int) -> None:
         """Draw over a frame.
@@ -85,17 +85,19 @@ class Overlay:
 
     def _draw_phases(self, pen: ImageDraw.ImageDraw, tick: int) -> None:
         """Draw the phases of the last seconds, each in the row of its swing leg, and the names of their colours."""
-        unit = self._unit
+        trace, unit = self._trace, self._unit
         begin, end, top = 3.0 * unit, 16.5 * unit, 20.5 * unit
-        for row, side in enumerate(Side):
-            y = top + 2.2 * unit * row
+        rows = {side: top + 2.2 * unit * row for row, side in enumerate(Side)}
+        for side, y in rows.items():
             colour = LEFT if side is Side.LEFT else RIGHT
             pen.text((1.5 * unit, y + 0.8 * unit), side.name[0], font=_font(unit, bold=True), fill=colour, anchor="lm")
             pen.rectangle((begin, y, end, y + 1.6 * unit), fill="#F1F3F5")
-            for ages, phase, swing in self._past_phases(tick):
-                if swing is side and phase in PHASE_COLOURS:  # a robot that fell while it stood never stepped
-                    left, right = (end - age / STRIP_SECONDS * (end - begin) for age in ages)
-                    pen.rectangle((left, y, right, y + 1.6 * unit), fill=PHASE_COLOURS[phase])
+        places = end + (trace.time - trace.time[tick]) / STRIP_SECONDS * (end - begin)
+        for past in range(trace.tick_at(trace.time[tick] - STRIP_SECONDS), tick):
+            if trace.phase[past] in PHASE_COLOURS:  # a robot that fell while it stood never stepped
+                y = rows[Side(int(trace.stance[past])).other]
+                strip = (max(begin, places[past]), y, places[past + 1], y + 1.6 * unit)
+                pen.rectangle(strip, fill=PHASE_COLOURS[trace.phase[past]])
         x, y = begin, top + 4.8 * unit
         for phase, colour in PHASE_COLOURS.items():
             pen.rectangle((x, y, x + 0.9 * unit, y + 0.9 * unit), fill=colour)
@@ -103,17 +105,6 @@ class Overlay:
             x += 4.2 * unit
         note = f"swing leg, last {STRIP_SECONDS:g} s"
         pen.text((begin, y + 1.5 * unit), note, font=_font(0.85 * unit), fill=PALE_INK)
-
-    def _past_phases(self, tick: int) -> Iterator[tuple[tuple[float, float], str, Side]]:
-        """Phases of the last seconds: how long ago each began and ended in s, its name, and its swing leg."""
-        trace = self._trace
-        now = trace.time[tick]
-        rows = slice(trace.tick_at(now - STRIP_SECONDS), tick + 1)
-        ages, phase, stance = now - trace.time[rows], trace.phase[rows], trace.stance[rows]
-        changes = np.flatnonzero((phase[1:] != phase[:-1]) | (stance[1:] != stance[:-1])) + 1
-        for begin, end in itertools.pairwise([0, *changes, len(ages) - 1]):
-            began = min(STRIP_SECONDS, ages[begin])
-            yield (began, ages[end]), str(phase[begin]), Side(int(stance[begin])).other
 
     def _draw_push(self, pen: ImageDraw.ImageDraw, tick: int, force: Vector) -> None:
         """Draw the push's arrow, and the force in newtons."""
@@ -127,34 +118,6 @@ class Overlay:
         for low, high, axis, end in ((left, right, 0, self._view.width), (top, bottom, 1, self._view.height)):
             label[axis] += max(0.0, unit - low) - max(0.0, high + unit - end)  # it stays in the picture
         pen.multiline_text(tuple(label), text, fill=PUSH, **style, **OUTLINE)
-
-
-def wrapped(text: str, font: ImageFont.FreeTypeFont, width: float) -> list[str]:
-    """Lines of a text that are not too wide; what does not fit in :data:`MOST_LINES` is left out.
-
-    :param text: text of any length
-    :param font: font of the text
-    :param width: largest width of a line, in pixels
-    """
-    lines: list[str] = []
-    for paragraph in text.splitlines():
-        line = ""
-        for word in re.findall(r"\s*\S+", paragraph):
-            if line and font.getlength(line + word) > width:
-                lines.append(line)
-                line, word = "", word.lstrip()
-            for character in word:  # a word that is too wide is broken
-                if line and font.getlength(line + character) > width:
-                    lines.append(line)
-                    line = ""
-                line += character
-        lines.append(line)
-    if len(lines) <= MOST_LINES:
-        return lines
-    last = lines[MOST_LINES - 1]
-    while font.getlength(last + "…") > width:
-        last = last[:-1]
-    return [*lines[: MOST_LINES - 1], last + "…"]
 
 
 @lru_cache(maxsize=16)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -13,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 
 from sarah.pictures.colours import LEFT, RIGHT
-from sarah.pictures.link_shapes import points_around
+from sarah.pictures.link_shapes import shapes_of
 from sarah.pictures.style import COLUMN_WIDTH, own_style, save
 from sarah.robot.description import ANKLE_JOINTS, GROUPS, JOINT_AXES, JOINT_TYPES, RobotDescription
 from sarah.robot.standing import model_of
@@ -53,14 +51,14 @@ def labels_of(robot: RobotDescription) -> list[Label]:
 
     :param robot: robot, which stands with all joints at zero
     """
-    model = model_of(robot)
+    model, shapes = model_of(robot), list(shapes_of(robot))
     torso = np.array((0.0, 0.0, robot.standing_height))
 
     def at(link: str, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> np.ndarray:
         """Point of a link's frame, or the nearest in the box around the link's shapes, in the world's frame."""
-        nearest = np.clip((x, y, z), *_box(model.link_map[link].visuals))
-        point = model.get_transform(link, "torso") @ (*nearest, 1.0)
-        return np.asarray(torso + point[:3])
+        points = np.concatenate([shape.points for shape in shapes if shape.link == link])
+        point = torso + model.get_transform(link, "torso")[:3, 3] + (x, y, z)
+        return np.clip(point, points.min(axis=0), points.max(axis=0))
 
     kilograms = {group: f"{sum(robot.masses[link] for link in links):.3g} kg" for group, links in GROUPS.items()}
     (_, sole_y, sole_z), (outer, _, _) = robot.soles["right_forefoot"][0], max(robot.soles["right_forefoot"])
@@ -80,12 +78,6 @@ def labels_of(robot: RobotDescription) -> list[Label]:
         Label(_joint(robot, "left_hindfoot"), at("left_hindfoot", 0.03, -0.65 * sole_y), 0.28, False),
         Label(_joint(robot, "left_forefoot"), at("left_forefoot", 0.03, 0.75 * sole_y), 0.16, False),
     ]
-
-
-def _box(shapes: Sequence[Any]) -> tuple[np.ndarray, np.ndarray]:
-    """Lowest and highest corner of a box around a link's shapes, in its frame."""
-    points = np.concatenate([points_around(shape) for shape in shapes])
-    return points.min(axis=0), points.max(axis=0)
 
 
 def _joint(robot: RobotDescription, joint: str) -> str:

@@ -7,6 +7,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+import numpy as np
+import yaml
+from scipy.ndimage import uniform_filter1d
 
 from sarah.operation.settings import Change
 from sarah.operation.window import Window
@@ -61,27 +64,12 @@ def draw_session(
         return save(figure, path)
 
 
-def words_of(change: Change) -> str:
-    """A change in words, such as ``randomisation.actuator_bandwidth = 12``.
-
-    :param change: change of robot or world
-    """
-    return ", ".join(_words(change.settings))
-
-
 def _lines(number: int, change: Change) -> list[str]:
-    return textwrap.wrap(f"{number}: {words_of(change)}", WIDEST_LINE, subsequent_indent="    ")
+    """A change in words, as in a YAML file."""
+    words = yaml.safe_dump(dict(change.settings), default_flow_style=True, sort_keys=False).strip()[1:-1]
+    return textwrap.wrap(f"{number}: {words}", WIDEST_LINE, subsequent_indent="    ")
 
 
-def _words(settings: object, key: str = "") -> list[str]:
-    if not isinstance(settings, dict):
-        return [f"{key} = {settings}"]
-    return [word for name, value in settings.items() for word in _words(value, f"{key}.{name}" if key else name)]
-
-
-def _running_mean(values: Sequence[float]) -> list[float]:
-    means = []
-    for index in range(len(values)):
-        recent = values[max(0, index + 1 - SMOOTHED) : index + 1]
-        means.append(sum(recent) / len(recent))
-    return means
+def _running_mean(values: Sequence[float]) -> np.ndarray:
+    """Mean of each value and those before it."""
+    return np.asarray(uniform_filter1d(values, SMOOTHED, mode="nearest", origin=SMOOTHED // 2))

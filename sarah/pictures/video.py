@@ -191,13 +191,7 @@ def _write_gif(pictures: Iterable[Image.Image], path: Path) -> None:
 
 def _palette(pictures: list[Image.Image]) -> Image.Image:
     """Make one palette for all frames, which would flicker otherwise, of some frames and all colours with a meaning."""
-    samples = pictures[:: max(1, len(pictures) // 6)]
-    width, height = samples[0].size
-    sheet = Image.new("RGB", (width, (len(samples) + 1) * height))
-    for index, sample in enumerate(samples):
-        sheet.paste(sample, (0, index * height))
-    colours = (LEFT, RIGHT, PUSH, *PHASE_COLOURS.values())
-    for index, colour in enumerate(colours):
-        box = (index * width // len(colours), len(samples) * height, width, sheet.height)
-        sheet.paste(ImageColor.getrgb(colour), box)
-    return sheet.quantize(GIF_COLOURS)
+    samples = [np.asarray(picture) for picture in pictures[:: max(1, len(pictures) // 6)]]
+    colours = np.array([ImageColor.getrgb(name) for name in (LEFT, RIGHT, PUSH, *PHASE_COLOURS.values())], np.uint8)
+    swatches = np.tile(colours.repeat(60, axis=0)[:, np.newaxis], (GIF_SIZE[0], 1))
+    return Image.fromarray(np.concatenate([*samples, swatches])).quantize(GIF_COLOURS)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from base64 import b64encode
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
@@ -39,20 +39,8 @@ PAPER_CAPTIONS = {
 """Captions of the paper's figures of trainings."""
 
 
-@dataclass(frozen=True)
-class Row:
-    """A row of the table of results.
-
-    :param name: label of the metric or parameter, with its unit
-    :param learned: value of the learned parameters
-    :param baseline: value of the baseline
-    :param paper: value or remark that the paper gives
-    """
-
-    name: str
-    learned: str
-    baseline: str
-    paper: str = ""
+Row = tuple[str, str, str, str]
+"""Label of a metric or parameter, its values with the learned parameters and with the baseline, and the paper's."""
 
 
 def write_report(
@@ -134,18 +122,18 @@ def _captions(task: Task) -> dict[str, str]:
 def _parameter_rows(learned: EpisodeSpec) -> list[Row]:
     task = learned.task
     return [
-        Row(parameter.label, f"{ours:.2f}", f"{theirs:.2f}", parameter.paper)
+        (parameter.label, f"{ours:.2f}", f"{theirs:.2f}", parameter.paper)
         for parameter, ours, theirs in zip(task.parameters, learned.parameters, task.baseline, strict=True)
     ]
 
 
 def _result_rows(config: TrainingConfig, learned: Evaluation, baseline: Evaluation) -> list[Row]:
     ours, theirs = (f"{evaluation.survivors} of {evaluation.episodes}" for evaluation in (learned, baseline))
-    rows = [Row(f"episodes that lasted {config.episode.time_limit:g} s", ours, theirs, "30 s end a good episode")]
+    rows = [(f"episodes that lasted {config.episode.time_limit:g} s", ours, theirs, "30 s end a good episode")]
     for name, metric in METRICS.items():
         for how in metric.statistics[:1]:
             ours, theirs = (metric.text(evaluation.statistic(name, how)) for evaluation in (learned, baseline))
-            rows.append(Row(f"{metric.label}, {how}", ours, theirs, metric.paper))
+            rows.append((f"{metric.label}, {how}", ours, theirs, metric.paper))
     return rows
 
 

@@ -10,6 +10,7 @@ import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.push import Push, draw_push
@@ -26,10 +27,7 @@ PUSHED_BETWEEN = (2.0, 4.0)
 SECONDS_AFTER = 10.0
 """Time after the latest push that the robot must stay up, in s."""
 DIRECTIONS = ("all", "lateral", "sagittal")
-SECTORS = (16, 8, 4)
-"""Numbers of directions by which survival can be shown."""
-CONFIDENCE_QUANTILE = 1.96
-"""Quantile of the normal distribution for intervals of 95 %."""
+CONFIDENCE = 0.95
 
 
 @dataclass(frozen=True)
@@ -49,20 +47,6 @@ class PushedEpisode:
     def direction(self) -> str:
         """Group of the push's direction: ``"lateral"`` or ``"sagittal"``."""
         return "lateral" if abs(math.cos(self.radians)) > abs(math.sin(self.radians)) else "sagittal"
-
-
-@dataclass(frozen=True)
-class Robustness:
-    """Episodes with pushes of one force in one group of directions.
-
-    :param newtons: force of the pushes, in N
-    :param direction: group of directions, one of :data:`DIRECTIONS`
-    :param evaluation: evaluation of the episodes
-    """
-
-    newtons: float
-    direction: str
-    evaluation: Evaluation
 
 
 def forces_for(scale: Scale) -> tuple[float, ...]:
@@ -131,18 +115,17 @@ def push_of_table(push: Push, newtons: float) -> Push:
     return dataclasses.replace(push, newtons=(newtons, newtons), at_seconds=PUSHED_BETWEEN, sagittal_share=0.0)
 
 
-def robustness_table(episodes: Sequence[PushedEpisode]) -> list[Robustness]:
-    """Summarise pushed episodes by force and direction.
+def robustness_table(episodes: Sequence[PushedEpisode]) -> dict[tuple[float, str], Evaluation]:
+    """Evaluations of pushed episodes by force in N and group of directions, one of :data:`DIRECTIONS`.
 
     :param episodes: episodes of one controller
     """
-    rows = []
-    for newtons in sorted({episode.newtons for episode in episodes}):
-        for direction in DIRECTIONS:
-            group = [e.result for e in episodes if e.newtons == newtons and direction in ("all", e.direction)]
-            if group:
-                rows.append(Robustness(newtons, direction, Evaluation(tuple(group))))
-    return rows
+    table = {}
+    for newtons, direction in product(sorted({episode.newtons for episode in episodes}), DIRECTIONS):
+        group = [e.result for e in episodes if e.newtons == newtons and direction in ("all", e.direction)]
+        if group:
+            table[newtons, direction] = Evaluation(tuple(group))
+    return table
 
 
 def survival_interval(evaluation: Evaluation) -> tuple[float, float]:
@@ -159,36 +142,7 @@ def wilson_interval(successes: int, trials: int) -> tuple[float, float]:
     :param successes: number of successes
     :param trials: number of trials
     """
-    z2 = CONFIDENCE_QUANTILE**2
-    share = successes / trials
-    centre = share + z2 / (2 * trials)
-    half = CONFIDENCE_QUANTILE * math.sqrt(share * (1 - share) / trials + z2 / (4 * trials**2))
-    return (max(0.0, (centre - half) / (1 + z2 / trials)), min(1.0, (centre + half) / (1 + z2 / trials)))
+    from scipy.stats import binomtest  # takes a second to import
 
-
-def survival_by_direction(episodes: Sequence[PushedEpisode], sectors: int) -> dict[float, list[float | None]]:
-    """Share of episodes that survived, by force and sector of direction.
-
-    :param episodes: episodes of one controller
-    :param sectors: number of sectors; the first is centred on a push to the right, the others follow counter-clockwise
-    :return: shares of the sectors by force in N; ``None`` for a sector without pushes
-    """
-    table: dict[float, list[float | None]] = {}
-    for newtons in sorted({episode.newtons for episode in episodes}):
-        counts = [[0, 0] for _ in range(sectors)]
-        for episode in episodes:
-            if episode.newtons == newtons:
-                sector = round(episode.radians / (2 * math.pi) * sectors) % sectors
-                counts[sector][0] += episode.result.survived
-                counts[sector][1] += 1
-        table[newtons] = [survived / total if total else None for survived, total in counts]
-    return table
-
-
-def finest_sectors(episodes: Sequence[PushedEpisode]) -> int:
-    """Largest of :data:`SECTORS` with pushes in every sector; the smallest of them if there is none.
-
-    :param episodes: episodes of one controller
-    """
-    without_gaps = (n for n in SECTORS if all(None not in row for row in survival_by_direction(episodes, n).values()))
-    return next(without_gaps, SECTORS[-1])
+    interval = binomtest(successes, trials).proportion_ci(CONFIDENCE, "wilson")
+    return interval.low, interval.high

@@ -6,7 +6,7 @@ Every row simulates the same seeds, so the same robots meet the same bumps, high
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, product
 from typing import Any
@@ -81,18 +81,6 @@ class Situation:
         return PushedConfig(**(vars(config) | changes))
 
 
-@dataclass(frozen=True)
-class OnTerrain:
-    """What parameters do in a situation.
-
-    :param situation: ground and push
-    :param evaluation: evaluation of the episodes
-    """
-
-    situation: Situation
-    evaluation: Evaluation
-
-
 def situations(scale: Scale) -> Iterator[Situation]:
     """All situations of the table: each ground without a push, then with one.
 
@@ -116,8 +104,8 @@ def try_terrain(
     workers: Workers,
     tried: Sequence[Situation],
     progress: Callable[[Iterable[EpisodeResult]], Iterable[EpisodeResult]] = iter,
-) -> list[OnTerrain]:
-    """Evaluate parameters in situations, on the same seeds.
+) -> dict[Situation, Evaluation]:
+    """Evaluations of parameters in situations, on the same seeds.
 
     :param task: task of the parameters
     :param parameters: values of the task's parameters, in order
@@ -131,25 +119,22 @@ def try_terrain(
     configs = [situation.config(task, config) for situation in tried]
     specs = [EpisodeSpec(parameters, seed, task, each) for each in configs for seed in seeds]
     results = iter(list(progress(workers.simulate_all(specs))))
-    return [
-        OnTerrain(situation, Evaluation(tuple(islice(results, len(seeds))), config.least_clearance))
-        for situation in tried
-    ]
+    return {each: Evaluation(tuple(islice(results, len(seeds))), config.least_clearance) for each in tried}
 
 
-def as_markdown(rows: Sequence[OnTerrain]) -> str:
+def as_markdown(evaluations: Mapping[Situation, Evaluation]) -> str:
     """Markdown table with a row for each situation.
 
-    :param rows: evaluations in situations
+    :param evaluations: evaluations in situations
     """
     lines = [
         "| ground | push | episodes | score | steps/s | SHIFT by sensors | survival |",
         "|---" * 7 + "|",
     ]
-    for row in rows:
-        found, (low, high) = row.evaluation, survival_interval(row.evaluation)
+    for situation, found in evaluations.items():
+        low, high = survival_interval(found)
         lines.append(
-            f"| {_ground(row.situation)} | {row.situation.newtons:g} N | {found.episodes} "
+            f"| {_ground(situation)} | {situation.newtons:g} N | {found.episodes} "
             f"| {found.mean('score'):.3f} | {found.mean('steps_per_second'):.2f} "
             f"| {found.mean('shifts_by_sensors'):.0%} | {found.survival_rate:.2f} ({low:.2f} to {high:.2f}) |"
         )

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 
+from sarah.episode.evaluation import Evaluation
 from sarah.pictures.style import COLUMN_WIDTH, own_style, save
 from sarah.reports.robustness import survival_interval
-from sarah.reports.terrain import UPHILL, OnTerrain, Situation
+from sarah.reports.terrain import UPHILL, Situation
 
 KINDS = {"slope": ("slope (°)", 1.0), "roughness": ("bumps (mm)", 1000.0), "friction": ("friction", 1.0)}
 """Label of each kind of ground, and factor from its value to the label's unit."""
@@ -26,12 +27,12 @@ UPHILL_COLOURS = dict(zip(UPHILL, ("#D55E00", "#009E73", "#0072B2", "#CC79A7"), 
 OTHER_COLOUR = "#000000"
 
 
-def draw_terrain(rows: Sequence[OnTerrain], path: Path) -> list[Path]:
+def draw_terrain(evaluations: Mapping[Situation, Evaluation], path: Path) -> list[Path]:
     """Draw score, steps, phases that sensors end, and survival over slope, bumps and friction.
 
     Dashed lines are with the push. Survival has its 95 % intervals.
 
-    :param rows: evaluations in situations
+    :param evaluations: evaluations in situations
     :param path: path of the picture, without suffix
     :return: the files, PNG and PDF
     """
@@ -42,7 +43,7 @@ def draw_terrain(rows: Sequence[OnTerrain], path: Path) -> list[Path]:
         )
         for column, (kind, (label, factor)) in enumerate(KINDS.items()):
             for axis, (metric, metric_label) in zip(axes[:, column], ROWS.items(), strict=True):
-                _draw(axis, [row for row in rows if _belongs(row.situation, kind)], metric, factor)
+                _draw(axis, {s: e for s, e in evaluations.items() if _belongs(s, kind)}, metric, factor)
                 if column == 0:
                     axis.set_ylabel(metric_label)
             axes[-1, column].set_xlabel(label)
@@ -60,20 +61,18 @@ def _belongs(situation: Situation, kind: str) -> bool:
     return situation.kind == kind or (kind == "roughness" and situation.kind == "slope" and situation.value == 0.0)
 
 
-def _draw(axis: Axes, rows: Sequence[OnTerrain], metric: str, factor: float) -> None:
+def _draw(axis: Axes, evaluations: Mapping[Situation, Evaluation], metric: str, factor: float) -> None:
     """Draw a line for each direction that leads uphill, where there are any, without the push and with it."""
-    directions = dict.fromkeys(row.situation.uphill for row in rows)
-    for newtons in dict.fromkeys(row.situation.newtons for row in rows):
-        for uphill in [name for name in directions if name] or [""]:
-            line = [row for row in rows if row.situation.newtons == newtons and row.situation.uphill in ("", uphill)]
-            x = [factor * row.situation.value for row in line]
-            found = [
-                row.evaluation.survival_rate if metric == "survival" else row.evaluation.mean(metric) for row in line
-            ]
+    directions = [name for name in dict.fromkeys(situation.uphill for situation in evaluations) if name]
+    for newtons in dict.fromkeys(situation.newtons for situation in evaluations):
+        for uphill in directions or [""]:
+            line = {s: e for s, e in evaluations.items() if s.newtons == newtons and s.uphill in ("", uphill)}
+            x = [factor * situation.value for situation in line]
+            found = [e.survival_rate if metric == "survival" else e.mean(metric) for e in line.values()]
             colour, dashes = UPHILL_COLOURS.get(uphill, OTHER_COLOUR), "--" if newtons else "-"
             pushed = f", {newtons:.0f} N" if newtons else ""
             label = f"uphill {uphill}{pushed}" if uphill else f"bumps or friction{pushed}"
             axis.plot(x, found, dashes, marker="o", markersize=2.5, linewidth=1.0, color=colour, label=label)
             if metric == "survival":
-                low, high = zip(*(survival_interval(row.evaluation) for row in line), strict=True)
+                low, high = zip(*map(survival_interval, line.values()), strict=True)
                 axis.fill_between(x, low, high, color=colour, alpha=0.08, linewidth=0.0)

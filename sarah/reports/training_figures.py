@@ -10,8 +10,6 @@ through them.
 
 from __future__ import annotations
 
-import itertools
-import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,15 +17,14 @@ from typing import TYPE_CHECKING, Any
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import QuadMesh
-from matplotlib.patheffects import withStroke
+from scipy.ndimage import median_filter
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.tasks import BALANCE, STEPPING, Task
 from sarah.files import make_folder
 from sarah.pictures.colours import algorithm_colours, algorithm_label
 from sarah.pictures.style import COLUMN_WIDTH, own_style, save
-from sarah.reports.robustness import PushedEpisode, finest_sectors, survival_by_direction
+from sarah.reports.robustness import PushedEpisode
 from sarah.reports.training_curves import RunCurves, read_curves
 from sarah.reports.uncertainty import standard_error
 from sarah.runs.run_record import RunRecord
@@ -37,13 +34,9 @@ if TYPE_CHECKING:  # the import would load the learning algorithms
 
 WINDOW = 15
 """Number of episodes in the window of the running median."""
-CHORDS = 8
-"""Number of straight lines that make the arc of a sector."""
+SURVIVAL_MARKS = {True: ("survived", ".", "#0072B2"), False: ("did not", "x", "#D55E00")}
+"""Label, marker and colour of pushes that the robot survived, and of others."""
 WARM_UP_LABEL = "random warm-up"
-LEAST_IN_ROWS = 4
-"""Least number of entries for which a figure's legend has rows of two: more in a row would leave the picture."""
-LEGEND_ROW = 0.17
-"""Height of a row of a legend, in inches."""
 
 Panels = list[tuple[str, str]]
 """Column of ``episodes.csv`` and label of each panel, from top to bottom."""
@@ -100,7 +93,7 @@ def _draw(curves: Sequence[RunCurves], panels: Panels, path: Path) -> list[Path]
         1,
         sharex=True,
         squeeze=False,
-        figsize=(COLUMN_WIDTH, 0.6 + 1.1 * len(panels)),
+        figsize=(COLUMN_WIDTH, 1.0 + 1.1 * len(panels)),
         layout="constrained",
     )
     colours = algorithm_colours(curve.algorithm for curve in curves)
@@ -118,9 +111,7 @@ def _draw(curves: Sequence[RunCurves], panels: Panels, path: Path) -> list[Path]
     axes[-1, 0].set_xlabel("training steps (episodes)")
     figure.align_ylabels()
     handles, labels = axes[0, 0].get_legend_handles_labels()
-    columns = len(labels) if len(labels) < LEAST_IN_ROWS else 2
-    figure.set_figheight(figure.get_figheight() + LEGEND_ROW * (math.ceil(len(labels) / columns) - 1))
-    figure.legend(handles, labels, loc="outside upper right", ncols=columns, columnspacing=1.2, handlelength=1.5)
+    figure.legend(handles, labels, loc="outside upper right", ncols=2, columnspacing=1.2, handlelength=1.5)
     return save(figure, path)
 
 
@@ -137,7 +128,7 @@ def _mark_warm_up(axis: Axes, curves: Sequence[RunCurves]) -> None:
 def _draw_panel(axis: Axes, curves: RunCurves, column: str, label: str, colour: str) -> None:
     values, learned = curves.columns[column], slice(curves.warm_up, curves.learning)
     steps = np.arange(1, values.shape[1] + 1)
-    smooth = np.array([running_median(run) for run in values[:, learned]])
+    smooth = median_filter(values[:, learned], (1, WINDOW))
     if len(values) == 1:
         dots: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 1.6, "color": colour, "alpha": 0.5}
         axis.plot(steps[learned], values[0, learned], markeredgewidth=0, **dots)
@@ -156,16 +147,6 @@ def _draw_recommended(axis: Axes, curves: RunCurves, column: str) -> None:
     """Draw what the training would have recommended, each time until it was asked again."""
     episodes, values = curves.recommended["episodes"], curves.recommended[column]
     axis.plot(episodes, values, color="0.25", linewidth=0.9, drawstyle="steps-post", label="recommended")
-
-
-def running_median(values: np.ndarray) -> np.ndarray:
-    """Running median: of each value and those around it, which are fewer at both ends.
-
-    :param values: values of shape (n,)
-    :return: medians of shape (n,)
-    """
-    half = WINDOW // 2
-    return np.array([np.median(values[max(0, i - half) : i + half + 1]) for i in range(len(values))])
 
 
 def draw_race(curves: Sequence[RaceCurve], path: Path) -> list[Path]:
@@ -207,13 +188,13 @@ def draw_race(curves: Sequence[RaceCurve], path: Path) -> list[Path]:
 
 
 def draw_survival(controllers: Mapping[str, Sequence[PushedEpisode]], path: Path) -> list[Path]:
-    """Draw survival against direction and force of the push, with one polar plot for each controller.
+    """Draw direction and force of every push, and whether the robot survived it: a polar plot for each controller.
 
     :param controllers: pushed episodes, by name of the controller
     :param path: path of the picture, without suffix
     :return: the files, PNG and PDF
     """
-    with own_style({"axes.grid": False}):
+    with own_style():
         figure, axes = plt.subplots(
             1,
             len(controllers),
@@ -223,25 +204,12 @@ def draw_survival(controllers: Mapping[str, Sequence[PushedEpisode]], path: Path
             layout="constrained",
         )
         for axis, (name, episodes) in zip(axes[0], controllers.items(), strict=True):
-            survival = survival_by_direction(episodes, finest_sectors(episodes))
-            mesh = _draw_survival(axis, survival)
+            for survived, (label, marker, colour) in SURVIVAL_MARKS.items():
+                pushes = [(e.radians, e.newtons) for e in episodes if e.result.survived is survived]
+                axis.plot(*np.array(pushes).reshape(-1, 2).T, marker, color=colour, markersize=3, label=label)
             axis.set_title(name)
-        label = f"survival of {len(episodes) // len(survival)} pushes of each force (white: none this way)"
-        figure.colorbar(mesh, ax=axes, label=label, orientation="horizontal", shrink=0.6)
+            axis.set_rlim(0.0)
+            axis.set_rgrids(sorted({e.newtons for e in episodes}), fmt="%.3g N", angle=67.5, fontsize=6)
+            axis.set_thetagrids((0, 90, 180, 270), ("right", "forward", "left", "back"))
+        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
         return save(figure, path)
-
-
-def _draw_survival(axis: Any, survival: Mapping[float, Sequence[float | None]]) -> QuadMesh:
-    forces = list(survival)
-    middles = [(low + high) / 2 for low, high in itertools.pairwise(forces)]
-    rings = [0.0, *middles, forces[-1] + (forces[-1] - middles[-1] if middles else 0.0)]
-    shares = np.array([[np.nan if share is None else share for share in row] for row in survival.values()])
-    sectors = shares.shape[1]
-    edges = (np.arange(sectors * CHORDS + 1) / CHORDS - 0.5) * 2 * np.pi / sectors
-    mesh: QuadMesh = axis.pcolormesh(edges, rings, shares.repeat(CHORDS, axis=1), cmap="cividis", vmin=0.0, vmax=1.0)
-    axis.set_rmax(rings[-1])
-    labels = axis.set_rgrids(forces, [f"{force:.0f} N" for force in forces], angle=67.5, fontsize=6)[1]
-    for label in labels:  # a white outline keeps them legible on every colour
-        label.set_path_effects([withStroke(linewidth=2, foreground="white")])
-    axis.set_thetagrids((0, 90, 180, 270), ("right", "forward", "left", "back"))
-    return mesh

@@ -40,31 +40,23 @@ def floor(width: int, height: int, camera: Camera) -> np.ndarray:
     up = (height / 2 - (np.arange(SAMPLES * height) + 0.5) / SAMPLES)[:, None] / view.focal_length
     ray_x, ray_y, ray_z = (right * view.axes[0, i] + up * view.axes[1, i] + view.axes[2, i] for i in range(3))
     length = view.position[2] / np.maximum(-ray_z, 1e-6)  # length of the ray down to the floor
-    x, y = length * ray_x, length * ray_y
-    nearness, is_dark = _tiles(x + view.position[0], y + view.position[1], view, camera)
-    shape = (height, SAMPLES, width, SAMPLES)
-    light, dark = ((nearness * tile).reshape(shape).mean(axis=(1, 3))[..., None] for tile in (1.0 - is_dark, is_dark))
-    picture = _coloured(light, dark).astype(np.uint8)
+    colours = _colours(length * ray_x + view.position[0], length * ray_y + view.position[1], view, camera)
+    even = Image.fromarray(colours.astype(np.uint8)).resize((width, height), Image.Resampling.BOX)
+    picture = np.asarray(even)
     if camera.ground.is_rough:
         nodes, triangles = mesh(camera.ground)
         x, y, _ = nodes[triangles].mean(axis=1).T
-        nearness, is_dark = (values[:, None] for values in _tiles(x, y, view, camera))
-        picture = over(picture, view, camera.ground, _coloured(nearness * (1.0 - is_dark), nearness * is_dark), SAMPLES)
+        picture = over(picture, view, camera.ground, _colours(x, y, view, camera), SAMPLES)
     picture.flags.writeable = False
     return picture
 
 
-def _tiles(x: np.ndarray, y: np.ndarray, view: View, camera: Camera) -> tuple[np.ndarray, np.ndarray]:
-    """Visibility of places of the floor, from 0 to 1, and whether they are on dark tiles."""
+def _colours(x: np.ndarray, y: np.ndarray, view: View, camera: Camera) -> np.ndarray:
+    """Colours of places of the floor: those of light and dark tiles, which fade into the sky."""
     distance = (x - view.position[0]) ** 2 + (y - view.position[1]) ** 2
     nearness = np.exp(-distance / max(FADING_DISTANCE, FADING_SHARE * camera.distance) ** 2)
-    return nearness, (np.floor(x / TILE) + np.floor(y / TILE)) % 2
-
-
-def _coloured(light: np.ndarray, dark: np.ndarray) -> np.ndarray:
-    """Colours of the floor where light and dark tiles have these shares of a pixel, and the sky the rest."""
-    colours: np.ndarray = SKY + light * (LIGHT_TILE - SKY) + dark * (DARK_TILE - SKY)
-    return colours
+    is_dark = (np.floor(x / TILE) + np.floor(y / TILE)) % 2 == 1
+    return SKY + nearness[..., None] * (np.where(is_dark[..., None], DARK_TILE, LIGHT_TILE) - SKY)
 
 
 def shaded(picture: np.ndarray, outlines: list[np.ndarray]) -> np.ndarray:

@@ -21,15 +21,6 @@ LINES_OF_TEXT = 40
 """Height of a picture as a multiple of the unit in which the arrow's width is measured."""
 
 
-def arrow_length(newtons: float, scale: Scale) -> float:
-    """Length of a push's arrow, in m.
-
-    :param newtons: force of the push, in N
-    :param scale: size of the robot
-    """
-    return scale.length * min(METRES_PER_NEWTON * newtons / scale.mass, LONGEST_ARROW)
-
-
 def arrow(head: np.ndarray, force: np.ndarray, scale: Scale = STANDARD) -> np.ndarray:
     """Head and tail of a push's arrow, as rows.
 
@@ -38,7 +29,7 @@ def arrow(head: np.ndarray, force: np.ndarray, scale: Scale = STANDARD) -> np.nd
     :param scale: size of the robot
     """
     newtons = max(float(np.linalg.norm(force)), 1e-9)
-    length = arrow_length(newtons, scale)
+    length = scale.length * min(METRES_PER_NEWTON * newtons / scale.mass, LONGEST_ARROW)
     return np.array((head, head - length / newtons * force))
 
 

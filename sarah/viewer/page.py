@@ -10,6 +10,7 @@ from typing import Any
 
 import viser
 
+from sarah.episode.push import NO_PUSH, Push
 from sarah.episode.result import EpisodeResult
 from sarah.episode.robot_settings import conditions_of
 from sarah.episode.spec import EpisodeSpec
@@ -20,8 +21,8 @@ from sarah.runs.run_episodes import RunEpisode
 from sarah.viewer.background import BackgroundSimulation, Wish
 from sarah.viewer.playback import Playback
 from sarah.viewer.plots import Plots
-from sarah.viewer.results import Shown, comparison, paragraph
-from sarah.viewer.scenario import NO_PUSH, KnownPush, Scenario
+from sarah.viewer.results import comparison, paragraph
+from sarah.viewer.scenario import Scenario
 from sarah.viewer.scene import RobotScene, describe_tick
 
 SPEEDS = {"1/10": 0.1, "1/4": 0.25, "1/2": 0.5, "1": 1.0, "2": 2.0, "4": 4.0}
@@ -47,8 +48,7 @@ class Page:
         self._choices = {choice.label: choice for choice in choices}
         self._chosen = chosen
         self._wanted = Scenario.of(chosen.spec)
-        self._shown: Shown | None = None
-        self._before: Shown | None = None
+        self._shown: EpisodeResult | None = None
         self._lock = threading.RLock()
         self._is_seen = False
         self.frames = 0
@@ -163,13 +163,11 @@ class Page:
     def _play_on(self) -> None:
         """Go on with the next window of a session, unless the user has changed this one."""
         with self._lock:
-            following = self._choice_named(self._chosen.next_name)
+            next_name = self._chosen.next_name
+            following = next((choice for choice in self._choices.values() if choice.name == next_name), None)
             if following is not None and self._wanted == Scenario.of(self._chosen.spec):
                 _set(self._choice, following.label)
                 self._play_choice(following)
-
-    def _choice_named(self, name: str | None) -> RunEpisode | None:
-        return next((choice for choice in self._choices.values() if choice.name == name), None)
 
     def _change_parameter(self, name: str, index: int, value: float) -> None:
         with self._lock:
@@ -177,20 +175,20 @@ class Page:
             values[index] = value
             self._change({name: tuple(values)})
 
-    def _change_push(self, **changes: float) -> None:
+    def _change_push(self, **values: float) -> None:
         """Change the present push; without one, the sliders set the next push."""
         with self._lock:
-            if self._wanted.push.newtons > 0.0:
-                self._change({"push": replace(self._wanted.push, **changes)})
+            if self._wanted.push.newtons[0] > 0.0:
+                self._change({"push": _with_values(self._wanted.push, values)})
 
     def _change_ground(self, **values: float) -> None:
         with self._lock:
-            ranges: dict[str, Any] = {name: (value, value) for name, value in values.items()}
-            self._change({"terrain": replace(self._wanted.terrain, **ranges)})
+            self._change({"terrain": _with_values(self._wanted.terrain, values)})
 
     def _push_now(self) -> None:
         begin = round(min(self._playback.time, self._wanted.config.time_limit), 2)
-        push = KnownPush(self._newtons.value, self._degrees.value, begin, self._wanted.config.push.duration)
+        values = {"newtons": self._newtons.value, "degrees": self._degrees.value, "at_seconds": begin}
+        push = _with_values(Push(duration=self._wanted.config.push.duration), values)
         self._change({"push": push}, begin - SECONDS_BEFORE_PUSH)
 
     def _change(self, changes: Mapping[str, Any], play_from: float | None = None) -> None:
@@ -213,9 +211,9 @@ class Page:
             for slider, value in zip(sliders, values, strict=True):
                 _set(slider, value)
         _set(self._seed, scenario.seed)
-        if scenario.push.newtons > 0.0:
-            _set_up_to(self._newtons, scenario.push.newtons, LARGEST_PUSH * scenario.config.scale.mass)
-            _set(self._degrees, scenario.push.degrees)
+        if scenario.push.newtons[0] > 0.0:
+            _set_up_to(self._newtons, scenario.push.newtons[0], LARGEST_PUSH * scenario.config.scale.mass)
+            _set(self._degrees, scenario.push.degrees[0])
         conditions = conditions_of(scenario.spec().config, scenario.seed)
         _set_up_to(self._slope, scenario.terrain.slope_degrees[0], LARGEST_SLOPE)
         _set(self._uphill, scenario.terrain.direction_degrees[0] % 360.0)
@@ -228,27 +226,24 @@ class Page:
         """Play an episode that has just been simulated."""
         assert result.trace is not None
         with self._lock:
-            self._before, self._shown = self._shown, Shown(scenario, result, result.trace)
+            before, self._shown = self._shown, result
             begin, end = float(result.trace.time[0]), float(result.trace.time[-1])
             self._time.min, self._time.max = 0.0, end  # in between, an older minimum would lie above a new maximum
             self._time.min = begin
             self._scene.load(result.trace, spec)
             self._plots.load(result.trace, scenario)
             self._news.content = paragraph("")
-            table = comparison(self._shown, self._before, self._noted_score(scenario))
+            is_changed = scenario != Scenario.of(self._chosen.spec)
+            table = comparison(result, before, None if is_changed else self._chosen.score)
             self._table.content = table + paragraph(", ".join(told_settings(spec)))
         self._playback.load(begin, end, begin if play_from is None else play_from)
         if self._is_seen:
             self._playback.play()
 
-    def _noted_score(self, scenario: Scenario) -> float | None:
-        """Score of the chosen episode in the run folder, if nothing has been changed."""
-        return self._chosen.score if scenario == Scenario.of(self._chosen.spec) else None
-
     def _show(self, time: float) -> None:
         """Draw a frame."""
         with self._lock:
-            if self._shown is None:
+            if self._shown is None or self._shown.trace is None:
                 return
             tick = self._shown.trace.tick_at(time)
             self._scene.show(tick)
@@ -266,6 +261,11 @@ class Page:
 
     def _show_failure(self, message: str) -> None:
         self._news.content = paragraph(f"this episode cannot be simulated: {message}")
+
+
+def _with_values(settings: Any, values: Mapping[str, float]) -> Any:
+    """Settings of a push or a ground, of which some ranges become single values."""
+    return replace(settings, **{name: (value, value) for name, value in values.items()})
 
 
 def _set(handle: Any, value: Any) -> None:

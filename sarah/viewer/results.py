@@ -3,25 +3,9 @@
 from __future__ import annotations
 
 import html
-from typing import NamedTuple
 
 from sarah.episode.ending import ending_words
 from sarah.episode.result import METRICS, EpisodeResult
-from sarah.episode.trace import Trace
-from sarah.viewer.scenario import Scenario
-
-
-class Shown(NamedTuple):
-    """An episode on the page.
-
-    :param scenario: parameters, push, seed and settings of the episode
-    :param result: result of the episode
-    :param trace: record of its control ticks
-    """
-
-    scenario: Scenario
-    result: EpisodeResult
-    trace: Trace
 
 
 def paragraph(*lines: str) -> str:
@@ -38,21 +22,21 @@ def _ending(result: EpisodeResult) -> str:
     return ending_words(result.termination) + ("" if result.survived else f" at {result.duration:.1f} s")
 
 
-def comparison(shown: Shown, before: Shown | None, noted_score: float | None) -> str:
+def comparison(shown: EpisodeResult, before: EpisodeResult | None, noted_score: float | None) -> str:
     """Table of the results as HTML, beside those of the episode that was shown before.
 
-    :param shown: episode on the page
-    :param before: episode that was there before it
+    :param shown: result of the episode on the page
+    :param before: result of the episode that was there before it
     :param noted_score: score of the same episode in its run folder
     """
-    rows = [("", "now", "before"), ("", _ending(shown.result), _ending(before.result) if before is not None else "")]
+    rows = [("", "now", "before"), ("", _ending(shown), "" if before is None else _ending(before))]
     for name, metric in METRICS.items():
         if metric.statistics:
-            now, then = (one and metric.text(getattr(one.result, name)) for one in (shown, before))
+            now, then = (one and metric.text(getattr(one, name)) for one in (shown, before))
             rows.append((metric.label, now or "", then or ""))
     lines = [f"<tr><td>{name}</td><td><b>{now}</b></td><td>{old}</td></tr>" for name, now, old in rows]
     note = ""
-    if noted_score is not None and abs(noted_score - shown.result.score) > 1e-9:
+    if noted_score is not None and abs(noted_score - shown.score) > 1e-9:
         note = f"<p>The run folder has a score of {noted_score:.3f}: another version simulated this episode.</p>"
     return (
         "<div style='padding: 0 0.8em; font-size: 0.8em'><table id='results' style='width: 100%; line-height: 1.35'>"

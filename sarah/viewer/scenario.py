@@ -6,30 +6,11 @@ import math
 from dataclasses import astuple, dataclass, replace
 from typing import Any
 
-from sarah.episode.push import Push
+from sarah.episode.push import NO_PUSH, Push
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import controller_of, push_of
 from sarah.episode.tasks import BALANCE, BalanceConfig, Task
 from sarah.simulation.terrain import Terrain, draw_terrain
-
-
-@dataclass(frozen=True)
-class KnownPush:
-    """A push with a given force, direction and time.
-
-    :param newtons: force, in N; 0 for no push
-    :param degrees: direction, in degrees: 0 pushes to the robot's right, 90 forward
-    :param begin: simulated time at which it begins, in s
-    :param duration: duration, in s
-    """
-
-    newtons: float
-    degrees: float
-    begin: float
-    duration: float = Push().duration
-
-
-NO_PUSH = KnownPush(0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -38,7 +19,7 @@ class Scenario:
 
     :param stepping: values of P1 to P5
     :param balance: values of V1 to V4; zeros lock the hips, as in the First Training
-    :param push: push of the episode
+    :param push: push of the episode, whose settings are single values
     :param terrain: ground of the episode, whose settings are single values
     :param seed: seed of the conditions, the bumps and the sensor noise
     :param config: settings that the sliders do not change
@@ -47,7 +28,7 @@ class Scenario:
 
     stepping: tuple[float, ...]
     balance: tuple[float, ...]
-    push: KnownPush
+    push: Push
     terrain: Terrain
     seed: int
     config: BalanceConfig
@@ -64,21 +45,16 @@ class Scenario:
         drawn, push = push_of(task, spec.config, spec.seed), NO_PUSH
         if drawn is not None:
             x, y, _ = drawn.force
+            newtons, degrees = math.hypot(x, y), math.degrees(math.atan2(y, x)) % 360.0
             duration = max(drawn.duration, spec.config.physics.control_dt)
-            push = KnownPush(math.hypot(x, y), math.degrees(math.atan2(y, x)) % 360.0, drawn.begin, duration)
+            push = Push((newtons, newtons), (degrees, degrees), (drawn.begin, drawn.begin), duration)
         hips = BALANCE.baseline if balance is None else astuple(balance)
         terrain = draw_terrain(spec.config.terrain, spec.seed)
         return cls(astuple(stepping), hips, push, terrain, spec.seed, BALANCE.config_of(spec.config), task)
 
     def spec(self) -> EpisodeSpec:
         """Specification of the episode, with the settings of balance, which has everything that the sliders can set."""
-        given = Push(
-            newtons=(self.push.newtons, self.push.newtons),
-            degrees=(self.push.degrees, self.push.degrees),
-            at_seconds=(self.push.begin, self.push.begin),
-            duration=self.push.duration,
-        )
-        config = BALANCE.config_of(self.config, stepping=self.stepping, push=given, terrain=self.terrain)
+        config = BALANCE.config_of(self.config, stepping=self.stepping, push=self.push, terrain=self.terrain)
         judged = {name: getattr(self.task, name) for name in ("reward", "best_reward", "ending", "file")}
         own = {name: value for name, value in judged.items() if value != getattr(BALANCE, name)}
         return EpisodeSpec(self.balance, self.seed, replace(BALANCE, **own) if own else BALANCE, config)

@@ -21,10 +21,11 @@ from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.robot.description import ANKLE_JOINTS, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, Vector
 from sarah.robot.scale import Scale
+from sarah.scenery import push_arrow
 from sarah.scenery.bumps import mesh
 from sarah.scenery.camera import Camera, View
 from sarah.scenery.ground import LEVEL, Ground
-from sarah.scenery.push_arrow import STANDARD, arrow_length
+from sarah.scenery.push_arrow import STANDARD
 
 Colour = tuple[int, int, int]
 
@@ -221,10 +222,8 @@ def arrow(force: np.ndarray, scale: Scale = STANDARD) -> np.ndarray:
     :param force: force of the push, in N; shape (3,)
     :param scale: size of the robot
     """
-    newtons = float(np.linalg.norm(force))
-    direction = force / newtons
-    gap = scale.length * ARROW_GAP
-    return -np.array(((gap + arrow_length(newtons, scale)) * direction, gap * direction))
+    gap = scale.length * ARROW_GAP * force / np.linalg.norm(force)
+    return push_arrow.arrow(-gap, force, scale)[::-1]
 
 
 def first_camera(robot: RobotDescription, model: yourdfpy.URDF) -> Camera:

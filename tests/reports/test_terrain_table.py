@@ -16,7 +16,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING
 from sarah.episode.workers import Workers
 from sarah.reports import robustness, terrain, terrain_figure
-from sarah.reports.terrain import OnTerrain, Situation, as_markdown, situations, try_terrain
+from sarah.reports.terrain import Situation, as_markdown, situations, try_terrain
 from sarah.robot.dimensions import dimensions_alike
 from sarah.robot.scale import Scale
 from sarah.runs.config import TrainingConfig
@@ -56,24 +56,22 @@ def test_bumps_of_the_table_lie_closer_for_a_small_robot() -> None:
 def test_every_situation_meets_the_same_seeds(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(terrain, "TIME_LIMIT", 1.3)
     tried = [Situation("slope", 0.0, "", 0.0), Situation("slope", 20.0, "right", 0.0)]
-    level, steep = try_terrain(STEPPING, (1.0, 1.0, 1.0, 1.0, 1.0), EpisodeConfig(), [3, 4], Workers(), tried)
-    assert [level.situation, steep.situation] == tried
-    assert level.evaluation.episodes == steep.evaluation.episodes == 2
-    assert level.evaluation != steep.evaluation
+    found = try_terrain(STEPPING, (1.0, 1.0, 1.0, 1.0, 1.0), EpisodeConfig(), [3, 4], Workers(), tried)
+    assert list(found) == tried
+    level, steep = found.values()
+    assert level.episodes == steep.episodes == 2
+    assert level != steep
 
 
 def test_table_has_score_steps_and_sensors_beside_survival() -> None:
     found = Evaluation((RESULT,) * 4)
-    rows = [
-        OnTerrain(Situation(*situation), found)
-        for situation in (
-            ("slope", 0.0, "", 0.0),
-            ("slope", 4.0, "left", 75.0),
-            ("roughness", 0.015, "", 0.0),
-            ("friction", 0.25, "", 0.0),
-        )
+    tried = [
+        Situation("slope", 0.0, "", 0.0),
+        Situation("slope", 4.0, "left", 75.0),
+        Situation("roughness", 0.015, "", 0.0),
+        Situation("friction", 0.25, "", 0.0),
     ]
-    lines = as_markdown(rows).splitlines()
+    lines = as_markdown(dict.fromkeys(tried, found)).splitlines()
     assert [line.split(" | ")[0] for line in lines[2:]] == [
         "| level",
         "| 4° uphill left",
@@ -89,8 +87,8 @@ def test_command_writes_table_and_picture(
 ) -> None:
     from sarah.cli.eval import main
 
-    def found(*arguments: Any) -> list[OnTerrain]:  # its last but one argument are the situations
-        return [OnTerrain(situation, Evaluation((RESULT,) * 3)) for situation in arguments[-2]]
+    def found(*arguments: Any) -> dict[Situation, Evaluation]:  # its last but one argument are the situations
+        return dict.fromkeys(arguments[-2], Evaluation((RESULT,) * 3))
 
     monkeypatch.setattr(terrain, "try_terrain", found)
     config = TrainingConfig(episode=EpisodeConfig(terrain=Terrain(roughness=(0.0, 0.01))))
@@ -120,11 +118,11 @@ def test_the_picture_shows_every_row(tmp_path: Path, monkeypatch: pytest.MonkeyP
     drawn: list[Figure] = []
     monkeypatch.setattr(terrain_figure, "save", lambda figure, path: drawn.append(figure))
     slow, fast = (dataclasses.replace(RESULT, steps_per_second=steps) for steps in (2.0, 4.0))
-    rows = [
-        OnTerrain(situation, Evaluation((fast if situation.kind == "friction" else slow,) * 3))
+    evaluations = {
+        situation: Evaluation((fast if situation.kind == "friction" else slow,) * 3)
         for situation in situations(Scale())
-    ]
-    terrain_figure.draw_terrain(rows, tmp_path / "terrain")
+    }
+    terrain_figure.draw_terrain(evaluations, tmp_path / "terrain")
     for axis in drawn[0].axes:
         low, high = axis.get_ylim()
         values = [value for line in axis.get_lines() for value in line.get_ydata()]

@@ -17,7 +17,7 @@ from sarah.pictures.colours import algorithm_colours
 from sarah.reports import training_figures
 from sarah.reports.race_entry import RaceCurve
 from sarah.reports.training_curves import read_curves
-from sarah.reports.training_figures import draw_race, running_median
+from sarah.reports.training_figures import draw_race
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.runs.run_record import RunRecord
@@ -74,12 +74,6 @@ def test_run_without_episodes_is_named(tmp_path: Path) -> None:
     with pytest.raises(RunFolderError, match="has no episodes"):
         draw_figures([run], tmp_path / "out")
     assert not (tmp_path / "out").exists()
-
-
-def test_running_median_ignores_single_outliers() -> None:
-    values = np.zeros(40)
-    values[20] = 100.0
-    assert (running_median(values) == 0.0).all()
 
 
 def test_axes_and_lines_have_their_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,6 @@ from sarah.episode.evaluation import Evaluation
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING
-from sarah.reports.markdown import code
 from sarah.reports.transfer import Transfer, as_markdown
 
 
@@ -25,7 +24,6 @@ SCORES = {"pybullet": scoring(0.6), "mujoco": scoring(0.8)}
 def test_the_name_of_a_run_stays_in_its_cell_of_the_table() -> None:
     rows = [as_markdown([Transfer(name, LEARNED, SCORES)]) for name in ("run_1", "a|b", "[x](y) `<b>`")]
     assert "| run_1 |" in rows[0] and r"| a\|b |" in rows[1] and r"| \[x\](y) \`\<b\>\` |" in rows[2]
-    assert code("a | `b`") == "`` a | `b` ``" and code("sarah-eval a_b") == "`sarah-eval a_b`"
 
 
 def test_kept_is_the_lowest_share_in_any_other_engine() -> None:

@@ -18,7 +18,7 @@ from sarah.runs.run_episodes import choose_episode, episodes_of_run
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import default_engine
 from sarah.simulation.terrain import Terrain, draw_ground
-from sarah.viewer.scenario import KnownPush, Scenario
+from sarah.viewer.scenario import Scenario
 
 PUSHED = BalanceConfig(time_limit=6.0, push=Push(newtons=(40.0, 60.0), at_seconds=(2.0, 3.0)))
 LEARNED = (0.8, 0.1, 0.3, -0.1)
@@ -101,9 +101,8 @@ def test_a_push_of_a_task_keeps_its_duration() -> None:
 
 
 def test_a_given_push_is_the_push_that_is_simulated() -> None:
-    scenario = Scenario(
-        PAPER_STEPPING, LEARNED, KnownPush(50.0, 90.0, 2.5), Terrain(), 1, BalanceConfig(time_limit=4.0)
-    )
+    push = Push((50.0, 50.0), (90.0, 90.0), (2.5, 2.5))
+    scenario = Scenario(PAPER_STEPPING, LEARNED, push, Terrain(), 1, BalanceConfig(time_limit=4.0))
     trace = simulate(scenario.spec(), record_trace=True).trace
     assert trace is not None
     assert trace.push[trace.tick_at(2.55)] == pytest.approx([0.0, 50.0, 0.0])
