@@ -17,11 +17,11 @@ from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import Step, passed_on, say_next, to_report, to_see
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import learned_of
+from sarah.cli.tables import leave_table, prepare_table
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.errors import ConfigurationError, check_range
-from sarah.files import make_folder
 from sarah.runs.kinds import SESSION
 from sarah.streams import check_output
 
@@ -36,11 +36,11 @@ MOST_EPISODES = 1_000_000
 SMALLEST_FORCE, LARGEST_FORCE = 0.01, 10_000.0
 """Range of the forces of pushes, in N."""
 REPLACED = {
-    "terrain": ("--episode.terrain.", "--episode.push.", "--episode.time-limit"),
     "robustness": (
         *("--episode.push.newtons", "--episode.push.at-seconds", "--episode.push.sagittal-share"),
         "--episode.time-limit",
     ),
+    "terrain": ("--episode.terrain.", "--episode.push.", "--episode.time-limit"),
 }
 """Beginnings of the options that a table replaces, by the option that asks for it."""
 
@@ -85,7 +85,7 @@ class EvalOptions(EpisodeOptions):
         check_range("first-seed", self.first_seed, 0, LARGEST_SEED)
         for newtons in self.forces:
             check_range("forces", newtons, SMALLEST_FORCE, LARGEST_FORCE, "N")
-        tables = [f"--{option}" for option in ("robustness", "terrain") if getattr(self, option)]
+        tables = [f"--{name}" for name in self._table_names]
         if self.json and tables:
             raise ConfigurationError(f"{tables[0]} prints a table, not JSON: leave --json out")
         if tables and self.out is None:
@@ -97,6 +97,15 @@ class EvalOptions(EpisodeOptions):
     def seeds(self) -> range:
         """Seeds of the episodes."""
         return range(self.first_seed, self.first_seed + self.episodes)
+
+    @property
+    def tables(self) -> list[Path]:
+        """Paths of the tables that are asked for."""
+        return [] if self.out is None else [self.out / f"{name}.md" for name in self._table_names]
+
+    @property
+    def _table_names(self) -> list[str]:
+        return [name for name in REPLACED if getattr(self, name)]
 
 
 def main() -> None:
@@ -122,8 +131,8 @@ def _evaluate(arguments: Sequence[str]) -> None:
     from sarah.episode.workers import Workers
     from sarah.runs.config_files import settings_by_key
 
-    if options.out is not None:
-        make_folder(options.out)
+    for path in options.tables:
+        prepare_table(path)
     with Workers(options.workers, options.scheduler) as workers:
         if options.robustness:
             _show_robustness(own.config, spec, options, workers)
@@ -193,8 +202,7 @@ def _show_robustness(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions
         "- lateral: pushes that point within 45° of the robot's right or left; sagittal: the others",
     ]
     table = "\n".join(lines)
-    print(table)
-    (folder / "robustness.md").write_text(table + "\n", encoding="utf-8")
+    leave_table(table, folder / "robustness.md")
     for file in draw_survival(dict(zip(names, pushed, strict=True)), folder / "robustness"):
         print(file)
 
@@ -231,7 +239,6 @@ def _show_terrain(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions, w
     pushed_on_level = next(situation for situation in tried if situation.newtons).config(spec.task, spec.config)
     settings = settings_of_table(options.subject, pushed_on_level, own)
     table = f"{about}: {code(command)}\n\n{settings}\n\n{as_markdown(rows)}"
-    print(table)
-    (folder / "terrain.md").write_text(table + "\n", encoding="utf-8")
+    leave_table(table, folder / "terrain.md")
     for file in draw_terrain(rows, folder / "terrain"):
         print(file)
