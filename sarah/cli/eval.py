@@ -238,7 +238,15 @@ def _show_terrain(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions, w
     about = f"{spec.task.name} ({values}) in {spec.config.engine}, seeds {options.seeds[0]} to {options.seeds[-1]}"
     pushed_on_level = next(situation for situation in tried if situation.newtons).config(spec.task, spec.config)
     settings = settings_of_table(options.subject, pushed_on_level, own)
-    table = f"{about}: {code(command)}\n\n{settings}\n\n{as_markdown(rows)}"
-    leave_table(table, folder / "terrain.md")
+    lines = [f"{about}: {code(command)}", "", settings, "", as_markdown(rows)]
+    lines += [
+        "",
+        "- uphill: direction from the robot in which a slope rises",
+        "- bumps: height over and under the mean plane; friction: coefficient under both feet",
+        "- score, steps/s: means",
+        "- SHIFT by sensors: mean share of the SHIFT phases that sensors ended",
+        "- survival: share of the episodes (its 95 % interval)",
+    ]
+    leave_table("\n".join(lines), folder / "terrain.md")
     for file in draw_terrain(rows, folder / "terrain"):
         print(file)
