@@ -122,6 +122,13 @@ class Folder:
         """
         self._journal(settings, 0).check()
 
+    def check_unused(self) -> None:
+        """Refuse a folder whose journal another process uses.
+
+        :raises ResumeError: if it is in use, or its journal cannot be opened
+        """
+        self._journal({}, 0).check_unused()
+
     def _journal(self, settings: Mapping[str, Any], most_requests: int) -> Journal:
         origin = {**settings, **versions()}
         return Journal(self.journal_path, origin, self.kind, most_requests)
