@@ -30,7 +30,7 @@ from sarah.episode.tasks import BALANCE, STEPPING, Task, load_task
 from sarah.errors import ConfigurationError, check_range
 from sarah.reports.judging import PUSHED, UNPUSHED, evaluations_of
 from sarah.runs.config import ALGORITHMS, TrainingConfig
-from sarah.runs.kinds import SESSION
+from sarah.runs.kinds import SESSION, TRAINING
 
 if TYPE_CHECKING:
     from sarah.reports.race_entry import Entry, RaceCurve
@@ -120,8 +120,9 @@ def _compare(arguments: Sequence[str]) -> None:
     options = parse_options(CompareOptions, COMMAND, arguments, _defaults(arguments))
     if options.out is None:
         raise ConfigurationError("give a folder for the race: --out DIR")
-    if SESSION.owns(options.out):
-        raise ConfigurationError(f"{options.out} is the folder of a session: name another for the race")
+    for kind in (TRAINING, SESSION):
+        if kind.owns(options.out):
+            raise ConfigurationError(f"{options.out} is the folder of a {kind.name}: name another for the race")
     check_range("seeds", options.seeds, 1, MOST_SEEDS)
     evaluations = evaluations_of(options.task, options.evaluations, options.evaluations_along)
     if options.best_known is not None:
