@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import re
 import reprlib
 from collections.abc import Iterable, Sequence
-from difflib import get_close_matches
+from difflib import SequenceMatcher
 from itertools import pairwise
 from typing import Any
 
 from sarah.number import is_number, plain
 
 LONGEST_NAME = 100
-"""Length in characters up to which a name is shown whole."""
+"""Length in characters up to which a name is shown whole, and the nearest valid one is looked for."""
+LEAST_LIKENESS = 0.5
+"""Smallest ratio of :class:`difflib.SequenceMatcher` at which a name is near to another one."""
+SHORTEST_PART = 4
+"""Length in letters from which a word that is a part of another one counts as the same, as ``foot`` in ``forefoot``."""
 
 
 class SarahError(Exception):
@@ -164,8 +169,31 @@ def unknown_name(kind: str, name: str, allowed: Iterable[str]) -> str:
     :return: one line for an exception's message
     """
     names = sorted(allowed)
-    given = repr(name) if len(name) <= LONGEST_NAME else shortened(name)
-    by_lower_case = {allowed_name.lower(): allowed_name for allowed_name in names}
-    nearest = get_close_matches(name.lower(), by_lower_case, n=1, cutoff=0.5)
-    guess = f", did you mean {by_lower_case[nearest[0]]!r}?" if nearest else ""
-    return f"unknown {kind} {given}{guess} (allowed: {', '.join(names) or 'none'})"
+    if len(name) > LONGEST_NAME:
+        return f"unknown {kind} {shortened(name)} (allowed: {', '.join(names) or 'none'})"
+    nearest = _nearest(name, names)
+    guess = f", did you mean {nearest!r}?" if nearest else ""
+    return f"unknown {kind} {name!r}{guess} (allowed: {', '.join(names) or 'none'})"
+
+
+def _nearest(name: str, allowed: Iterable[str]) -> str | None:
+    """Name that is alike; of several the one that shares a word, the first above all, and then the one most alike."""
+    words = _words(name)
+    likeness = {one: SequenceMatcher(None, one.lower(), name.lower()).ratio() for one in allowed}
+
+    def shared(candidate: str) -> list[bool]:
+        others = _words(candidate)
+        return [any(_is_same(word, other) for other in others) for word in words]
+
+    alike = (one for one in likeness if likeness[one] >= LEAST_LIKENESS)
+    return max(alike, key=lambda one: (shared(one), likeness[one]), default=None)
+
+
+def _words(name: str) -> list[str]:
+    return re.findall(r"[^\W_]+", name.lower())
+
+
+def _is_same(word: str, other: str) -> bool:
+    """Whether words are the same, or one of them is a part of the other and not too short."""
+    shorter, longer = sorted((word, other), key=len)
+    return word == other or (len(shorter) >= SHORTEST_PART and shorter in longer)

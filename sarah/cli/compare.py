@@ -22,13 +22,14 @@ from sarah.cli.episode_options import (
 from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import say_next, to_open, to_see, to_watch
 from sarah.cli.options import parse_options, pushed_words, run_command, say_engine
+from sarah.cli.tables import leave_table, prepare_table
 from sarah.cli.training_defaults import default_training
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task, load_task
 from sarah.errors import ConfigurationError, check_range
-from sarah.files import make_folder
 from sarah.reports.judging import PUSHED, UNPUSHED, evaluations_of
 from sarah.runs.config import ALGORITHMS, TrainingConfig
+from sarah.runs.kinds import SESSION, TRAINING
 
 if TYPE_CHECKING:
     from sarah.reports.race_entry import Entry, RaceCurve
@@ -117,6 +118,9 @@ def _compare(arguments: Sequence[str]) -> None:
     options = parse_options(CompareOptions, COMMAND, arguments, _defaults(arguments))
     if options.out is None:
         raise ConfigurationError("give a folder for the race: --out DIR")
+    for kind in (TRAINING, SESSION):
+        if kind.owns(options.out):
+            raise ConfigurationError(f"{options.out} is the folder of a {kind.name}: name another for the race")
     check_range("seeds", options.seeds, 1, MOST_SEEDS)
     evaluations = evaluations_of(options.task, options.evaluations, options.evaluations_along)
     if options.best_known is not None:
@@ -140,7 +144,7 @@ def _compare(arguments: Sequence[str]) -> None:
     seeds = range(options.first_seed, options.first_seed + options.seeds)
     entries = entries_of(options.algorithms, seeds, base, evaluations, options.out)
     try_task(options.task, episode)
-    make_folder(options.out)
+    prepare_table(options.out / "race.md")
     with Workers(options.workers, options.scheduler) as workers:
         say_engine(episode)
         try:
@@ -150,8 +154,7 @@ def _compare(arguments: Sequence[str]) -> None:
             raise SystemExit(130) from None
     table = rankings(curves, options.best_known)
     text = "\n".join([*_about(entries, curves[0]), "", as_markdown(table)])
-    print(text)
-    (options.out / "race.md").write_text(text + "\n", encoding="utf-8")
+    leave_table(text, options.out / "race.md")
     write_csv(table, options.out / "race.csv")
     files = draw_race(curves, options.out / "race")
     for file in files:

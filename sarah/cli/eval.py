@@ -17,11 +17,11 @@ from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import Step, passed_on, say_next, to_see
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import learned_of
+from sarah.cli.tables import leave_table, prepare_table
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.errors import ConfigurationError
-from sarah.files import make_folder
 from sarah.ranges import Within
 from sarah.runs.kinds import SESSION
 from sarah.streams import check_output
@@ -33,11 +33,11 @@ COMMAND = "sarah-eval"
 NOT_OF_VIEW = ("robustness", "terrain", "out", "forces", "episodes", "first-seed", "json", "workers", "scheduler")
 """Options that the viewer has not."""
 REPLACED = {
-    "terrain": ("--episode.terrain.", "--episode.push.", "--episode.time-limit"),
     "robustness": (
         *("--episode.push.newtons", "--episode.push.at-seconds", "--episode.push.sagittal-share"),
         "--episode.time-limit",
     ),
+    "terrain": ("--episode.terrain.", "--episode.push.", "--episode.time-limit"),
 }
 """Beginnings of the options that a table replaces, by the option that asks for it."""
 
@@ -69,13 +69,22 @@ class EvalOptions(UnseenOptions):
     def __post_init__(self) -> None:
         """Refuse numbers outside their ranges, and outputs that exclude each other."""
         super().__post_init__()
-        tables = [f"--{option}" for option in ("robustness", "terrain") if getattr(self, option)]
+        tables = [f"--{name}" for name in self._table_names]
         if self.json and tables:
             raise ConfigurationError(f"{tables[0]} prints a table, not JSON: leave --json out")
         if tables and self.out is None:
             raise ConfigurationError(f"{tables[0]} needs a folder for table and picture: --out DIR")
         if self.out is not None and not tables:
             raise ConfigurationError("--out is the folder of --robustness or --terrain: give one of them")
+
+    @property
+    def tables(self) -> list[Path]:
+        """Paths of the tables that are asked for."""
+        return [] if self.out is None else [self.out / f"{name}.md" for name in self._table_names]
+
+    @property
+    def _table_names(self) -> list[str]:
+        return [name for name in REPLACED if getattr(self, name)]
 
 
 def main() -> None:
@@ -101,8 +110,8 @@ def _evaluate(arguments: Sequence[str]) -> None:
     from sarah.episode.workers import Workers
     from sarah.runs.config_files import settings_by_key
 
-    if options.out is not None:
-        make_folder(options.out)
+    for path in options.tables:
+        prepare_table(path)
     with Workers(options.workers, options.scheduler) as workers:
         if options.robustness:
             _show_robustness(own.config, spec, options, workers)
@@ -175,8 +184,7 @@ def _show_robustness(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions
         "- lateral: pushes that point within 45° of the robot's right or left; sagittal: the others",
     ]
     table = "\n".join(lines)
-    print(table)
-    (folder / "robustness.md").write_text(table + "\n", encoding="utf-8")
+    leave_table(table, folder / "robustness.md")
     for file in draw_survival(dict(zip(names, pushed, strict=True)), folder / "robustness"):
         print(file)
 
@@ -211,8 +219,14 @@ def _show_terrain(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions, w
     about = f"{spec.task.name} ({values}) in {spec.config.engine}, seeds {options.seeds[0]} to {options.seeds[-1]}"
     pushed_on_level = next(situation for situation in tried if situation.newtons).config(spec.task, spec.config)
     settings = settings_of_table(options.subject, pushed_on_level, own)
-    table = f"{about}:\n\n    {command}\n\n{settings}\n\n{as_markdown(evaluations)}"
-    print(table)
-    (folder / "terrain.md").write_text(table + "\n", encoding="utf-8")
+    text = f"{about}:\n\n    {command}\n\n{settings}\n\n{as_markdown(evaluations)}"
+    legend = [
+        "- uphill: direction from the robot in which a slope rises",
+        "- bumps: height over and under the mean plane; friction: coefficient under both feet",
+        "- score, steps/s: means",
+        "- SHIFT by sensors: mean share of the SHIFT phases that sensors ended",
+        "- survival: share of the episodes (its 95 % interval)",
+    ]
+    leave_table("\n".join([text, "", *legend]), folder / "terrain.md")
     for file in draw_terrain(evaluations, folder / "terrain"):
         print(file)

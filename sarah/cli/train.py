@@ -6,6 +6,7 @@ import dataclasses
 import re
 import sys
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -31,7 +32,7 @@ from sarah.cli.training_defaults import default_training
 from sarah.episode.push import PushedConfig
 from sarah.episode.reward import equation_2, frequency_hint
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, load_task
-from sarah.errors import ConfigurationError, TaskError
+from sarah.errors import ConfigurationError, RunFolderError, TaskError
 from sarah.files import quoted
 from sarah.robot.scale import Scale
 from sarah.runs.agent_names import unknown_option
@@ -127,13 +128,14 @@ def _train(arguments: Sequence[str]) -> None:
             run = RunFolder.open(options.resume, unfinished=True, task=config.task)
             if run.is_finished:  # only now that somebody can simulate
                 config = _extended(run, config)
+            doing, known = "resuming the training of", _known_words(run)
         else:
             run = RunFolder.create(options.out or new_path(config.task.name, f"{config.algo}-s{config.seed}"), config)
+            doing, known = "training", ""
         say_engine(config.episode)
         pushed = f", {pushed_words(config.episode)}" if isinstance(config.episode, PushedConfig) else ""
         what = f"{config.algo} on {config.task.name}{pushed}"
-        doing = "training" if options.resume is None else "resuming the training of"
-        print(f"{doing} {what}: {config.episodes} episodes into {run.path}", flush=True)
+        print(f"{doing} {what}: {config.episodes} episodes{known} into {run.path}", flush=True)
         if config.episode.scale != Scale():
             size = f"motors and other settings go with {config.episode.scale.words()}"
             print(f"{size}: sarah-describe {quoted(run.path)} lists them", flush=True)
@@ -163,6 +165,13 @@ def _resumed(path: Path, options: TrainOptions, config: TrainingConfig) -> RunFo
         key, given, recorded = difference
         check_same(path, "training", key, recorded, given)
     return run
+
+
+def _known_words(run: RunFolder) -> str:
+    """Words about how many episodes are known, unless their table is damaged: a resumed training writes it anew."""
+    with suppress(RunFolderError):
+        return f", of which {sum(1 for _ in run.episodes())} are known,"
+    return ""
 
 
 def _extended(run: RunFolder, config: TrainingConfig) -> TrainingConfig:

@@ -14,9 +14,9 @@ from sarah.cli.episode_options import UnseenOptions, parse_episode_options
 from sarah.cli.next_steps import say_next, to_open
 from sarah.cli.options import named_task, run_command
 from sarah.cli.subjects import learned_of
+from sarah.cli.tables import leave_table, prepare_table
 from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError
-from sarah.files import make_folder
 
 COMMAND = "sarah-transfer"
 
@@ -67,12 +67,11 @@ def _transfer(arguments: Sequence[str]) -> None:
     own = [learned_of(subject, named_task(options.task))[0] for subject in options.subjects]
     learned = [_learned(subject, spec, arguments) for subject, spec in zip(options.subjects, own, strict=True)]
     out = options.out or RunFolder(first).figures_path
-    make_folder(out)
+    prepare_table(out / "transfer.md")
     with Workers(options.workers, options.scheduler) as workers:
         transfers = transfer(learned, options.seeds, workers)
     table = "\n".join([as_markdown(transfers), "", *_about_settings(learned, own)])
-    print(table)
-    (out / "transfer.md").write_text(table + "\n", encoding="utf-8")
+    leave_table(table, out / "transfer.md")
     files = draw_transfer(transfers, out / "transfer")
     for file in files:
         print(file)

@@ -39,9 +39,7 @@ def physics_warning(task: Task[Any], parameters: tuple[float, ...], config: Epis
     if config.engine == "pybullet" and config.terrain.roughness[1] > 0.0 and config.physics.rate < LOWEST_ROUGH_RATE:
         return f"below {LOWEST_ROUGH_RATE} Hz PyBullet's feet sink into bumps: take more steps per second"
     if config.engine == "pybullet" and _foot_share(config) < LIGHT_FOOT:
-        return (
-            f"PyBullet errs with feet below {LIGHT_FOOT:.1%} of the robot's mass: check it with --engine mujoco"
-        )
+        return f"PyBullet errs with feet below {LIGHT_FOOT:.1%} of the robot's mass: check it with --engine mujoco"
     return None
 
 

@@ -104,7 +104,7 @@ def draw_robot(robot: RobotDescription, path: Path) -> list[Path]:
     triad = robot.scale.length * (TRIAD + np.vstack((np.zeros(3), TRIAD_LENGTH * np.eye(3), TRIAD_NAMES * np.eye(3))))
     renderer = Renderer(robot)
     try:
-        seen = np.concatenate((renderer.corners(*pose), triad))
+        seen = np.concatenate((renderer.seen(*pose), triad))
         camera = CAMERA.scaled(robot.scale.length).seeing(seen, width, height)
         picture = renderer.draw(*pose, width, height, camera)
     finally:

@@ -101,9 +101,9 @@ def cameras(trace: Trace, robot: RobotDescription, renderer: Renderer, ground: G
     """
     seen, feet = [], []
     for time in frame_times(trace.time[0], trace.time[-1], POSES_PER_SECOND):
-        tick = trace.tick_at(time)
-        seen.append(renderer.corners(*_pose(trace, tick)))
-        feet.append(renderer.soles())
+        pose = _pose(trace, trace.tick_at(time))
+        seen.append(renderer.seen(*pose, ground))
+        feet.append(renderer.feet(*pose, ground))
     camera = renderer.camera._replace(ground=ground).seeing(np.concatenate(seen), WIDTH - 2 * TEXT_WIDTH, HEIGHT)
     shown = [(tick, force) for tick, force in enumerate(trace.shown_pushes()) if force is not None]
     if shown:

@@ -63,20 +63,24 @@ class Journal:
 
     def __enter__(self) -> Journal:
         """Lock the file, and read it."""
-        try:
-            file = open_locked(self._path, os.O_RDWR | os.O_APPEND, wait=False)
-        except OSError as error:
-            reason = f"it has no {self._path.name}" if isinstance(error, FileNotFoundError) else str(error)
-            raise self._refusal(reason) from error
-        if file is None:
-            raise ResumeError(f"{self._kind.folder} {self._path.parent} is in use by another {self._kind.name}")
-        self._file = file
+        self._file = self._locked(os.O_RDWR | os.O_APPEND)
         try:
             self._read()
         except BaseException:
             self._file.close()
             raise
         return self
+
+    def _locked(self, flags: int) -> BinaryIO:
+        """Open the file with flags of :func:`os.open`, and lock it."""
+        try:
+            file = open_locked(self._path, flags, wait=False)
+        except OSError as error:
+            reason = f"it has no {self._path.name}" if isinstance(error, FileNotFoundError) else str(error)
+            raise self._refusal(reason) from error
+        if file is None:
+            raise ResumeError(f"{self._kind.folder} {self._path.parent} is in use by another {self._kind.name}")
+        return file
 
     def __exit__(self, *error: object) -> None:
         """Close the file, and release the lock."""

@@ -23,7 +23,7 @@ SHADOW = 0.45
 SHADOW_BLUR = 0.004
 """Blur of the shadows, as a share of the picture's height."""
 SAMPLES = 2
-"""Samples of the floor along each side of a pixel."""
+"""Samples of the floor and of its shadows along each side of a pixel."""
 
 
 @lru_cache(maxsize=4)
@@ -73,11 +73,11 @@ def shaded(picture: np.ndarray, outlines: list[np.ndarray]) -> np.ndarray:
     right, bottom = np.clip(np.ceil(corners.max(axis=0) + 3 * blur), 0, (width, height)).astype(int)
     if left >= right or top >= bottom:
         return picture
-    mask = Image.new("L", (right - left, bottom - top))
+    mask = Image.new("L", (SAMPLES * (right - left), SAMPLES * (bottom - top)))
     draw = ImageDraw.Draw(mask)
     for outline in outlines:
-        draw.polygon([tuple(corner) for corner in outline - (left, top)], fill=round(255 * SHADOW))
-    light = 255 - np.asarray(mask.filter(ImageFilter.GaussianBlur(blur)), dtype=np.uint16)
+        draw.polygon([tuple(corner) for corner in SAMPLES * (outline - (left, top))], fill=round(255 * SHADOW))
+    light = 255 - np.asarray(mask.reduce(SAMPLES).filter(ImageFilter.GaussianBlur(blur)), dtype=np.uint16)
     dark = picture.copy()
     dark[top:bottom, left:right] = dark[top:bottom, left:right] * light[..., None] // 255
     return dark

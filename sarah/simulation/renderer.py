@@ -15,6 +15,7 @@ from sarah.robot.reading import ACTUATED_JOINTS, Side, Vector
 from sarah.scenery.bumps import LIGHT
 from sarah.scenery.camera import STANDARD_CAMERA, Camera, View
 from sarah.scenery.floor import floor, shaded
+from sarah.scenery.ground import LEVEL, Ground
 from sarah.scenery.push_arrow import arrow, draw_arrow
 from sarah.simulation.engines import INSTALLATION, is_installed
 from sarah.simulation.pybullet_world import PyBulletWorld, pybullet
@@ -23,11 +24,11 @@ from sarah.simulation.world import HoldsWorld
 
 MARGIN = 0.01
 """Margin around the robot's corners, as a share of its height; nothing else is drawn."""
-SHOE_MARGIN = 1.2
-"""Length and width of a shoe, as multiples of those between its sole contacts."""
 NEAREST = 0.01
 """Smallest distance from the camera at which anything is drawn, in m."""
 CUBE = np.array(list(product((-1.0, 1.0), repeat=3)))
+FRONT_OF_SOLE, BACK_OF_SOLE = [2, 6], [4, 0]
+"""Corners of the cube that are low and in front, from left to right, and low and behind, from right to left."""
 
 
 def check_renderer() -> None:
@@ -83,13 +84,13 @@ class Renderer(HoldsWorld):
         :param camera: place and direction of the camera; by default the renderer's, stepped back if the pose needs it
         :return: uint8 array of shape (height, width, 3)
         """
-        corners = self.corners(position, orientation, joints)
         if camera is None:
-            camera = self.camera.seeing(corners, width, height)
+            camera = self.camera.seeing(self.seen(position, orientation, joints), width, height)
         view = View(width, height, camera)
-        under = np.array([(x, y, camera.ground.height(x, y)) for x, y, _ in self.soles().tolist()])
-        shadows = [view.pixels(outline) for outline in np.split(under, len(Side))]
+        boxes = self._boxes_in(position, orientation, joints)
+        shadows = [view.pixels(outline) for outline in self._shadows(boxes, camera.ground)]
         picture = shaded(floor(width, height, camera), shadows).copy()
+        corners = np.concatenate(list(boxes.values()))
         margin = MARGIN * self._robot.standing_height
         left, top, right, bottom = rectangle = view.rectangle(corners, margin)
         if left < right and top < bottom:
@@ -99,31 +100,72 @@ class Renderer(HoldsWorld):
             )
         return picture
 
-    def corners(
-        self, position: Vector, orientation: tuple[float, float, float, float], joints: Mapping[str, float]
+    def seen(
+        self,
+        position: Vector,
+        orientation: tuple[float, float, float, float],
+        joints: Mapping[str, float],
+        ground: Ground = LEVEL,
     ) -> np.ndarray:
-        """Corners of boxes around all links in a pose: the robot is between them.
+        """Points around all that is drawn of a pose: corners of boxes around the links, and of the feet's shadows.
 
         :param position: position of the torso's centre, in m
         :param orientation: orientation of the torso, as a unit quaternion (x, y, z, w)
         :param joints: positions by joint, in rad and m; other joints stay where they were, at first at zero
-        :return: points in the world's frame, in m, of shape (8 times the links, 3)
+        :param ground: ground that the shadows lie on
+        :return: points in the world's frame, in m, of shape (n, 3)
         :raises SimulationError: if other code in the process has changed the renderer's world
         """
+        boxes = self._boxes_in(position, orientation, joints)
+        return np.concatenate((*boxes.values(), *self._shadows(boxes, ground)))
+
+    def feet(
+        self,
+        position: Vector,
+        orientation: tuple[float, float, float, float],
+        joints: Mapping[str, float],
+        ground: Ground = LEVEL,
+    ) -> np.ndarray:
+        """Points around both shoes and their shadows in a pose; see :meth:`seen`.
+
+        :param position: position of the torso's centre, in m
+        :param orientation: orientation of the torso, as a unit quaternion (x, y, z, w)
+        :param joints: positions by joint, in rad and m; other joints stay where they were, at first at zero
+        :param ground: ground that the shadows lie on
+        :return: points in the world's frame, in m, of shape (n, 3)
+        :raises SimulationError: if other code in the process has changed the renderer's world
+        """
+        boxes = self._boxes_in(position, orientation, joints)
+        plates = (boxes[self._indices[f"{side}_{plate}"]] for side in Side for plate in PLATES)
+        return np.concatenate((*plates, *self._shadows(boxes, ground)))
+
+    def _boxes_in(
+        self, position: Vector, orientation: tuple[float, float, float, float], joints: Mapping[str, float]
+    ) -> dict[int, np.ndarray]:
+        """Corners of boxes around all links in a pose, by link, in the world's frame."""
         self._world.check()
         client = self._client
         pybullet.resetBasePositionAndOrientation(self._body, position, orientation, physicsClientId=client)
         for name, value in joints.items():
             pybullet.resetJointState(self._body, self._indices[name], value, physicsClientId=client)
-        corners = []
+        boxes = {}
         for link, box in self._boxes.items():
             if link < 0:
                 place, turn = position, orientation
             else:
                 state = pybullet.getLinkState(self._body, link, computeForwardKinematics=1, physicsClientId=client)
                 place, turn = state[4], state[5]
-            corners.append(_moved(box, place, turn))
-        return np.concatenate(corners)
+            boxes[link] = _moved(box, place, turn)
+        return boxes
+
+    def _shadows(self, boxes: Mapping[int, np.ndarray], ground: Ground) -> list[np.ndarray]:
+        """Outline of each foot's shadow: what is under the far ends of its two plates' soles."""
+        outlines = []
+        for side in Side:
+            forefoot, hindfoot = (boxes[self._indices[f"{side}_{plate}"]] for plate in PLATES)
+            ends = np.concatenate((forefoot[FRONT_OF_SOLE], hindfoot[BACK_OF_SOLE]))
+            outlines.append(np.array([(x, y, ground.height(x, y)) for x, y, _ in ends.tolist()]))
+        return outlines
 
     def _boxes_around_links(self) -> dict[int, np.ndarray]:
         """Corners of a box around the shapes of each link, in the link's frame."""
@@ -143,23 +185,6 @@ class Renderer(HoldsWorld):
             low, high = points.min(axis=0), points.max(axis=0)
             boxes[link] = (low + high) / 2 + CUBE * (high - low) / 2
         return boxes
-
-    def soles(self) -> np.ndarray:
-        """Corners of both soles in the last pose, in order around each, in m, of shape (8, 3)."""
-        self._world.check()
-        outlines = []
-        for side in Side:
-            corners = []
-            for plate, order in zip(PLATES, (1, -1), strict=True):
-                name = f"{side}_{plate}"
-                state = pybullet.getLinkState(
-                    self._body, self._indices[name], computeForwardKinematics=1, physicsClientId=self._client
-                )
-                corners.append(_moved(np.array(self._robot.soles[name][::order]), state[4], state[5]))
-            contacts = np.concatenate(corners)
-            middle = contacts.mean(axis=0)
-            outlines.append(middle + SHOE_MARGIN * (contacts - middle))
-        return np.concatenate(outlines)
 
     def _over(
         self, behind: np.ndarray, view: View, rectangle: tuple[int, int, int, int], depths: tuple[float, float]
@@ -221,7 +246,7 @@ class Renderer(HoldsWorld):
         names = ACTUATED_JOINTS + ANKLE_JOINTS
         joints = dict(zip(names, simulator.joint_positions(names), strict=True))
         ends = None if force is None else arrow(np.array(torso.position), np.array(force), self._robot.scale)
-        seen = self.corners(torso.position, torso.orientation, joints)
+        seen = self.seen(torso.position, torso.orientation, joints, camera.ground)
         camera = camera.seeing(seen if ends is None else np.concatenate((seen, ends)), width, height)
         picture = self.draw(torso.position, torso.orientation, joints, width, height, camera)
         if ends is None:

@@ -58,19 +58,22 @@ def expected(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
 def test_killed_locked_stopped_and_resumed(expected: dict[str, bytes], tmp_path: Path) -> None:
     folder = tmp_path / "run"
     process = begin(tmp_path, *TRAINING)
-    wait_for_rows(process, folder, 4)
+    wait_for_rows(process, folder, 9)
     process.send_signal(signal.SIGSTOP)  # so that it is still there when the other has started
     intruder = run("sarah-train", "--resume", "run", cwd=tmp_path)
     assert intruder.returncode == 2 and "run folder run is in use by another training" in intruder.stderr
+    assert intruder.stdout == ""  # it does not say that it resumes
     assert process.poll() is None
     process.kill()  # its lock dies with it
     process.communicate()
     kept = rows(folder)
+    known = len((folder / "episodes.csv").read_text().splitlines()) - 1
 
     process = begin(tmp_path, "--resume", "run")
     wait_for_rows(process, folder, len(kept) + 1)
     process.terminate()
-    _, errors = process.communicate(timeout=400)
+    shown, errors = process.communicate(timeout=400)
+    assert f"resuming the training of naf on stepping: 60 episodes, of which {known} are known, into run" in shown
     assert process.returncode == 128 + signal.SIGTERM and "Traceback" not in errors
     assert "sarah-train: interrupted; go on with sarah-train --resume run" in errors
     assert rows(folder)[: len(kept)] == kept

@@ -4,6 +4,10 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+from laboratory import need
+
+from sarah.cli.tables import leave_table
+from sarah.reports.transfer import ENGINES
 
 COMMANDS = ("train", "operate", "eval", "view", "video", "transfer", "report", "compare", "figures")
 FORMER = {
@@ -16,6 +20,14 @@ FORMER = {
     "sarah-eval --terrain mine --episodes 0": ("--terrain --out mine", "--terrain mine"),
 }
 """Lines in the former way, each with a mistake that ends it, and what is said instead of what."""
+
+TABLES = {
+    "robustness.md": "sarah-eval balance --robustness",
+    "terrain.md": "sarah-eval --terrain",
+    "transfer.md": "sarah-transfer balance",
+    "race.md": "sarah-compare --algorithms random --seeds 1",
+}
+"""Commands that leave a table, by the name of its file."""
 
 
 def ended(line: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> tuple[str, str]:
@@ -55,3 +67,25 @@ def test_a_former_name_is_understood(
     Path("full/precious.txt").touch()
     _, said = ended("sarah-train --run-dir full", monkeypatch, capsys)
     assert said.splitlines()[-1].endswith("run folder full is not empty: name another with --out")
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_that_a_table_is_replaced_is_said_before_the_work(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for engine in ENGINES:
+        need(engine)
+    line = f"{TABLES[name]} --out {tmp_path} --workers 1000"  # so many never begin to work
+    assert "replaced" not in ended(line, monkeypatch, capsys)[1]
+    (tmp_path / name).write_text("precious")
+    assert f"{tmp_path / name} is there already, and will be replaced\n" in ended(line, monkeypatch, capsys)[1]
+    assert (tmp_path / name).read_text() == "precious"
+
+
+def test_a_table_is_printed_and_written_and_its_file_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "table.md").write_text("longer than the new one")
+    leave_table("| 1 |", tmp_path / "table.md")
+    assert (tmp_path / "table.md").read_text() == "| 1 |\n"
+    assert capsys.readouterr().out == f"| 1 |\n{tmp_path / 'table.md'}\n"

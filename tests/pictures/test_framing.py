@@ -35,7 +35,7 @@ DIMENSIONS = [
     {"hip_offset": 1.3},
     {"hip_size": 0.8},
     {"thigh_width": 1.0},
-    {"forefoot_contact": 1.4, "sole_half_width": 0.4, "hip_offset": 0.5},
+    {"forefoot_contact": 1.4, "sole_half_width": 0.5, "hip_offset": 0.6},
     {name: 9.9 * value for name, value in LENGTHS.items()},
     {name: 0.11 * value for name, value in LENGTHS.items()} | {"sole_half_width": 0.006, "contact_radius": 0.008},
 ]
@@ -85,12 +85,10 @@ def still(robot: RobotDescription, force: np.ndarray, drift: tuple[float, float]
 def test_shadows_are_whole(robot: RobotDescription, renderer: Renderer) -> None:
     """Far above the floor, a robot and its shadows are apart."""
     high = (0.0, 0.0, 1.8 * robot.standing_height)
-    corners = renderer.corners(high, (0.0, 0.0, 0.0, 1.0), {})
-    shadows = renderer.soles() * (1.0, 1.0, 0.0)
-    camera = renderer.camera.seeing(np.concatenate((corners, shadows)), *SIZE)
+    camera = renderer.camera.seeing(renderer.seen(high, (0.0, 0.0, 0.0, 1.0), {}), *SIZE)
     picture = renderer.draw(high, (0.0, 0.0, 0.0, 1.0), {}, *SIZE, camera)
-    pixels = View(*SIZE, camera).pixels(shadows)
-    for column, row in (pixels[:4].mean(axis=0), pixels[4:].mean(axis=0)):
+    middles = np.reshape(robot.standing_soles, (2, 4, 3)).mean(axis=1) * (1.0, 1.0, 0.0)
+    for column, row in View(*SIZE, camera).pixels(middles):
         place = (int(row), int(column))
         assert picture[place].sum() < floor(*SIZE, camera)[place].sum() - 60
 
@@ -106,15 +104,14 @@ def is_within(pixels: np.ndarray, width: int, height: int) -> bool:
 
 def test_the_whole_robot_is_in_the_picture(robot: RobotDescription, renderer: Renderer) -> None:
     for position, orientation in poses(robot):
-        corners = renderer.corners(position, orientation, dict.fromkeys(robot.limits, 0.0))
-        camera = renderer.camera.seeing(corners, *SIZE)
-        view = View(*SIZE, camera)
-        assert is_within(view.pixels(corners), *SIZE)
+        seen = renderer.seen(position, orientation, dict.fromkeys(robot.limits, 0.0))
+        camera = renderer.camera.seeing(seen, *SIZE)
+        pixels = View(*SIZE, camera).pixels(seen)
+        assert is_within(pixels, *SIZE)
         picture = renderer.draw(position, orientation, {}, *SIZE)
         rows, columns = np.nonzero(np.abs(picture.astype(int) - floor(*SIZE, camera)).sum(axis=-1) > 60)
         assert len(rows) > 50
-        # What is drawn is between the corners and the feet's shadows: nothing is cut off where they end.
-        pixels = view.pixels(np.concatenate((corners, renderer.soles() * (1.0, 1.0, 0.0))))
+        # What is drawn is between the points that the camera sees: nothing is cut off where they end.
         assert columns.min() >= pixels[:, 0].min() - 1.5 and columns.max() <= pixels[:, 0].max() + 1.5
         assert rows.min() >= pixels[:, 1].min() - 1.5 and rows.max() <= pixels[:, 1].max() + 1.5
 
@@ -125,10 +122,11 @@ def test_pushes_from_all_sides_are_in_the_picture(robot: RobotDescription, rende
             trace = still(robot, force, drift)
             camera, feet = cameras(trace, robot, renderer)
             view = View(WIDTH, HEIGHT, camera)
-            seen = renderer.corners(tuple(trace.position[0]), (0.0, 0.0, 0.0, 1.0), {})
+            pose = tuple(trace.position[0]), (0.0, 0.0, 0.0, 1.0), dict.fromkeys(robot.limits, 0.0)
             ends = arrow(trace.position[0], force, robot.scale)
-            assert is_within(view.pixels(np.concatenate((seen, ends))), WIDTH, HEIGHT)
-            assert is_within(View(FEET_WIDTH, FEET_HEIGHT, feet).pixels(renderer.soles()), FEET_WIDTH, FEET_HEIGHT)
+            assert is_within(view.pixels(np.concatenate((renderer.seen(*pose), ends))), WIDTH, HEIGHT)
+            close = View(FEET_WIDTH, FEET_HEIGHT, feet)
+            assert is_within(close.pixels(renderer.feet(*pose)), FEET_WIDTH, FEET_HEIGHT)
 
 
 def test_a_standing_robot_of_standard_size_is_seen_as_ever() -> None:

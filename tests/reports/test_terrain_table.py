@@ -109,6 +109,7 @@ def test_command_writes_table_and_picture(
     printed = capsys.readouterr().out
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"terrain.md", "terrain.png", "terrain.pdf"}
     table = (tmp_path / "out" / "terrain.md").read_text()
+    assert "- SHIFT by sensors: mean share of the SHIFT phases that sensors ended\n" in table
     assert table in printed and "--episode.payload 20" in table and "payload 20 instead of 0" in table
     assert matplotlib.image.imread(tmp_path / "out" / "terrain.png").std() > 0.05
 

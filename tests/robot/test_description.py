@@ -79,6 +79,7 @@ def test_every_dimension_reaches_the_urdf(name: str) -> None:
     ("dimensions", "message"),
     [
         ({"tigh_length": 0.3}, "unknown robot dimension 'tigh_length', did you mean 'thigh_length'"),
+        ({"foot_length": 0.3}, "unknown robot dimension 'foot_length', did you mean 'forefoot_contact'"),
         ({"thigh_length": "long"}, "'thigh_length' must be a number between 0.033 and 3.3 m, not 'long'"),
         ({"thigh_length": True}, "'thigh_length' must be a number between 0.033 and 3.3 m, not True"),
         ({"thigh_length": float("nan")}, "'thigh_length' must be a number between 0.033 and 3.3 m, not nan"),
