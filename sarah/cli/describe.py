@@ -12,7 +12,7 @@ import tyro
 
 from sarah.cli.episode_options import (
     EpisodeOptions,
-    for_given_robot,
+    given_dimensions,
     given_options,
     parse_episode_options,
 )
@@ -64,8 +64,7 @@ def _describe(arguments: Sequence[str]) -> None:
     def settings(own: EpisodeConfig, _: str | None) -> EpisodeConfig:
         if "config" not in given:
             return own
-        of_file = read_config(TrainingConfig, Path(given["config"]))
-        return for_given_robot(of_file.episode, arguments, of_file.task.episode)
+        return read_config(TrainingConfig, Path(given["config"]), dimensions=given_dimensions(arguments)).episode
 
     options = parse_episode_options(COMMAND, arguments, DescribeOptions(), adapted=settings)
     if options.config is not None and options.subject is not None:

@@ -206,19 +206,26 @@ def with_given_engine(episode: EpisodeConfig, given: Mapping[str, str]) -> Episo
     return dataclasses.replace(episode, engine=engine)
 
 
-def for_given_robot(episode: ConfigType, arguments: Sequence[str], usual: EpisodeConfig | None = None) -> ConfigType:
+def given_dimensions(arguments: Sequence[str]) -> dict[str, float]:
+    """Dimensions of the robot that a command was given, by name; none where the real parser refuses them.
+
+    :param arguments: arguments of the command
+    """
+    try:
+        return named_numbers(dimension_words(arguments))
+    except ValueError:
+        return {}
+
+
+def for_given_robot(episode: ConfigType, arguments: Sequence[str]) -> ConfigType:
     """Episode settings for the robot whose dimensions a command was given: much goes with its length and its mass.
 
     :param episode: settings of episodes
     :param arguments: arguments of the command
-    :param usual: settings from which those that were set by hand differ, and stay; by default none was
     :raises DescriptionError: if there is no such dimension, or if it is not near its default
     """
-    try:
-        given = named_numbers(dimension_words(arguments))
-    except ValueError:  # the real parser says so
-        return episode
-    return episode.for_robot({**episode.dimensions, **given}, usual) if given else episode
+    given = given_dimensions(arguments)
+    return episode.for_robot({**episode.dimensions, **given}) if given else episode
 
 
 def with_given_directions(episode: EpisodeConfig, given: Mapping[str, str]) -> EpisodeConfig:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sarah.cli.episode_options import for_given_robot
+from sarah.cli.episode_options import for_given_robot, given_dimensions
 from sarah.cli.training_defaults import BALANCE_TRAINING
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, Task
 from sarah.errors import ConfigurationError
@@ -18,18 +18,20 @@ if TYPE_CHECKING:
     from sarah.runs.run_folder import RunFolder
 
 
-def settings_of_file(path: Path, task: Task[Any] | None) -> TrainingConfig:
+def settings_of_file(path: Path, task: Task[Any] | None, arguments: Sequence[str]) -> TrainingConfig:
     """Settings of a file, with its own task unless another one is given.
 
     :param path: path of the YAML file
     :param task: task of --task
+    :param arguments: arguments of the command, whose dimensions come beside those of the file
     """
+    dimensions = given_dimensions(arguments)
     if task is None:
-        return read_config(TrainingConfig, path)
+        return read_config(TrainingConfig, path, dimensions=dimensions)
     try:
-        own = read_config(TrainingConfig, path, task if task.file is not None else None)
+        own = read_config(TrainingConfig, path, task if task.file is not None else None, dimensions)
     except ConfigurationError:  # its own task may be that of another file
-        own = read_config(TrainingConfig, path, task)
+        own = read_config(TrainingConfig, path, task, dimensions)
     return dataclasses.replace(own, task=task, episode=task.config_of(own.episode))
 
 

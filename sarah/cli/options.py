@@ -86,14 +86,32 @@ def _with_both_ends(arguments: Sequence[str], config: Any) -> list[str]:
 
 
 def dimension_words(arguments: Sequence[str]) -> list[str]:
-    """Names and numbers that were given for the robot's dimensions.
+    """Names and numbers that were given for the robot's dimensions, in one option or in several.
 
     :param arguments: arguments of a command
     """
-    begins = [index for index, argument in enumerate(arguments) if argument == DIMENSIONS]
-    return list(
-        itertools.takewhile(lambda word: not word.startswith("--"), arguments[begins[-1] + 1 :] if begins else ())
-    )
+    return _without_dimensions(arguments)[1]
+
+
+def _without_dimensions(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Arguments beside those of the dimensions, and names and numbers of these."""
+    others: list[str] = []
+    words: list[str] = []
+    are_dimensions = False
+    for argument in arguments:
+        option, equals, word = argument.partition("=")
+        if option == DIMENSIONS:
+            are_dimensions = True
+            words += [word] if equals else []
+            continue
+        are_dimensions = are_dimensions and not argument.startswith("--")
+        (words if are_dimensions else others).append(argument)
+    return others, words
+
+
+def _with_dimensions_once(arguments: Sequence[str]) -> Sequence[str]:
+    others, words = _without_dimensions(arguments)
+    return [*others, DIMENSIONS, *words] if words else arguments
 
 
 def _checked(words: Sequence[str]) -> Sequence[str]:
@@ -144,7 +162,7 @@ def parse_options(
     errors = io.StringIO()
     try:
         with contextlib.redirect_stderr(errors):
-            return parse(args=_checked(_with_both_ends(arguments, default)))
+            return parse(args=_checked(_with_both_ends(_with_dimensions_once(arguments), default)))
     except SystemExit as exit_request:
         if not exit_request.code:
             check_output()

@@ -139,7 +139,7 @@ def _train(arguments: Sequence[str]) -> None:
         if config.episode.scale != Scale():
             size = f"motors and other settings go with {config.episode.scale.words()}"
             print(f"{size}: sarah-describe {quoted(run.path)} lists them", flush=True)
-        if options.from_run is None and config.task.reward is equation_2 and (hint := frequency_hint(config.episode)):
+        if config.task.reward is equation_2 and (hint := frequency_hint(config.episode)):
             print(hint, file=sys.stderr)
         if options.from_run is not None and isinstance(config.episode, BalanceConfig):
             say_differences(options.from_run, config.episode)
@@ -210,15 +210,15 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
         return _resumed_defaults(Path(given["resume"]), given)
     task = named_task(given.get("task"))
     file = Path(given["config"]) if "config" in given else None
-    training = default_training(task or STEPPING) if file is None else settings_of_file(file, task)
+    training = default_training(task or STEPPING) if file is None else settings_of_file(file, task, arguments)
     training = _with_agent(training, given.get("algo"), given.get("agent.preset"))
     _check_agent_options(arguments, training)
     first = given.get("from") if training.task is BALANCE else None
     episode = training.episode if first is None else settings_on_stepping(Path(first), file, arguments)
     episode = with_given_engine(episode, given)
     check_episode_options(arguments, episode)
-    if first is None:  # what a folder has recorded stays as it is
-        episode = for_given_robot(episode, arguments, None if file is None else training.task.episode)
+    if first is None and file is None:  # what a folder or a file has recorded stays as it is
+        episode = for_given_robot(episode, arguments)
     if file is None and training.task is BALANCE:
         episode = with_given_directions(episode, given)
     return TrainOptions(dataclasses.replace(training, episode=episode))

@@ -6,6 +6,7 @@ import contextlib
 import dataclasses
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, TypeVar
 
 from sarah.episode.from_mapping import changed_alone, from_mapping
@@ -31,7 +32,12 @@ def first_difference(config: Any, other: Any) -> tuple[str, Any, Any] | None:
     return None
 
 
-def read_config(config_type: type[ConfigType], path: Path, task: Task[Any] | None = None) -> ConfigType:
+def read_config(
+    config_type: type[ConfigType],
+    path: Path,
+    task: Task[Any] | None = None,
+    dimensions: Mapping[str, float] = MappingProxyType({}),
+) -> ConfigType:
     """Read a configuration from a YAML file. Fields that the file does not name keep their defaults.
 
     No task is loaded for that: a file that names one of another file needs it here.
@@ -39,11 +45,18 @@ def read_config(config_type: type[ConfigType], path: Path, task: Task[Any] | Non
     :param config_type: dataclass of the configuration
     :param path: path of the file
     :param task: task that takes the place of the one that the file names
+    :param dimensions: dimensions of the robot that come beside those of the file. What the file names stays as it is;
+        what it does not name goes with them
     :raises ConfigurationError: naming file, key and value, if a value is not allowed
     """
     content = _read(path)
     if task is not None and isinstance(content, dict):
         content["task"] = task
+    if dimensions and isinstance(content, dict):
+        episode = content.setdefault("episode", {})
+        own = episode.get("dimensions", {}) if isinstance(episode, dict) else None
+        if isinstance(own, dict):  # anything else is refused below
+            episode["dimensions"] = {**own, **dimensions}
     with _naming(path):
         return from_mapping(config_type(), content)
 

@@ -97,10 +97,18 @@ def test_a_mistake_is_one_line_and_writes_nothing(answer: Callable[[str], str], 
     assert message in answer(f"sarah-describe {arguments}")
 
 
-def test_a_file_and_an_option_describe_one_robot(tmp_path: Path) -> None:
-    """What the file sets by hand stays, whatever the option changes."""
-    (tmp_path / "mine.yaml").write_text("episode: {dimensions: {thigh_length: 0.2}, controller: {pad_threshold: 5}}\n")
+@pytest.mark.parametrize("newtons", [5, 30])
+def test_a_file_and_an_option_describe_one_robot(newtons: int, tmp_path: Path) -> None:
+    """What the file sets by hand stays, whatever the option changes, also if it is what the default robot has."""
+    controller = f"{{pad_threshold: {newtons}}}"
+    (tmp_path / "mine.yaml").write_text(f"episode: {{dimensions: {{thigh_length: 0.2}}, controller: {controller}}}\n")
     process = run("sarah-describe", "--config", "mine.yaml", "--episode.dimensions", "torso_mass", "23", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     assert re.search(r"thigh_length +0.2 .*\n.*torso_mass +23 |torso_mass +23 .*\n.*thigh_length +0.2 ", process.stdout)
-    assert re.search(r"controller.pad-threshold +5 +30 +the rule gives 45\n", process.stdout)
+    assert re.search(rf"controller.pad-threshold +{newtons} +30 +the rule gives 45\n", process.stdout)
+
+
+def test_dimensions_are_one_robot_however_often_they_are_given(tmp_path: Path) -> None:
+    once = run("sarah-describe", "--episode.dimensions", "thigh_length", "0.1", "shank_length", "0.2", cwd=tmp_path)
+    twice = ("--episode.dimensions=thigh_length", "0.1", "--episode.dimensions", "shank_length", "0.2")
+    assert run("sarah-describe", *twice, cwd=tmp_path).stdout == once.stdout
