@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sarah.episode.result import EpisodeResult
+from sarah.episode.result import METRICS, EpisodeResult
 from sarah.robot.description import PLATES
 from sarah.robot.reading import SensorReading, Side, Vector
 from sarah.simulation.engines import is_installed
@@ -24,22 +24,22 @@ from sarah.simulation.simulator import Simulator, TorsoState
 CONTROL_DT = PHYSICS["standard"].control_dt
 COARSE_PHYSICS = Physics(rate=100, solver_iterations=5)
 """Physics that takes a fifth of the time, for tests that do not look at the robot."""
-RESULT = EpisodeResult(
-    termination="time_limit",
-    final_position=(0.03, 0.04, 0.84),
-    score=0.8,
-    episode_return=4.0,
-    steps_per_second=3.0,
-    steps=30,
-    duration=14.15,
-    shifts_by_sensors=1.0,
-    lifts_by_sensors=1.0,
-    sole_clearance=0.02,
-    vibration=9.0,
-    actuator_power=15.0,
-    peak_hip_rate=0.5,
-    peak_leg_speed=0.6,
-)
+NUMBERS: dict[str, Any] = {
+    **dict.fromkeys([name for name in METRICS if name in EpisodeResult.__dataclass_fields__], 0.0),
+    "score": 0.8,
+    "episode_return": 4.0,
+    "steps_per_second": 3.0,
+    "steps": 30,
+    "duration": 14.15,
+    "shifts_by_sensors": 1.0,
+    "lifts_by_sensors": 1.0,
+    "sole_clearance": 0.02,
+    "vibration": 9.0,
+    "actuator_power": 15.0,
+    "peak_hip_rate": 0.5,
+    "peak_leg_speed": 0.6,
+}
+RESULT = EpisodeResult(termination="time_limit", final_position=(0.03, 0.04, 0.84), **NUMBERS)
 """Result of an episode that nobody simulated."""
 WAYS: dict[str, Callable[[Any], Any]] = {
     "copy": copy.copy,

@@ -3,7 +3,7 @@
 import dataclasses
 import math
 from collections.abc import Iterator
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any, Literal, get_args
 
 import pytest
 
@@ -13,6 +13,8 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError
 from sarah.operation.settings import OperationConfig
 from sarah.ranges import Within, ranges_of, types_of
+from sarah.robot.dimensions import dimensions_alike
+from sarah.robot.scale import Sized
 from sarah.runs.agent_settings import AGENT_SETTINGS
 from sarah.runs.config import TrainingConfig
 from sarah.simulation.physics import PyBulletPhysics
@@ -25,6 +27,10 @@ class HighConfig(EpisodeConfig):
     """Settings of a task of one's own."""
 
     height: Annotated[float, Within(0.0, 2.0, "m")] = 1.0
+    foot: Literal["left", "right"] = "left"
+    hops: bool = False
+    push: Push = None  # type: ignore[assignment]  # that of the robot's size
+    reach: Annotated[float, Sized(0.0, 10.0, "m", usual=2.0)] = None  # type: ignore[assignment]
 
 
 KINDS: list[Any] = [
@@ -56,3 +62,23 @@ def test_numbers_out_of_range_are_refused_by_name(kind: Any) -> None:
             assert key.rpartition(".")[2] == name
             limits = f"between {within.low:.10g} and {within.high:.10g} {within.unit}".rstrip()
             assert message.startswith((limits, "a whole number, not ")) and "\n" not in message
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"foot": "lef"}, "unknown foot 'lef', did you mean 'left'? (allowed: left, right)"),
+        ({"hops": 1}, "hops must be a bool, not 1"),
+        ({"push": 100}, "push must be a Push, not 100"),
+    ],
+)
+def test_names_switches_and_settings_within_settings_are_refused_by_name(wrong: Any, message: str) -> None:
+    with pytest.raises(ConfigurationError) as refused:
+        HighConfig(**wrong)
+    assert str(refused.value) == message
+
+
+def test_a_setting_that_goes_with_the_robots_size_does_so_unless_it_is_given() -> None:
+    half = HighConfig(dimensions=dimensions_alike(0.5, 0.1))
+    assert half.reach == pytest.approx(1.0) and half.push.newtons[1] < 100.0 == HighConfig().push.newtons[1]
+    assert HighConfig(dimensions=half.dimensions, reach=2.0).reach == HighConfig().reach == 2.0

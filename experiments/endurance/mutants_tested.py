@@ -32,9 +32,9 @@ SUBJECTS = (
     Subject("sarah/control/hip_law.py", CONTROL),
     Subject("sarah/control/constants.py", CONTROL, "ControllerConstants"),
     Subject("sarah/control/parameters.py", CONTROL),
-    Subject("sarah/episode/reward.py", EPISODE),
-    Subject("sarah/episode/gait.py", EPISODE),
-    Subject("sarah/episode/ending.py", ENDING),
+    Subject("sarah/episode/reward.py", EPISODE, "(?!RewardSettings).*"),
+    Subject("sarah/episode/gait.py", EPISODE, "(?!GaitSettings|GaitMetrics).*"),
+    Subject("sarah/episode/ending.py", ENDING, "(?!EndingSettings).*"),
     Subject("sarah/simulation/sensors.py", SENSORS),
     Subject("agents/critic.py", CRITIC),
     Subject("agents/buffers.py", BUFFERS),
@@ -72,7 +72,7 @@ EXPLAINED: dict[str, dict[str, str]] = {
         "self._loads = {Side.LEFT: 0.0, Side.RIGHT: -1.0}": NO_LOAD,
     },
     "sarah/episode/reward.py": {
-        'if form <= "printed":': "there are two forms, and 'symmetric' sorts behind 'printed'",
+        'if config.reward_form <= "printed":': "there are two forms, and 'symmetric' sorts behind 'printed'",
     },
     "sarah/episode/ending.py": {
         "if tick.upright <= LEAST_UPRIGHT:": "differs at 45 degrees to the last bit only",

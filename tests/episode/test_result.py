@@ -7,6 +7,8 @@ from laboratory import RESULT
 
 from sarah.episode.ending import TERMINATIONS
 from sarah.episode.evaluation import STATISTICS, Evaluation
+from sarah.episode.gait import GaitMetrics
+from sarah.episode.motion import MotionMetrics
 from sarah.episode.result import METRICS, EpisodeResult
 from sarah.errors import ConfigurationError
 
@@ -22,6 +24,11 @@ def test_every_number_of_a_result_is_a_metric_with_unit_and_meaning() -> None:
     for name, metric in METRICS.items():
         assert metric.meaning and metric.label and isinstance(getattr(RESULT, name), (int, float))
         assert set(metric.statistics) <= set(STATISTICS)
+
+
+def test_metrics_of_gait_and_motion_are_columns_and_metrics() -> None:
+    own = [item.name for measured in (GaitMetrics, MotionMetrics) for item in dataclasses.fields(measured)]
+    assert [name for name in METRICS if name in own] == [name for name in RESULT.columns() if name in own] == own
 
 
 def test_a_value_is_shown_in_its_unit_for_people() -> None:

@@ -1,7 +1,8 @@
-"""What a task owns: its parameters, its settings and its push. A third one is as good as the two."""
+"""What a task owns: its parameters, its settings and its push. A third one is a file, and as good as the two."""
 
 import dataclasses
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,9 +11,10 @@ import sarah
 from sarah.control.parameters import STEPPING_PARAMETERS
 from sarah.control.pattern_generator import SteppingParameters
 from sarah.envs.sarah_env import SarahEnv
+from sarah.episode import tasks
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, STEPPING, TASKS, BalanceConfig, Task, task_named
+from sarah.episode.tasks import BALANCE, STEPPING, TASKS, BalanceConfig, Task, task_named, tasks_in
 from sarah.errors import ConfigurationError
 
 OTHERS = {"stepping": BalanceConfig(), "balance": EpisodeConfig()}
@@ -91,7 +93,7 @@ HURRIED = Task(
 )
 
 
-def test_a_third_task_is_an_object_and_an_entry(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_third_task_is_as_good_as_the_two(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(TASKS, HURRIED.name, HURRIED)
     assert task_named("hurried") is HURRIED
     env = SarahEnv("hurried")
@@ -105,3 +107,18 @@ def test_a_third_task_is_an_object_and_an_entry(monkeypatch: pytest.MonkeyPatch)
     given = EpisodeSpec((*info["parameters"], 0.1, 1.0, 1.0), info["seed"], config=EpisodeConfig(time_limit=2.0))
     assert sarah.simulate(given) == info["result"]  # P1 to P5 given by hand are the same episode
     env.close()
+
+
+def test_every_task_has_a_file_of_its_name() -> None:
+    files = {path.stem for folder in tasks.__path__ for path in Path(folder).glob("*.py")}
+    assert files == {*TASKS, "__init__", "task", "task_file"}
+
+
+def test_a_file_beside_the_others_is_a_task(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "lasting.py").write_text(
+        "import dataclasses\n"
+        "from sarah.episode.tasks.stepping import STEPPING\n"
+        "LASTING = dataclasses.replace(STEPPING, name='lasting', reward=lambda tick, config: 1.0)\n"
+    )
+    monkeypatch.setattr(tasks, "__path__", [*tasks.__path__, str(tmp_path)])
+    assert [*tasks_in(tasks.__path__)] == [*TASKS, "lasting"]
