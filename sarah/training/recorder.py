@@ -24,7 +24,7 @@ EPISODES_PER_RECOMMENDATION = 5
 """Number of episodes after which the recommendation is recorded again."""
 
 
-class EpisodeRecorder:
+class EpisodeRecorder(KVWriter):
     """Writes every episode to ``episodes.csv`` and to the learning curves.
 
     While a resumed training replays the episodes of its journal, nothing is written. When it goes on, all files are
@@ -45,7 +45,7 @@ class EpisodeRecorder:
     """Number of episodes so far that diverged."""
 
     def __init__(self, run: RunFolder, plan: Plan, episodes: RecordedEpisodes, progress: tqdm[NoReturn]) -> None:
-        self.log = Logger(folder=None, output_formats=[_LoggerOutput(self)])
+        self.log = Logger(folder=None, output_formats=[self])
         self.diverged = 0
         self._config = plan.config
         self._task = plan.config.task
@@ -115,20 +115,17 @@ class EpisodeRecorder:
                 summary = summary_of(draw_gait(recommended, self._config.task, self._config.episode))
         self._open_curves().show(summary, episodes)
 
-    def write_curves(self, values: dict[str, Any], excluded: dict[str, tuple[str, ...]], step: int) -> None:
-        """Write a point of each learning curve.
+    def write(self, key_values: dict[str, Any], key_excluded: dict[str, tuple[str, ...]], step: int = 0) -> None:
+        """Write a point of each learning curve, as an output of the logger.
 
-        :param values: values by name of the curve
-        :param excluded: formats that leave a curve out, by name of the curve
+        :param key_values: values by name of the curve
+        :param key_excluded: formats that leave a curve out, by name of the curve
         :param step: number of episodes so far
         """
+        values, excluded = dict(key_values), dict(key_excluded)  # the logger empties both when this returns
         self._journal.hold(lambda: self._open_curves().write(values, excluded, step))
 
-    def __enter__(self) -> EpisodeRecorder:
-        """Do nothing: the files are opened when there is something to write."""
-        return self
-
-    def __exit__(self, *error: object) -> None:
+    def close(self) -> None:
         """Close the learning curves, also of a training that failed."""
         if self._curves is not None:
             self._curves.close()
@@ -144,7 +141,7 @@ class EpisodeRecorder:
             learned.survival_rate,
             learned.mean("sole_clearance"),
         )
-        self.write_curves(dict(zip(LEARNED, values, strict=True)), dict.fromkeys(LEARNED, ("csv",)), len(self.tried))
+        self.write(dict(zip(LEARNED, values, strict=True)), dict.fromkeys(LEARNED, ("csv",)), len(self.tried))
         self._journal.release()
 
     def _open_curves(self) -> CurveWriter:
@@ -152,14 +149,3 @@ class EpisodeRecorder:
             self._run.remove_records()
             self._curves = CurveWriter(self._run)
         return self._curves
-
-
-class _LoggerOutput(KVWriter):
-    """Output of a stable-baselines3 logger, which passes the values to the recorder."""
-
-    def __init__(self, recorder: EpisodeRecorder) -> None:
-        self._recorder = recorder
-
-    def write(self, key_values: dict[str, Any], key_excluded: dict[str, tuple[str, ...]], step: int = 0) -> None:
-        # The logger empties both dictionaries when this returns, so they are copied.
-        self._recorder.write_curves(dict(key_values), dict(key_excluded), step)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from stable_baselines3.common.callbacks import BaseCallback
-
 from sarah.agents import PRESETS, LocalNAF, RankReplayBuffer
 from sarah.envs.operation_env import SarahOperationEnv
 from sarah.operation.robot_in_operation import RobotInOperation
@@ -30,17 +28,8 @@ def operate_by_naf(robot: RobotInOperation, first: Parameters, seed: int) -> Par
     env = SarahOperationEnv(robot.config, first, operated=robot)
     settings: dict[str, Any] = {**PRESETS["one-step"], **UNSMOOTHED, "device": "cpu"}
     model = LocalNAF("MlpPolicy", env, seed=seed, first_action_centre=True, **settings)
-    model.learn(LONGEST, callback=_UntilOver(robot), log_interval=None)  # type: ignore[arg-type]
+    model.learn(LONGEST, callback=lambda *_: not robot.is_over, log_interval=None)  # type: ignore[arg-type]
     assert isinstance(model.replay_buffer, RankReplayBuffer)
     if model.replay_buffer.size() == 0:  # the time was over before it could learn
         return first
     return env.parameters_from(model.replay_buffer.best_action())
-
-
-class _UntilOver(BaseCallback):
-    def __init__(self, robot: RobotInOperation) -> None:
-        super().__init__()
-        self._robot = robot
-
-    def _on_step(self) -> bool:
-        return not self._robot.is_over

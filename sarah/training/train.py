@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import asdict, dataclass
 from functools import partial
 
@@ -76,7 +77,7 @@ def _train(config: TrainingConfig, run: RunFolder, episodes: RecordedEpisodes, p
     generator, silent = np.random.default_rng(plan.seeds.trials), not progress_bar or sys.stderr is None
     with (
         tqdm(total=config.episodes, unit=" episodes", disable=silent) as progress,
-        EpisodeRecorder(run, plan, episodes, progress) as recorder,
+        closing(EpisodeRecorder(run, plan, episodes, progress)) as recorder,
     ):
         learner = make_learner(plan, run, recorder, episodes)
         for stage in plan.stages:
