@@ -114,6 +114,8 @@ class GaitRecord(Observer):
     def steps_per_second(self, ticks: int) -> float:
         """Steps per second in the last 2 s, the f of equation 2; at first, since the start, over at least 0.5 s.
 
+        Both are times of the default robot.
+
         :param ticks: control ticks since the start, which must not decrease from call to call
         """
         while self._recent and self._recent[0] < ticks - self._window:
