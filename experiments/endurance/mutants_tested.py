@@ -75,7 +75,7 @@ EXPLAINED: dict[str, dict[str, str]] = {
         'if config.reward_form <= "printed":': "there are two forms, and 'symmetric' sorts behind 'printed'",
     },
     "sarah/episode/ending.py": {
-        "if tick.upright <= LEAST_UPRIGHT:": "differs at 45 degrees to the last bit only",
+        "return upright <= LEAST_UPRIGHT": "differs at 45 degrees to the last bit only",
     },
     "sarah/simulation/sensors.py": {
         "self._imu_gain = low_pass_gain(1.0 / (2.0 * math.pi * imu_bandwidth), dt) if imu_bandwidth != math.inf "

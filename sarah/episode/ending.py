@@ -39,6 +39,14 @@ class EndingSettings(RobotSettings):
     box_half_width: Annotated[float, Sized(0.001, 100.0, "m", usual=0.25)] = None  # type: ignore[assignment]
 
 
+def is_fallen(upright: float) -> bool:
+    """Whether a robot is tilted as far as one that has fallen, in episodes and in operation alike.
+
+    :param upright: cosine of the torso's tilt
+    """
+    return upright < LEAST_UPRIGHT
+
+
 def paper_ending(tick: Tick, config: EndingSettings) -> str | None:
     """Check the paper's second and third criterion, and whether the robot has fallen: the endings of both its tasks.
 
@@ -49,7 +57,7 @@ def paper_ending(tick: Tick, config: EndingSettings) -> str | None:
     (x, y, z), (start_x, start_y, start_z) = tick.torso.position, tick.start
     if max(abs(x - start_x), abs(y - start_y), abs(z - start_z)) > config.box_half_width:
         return "left_box"
-    if tick.upright < LEAST_UPRIGHT:
+    if is_fallen(tick.upright):
         return "fell"
     half_tick = config.physics.control_dt / 2  # the tolerance for rounding
     if tick.steps < OSCILLATION_STEPS and tick.time > OSCILLATION_SECONDS - half_tick:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from sarah.control.pattern_generator import STAND_SECONDS
-from sarah.episode.ending import LEAST_UPRIGHT
+from sarah.episode.ending import is_fallen
 from sarah.episode.push import Push, draw_push
 from sarah.episode.recording import Recording
 from sarah.episode.result import EpisodeResult
@@ -179,7 +179,7 @@ class RobotInOperation:
             robot.tick(self._force(config.push, first + ticks, dt))
             if robot.termination is None:
                 record.judge(robot.torso)
-                if robot.generator.has_fallen or robot.torso.upright(robot.vertical) < LEAST_UPRIGHT:
+                if robot.generator.has_fallen or is_fallen(robot.torso.upright(robot.vertical)):
                     robot.termination = "fell"
             ticks += 1
         fell = robot.termination is not None

@@ -13,14 +13,11 @@ from sarah.episode.result import METRICS, EpisodeResult
 from sarah.errors import ConfigurationError
 
 OTHER = dataclasses.replace(RESULT, score=0.4, vibration=3.0, final_position=(0.0, 0.0, 0.8), termination="fell")
-NO_UNIT = {"score", "steps", "shifts_by_sensors", "lifts_by_sensors"}
-"""Metrics that are shares or counts."""
 
 
-def test_every_number_of_a_result_is_a_metric_with_unit_and_meaning() -> None:
+def test_every_number_of_a_result_is_a_metric_with_a_meaning() -> None:
     numbers = {name for name, value in RESULT.fields().items() if isinstance(value, (int, float))}
     assert numbers | {"drift"} == set(METRICS)
-    assert {name for name, metric in METRICS.items() if not metric.unit} == NO_UNIT
     for name, metric in METRICS.items():
         assert metric.meaning and metric.label and isinstance(getattr(RESULT, name), (int, float))
         assert set(metric.statistics) <= set(STATISTICS)
