@@ -53,7 +53,7 @@ def test_an_experiment_makes_the_columns_of_its_result(
     assert (made.made_with is None) == (published.made_with is None)
 
 
-PENDING = {"balance_trainings", "ceiling", "other_sizes", "second_training_summary", "shipping"}
+PENDING = {"balance_trainings", "ceiling", "second_training_summary", "shipping"}
 """Results whose rows take hours and are not made yet."""
 
 
