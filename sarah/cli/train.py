@@ -168,9 +168,9 @@ def _resumed(path: Path, options: TrainOptions, config: TrainingConfig) -> RunFo
 
 
 def _known_words(run: RunFolder) -> str:
-    """Words about how many episodes are known, unless their table is damaged: a resumed training writes it anew."""
+    """Words about how many episodes it has, unless their table is damaged: a resumed training writes it anew."""
     with suppress(RunFolderError):
-        return f", of which {sum(1 for _ in run.episodes())} are known,"
+        return f", of which episodes.csv has {sum(1 for _ in run.episodes())},"
     return ""
 
 
@@ -178,7 +178,8 @@ def _extended(run: RunFolder, config: TrainingConfig) -> TrainingConfig:
     """Extend a finished training to a larger budget, and say what that means."""
     before = run.config()
     extended = dataclasses.replace(before.extended_to(config.episodes), pictures=config.pictures)
-    run.extend(extended)
+    with run.journal_of(before):  # of two at once, one extends it
+        run.extend(extended)
     added = extended.episodes - before.episodes
     print(
         f"extending {before.episodes} to {extended.episodes} episodes: what changes in the course of a training, such "

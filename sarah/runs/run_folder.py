@@ -235,7 +235,8 @@ def read_parameters(path: Path, box: Box) -> Parameters:
     except OSError as error:
         raise unreadable(path, error) from error
     except (ValueError, KeyError, TypeError, RecursionError) as error:
-        raise RunFolderError(f"{path} does not hold learned parameters: {error}") from error
+        again = "without the file, --resume makes it again"
+        raise RunFolderError(f"{path} does not hold learned parameters ({error}): {again}") from error
 
 
 def _append_row(path: Path, fields: Sequence[str], row: Mapping[str, Any]) -> None:

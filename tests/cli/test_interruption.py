@@ -73,7 +73,9 @@ def test_killed_locked_stopped_and_resumed(expected: dict[str, bytes], tmp_path:
     wait_for_rows(process, folder, len(kept) + 1)
     process.terminate()
     shown, errors = process.communicate(timeout=400)
-    assert f"resuming the training of naf on stepping: 60 episodes, of which {known} are known, into run" in shown
+    assert (
+        f"resuming the training of naf on stepping: 60 episodes, of which episodes.csv has {known}, into run" in shown
+    )
     assert process.returncode == 128 + signal.SIGTERM and "Traceback" not in errors
     assert "sarah-train: interrupted; go on with sarah-train --resume run" in errors
     assert rows(folder)[: len(kept)] == kept
