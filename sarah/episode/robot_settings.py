@@ -35,7 +35,8 @@ class RobotSettings:
     What goes with the length and the mass of a robot is by default that of the default robot, scaled
     (:mod:`sarah.robot.scale`); what is given is taken as it is.
 
-    :param physics: resolution of the physics in time; fields that the engine does not have are ignored
+    :param physics: resolution of the physics in time; in files and in Python, fields that the engine does not have are
+        ignored
     :param engine: physics engine: ``pybullet``, the reference, or ``mujoco``, the default where PyBullet is not
         installed
     :param randomisation: ranges that each episode's seed draws from
