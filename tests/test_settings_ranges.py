@@ -31,6 +31,7 @@ class HighConfig(EpisodeConfig):
     hops: bool = False
     push: Push = None  # type: ignore[assignment]  # that of the robot's size
     reach: Annotated[float, Sized(0.0, 10.0, "m", usual=2.0)] = None  # type: ignore[assignment]
+    name: str | None = None
 
 
 KINDS: list[Any] = [
@@ -82,3 +83,4 @@ def test_a_setting_that_goes_with_the_robots_size_does_so_unless_it_is_given() -
     half = HighConfig(dimensions=dimensions_alike(0.5, 0.1))
     assert half.reach == pytest.approx(1.0) and half.push.newtons[1] < 100.0 == HighConfig().push.newtons[1]
     assert HighConfig(dimensions=half.dimensions, reach=2.0).reach == HighConfig().reach == 2.0
+    assert half.name is None

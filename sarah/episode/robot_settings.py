@@ -66,10 +66,11 @@ class RobotSettings:
         if self.physics is None:
             object.__setattr__(self, "physics", PHYSICS["standard"].at_scale(scale))
         for name, kind in types_of(type(self)).items():  # what was not given is that of the robot's size
-            if getattr(self, name) is None:
-                sized = ranges.get(name)
-                own = sized.usual * scale.factor(sized.unit) if isinstance(sized, Sized) else scale.scaled(kind())
-                object.__setattr__(self, name, own)
+            sized = ranges.get(name)
+            if getattr(self, name) is None and isinstance(kind, type) and is_dataclass(kind):
+                object.__setattr__(self, name, scale.scaled(kind()))
+            elif getattr(self, name) is None and isinstance(sized, Sized) and sized.usual is not None:
+                object.__setattr__(self, name, sized.usual * scale.factor(sized.unit))
         check_ranges("", self)
         object.__setattr__(self, "physics", physics_for(self.engine, self.physics, scale))
         if self.time_limit < STAND_SECONDS + self.physics.control_dt:

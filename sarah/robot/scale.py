@@ -61,7 +61,7 @@ class Sized(Within):
     """
 
     goes_by: str = ""
-    usual: float = math.nan
+    usual: float | None = None
 
 
 class Scale(NamedTuple):
