@@ -11,6 +11,8 @@ from stable_baselines3.common.torch_layers import BaseFeaturesExtractor, create_
 from stable_baselines3.common.type_aliases import PyTorchObs
 from torch import nn
 
+from sarah.agents.dropout import ByteDropout
+
 LOG_DIAGONAL_MIN = -5.0
 LOG_DIAGONAL_MAX = 5.0
 
@@ -113,7 +115,7 @@ class QuadraticCritic(BaseModel):
         if self.has_w and value_arch:
             value_layers.insert(1, nn.LayerNorm(value_arch[0]))
         self.value_net = nn.Sequential(*value_layers)
-        after: list[Any] = [lambda width: nn.Dropout(dropout)] if self.has_w else []
+        after: list[Any] = [lambda width: ByteDropout(dropout)] if self.has_w else []
         make_layers = partial(create_mlp, activation_fn=activation_fn, post_linear_modules=after)
         self.shared_net = nn.Sequential(*make_layers(features_dim, -1, net_arch["shared"]))
         shared_dim = [features_dim, *net_arch["shared"]][-1]
