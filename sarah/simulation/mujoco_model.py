@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
+import threading
+from collections.abc import Callable
 from functools import lru_cache
 
 import mujoco
@@ -66,18 +66,38 @@ def check_callbacks() -> None:
         )
 
 
-@contextmanager
-def without_warnings() -> Iterator[None]:
-    """Let MuJoCo warn nobody for a while: a state that is not finite ends the episode.
+class _Quiet:
+    """A context in which MuJoCo warns nobody: a state that is not finite ends the episode.
 
-    MuJoCo's own warning would also write a file where the process runs.
+    MuJoCo's own warning would also write a file where the process runs. What others set is put back when the last
+    thread leaves.
     """
-    before = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(lambda message: None)
-    try:
-        yield
-    finally:
-        mujoco.set_mju_user_warning(before)
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._within = 0
+        self._before: Callable[[str], None] | None = None
+
+    def __enter__(self) -> None:
+        with self._lock:
+            if not self._within:
+                self._before = mujoco.get_mju_user_warning()
+                mujoco.set_mju_user_warning(_ignore)
+            self._within += 1
+
+    def __exit__(self, *_: object) -> None:
+        with self._lock:
+            self._within -= 1
+            if not self._within:
+                mujoco.set_mju_user_warning(self._before)
+
+
+def _ignore(message: str) -> None:
+    pass
+
+
+WITHOUT_WARNINGS = _Quiet()
+"""Context for MuJoCo's steps."""
 
 
 def sole_name(side: Side, plate: str, index: int) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 from sarah.errors import SimulationError
 from sarah.robot.description import ANKLE_JOINTS, PLATES, RobotDescription
 from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Side, Vector
-from sarah.simulation.mujoco_model import check_callbacks, model_of, sole_name, without_warnings
+from sarah.simulation.mujoco_model import WITHOUT_WARNINGS, check_callbacks, model_of, sole_name
 from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.randomisation import NOMINAL, Conditions
 from sarah.simulation.simulator import TorsoState, rotate_to_world, specific_force
@@ -157,7 +157,7 @@ class MujocoSimulator(HoldsWorld):
         """Simulate one control tick."""
         model, data, before = self.model, self.data, self._before
         self._velocity_before = self._torso.velocity
-        with without_warnings():
+        with WITHOUT_WARNINGS:
             for _ in range(self._substeps):
                 mujoco.mj_getState(model, data, before, STATE)
                 mujoco.mj_step(model, data)
