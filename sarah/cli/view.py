@@ -18,9 +18,11 @@ from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import say_next, to_open
 from sarah.cli.options import named_task, run_command, say_engine
 from sarah.cli.subjects import episodes_of, is_shipped
+from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError
 from sarah.files import check_file
 from sarah.ranges import Within
+from sarah.runs.config_files import changed_alike
 
 if TYPE_CHECKING:
     from sarah.runs.run_episodes import RunEpisode
@@ -68,11 +70,7 @@ def _view(arguments: Sequence[str]) -> None:
     choices, chosen = episodes_of(options.subject, options.which, task)
     changed = options.applied_to(chosen.spec)
     if changed != chosen.spec:
-        own = chosen.spec.config  # windows of a session have settings each, and stay as they were
-        choices = [
-            choice.of(dataclasses.replace(choice.spec, config=changed.config)) if choice.spec.config == own else choice
-            for choice in choices
-        ]
+        choices = [choice.of(_changed_as(choice.spec, chosen.spec, changed)) for choice in choices]
         chosen = chosen.of(changed)
     from sarah.simulation.engines import check_engine
 
@@ -85,6 +83,13 @@ def _view(arguments: Sequence[str]) -> None:
         _export(options.out, chosen)
     else:
         _serve(options, choices, chosen)
+
+
+def _changed_as(spec: EpisodeSpec, chosen: EpisodeSpec, changed: EpisodeSpec) -> EpisodeSpec:
+    """Specification of an episode with the changes of the chosen one. The windows of a session have settings each."""
+    if spec.config == chosen.config:
+        return dataclasses.replace(spec, config=changed.config)
+    return dataclasses.replace(spec, config=changed_alike(spec.config, chosen.config, changed.config))
 
 
 def _export(path: Path, chosen: RunEpisode) -> None:

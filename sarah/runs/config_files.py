@@ -122,6 +122,22 @@ def settings_by_key(config: Any) -> dict[str, Any]:
     return found
 
 
+def changed_alike(config: ConfigType, before: Any, after: Any) -> ConfigType:
+    """Make the changes of one configuration in another, which keeps the rest.
+
+    :param config: configuration to change, a dataclass
+    :param before: configuration of the same type, as it was
+    :param after: the same with the changes
+    """
+    values: dict[str, Any] = {}
+    for item in dataclasses.fields(after):
+        own, was, value = (getattr(each, item.name, None) for each in (config, before, after))
+        if value != was:
+            is_same_kind = dataclasses.is_dataclass(value) and type(own) is type(value)
+            values[item.name] = changed_alike(own, was, value) if is_same_kind else value
+    return dataclasses.replace(config, **values)  # type: ignore[type-var]  # a dataclass
+
+
 def _to_plain(value: Any) -> Any:
     """Convert tuples to lists, because safe YAML loaders refuse tuples, and settings to mappings."""
     if isinstance(value, Task):
