@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import get_args
 
 from experiments.conditions import LATERAL, LEARNED, SAGITTAL, Situation, simulate
-from experiments.experiment import ParallelExperiment, survival
+from experiments.maker import ParallelExperiment, survival
 from experiments.record import Row
 from sarah.episode.ending import paper_ending
 from sarah.episode.evaluation import Evaluation

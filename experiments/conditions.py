@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple, get_args
 
-from experiments.experiment import ParallelExperiment, survival
+from experiments.maker import ParallelExperiment, survival
 from experiments.record import Row
 from sarah.episode.episode import Episode
 from sarah.episode.evaluation import Evaluation

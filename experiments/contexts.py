@@ -20,7 +20,7 @@ import gymnasium
 import numpy as np
 
 from experiments.conditions import LEARNED
-from experiments.experiment import ParallelExperiment
+from experiments.maker import ParallelExperiment
 from experiments.interval import with_interval
 from experiments.record import Row
 from experiments.trainings import identity, kept

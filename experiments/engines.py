@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import get_args
 
-from experiments.experiment import ParallelExperiment, settings_of
+from experiments.maker import ParallelExperiment, settings_of
 from experiments.record import Row
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.evaluation import evaluate

@@ -1,101 +1,90 @@
-"""What every experiment is: a dataclass whose fields are its options, and which makes the rows of a result."""
+"""What every experiment is: a dataclass whose fields are its options, with cases that are computed one by one."""
 
 from __future__ import annotations
 
-import dataclasses
+import itertools
 import os
+import time
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any, Protocol
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
 
 from experiments.record import Row
 from sarah.episode.evaluation import Evaluation
-from sarah.episode.push import Push
-from sarah.episode.settings import EpisodeConfig
-from sarah.episode.tasks import TASKS
 from sarah.episode.workers import Workers
 from sarah.reports.robustness import survival_interval
 
-
-class Experiment(Protocol):
-    """Something that makes the rows of a result."""
-
-    def rows(self) -> Iterator[Row]:
-        """The rows, each as soon as it is known; all of them have the same columns."""
+EPISODE = ("sarah/control", "sarah/episode", "sarah/robot", "sarah/scenery", "sarah/simulation", "urdf")
+"""Folders that decide what an episode returns."""
+TRAINING = (*EPISODE, "agents", "sarah/envs", "sarah/recorded", "sarah/runs", "sarah/training")
+"""Folders that decide what a training learns."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class ParallelExperiment:
-    """Options of an experiment whose episodes or trainings run in worker processes.
+class Experiment(ABC):
+    """Options of an experiment.
 
     :param workers: number of worker processes on this machine; with 0, this process does the work. No row depends on it
     """
 
     workers: int = os.cpu_count() or 1
-
-
-class RowByRowExperiment(ParallelExperiment, ABC):
-    """An experiment of hours whose rows do not depend on each other: interrupted, it goes on after the last row."""
+    depends_on: ClassVar[tuple[str, ...]] = EPISODE
+    """Folders of the project that decide the rows."""
 
     @abstractmethod
-    def keys(self) -> Sequence[Row]:
-        """What tells the rows apart: the first columns of each, in order."""
+    def cases(self) -> Sequence[Row]:
+        """What tells the rows apart, in order: values of their first columns. A case may have several rows."""
 
     @abstractmethod
-    def row(self, *key: Any) -> Row:
-        """The other columns of a row, made in this process.
+    def rows(self, **case: Any) -> Iterable[Row]:
+        """The other columns of a case's rows, computed in this process. They depend on no other case.
 
-        :param key: values of its first columns
+        :param case: values of the first columns
         """
 
-    def rows(self, known: Sequence[Row] = ()) -> Iterator[Row]:
-        """A row for each key, one for each worker at a time.
+    def outcomes(self, cases: Sequence[Row]) -> Iterator[Outcome]:
+        """Outcomes of some cases, in their order, each as soon as it is known; one for each worker at a time.
 
-        :param known: the first rows, if they are there already
+        :param cases: the cases
         """
         with Workers(self.workers) as workers:
-            asked = [(key, workers.submit(self.row, *key.values())) for key in self.keys()[len(known) :]]
-            for key, job in asked:
-                yield {**key, **job.result()}
+            jobs = [workers.submit(outcome, self, case) for case in cases]
+            yield from (job.result() for job in jobs)
 
 
-@dataclass(frozen=True)
-class Maker:
-    """What makes a result.
+class Outcome(NamedTuple):
+    """Outcome of a case.
 
-    :param question: sentence that its rows answer
-    :param experiment: the experiment in its full size
-    :param quick: options that differ in a size that takes seconds, and shows only that the experiment runs
-    :param of_robot: whether its rows depend on physics, controller and robot, whose fingerprint is then kept
+    :param rows: its rows, the case's columns first
+    :param seconds: time that they took, in s
     """
 
-    question: str
-    experiment: Experiment
-    quick: Mapping[str, Any] = field(default_factory=dict)
-    of_robot: bool = True
-
-    @property
-    def quick_experiment(self) -> Experiment:
-        """The experiment in a size that takes seconds, in this process."""
-        here = {"workers": 0} if isinstance(self.experiment, ParallelExperiment) else {}
-        return dataclasses.replace(self.experiment, **here, **self.quick)  # type: ignore[type-var]
+    rows: list[Row]
+    seconds: float
 
 
-def settings_of(task: str, newtons: tuple[float, float], **shared: Any) -> EpisodeConfig:
-    """Settings of a task's episodes, with pushes if the task has some.
+def outcome(experiment: Experiment, case: Row) -> Outcome:
+    """Compute a case in this process.
 
-    :param task: name of the task
-    :param newtons: range of the pushes' force, in N
-    :param shared: settings that all tasks have
+    :param experiment: the experiment
+    :param case: the case
     """
-    if TASKS[task].has_push:
-        shared["push"] = Push(newtons=newtons)
-    return dataclasses.replace(TASKS[task].episode, **shared)
+    start = time.perf_counter()
+    rows = [{**case, **row} for row in experiment.rows(**case)]
+    return Outcome(rows, time.perf_counter() - start)
+
+
+def product(**values: Iterable[Any]) -> list[Row]:
+    """Cases for all combinations of values, the last column changing first.
+
+    :param values: values by column
+    """
+    return [dict(zip(values, combination, strict=True)) for combination in itertools.product(*values.values())]
 
 
 def survival(found: Evaluation) -> Row:
-    """Columns of a survival with its 95 % interval.
+    """Columns of a survival with its 95 % interval (Wilson).
 
     :param found: episodes
     """

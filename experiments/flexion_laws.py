@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import get_args
 
-from experiments.experiment import ParallelExperiment, survival
+from experiments.maker import ParallelExperiment, survival
 from experiments.record import Row
 from sarah.control.hip_law import LOCKED_HIPS, HipLaw
 from sarah.control.pattern_generator import PatternGenerator

@@ -13,7 +13,7 @@ import torch as th
 from stable_baselines3 import DDPG
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
-from experiments.experiment import ParallelExperiment
+from experiments.maker import ParallelExperiment
 from experiments.record import Row
 from experiments.several_actions import EVALUATION_SEED, model
 from sarah.agents import NAF

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from experiments.experiment import ParallelExperiment
+from experiments.maker import ParallelExperiment
 from experiments.held_actions import TASK
 from experiments.record import Row
 from experiments.several_actions import SeveralActions

@@ -14,7 +14,7 @@ from stable_baselines3 import DDPG
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
 from experiments.baselines import documented_noise
-from experiments.experiment import ParallelExperiment
+from experiments.maker import ParallelExperiment
 from experiments.known_tasks import TASKS, KnownTask
 from experiments.naf_variants import EXPLORATION_STD, LAYERS, VARIANTS, Watched, policy_with
 from experiments.record import Row

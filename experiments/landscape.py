@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import tyro
 
 from experiments.engines import ENGINES
-from experiments.experiment import ParallelExperiment, settings_of
+from experiments.maker import ParallelExperiment, settings_of
 from experiments.record import Row
 from sarah.episode.evaluation import evaluate
 from sarah.episode.tasks import TASKS

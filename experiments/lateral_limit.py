@@ -18,7 +18,7 @@ from itertools import pairwise, product
 from typing import NamedTuple
 
 from experiments.conditions import HIPS, LATERAL, LEARNED
-from experiments.experiment import ParallelExperiment
+from experiments.maker import ParallelExperiment
 from experiments.record import Row
 from sarah.control.constants import ControllerConstants
 from sarah.episode.episode import Episode

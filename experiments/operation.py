@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from statistics import mean
 from typing import Any
 
-from experiments.experiment import ParallelExperiment
+from experiments.maker import ParallelExperiment
 from experiments.interval import with_interval
 from experiments.record import Row
 from sarah.episode.from_mapping import from_mapping

@@ -7,9 +7,9 @@ import itertools
 from dataclasses import dataclass
 from typing import Any
 
-from experiments.experiment import RowByRowExperiment, survival
+from experiments.maker import RowByRowExperiment, survival
 from experiments.record import Row
-from experiments.trainings import TrainingExperiment
+from experiments.maker import TrainingExperiment
 from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.push import Push
 from sarah.episode.tasks import BALANCE, BalanceConfig

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from statistics import mean, stdev
 
-from experiments.experiment import ParallelExperiment
+from experiments.maker import ParallelExperiment
 from experiments.record import Row
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.parameter_sets import PARAMETER_SETS

@@ -16,9 +16,9 @@ from typing import Any
 
 import tyro
 
-from experiments.made_with import made_with, short_hash
 from experiments.record import Row
-from experiments.trainings import TrainingExperiment, identity, kept
+from experiments.maker import TrainingExperiment
+from experiments.trainings import identity, kept, short_hash
 from sarah.episode.workers import Workers
 from sarah.reports.judging import evaluations_of
 from sarah.reports.race import run_entry
@@ -75,9 +75,7 @@ class Race(TrainingExperiment):
 
     def _file(self, entry: Entry) -> Path:
         """File of a training's course, whose name tells its settings and what it was made with."""
-        physics = [made_with()["physics"][part] for part in ("settings", "mujoco")]
-        fingerprint = [physics, made_with()["controller"], made_with()["robot"]]
-        settings = short_hash([repr(entry.config), repr(entry.evaluations), fingerprint])
+        settings = short_hash([repr(entry.config), repr(entry.evaluations)])
         return self.courses / f"{self.task}-{entry.folder.name}-{settings}.json"
 
 

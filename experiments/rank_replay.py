@@ -16,7 +16,7 @@ import numpy as np
 import torch
 from gymnasium import spaces
 
-from experiments.experiment import ParallelExperiment
+from experiments.maker import ParallelExperiment
 from experiments.record import Row
 from sarah.agents import PRESETS, LocalNAF, RankReplayBuffer
 from sarah.episode.workers import Workers

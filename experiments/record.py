@@ -1,25 +1,37 @@
-"""The results on the disk: ``results/<name>.csv`` with the rows, ``results/<name>.json`` with how they were made.
-
-Reading needs nothing but the standard library, so that the documentation can be built anywhere.
-"""
+"""The results on the disk: ``results/<name>.csv``, whose first lines ``# key: value`` say how the rows were made."""
 
 from __future__ import annotations
 
 import csv
 import io
-import json
 import re
 import subprocess
 import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from sarah.errors import SarahError
+from sarah.files import replace_text
+from sarah.versions import versions
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 ROOT = Path(__file__).parent.parent
 RESULTS = ROOT / "results"
+MADE_HERE = ("results", "docs")
+"""Folders whose changes leave what an experiment computes as it is."""
+UNKNOWN = "unknown"
+"""What stands in place of a commit where there is no history."""
+HEAD = re.compile(r"# ([\w ]+): (.*)")
 Row = Mapping[str, Any]
 """Value by column; the column's name ends in its unit."""
+
+
+class ResultError(SarahError):
+    """A result that cannot be made or read."""
 
 
 @dataclass(frozen=True)
@@ -27,38 +39,42 @@ class Result:
     """A result as it stands on the disk.
 
     :param name: file name without suffix
-    :param rows: texts by column
     :param question: sentence that the rows answer
     :param command: command that made them
-    :param commit: commit of the project at that time
+    :param commit: commits of the project at that time, the oldest first; ``unknown`` where there was no history
     :param date: day, as YYYY-MM-DD
-    :param versions: versions of the packages by name
-    :param made_with: fingerprint of physics, controller and robot, see :mod:`experiments.made_with`; none if the
-        rows do not depend on them
-    :param stale: sentence that says why the rows stand here although they are not of today's project
-    :param missing: number of rows that are still to be made
+    :param minutes: time that they took, in minutes of one core; none if nobody took it
+    :param missing: number of cases that are still to be made
+    :param tree: ``dirty`` if the project had changes that no commit has
+    :param remark: sentence that a page has to say about the rows
+    :param versions: versions of Python, the project and the packages it computes with
+    :param rows: texts by column
     """
 
     name: str
-    rows: list[dict[str, str]]
     question: str
     command: str
     commit: str
     date: str
-    versions: dict[str, str]
-    made_with: dict[str, Any] | None
-    stale: str | None = None
+    minutes: float | None = None
     missing: int = 0
+    tree: str = ""
+    remark: str = ""
+    versions: str = ""
+    rows: Sequence[Mapping[str, str]] = field(default=(), repr=False)
 
     @property
-    def remark(self) -> str | None:
-        """Sentence that a page has to say about the rows, if there is one."""
-        return self.stale or (f"{self.missing} rows are still to be made." if self.missing else None)
+    def path(self) -> Path:
+        """Path of the file in the project's results."""
+        return RESULTS / f"{self.name}.csv"
 
     @property
-    def columns(self) -> list[str]:
-        """Names of the columns, in order."""
-        return list(self.rows[0])
+    def table(self) -> DataFrame:
+        """The rows, with numbers where all of a column are numbers; empty cells are no number."""
+        import pandas
+
+        text = io.StringIO("\n".join(_csv_lines(self.rows)))
+        return pandas.read_csv(text, keep_default_na=False, na_values=[""])
 
 
 def names(folder: Path = RESULTS) -> list[str]:
@@ -74,75 +90,40 @@ def read(name: str, folder: Path = RESULTS) -> Result:
 
     :param name: its name
     :param folder: folder of the files
+    :raises ResultError: if there is none, or its head is incomplete
     """
-    with (folder / f"{name}.csv").open(newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    return Result(name, rows, **json.loads((folder / f"{name}.json").read_text(encoding="utf-8")))
+    path = folder / f"{name}.csv"
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except FileNotFoundError as error:
+        raise ResultError(f"there is no {path}") from error
+    found = [match.groups() for line in lines if (match := HEAD.match(line))]
+    about: dict[str, Any] = dict(found)
+    about |= {key: kind(about[key]) for key, kind in (("minutes", float), ("missing", int)) if key in about}
+    try:
+        return Result(name, rows=list(csv.DictReader(lines[len(found) :])), **about)
+    except TypeError as error:
+        raise ResultError(f"the head of {path} has other keys than a result: {', '.join(about)}") from error
 
 
-def write(
-    name: str,
-    rows: Sequence[Row],
-    question: str,
-    command: str,
-    made_with: dict[str, Any] | None,
-    folder: Path = RESULTS,
-    missing: int = 0,
-    earlier: str = "",
-) -> None:
+def write(result: Result, folder: Path = RESULTS) -> None:
     """Write a result in place of the one that was there.
 
-    :param name: its name
-    :param rows: values by column, the same columns in every row
-    :param question: sentence that they answer
-    :param command: command that made them
-    :param made_with: fingerprint from :func:`experiments.made_with.made_with`, or none
-    :param folder: folder of the files
-    :param missing: number of rows that are still to be made
-    :param earlier: commits that made the first rows, if others did
+    :param result: the result
+    :param folder: folder of the file
     """
-    from sarah.versions import versions
+    kept = {key: value for key, value in vars(result).items() if key not in ("name", "rows")}
+    head = [f"# {key}: {cell(value)}" for key, value in kept.items() if value or key == "commit"]
+    replace_text(folder / f"{result.name}.csv", "\n".join([*head, *_csv_lines(result.rows), ""]))
 
-    commits = dict.fromkeys([*earlier.split(), commit()])
+
+def _csv_lines(rows: Sequence[Row]) -> Iterator[str]:
     text = io.StringIO(newline="")
-    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows({column: cell(value) for column, value in row.items()} for row in rows)
-    (folder / f"{name}.csv").write_text(text.getvalue(), encoding="utf-8")
-    about = {
-        "question": question,
-        "command": command,
-        "commit": " ".join(commits),
-        "date": time.strftime("%Y-%m-%d"),
-        "versions": versions(),
-        "made_with": made_with,
-    }
-    if missing:
-        about["missing"] = missing
-    write_json(folder / f"{name}.json", about)
-
-
-def mark_stale(name: str, reason: str, folder: Path = RESULTS) -> None:
-    """Have the pages say that a result is not of today's project.
-
-    :param name: its name
-    :param reason: one sentence, which the pages show
-    :param folder: folder of the files
-    """
-    path = folder / f"{name}.json"
-    write_json(path, json.loads(path.read_text(encoding="utf-8")) | {"stale": reason})
-
-
-def commit() -> str:
-    """Short hash of the project's commit, with a plus sign if files other than results have been changed since."""
-    git = ["git", "-C", str(ROOT)]
-    head = subprocess.run([*git, "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
-    changed = subprocess.run(
-        [*git, "status", "--porcelain", "--untracked-files=no", "--", ":(exclude)results"],
-        capture_output=True,
-        text=True,
-    )
-    return head.stdout.strip() + "+" * bool(changed.stdout.strip()) or "unknown"
+    if rows:
+        writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows({column: cell(value) for column, value in row.items()} for row in rows)
+    yield from text.getvalue().splitlines()
 
 
 def cell(value: Any) -> str:
@@ -155,12 +136,37 @@ def cell(value: Any) -> str:
     return f"{value:.5g}" if isinstance(value, float) else str(value)
 
 
-def write_json(path: Path, about: Mapping[str, Any]) -> None:
-    """Write a JSON file, with each list of numbers on one line.
+def today() -> str:
+    """Day, as YYYY-MM-DD."""
+    return time.strftime("%Y-%m-%d")
 
-    :param path: the file
-    :param about: its content
+
+def versions_here() -> str:
+    """Versions of Python, the project and the packages that it computes with, in one line."""
+    return ", ".join(f"{name} {version}" for name, version in versions().items())
+
+
+def git(*arguments: str) -> str | None:
+    """What git prints of the project; none if there is no git, or no history.
+
+    :param arguments: arguments of the command
     """
-    text = json.dumps(about, indent=2, ensure_ascii=False)
-    text = re.sub(r"\[[^\[\]]*\]", lambda numbers: " ".join(numbers[0].split()), text)  # a list on one line
-    path.write_text(f"{text}\n", encoding="utf-8")
+    try:
+        done = subprocess.run(["git", "-C", str(ROOT), *arguments], capture_output=True, text=True)
+    except OSError:
+        return None
+    return done.stdout.strip() if done.returncode == 0 else None
+
+
+def commit() -> str:
+    """Short hash of the project's commit, or ``unknown`` in an archive that was unpacked."""
+    inside = git("rev-parse", "--show-toplevel")
+    is_own = inside is not None and Path(inside).resolve() == ROOT.resolve()
+    return (git("rev-parse", "--short", "HEAD") or UNKNOWN) if is_own else UNKNOWN
+
+
+def changed_files() -> list[str]:
+    """Files with changes that no commit has, but for those that leave results as they are."""
+    excluded = [f":(exclude){folder}" for folder in MADE_HERE]
+    listed = git("status", "--porcelain", "--untracked-files=no", "--", ".", *excluded) or ""
+    return [line.split(maxsplit=1)[1] for line in listed.splitlines()]

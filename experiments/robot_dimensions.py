@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from statistics import mean
 
-from experiments.experiment import ParallelExperiment
+from experiments.maker import ParallelExperiment
 from experiments.record import Row
 from sarah.control.constants import ControllerConstants
 from sarah.episode.push import Push

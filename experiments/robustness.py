@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from experiments.record import Row
-from experiments.trainings import TrainingExperiment
+from experiments.maker import TrainingExperiment
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.workers import Workers
 from sarah.reports.robustness import FORCES, push_many, robustness_table, survival_interval

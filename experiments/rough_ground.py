@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple, get_args
 
 from experiments.conditions import HIPS, LEARNED
-from experiments.experiment import ParallelExperiment, survival
+from experiments.maker import ParallelExperiment, survival
 from experiments.record import Row
 from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.push import Push

@@ -16,7 +16,7 @@ import numpy as np
 import torch as th
 
 from experiments.baselines import NOISE
-from experiments.experiment import ParallelExperiment
+from experiments.maker import ParallelExperiment
 from experiments.known_tasks import TASKS
 from experiments.known_truth import DDPG_NAME, FRESH, SATURATED, agent, score
 from experiments.naf_variants import EXPLORATION_STD

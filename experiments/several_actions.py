@@ -28,7 +28,7 @@ from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from torch.nn.utils import parameters_to_vector
 
 from experiments.baselines import NOISE, documented_noise
-from experiments.experiment import ParallelExperiment
+from experiments.maker import ParallelExperiment
 from experiments.naf_variants import Watched
 from experiments.record import Row
 from sarah.episode.workers import Workers

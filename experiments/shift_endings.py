@@ -10,7 +10,7 @@ from itertools import product
 from typing import Any
 
 from experiments.engines import ENGINES
-from experiments.experiment import ParallelExperiment
+from experiments.maker import ParallelExperiment
 from experiments.record import Row
 from sarah.control.pattern_generator import PatternGenerator, Phase, PhaseChange
 from sarah.episode.episode import Episode

@@ -6,6 +6,8 @@ rows. A set that stays keeps its origin: the command and the commit that first s
 
 from __future__ import annotations
 
+import json
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,6 +27,7 @@ from sarah.episode.spec import FIRST_EVALUATION_SEED
 from sarah.episode.tasks import BalanceConfig
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.episode.workers import Workers
+from sarah.files import replace_text
 from sarah.reports.robustness import PUSHED_BETWEEN, SECONDS_AFTER
 
 CONDITIONS = {
@@ -92,7 +95,8 @@ def ship(result: record.Result, path: Path = FILE) -> None:
     :param result: the result ``shipped_parameters``
     :param path: the file
     """
-    record.write_json(path, sets_of(result))
+    text = json.dumps(sets_of(result), indent=2, ensure_ascii=False)
+    replace_text(path, re.sub(r"\[[^\[\]]*\]", lambda numbers: " ".join(numbers[0].split()), text) + "\n")
 
 
 def sets_of(result: record.Result) -> dict[str, Any]:
@@ -116,7 +120,8 @@ def _origin(name: str, chosen: Mapping[str, Any], result: record.Result) -> Any:
     before = shipped()[name]
     if all(before[key] == value for key, value in chosen.items()):
         return before["origin"]
-    versions = {name: result.versions[name] for name in VERSIONS}
+    known = dict(word.split(maxsplit=1) for word in result.versions.split(", "))
+    versions = {name: known[name] for name in VERSIONS}
     return {"command": result.command, "commit": result.commit, "date": result.date, "versions": versions}
 
 

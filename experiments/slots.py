@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from experiments.record import Row
-from experiments.trainings import TrainingExperiment
+from experiments.maker import TrainingExperiment
 from sarah.episode.workers import Workers
 from sarah.runs.config import TrainingConfig
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from statistics import mean, median
 
 from experiments.record import Row
-from experiments.trainings import TrainingExperiment
+from experiments.maker import TrainingExperiment
 from sarah.episode.evaluation import evaluate
 from sarah.episode.workers import Workers
 from sarah.runs.agent_settings import NAFSettings

@@ -20,7 +20,7 @@ from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
 from experiments.baselines import documented_noise
-from experiments.experiment import ParallelExperiment
+from experiments.maker import ParallelExperiment
 from experiments.naf_variants import NoPull, policy_with
 from experiments.record import Row
 from sarah.agents import NAF

@@ -13,8 +13,7 @@ from experiments.conditions import Conditions
 from experiments.contexts import Contexts
 from experiments.endurance.table import ENDURANCE
 from experiments.engines import Engines
-from experiments.experiment import Maker
-from experiments.first_training import FirstTraining
+from experiments.maker import Maker
 from experiments.flexion_laws import FlexionLaws
 from experiments.goal_tasks import GoalTasks
 from experiments.held_actions import HeldActions
@@ -53,11 +52,6 @@ BEST_KNOWN = {**BALANCED, "judging": 3, "candidates": 4}
 
 TABLE: dict[str, Maker] = {
     # What trainings learn.
-    "first_training": Maker(
-        "Does the robot learn to step, and where do P1 to P5 settle?",
-        FirstTraining(),
-        {**TRAINED, "seeds": 1, "episodes": 2, "reference_episodes": 1},
-    ),
     "other_sizes": Maker(
         "Do robots of other sizes learn by the same commands?",
         OtherSizes(),

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import sarah
-from experiments.experiment import ParallelExperiment
-from experiments.made_with import short_hash
+from experiments.experiment import TRAINING, Experiment
 from sarah.cli.training_defaults import default_training
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS
@@ -36,13 +36,14 @@ EPISODES: dict[str, EpisodeConfig] = {name: default_training(task).episode for n
 
 
 @dataclass(frozen=True, kw_only=True)
-class TrainingExperiment(ParallelExperiment):
+class TrainingExperiment(Experiment):
     """Options of an experiment that takes what trainings have learned.
 
     :param runs: folder that keeps the trainings; one that is there is not run again
     :param time_limit: time limit of the trainings' episodes, in s; by default 30 s, and 10 s with pushes
     """
 
+    depends_on: ClassVar[tuple[str, ...]] = TRAINING
     runs: Path = Path("runs/experiments")
     time_limit: float | None = None
 
@@ -80,6 +81,14 @@ def kept(file: Path, make: Callable[..., Any], *arguments: Any) -> Any:
         file.parent.mkdir(parents=True, exist_ok=True)
         replace_text(file, json.dumps(make(*arguments)))
     return json.loads(file.read_text(encoding="utf-8"))
+
+
+def short_hash(values: Any) -> str:
+    """Twelve hexadecimal digits.
+
+    :param values: numbers, texts, and lists of these
+    """
+    return hashlib.sha256(json.dumps(values).encode()).hexdigest()[:12]
 
 
 def identity(settings: object, packages: Sequence[str] = (".",)) -> str:

@@ -10,7 +10,7 @@ import tyro
 
 from experiments.engines import ENGINES
 from experiments.record import Row
-from experiments.trainings import TrainingExperiment
+from experiments.maker import TrainingExperiment
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BalanceConfig
 from sarah.episode.workers import Workers

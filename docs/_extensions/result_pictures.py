@@ -31,19 +31,6 @@ from experiments import record
 from sarah.pictures.style import COLUMN_WIDTH, STYLE
 
 
-def first_training(rows: Rows) -> Figure:
-    """Where P1 to P5 settled, and the scores."""
-    names, learned = ["P1", "P2", "P3", "P4", "P5"], chosen(rows, "run!=paper")
-    (paper,) = chosen(rows, "run=paper")
-    figure, (left, right) = panels(2, 0.35, width_ratios=(3, 1))
-    for axis, columns in ((left, names), (right, ["score"])):
-        values = {column: numbers(learned, column) for column in columns}
-        draw_strips(axis, values, {column: float(paper[column]) for column in columns}, "the paper")
-    right.set_ylim(0.0, 1.0)
-    legend(figure, left)
-    return figure
-
-
 def second_training(rows: Rows) -> Figure:
     """Where V1 to V4 settled, and survival."""
     learned = chosen(rows, "run!=V = 0")
@@ -299,7 +286,6 @@ def long_training(rows: Rows) -> Figure:
 
 
 PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
-    "first_training": (("first_training",), first_training),
     "second_training": (("second_training",), second_training),
     "race_stepping": (("race_stepping",), race),
     "race_balance": (("race_balance",), race),

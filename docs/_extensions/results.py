@@ -56,8 +56,7 @@ class ResultDirective(SphinxDirective):
         """Read a result; the page is built anew when its files change."""
         if name not in record.names():
             raise self.error(f"results/{name}.csv does not exist")
-        for suffix in ("csv", "json"):
-            self.env.note_dependency(str(record.RESULTS / f"{name}.{suffix}"))
+        self.env.note_dependency(str(record.RESULTS / f"{name}.csv"))
         return record.read(name)
 
     def banner(self, *results: record.Result) -> list[nodes.Node]:
@@ -71,7 +70,7 @@ class ResultDirective(SphinxDirective):
         for result in stale:
             text += nodes.literal("", f"make results NAME={result.name}")
             text += nodes.Text("." if result is stale[-1] else ", ")
-        title = nodes.title("", "Not of today's project" if any(result.stale for result in stale) else "Not complete")
+        title = nodes.title("", "Not of today's project" if any(not result.missing for result in stale) else "Not complete")
         return [nodes.admonition("", title, text, classes=["warning"])]
 
     def source(self, result: record.Result) -> list[nodes.Node]:
@@ -180,8 +179,7 @@ class FigureRole(SphinxRole):
     def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
         """The figure as text."""
         for name in re.findall(r"^\w+ (\w+)", self.text):
-            for suffix in ("csv", "json"):
-                self.env.note_dependency(str(record.RESULTS / f"{name}.{suffix}"))
+            self.env.note_dependency(str(record.RESULTS / f"{name}.csv"))
         try:
             return [nodes.Text(figure(self.text))], []
         except (OSError, ValueError) as problem:

@@ -9,7 +9,7 @@ from experiments.benchmarks.terrain_speed import TerrainSpeed
 from experiments.benchmarks.throughput import Throughput
 from experiments.benchmarks.updates import Updates
 from experiments.benchmarks.viewer import Viewer
-from experiments.experiment import Maker
+from experiments.maker import Maker
 
 BENCHMARKS: dict[str, Maker] = {
     "physics_speed": Maker(

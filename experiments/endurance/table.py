@@ -8,7 +8,7 @@ from experiments.endurance.long_run import LongProcess, LongTraining
 from experiments.endurance.mutants import Mutants
 from experiments.endurance.protections import Protections
 from experiments.endurance.resume import Resume
-from experiments.experiment import Maker
+from experiments.maker import Maker
 
 ENDURANCE: dict[str, Maker] = {
     "kills": Maker(

@@ -11,7 +11,7 @@ from laboratory import need
 from experiments import record
 from experiments.__main__ import main, makes_the_result, mark_stale
 from experiments.endurance.protections import PROTECTIONS, Protection
-from experiments.experiment import Maker, RowByRowExperiment
+from experiments.maker import Maker, RowByRowExperiment
 from experiments.made_with import made_with
 from experiments.table import TABLE
 from sarah.errors import ConfigurationError

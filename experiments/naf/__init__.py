@@ -1,0 +1,1 @@
+"""Experiments about NAF: on tasks of others, and against other algorithms."""

@@ -1,0 +1,138 @@
+"""Generated parts of the documentation: what stands between two comments of a page is written by a function.
+
+``show("first_training.answer")`` prints what the function ``answer`` of that experiment's module makes of its rows. A
+function whose name begins with ``figure`` draws a picture instead, which is shown.
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+import sys
+import textwrap
+from collections.abc import Iterator
+from pathlib import Path
+
+from cogapp import Cog
+
+from experiments import record
+from experiments.age import made_at
+from experiments.found import PACKAGES, Found, Package, find, paths_of
+from experiments.record import ROOT, Result, cell
+from sarah.errors import ConfigurationError, unknown_name
+
+PICTURES = ROOT / "docs" / "results"
+"""Folder of the pictures."""
+WIDTH = 120
+"""Largest length of a line of text."""
+PROLOGUE = "from experiments.pages import show"
+
+
+def show(part: str) -> None:
+    """Print a part of a page.
+
+    :param part: name of an experiment and of a function of its module, joined by a dot
+    :raises ConfigurationError: if there is no such experiment or function
+    """
+    name, _, function = part.partition(".")
+    found = find(name)
+    if function not in vars(found.module):
+        raise ConfigurationError(unknown_name(f"part of {name}", function, vars(found.module)))
+    result = record.read(name)
+    if function.startswith("figure"):
+        text = f"![{found.question}]({picture(name, function).name})"
+    else:
+        text = filled(getattr(found.module, function)(result.table))
+        if "\n|" in text:
+            text = f"{text}\n\n{source(found, result)}"
+    print(f"\n{text}\n")
+
+
+def filled(text: str) -> str:
+    """Text whose paragraphs are broken into lines; tables stay.
+
+    :param text: Markdown
+    """
+    return "\n\n".join(block if block.startswith("|") else _broken(block) for block in text.split("\n\n"))
+
+
+def _broken(paragraph: str) -> str:
+    whole = re.sub("`[^`]+`", lambda code: code[0].replace(" ", "\0"), paragraph)  # commands stay on their line
+    return textwrap.fill(whole, WIDTH, break_long_words=False, break_on_hyphens=False).replace("\0", " ")
+
+
+def source(found: Found, result: Result) -> str:
+    """The line below a table: how to make it or one of its rows again, where and when it was made, and its data.
+
+    :param found: the experiment
+    :param result: its result
+    """
+    command = f"{package_of(found.name).command} {found.name}"
+    cases = found.full.cases()
+    varying = [key for key, value in cases[0].items() if any(case[key] != value for case in cases)]
+    only = shlex.join(word for key in varying for word in ("--only", f"{key}={cell(cases[-1][key])}"))
+    lines = [
+        f"{result.remark} " * bool(result.remark) + f"Made at {made_at(result)} by `{command}`;"
+        f" one of its cases by `{command} {only}`. [Data](../../results/{result.name}.csv)."
+    ]
+    if result.missing:
+        lines.insert(0, f"{result.missing} cases are still to be made.")
+    return filled(" ".join(lines))
+
+
+def package_of(name: str) -> Package:
+    """Package of an experiment.
+
+    :param name: name of the experiment
+    """
+    return next(package for package in PACKAGES if name in paths_of(package))
+
+
+def picture(name: str, function: str) -> Path:
+    """File of a picture.
+
+    :param name: name of the experiment
+    :param function: name of the function that draws it
+    """
+    return PICTURES / f"{name}{function.removeprefix('figure')}.svg"
+
+
+def pictures() -> Iterator[Path]:
+    """Draw the pictures of all results."""
+    import matplotlib.pyplot as plt
+
+    from sarah.pictures.style import STYLE
+
+    for name in paths_of():
+        if name not in record.names():
+            continue
+        module, rows = find(name).module, record.read(name).table
+        for function in (one for one in vars(module) if one.startswith("figure")):
+            path = picture(name, function)
+            with plt.rc_context({**STYLE, "svg.hashsalt": name}):
+                figure = getattr(module, function)(rows)
+                figure.savefig(path, metadata={"Date": None})
+                plt.close(figure)
+            yield path
+
+
+def pages() -> list[Path]:
+    """All pages that have generated parts."""
+    files = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")]
+    return sorted(file for file in files if "[[[cog" in file.read_text(encoding="utf-8"))
+
+
+def write(*options: str) -> int:
+    """Rewrite the generated parts of all pages.
+
+    :param options: options of cog; ``--check`` changes nothing and says what would change
+    :return: 0, or cog's number of a mistake
+    """
+    # -P: a function prints its part
+    return int(Cog().main(["cog", "-r", "-P", "-p", PROLOGUE, *options, *map(str, pages())]))
+
+
+if __name__ == "__main__":
+    for drawn in pictures():
+        print(drawn.relative_to(ROOT))
+    sys.exit(write())

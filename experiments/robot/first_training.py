@@ -1,0 +1,122 @@
+"""Does the robot learn to step, and where do P1 to P5 settle?
+
+First Trainings by NAF, on unseen seeds and at the reference physics, beside the paper's own parameters.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from matplotlib.figure import Figure
+from pandas import DataFrame
+
+from experiments.record import Row
+from experiments.shapes import legend, panels, strips
+from experiments.tables import shown, span, table
+from experiments.trainings import TrainingExperiment
+from sarah.control.parameters import PAPER_STEPPING, STEPPING_PARAMETERS
+from sarah.episode.evaluation import evaluate
+from sarah.runs.config import TrainingConfig
+from sarah.simulation.physics import PHYSICS
+
+NAMES = [parameter.name for parameter in STEPPING_PARAMETERS]
+PAPER = "paper"
+FORMATS = {
+    **dict.fromkeys(NAMES, ".2f"),
+    **dict.fromkeys(("score", "reference_score"), ".3f"),
+    **dict.fromkeys(("survival", "kept", "shifts_by_sensors", "lifts_by_sensors"), ".0%"),
+    "steps_per_second": ".2f",
+    "sole_clearance_mm": ".0f",
+}
+
+
+@dataclass(frozen=True)
+class FirstTraining(TrainingExperiment):
+    """First Trainings by NAF, judged beside the paper's P1 to P5.
+
+    :param seeds: number of trainings
+    :param budget: number of episodes of a training
+    :param episodes: number of unseen seeds at the standard physics
+    :param reference_episodes: number of unseen seeds at the reference physics
+    """
+
+    seeds: int = 10
+    budget: int = 100
+    episodes: int = 12
+    reference_episodes: int = 4
+
+    def cases(self) -> list[Row]:
+        """The paper's parameters, and each training."""
+        return [{"run": PAPER}, *({"run": f"naf seed {seed}"} for seed in range(self.seeds))]
+
+    def rows(self, run: str) -> Iterator[Row]:
+        """The parameters of a run, and what the robot does with them.
+
+        :param run: the paper, or a training with its seed
+        """
+        config = self.episode("stepping")
+        parameters = PAPER_STEPPING
+        if run != PAPER:
+            seed = int(run.split()[-1])
+            training = TrainingConfig("stepping", episodes=self.budget, seed=seed, episode=config)
+            parameters = self.trained(training).parameters()
+        at_reference = dataclasses.replace(config, physics=PHYSICS["reference"])
+        found = evaluate("stepping", parameters, config, range(self.episodes))
+        reference = evaluate("stepping", parameters, at_reference, range(self.reference_episodes))
+        score, reference_score = found.median("score"), reference.median("score")
+        yield {
+            **dict(zip(NAMES, parameters, strict=True)),
+            "score": score,
+            "steps_per_second": found.mean("steps_per_second"),
+            "survival": found.survival_rate,
+            "shifts_by_sensors": found.mean("shifts_by_sensors"),
+            "lifts_by_sensors": found.mean("lifts_by_sensors"),
+            "sole_clearance_mm": 1000.0 * found.mean("sole_clearance"),
+            "reference_score": reference_score,
+            "kept": reference_score / score if score else None,
+        }
+
+
+FULL = FirstTraining()
+QUICK = FirstTraining(time_limit=2.0, budget=5, seeds=1, episodes=2, reference_episodes=1)
+
+
+def learned(rows: DataFrame) -> DataFrame:
+    """Rows of the trainings."""
+    return rows[rows.run != PAPER]
+
+
+def answer(rows: DataFrame) -> str:
+    """Whether the robot learns to step."""
+    runs = learned(rows)
+    never_falls = int((runs.survival == 1.0).sum())
+    return (
+        f"Of {len(runs)} trainings of {FULL.budget} episodes {never_falls} end with a robot that steps in place and "
+        f"never falls. Their median score is {shown(runs.score.median(), '.2f')}, and they step "
+        f"{span(runs.steps_per_second, '.1f')} times a second."
+    )
+
+
+def figure(rows: DataFrame) -> Figure:
+    """Where P1 to P5 settle, and the scores."""
+    runs, (paper,) = learned(rows), rows[rows.run == PAPER].to_dict("records")
+    drawn, (left, right) = panels(2, 0.35, width_ratios=(3, 1))
+    for axis, columns in ((left, NAMES), (right, ["score"])):
+        strips(axis, {name: runs[name] for name in columns}, {name: paper[name] for name in columns}, "the paper")
+    right.set_ylim(0.0, 1.0)
+    legend(drawn, left)
+    return drawn
+
+
+def settled(rows: DataFrame) -> str:
+    """What the trainings recommend."""
+    columns = ["run", *NAMES, "score", "survival", "reference_score", "kept"]
+    return table(rows, columns, FORMATS, "First Trainings by NAF and the paper's own parameters, on 12 unseen seeds.")
+
+
+def gait(rows: DataFrame) -> str:
+    """How the robot steps."""
+    columns = ["run", "steps_per_second", "shifts_by_sensors", "lifts_by_sensors", "sole_clearance_mm"]
+    return table(rows, columns, FORMATS, "How the robot steps in the same episodes.")

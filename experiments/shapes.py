@@ -1,0 +1,128 @@
+"""Shapes that pictures of results share: lines, strips of dots, dots with intervals, one column against another."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from typing import Any
+
+import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from pandas import DataFrame, Series
+
+from experiments.tables import heading, unique
+from sarah.pictures.style import COLUMN_WIDTH
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+"""Told apart by the colour-blind (Okabe and Ito)."""
+WIDTH = 2 * COLUMN_WIDTH
+LEGEND_CHARACTERS = 120
+"""As many stand side by side in a legend."""
+
+
+def groups(rows: DataFrame, *columns: str) -> dict[Hashable, DataFrame]:
+    """Rows by the values of some columns, in the order in which these come first.
+
+    :param rows: of a result
+    :param columns: names of the columns
+    """
+    return dict(tuple(rows.groupby(columns[0] if len(columns) == 1 else list(columns), sort=False)))
+
+
+def lines(axis: Axes, rows: DataFrame, x: str, y: str, label: str, of_figure: DataFrame | None = None) -> None:
+    """A line for each group, with its interval if there is one.
+
+    :param axis: to draw on
+    :param rows: of a result
+    :param x: column
+    :param y: column
+    :param label: column that names the groups
+    :param of_figure: rows of all panels, by which a group has the same colour in each; those of the panel by default
+    """
+    colours = dict(zip(unique(rows if of_figure is None else of_figure, [label]), COLOURS, strict=False))
+    for name, group in groups(rows, label).items():
+        axis.plot(group[x], group[y], ".-", color=colours[name], linewidth=1.0, label=str(name))
+        if f"{y}_low" in group:
+            ends = group[f"{y}_low"], group[f"{y}_high"]
+            axis.fill_between(group[x], *ends, color=colours[name], alpha=0.15, linewidth=0)
+    axis.set(xlabel=heading(x), ylabel=heading(y))
+
+
+def strips(
+    axis: Axes, columns: Mapping[str, Series[Any]], marks: Mapping[str, float] | None = None, mark: str = ""
+) -> None:
+    """Every value as a dot, column beside column, and a value to compare with as a line.
+
+    :param axis: to draw on
+    :param columns: values by heading
+    :param marks: values to compare with, by heading
+    :param mark: what these are
+    """
+    for index, (name, values) in enumerate(columns.items()):
+        axis.plot([index] * len(values), values, "o", color=COLOURS[0], alpha=0.5, markersize=4, markeredgewidth=0)
+        if marks and name in marks:
+            line: dict[str, Any] = {"color": COLOURS[1], "linewidth": 1.5}
+            axis.plot([index - 0.3, index + 0.3], [marks[name]] * 2, label=mark if index == 0 else None, **line)
+    axis.set_xticks(range(len(columns)), list(columns))
+    axis.set_xlim(-0.6, len(columns) - 0.4)
+    axis.grid(visible=False, axis="x")
+
+
+def intervals(
+    axis: Axes, labels: Sequence[str], values: Series[Any], low: Series[Any], high: Series[Any], **style: Any
+) -> None:
+    """A dot with its interval for each label, from top to bottom.
+
+    :param axis: to draw on
+    :param labels: of the rows
+    :param values: of the dots
+    :param low: lower ends
+    :param high: upper ends
+    :param style: offset of the heights, colour and label of the dots
+    """
+    offset, colour = style.pop("offset", 0.0), style.pop("color", COLOURS[0])
+    heights = [height - offset for height in range(len(labels), 0, -1)]
+    axis.hlines(heights, low, high, color=colour, linewidth=1.0)
+    axis.plot(values, heights, "o", color=colour, markersize=4, **style)
+    axis.set_yticks(range(len(labels), 0, -1), labels)
+    axis.grid(visible=False, axis="y")
+
+
+def against(axis: Axes, rows: DataFrame, x: str, y: str, label: str) -> None:
+    """One column against another, a colour for each group; equal values lie on the grey line.
+
+    :param axis: to draw on
+    :param rows: of results
+    :param x: column
+    :param y: column
+    :param label: column that names the groups
+    """
+    axis.axline((0.0, 0.0), slope=1.0, color="grey", linewidth=0.8)
+    for colour, (name, group) in zip(COLOURS, groups(rows, label).items(), strict=False):
+        axis.plot(group[x], group[y], "o", color=colour, markersize=4, alpha=0.7, label=str(name))
+    axis.set(xlabel=heading(x), ylabel=heading(y), aspect="equal")
+
+
+def panels(count: int, height: float = 0.45, **settings: Any) -> tuple[Figure, list[Axes]]:
+    """Axes side by side, as wide as a page.
+
+    :param count: how many
+    :param height: height over width of the whole
+    :param settings: of :func:`matplotlib.pyplot.subplots`
+    """
+    if ratios := settings.pop("width_ratios", None):
+        settings["gridspec_kw"] = {"width_ratios": ratios}
+    size = (WIDTH, height * WIDTH)
+    figure, axes = plt.subplots(1, count, squeeze=False, figsize=size, layout="constrained", **settings)
+    return figure, list(axes[0])
+
+
+def legend(figure: Figure, axis: Axes) -> None:
+    """One legend above everything.
+
+    :param figure: of the axis
+    :param axis: whose lines are named
+    """
+    handles, labels = axis.get_legend_handles_labels()
+    columns = LEGEND_CHARACTERS // (max(map(len, labels)) + 6)
+    figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), columns))
