@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,7 +13,6 @@ from experiments.trainings import identity
 from sarah.control.parameters import Parameters
 from sarah.episode.evaluation import evaluate
 from sarah.episode.tasks import BALANCE, BalanceConfig
-from sarah.episode.workers import Executor
 from sarah.files import replace_text
 
 EPISODES_CODE = ("control", "episode", "robot", "scenery", "simulation", "urdf")
@@ -29,15 +28,13 @@ class Condition:
     :param name: name of the condition, for people
     :param config: settings of the episodes
     :param first_seed: seed of the first episode; the next ones follow
+    :param episodes: number of episodes
     """
 
     name: str
     config: BalanceConfig
     first_seed: int
-
-
-Asked = Sequence[tuple[Condition, int]]
-"""Conditions, each with its number of episodes."""
+    episodes: int
 
 
 @dataclass(frozen=True)
@@ -49,52 +46,32 @@ class Judge:
 
     folder: Path
 
-    def scores(self, parameters: Parameters, asked: Asked) -> np.ndarray:
+    def scores(self, parameters: Parameters, asked: Sequence[Condition]) -> np.ndarray:
         """Scores of all episodes, one condition after the other.
 
         :param parameters: values of V1 to V4
-        :param asked: conditions with their numbers of episodes
+        :param asked: conditions
         """
-        return np.concatenate([self.outcomes(parameters, *one)["score"] for one in asked])
+        return np.concatenate([self.outcomes(parameters, condition)["score"] for condition in asked])
 
-    def survival(self, parameters: Parameters, asked: Asked) -> np.ndarray:
-        """Ones for the episodes that the robot survived, zeros for the others.
-
-        :param parameters: values of V1 to V4
-        :param asked: conditions with their numbers of episodes
-        """
-        return np.concatenate([self.outcomes(parameters, *one)["survived"] for one in asked])
-
-    def simulate(self, sets: Iterable[Parameters], asked: Asked, workers: Executor) -> None:
-        """Simulate what is missing, a set and condition for each worker at a time.
-
-        :param sets: sets of V1 to V4
-        :param asked: conditions with their numbers of episodes
-        :param workers: who simulates
-        """
-        jobs = [workers.submit(self.outcomes, one, *condition) for one in dict.fromkeys(sets) for condition in asked]
-        for job in jobs:
-            job.result()
-
-    def outcomes(self, parameters: Parameters, condition: Condition, episodes: int) -> dict[str, list[float]]:
-        """Score of every episode, and whether the robot survived; what is missing is simulated in this process.
+    def outcomes(self, parameters: Parameters, condition: Condition) -> dict[str, list[float]]:
+        """Score of every episode, and 1 if the robot survived it; what is missing is simulated in this process.
 
         :param parameters: values of V1 to V4
         :param condition: condition that the set meets
-        :param episodes: number of episodes
         """
         file = self._file(parameters, condition)
         known: dict[str, list[float]] = {"score": [], "survived": []}
         if file.exists():
             known = json.loads(file.read_text(encoding="utf-8"))
-        while (count := len(known["score"])) < episodes:
-            first, next_count = condition.first_seed + count, min(KEPT_TOGETHER, episodes - count)
+        while (count := len(known["score"])) < condition.episodes:
+            first, next_count = condition.first_seed + count, min(KEPT_TOGETHER, condition.episodes - count)
             found = evaluate(BALANCE, parameters, condition.config, range(first, first + next_count))
             known["score"] += [result.score for result in found.results]
             known["survived"] += [float(result.survived) for result in found.results]
             file.parent.mkdir(parents=True, exist_ok=True)
             replace_text(file, json.dumps(known))
-        return {name: values[:episodes] for name, values in known.items()}
+        return {name: values[: condition.episodes] for name, values in known.items()}
 
     def _file(self, parameters: Parameters, condition: Condition) -> Path:
         """File of a set under a condition, in a folder whose name tells both the condition and the code."""

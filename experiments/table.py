@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from experiments.balance_trainings import BalanceTrainings
 from experiments.benchmarks.table import BENCHMARKS
 from experiments.box_limit import BoxLimit
-from experiments.ceiling import Ceiling
 from experiments.clock import Clock
 from experiments.conditions import Conditions
 from experiments.contexts import Contexts
@@ -32,12 +30,9 @@ from experiments.robot_dimensions import RobotDimensions
 from experiments.robustness import Robustness
 from experiments.rough_ground import RoughGround
 from experiments.scaled_actions import ScaledActions
-from experiments.second_training import SecondTraining, SecondTrainingSummary
 from experiments.sensor_faults import SensorFaults
 from experiments.several_actions import SeveralActions
 from experiments.shift_endings import ShiftEndings
-from experiments.shipped_parameters import ShippedParameters
-from experiments.shipping_rule import Round, Shipping
 from experiments.slots import SlotsSchedule
 from experiments.slots_cost import SlotsCost
 from experiments.standard_tasks import NAF_VARIANTS, StandardTask
@@ -47,8 +42,6 @@ from experiments.transfer import TransferBetweenEngines
 SHORT = {"time_limit": 2.0}
 TRAINED = {**SHORT, "budget": 5}
 RACED = {**TRAINED, "seeds": 1, "algorithms": ("cma-es",), "courses": Path("build/experiments/race")}
-BALANCED = {**TRAINED, "engines": ("mujoco",), "seeds": 1}
-BEST_KNOWN = {**BALANCED, "judging": 3, "candidates": 4}
 
 TABLE: dict[str, Maker] = {
     # What trainings learn.
@@ -63,36 +56,6 @@ TABLE: dict[str, Maker] = {
             "budgets": (5, 5),
             "episodes": 1,
         },
-    ),
-    "balance_trainings": Maker(
-        "Which V1 to V4 does each Second Training recommend, and which does its network say?",
-        BalanceTrainings(),
-        BALANCED,
-    ),
-    "second_training": Maker(
-        "Does the robot learn to come back after a push, and where do V1 to V4 settle?",
-        SecondTraining(),
-        {**BEST_KNOWN, "surviving": 1},
-    ),
-    "second_training_summary": Maker(
-        "How close do Second Trainings come to the best known V1 to V4?",
-        SecondTrainingSummary(),
-        {**BEST_KNOWN, "surviving": 1},
-    ),
-    "ceiling": Maker(
-        "How much better than the shipped V1 to V4 could be?",
-        Ceiling(),
-        BEST_KNOWN,
-    ),
-    "shipping": Maker(
-        "Which V1 to V4 does the shipping rule choose, and why?",
-        Shipping(),
-        {**BALANCED, "rounds": (Round(None, 3, 1),)},
-    ),
-    "shipped_parameters": Maker(
-        "Which parameters does the package ship, and how well do they do?",
-        ShippedParameters(),
-        {**BALANCED, "rounds": (Round(None, 3),), "episodes": 1},
     ),
     "robustness": Maker(
         "How hard a push does the robot come back from?",

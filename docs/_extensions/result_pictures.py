@@ -31,20 +31,6 @@ from experiments import record
 from sarah.pictures.style import COLUMN_WIDTH, STYLE
 
 
-def second_training(rows: Rows) -> Figure:
-    """Where V1 to V4 settled, and survival."""
-    learned = chosen(rows, "run!=V = 0")
-    (neutral,) = chosen(rows, "run=V = 0")
-    figure, (left, right) = panels(2, 0.35, width_ratios=(4, 3))
-    survival = {"push_100_survival": "100 N", "push_125_survival": "125 N", "sagittal_115_survival": "115 N sagittal"}
-    for axis, columns in ((left, {name: name for name in ("V1", "V2", "V3", "V4")}), (right, survival)):
-        values = {label: numbers(learned, column) for column, label in columns.items()}
-        draw_strips(axis, values, {label: float(neutral[column]) for column, label in columns.items()}, "V = 0")
-    right.set(ylim=(0.0, 1.05), ylabel="survival of pushes")
-    legend(figure, left)
-    return figure
-
-
 def race(rows: Rows) -> Figure:
     """Final scores with their standard errors, and how many trainings are at 95 % of the best, finally or before."""
     labels = [row["algorithm"] for row in rows]
@@ -286,7 +272,6 @@ def long_training(rows: Rows) -> Figure:
 
 
 PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
-    "second_training": (("second_training",), second_training),
     "race_stepping": (("race_stepping",), race),
     "race_balance": (("race_balance",), race),
     "naf_pendulum": (("naf_pendulum",), standard_task),

@@ -8,20 +8,24 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pandas import Series
 
 from experiments import judge as module
 from experiments import trainings
-from experiments.best_known import around, successive_halving
 from experiments.interval import ratio
 from experiments.judge import KEPT_TOGETHER, Condition, Judge
-from experiments.second_training import summary
+from experiments.robot.second_training import summary
+from experiments.search import around, successive_halving
 from experiments.trainings import identity
 from sarah.control.parameters import BALANCE_PARAMETERS
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.tasks import BalanceConfig
 
 SET = (0.7, 0.4, 0.7, -0.4)
-CONDITION = Condition("a push", BalanceConfig(), 100)
+
+
+def condition(episodes: int, first_seed: int = 100, **settings: Any) -> Condition:
+    return Condition("a push", BalanceConfig(**settings), first_seed, episodes)
 
 
 class Simulation:
@@ -49,28 +53,24 @@ def simulation(monkeypatch: pytest.MonkeyPatch) -> Simulation:
 
 def test_no_episode_is_simulated_twice(tmp_path: Path, simulation: Simulation) -> None:
     for episodes in (3, 5, 2):
-        assert list(Judge(tmp_path).scores(SET, [(CONDITION, episodes)])) == [100.0 + i for i in range(episodes)]
-    assert list(Judge(tmp_path).survival(SET, [(CONDITION, 4)])) == [1.0, 0.0, 1.0, 0.0]
+        assert list(Judge(tmp_path).scores(SET, [condition(episodes)])) == [100.0 + i for i in range(episodes)]
+    assert Judge(tmp_path).outcomes(SET, condition(4))["survived"] == [1.0, 0.0, 1.0, 0.0]
     assert simulation.seeds == [100, 101, 102, 103, 104]
 
 
 def test_an_interrupted_judge_goes_on(tmp_path: Path, simulation: Simulation) -> None:
     simulation.fails_from = 100 + KEPT_TOGETHER
     with pytest.raises(KeyboardInterrupt):
-        Judge(tmp_path).scores(SET, [(CONDITION, KEPT_TOGETHER + 2)])
+        Judge(tmp_path).scores(SET, [condition(KEPT_TOGETHER + 2)])
     simulation.fails_from = 10_000
-    Judge(tmp_path).scores(SET, [(CONDITION, KEPT_TOGETHER + 2)])
+    Judge(tmp_path).scores(SET, [condition(KEPT_TOGETHER + 2)])
     assert simulation.seeds == list(range(100, 100 + KEPT_TOGETHER + 2))
 
 
 def test_sets_and_conditions_have_outcomes_of_their_own(tmp_path: Path, simulation: Simulation) -> None:
-    others = [
-        (SET[::-1], CONDITION),
-        (SET, Condition("a push", BalanceConfig(time_limit=9.0), 100)),
-        (SET, Condition("a push", BalanceConfig(), 200)),
-    ]
-    for parameters, condition in [(SET, CONDITION), *others]:
-        Judge(tmp_path).scores(parameters, [(condition, 1)])
+    others = [(SET[::-1], condition(1)), (SET, condition(1, time_limit=9.0)), (SET, condition(1, first_seed=200))]
+    for parameters, asked in [(SET, condition(1)), *others]:
+        Judge(tmp_path).scores(parameters, [asked])
     assert simulation.seeds == [100, 100, 100, 200]
 
 
@@ -79,9 +79,9 @@ def test_outcomes_stay_until_the_code_changes(tmp_path: Path, monkeypatch: pytes
         package = shutil.copytree(trainings.SARAH / "episode", tmp_path / name / "episode")
         (package / file).write_text("{}")
         monkeypatch.setattr(trainings, "SARAH", package.parent)
-        return identity(CONDITION, ("episode",))
+        return identity(condition(1), ("episode",))
 
-    before = identity(CONDITION, ("episode",))
+    before = identity(condition(1), ("episode",))
     here = trainings.SARAH
     shipped = identity_of("shipped", "parameter_sets.json")
     monkeypatch.setattr(trainings, "SARAH", here)
@@ -115,7 +115,7 @@ def test_a_change_of_one_set_leaves_candidates_around_others() -> None:
 
 
 def test_the_error_of_a_ratio_is_that_of_pairs() -> None:
-    episodes = np.random.default_rng(0).normal(0.7, 0.2, (2000, 100))
+    episodes = np.random.default_rng(0).normal(0.7, 0.2, (2000, 1, 100))
     same = ratio("share", 0.9 * episodes[0], episodes[0])
     assert same["share"] == pytest.approx(0.9) and same["share_error"] == pytest.approx(0.0)
     own = 0.9 * episodes + np.random.default_rng(1).normal(0.0, 0.1, episodes.shape)
@@ -124,19 +124,18 @@ def test_the_error_of_a_ratio_is_that_of_pairs() -> None:
     assert np.mean([row["share_error"] for row in found]) == pytest.approx(spread, rel=0.1)
 
 
+def test_the_error_of_a_mean_ratio_knows_the_noise_of_pushes_and_of_trainings() -> None:
+    """Shares of 0.9 and 1.1 differ by trainings alone; equal ones by the pushes alone."""
+    best = np.full((1, 4), 0.5)
+    assert ratio("share", np.array([0.9 * best[0], 1.1 * best[0]]), best)["share_error"] == pytest.approx(0.1)
+    pushes = np.array([0.4, 0.6, 0.4, 0.6])
+    of_one = ratio("share", pushes[np.newaxis], best)["share_error"]
+    assert ratio("share", np.array([pushes, pushes]), best)["share_error"] == pytest.approx(of_one)
+    assert of_one == pytest.approx(np.std(pushes / 0.5, ddof=1) / 2.0)
+
+
 def test_a_summary_counts_trainings_near_the_best_known() -> None:
-    best = np.linspace(0.5, 0.9, 50)
-    found = summary([best, 0.96 * best, 0.8 * best], best)
-    assert (found["at_95"], found["lowest_of_best"]) == (2, pytest.approx(0.8))
+    found = summary(Series([1.0, 0.96, 0.8]), error=0.01)
+    assert (found["within_5_%"], found["lowest"]) == (2, 0.8)
     assert found["of_best"] == pytest.approx(0.92)
-    assert found["of_best_low"] < 0.92 < found["of_best_high"]
-    assert (found["at_95_low"], found["at_95_high"]) == (0, 3)
-
-
-def test_the_interval_of_a_summary_knows_the_noise_of_the_pushes() -> None:
-    generator = np.random.default_rng(0)
-    best, noise = generator.uniform(0.3, 1.0, 300), generator.normal(0.0, 0.3, (2, 300))
-    equal = summary([best, best], best)
-    assert equal["of_best_low"] == equal["of_best_high"] == pytest.approx(1.0)
-    noisy = summary([best + noise[0], best + noise[0]], best)
-    assert noisy["of_best_high"] - noisy["of_best_low"] > 0.05
+    assert found["of_best_high"] - 0.92 == pytest.approx(0.043, abs=1e-4)  # Student, two degrees of freedom

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from experiments import record
-from experiments.shipped_parameters import CONDITIONS, ship
-from experiments.shipping_rule import DIGITS
+from experiments.robot.shipped_parameters import CONDITIONS, ship
+from experiments.robot.shipping import DIGITS
 from sarah.episode.episode import simulate
 from sarah.episode.evaluation import evaluate
 from sarah.episode.parameter_sets import PARAMETER_SETS

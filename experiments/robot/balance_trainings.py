@@ -1,0 +1,154 @@
+"""Which V1 to V4 does each Second Training recommend, and which does its network say?
+
+Second Trainings by NAF with many seeds in each engine. Other experiments take what they learned from this result. They
+judge sets of V1 to V4 by hard pushes, the same for all sets. Pushes of other seeds, of the same kind, choose among
+sets: those that judge have chosen nothing.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from experiments import record
+from experiments.experiment import product
+from experiments.judge import Condition, Judge
+from experiments.record import Row, cell
+from experiments.trainings import TrainingExperiment, kept
+from sarah.control.parameters import BALANCE_PARAMETERS, Parameters
+from sarah.episode.parameter_sets import PARAMETER_SETS
+from sarah.episode.push import NO_PUSH, Push
+from sarah.episode.tasks import BalanceConfig
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.simulation.engines import Engine
+
+NAMES = [parameter.name for parameter in BALANCE_PARAMETERS]
+MU_NAMES = [f"mu_{name}" for name in NAMES]
+RESULT = "balance_trainings"
+SHIPPED: Parameters = PARAMETER_SETS["balance"].spec.parameters
+"""V1 to V4 that the package ships."""
+PUSH_100, PUSH_125, SAGITTAL_115 = (
+    Push((newtons, newtons), at_seconds=(2.0, 3.0), sagittal_share=share)
+    for newtons, share in ((100.0, 0.0), (125.0, 0.0), (115.0, 1.0))
+)
+JUDGING_SEED, CHOOSING_SEED, OTHER_SEED, TESTING_SEED = 20_000, 30_000, 40_000, 50_000
+"""First seeds of pushes that judge, that choose, of other conditions, and that test a choice; 1000 for each kind."""
+
+
+@dataclass(frozen=True)
+class SecondTrainingExperiment(TrainingExperiment):
+    """Options of an experiment that takes what Second Trainings by NAF have learned.
+
+    :param engines: physics engines
+    :param first_seed: seed of the first training; no setting was chosen on these
+    :param seeds: number of trainings in each engine
+    :param budget: number of episodes of a training
+    """
+
+    engines: tuple[Engine, ...] = ("mujoco", "pybullet")
+    first_seed: int = 300
+    seeds: int = 20
+    budget: int = 300
+
+    @property
+    def training_seeds(self) -> range:
+        """Seeds of the trainings."""
+        return range(self.first_seed, self.first_seed + self.seeds)
+
+    @property
+    def judge(self) -> Judge:
+        """Who keeps the outcomes of all sets."""
+        return Judge(self.runs / "judged")
+
+    def condition(
+        self, name: str, engine: Engine, first_seed: int, episodes: int, push: Push = NO_PUSH, **changes: Any
+    ) -> Condition:
+        """Episodes like those of the trainings, with changes.
+
+        :param name: name of the condition
+        :param engine: physics engine
+        :param first_seed: seed of the first episode
+        :param episodes: number of episodes
+        :param push: push in each of them
+        :param changes: other settings, by name
+        """
+        config = dataclasses.replace(self.episode("balance", engine), push=push, **changes)
+        assert isinstance(config, BalanceConfig)
+        return Condition(name, config, first_seed, episodes)
+
+    def pushes(self, engine: Engine, first_seed: int, episodes: int) -> list[Condition]:
+        """Hard pushes: two thirds by 125 N from everywhere, the others by 115 N, within 30 degrees of front or back.
+
+        :param engine: physics engine
+        :param first_seed: seed of the first push
+        :param episodes: number of pushes
+        """
+        anywhere = 2 * episodes // 3
+        return [
+            self.condition("125 N", engine, first_seed, anywhere, PUSH_125),
+            self.condition("sagittal 115 N", engine, first_seed + 1000, episodes - anywhere, SAGITTAL_115),
+        ]
+
+    def trainings(self, engine: Engine) -> dict[str, tuple[Parameters, Parameters]]:
+        """V1 to V4 that each training of an engine recommends, and those that its network says, by its name.
+
+        Trainings that the result ``balance_trainings`` lacks are run in this process.
+
+        :param engine: physics engine
+        """
+        in_full = (self.budget, self.time_limit) == (SecondTrainingExperiment.budget, None)
+        rows = record.read(RESULT).rows if in_full and RESULT in record.names() else ()
+        known = {int(row["seed"]): row for row in rows if row["engine"] == engine}
+        found = {}
+        for seed in self.training_seeds:
+            row = known.get(seed) or self.learned(engine, seed)
+            recommended, mu = (tuple(float(row[name]) for name in names) for names in (NAMES, MU_NAMES))
+            found[f"naf seed {seed}"] = recommended, mu
+        return found
+
+    def learned(self, engine: Engine, seed: int) -> dict[str, str]:
+        """Columns of what a training learns, which is run or resumed in this process unless it is there.
+
+        :param engine: physics engine
+        :param seed: seed of the training
+        """
+        episode = self.episode("balance", engine)
+        run = self.trained(TrainingConfig("balance", episodes=self.budget, seed=seed, slots=1, episode=episode))
+        values = [*run.parameters(), *kept(run.path / "mu.json", network_says, run)]
+        return {name: cell(float(value)) for name, value in zip([*NAMES, *MU_NAMES], values, strict=True)}
+
+
+def network_says(run: RunFolder) -> Parameters:
+    """V1 to V4 that the network of a finished training says for the robot as designed, without exploration.
+
+    :param run: run folder of the training
+    """
+    from sarah.training.learners import AGENTS, chosen_parameters, nominal_observation
+
+    config = run.config()
+    algorithm, _ = AGENTS[type(config.agent)]  # type: ignore[index]  # NAF's settings are a learner's
+    return chosen_parameters(algorithm.load(run.model_path), nominal_observation(config), config.task)
+
+
+@dataclass(frozen=True)
+class BalanceTrainings(SecondTrainingExperiment):
+    """What each Second Training learns."""
+
+    def cases(self) -> list[Row]:
+        """Engine and seed of each training."""
+        return product(engine=self.engines, seed=self.training_seeds)
+
+    def rows(self, engine: Engine, seed: int) -> Iterator[Row]:
+        """What a training learns.
+
+        :param engine: physics engine
+        :param seed: seed of the training
+        """
+        yield self.learned(engine, seed)
+
+
+FULL = BalanceTrainings()
+QUICK = BalanceTrainings(time_limit=2.0, budget=5, engines=("mujoco",), seeds=1)
