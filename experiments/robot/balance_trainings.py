@@ -27,7 +27,6 @@ from sarah.simulation.engines import Engine
 
 NAMES = [parameter.name for parameter in BALANCE_PARAMETERS]
 MU_NAMES = [f"mu_{name}" for name in NAMES]
-RESULT = "balance_trainings"
 SHIPPED: Parameters = PARAMETER_SETS["balance"].spec.parameters
 """V1 to V4 that the package ships."""
 PUSH_100, PUSH_125, SAGITTAL_115 = (
@@ -100,7 +99,8 @@ class SecondTrainingExperiment(TrainingExperiment):
         :param engine: physics engine
         """
         in_full = (self.budget, self.time_limit) == (SecondTrainingExperiment.budget, None)
-        rows = record.read(RESULT).rows if in_full and RESULT in record.names() else ()
+        is_known = in_full and "balance_trainings" in record.names()
+        rows = record.read("balance_trainings").rows if is_known else ()
         known = {int(row["seed"]): row for row in rows if row["engine"] == engine}
         found = {}
         for seed in self.training_seeds:

@@ -135,19 +135,12 @@ QUICK = SecondTraining(time_limit=2.0, budget=5, engines=("mujoco",), seeds=1, j
 
 
 def learned(rows: DataFrame) -> DataFrame:
-    """Rows of the trainings.
-
-    :param rows: of the result
-    """
+    """Rows of the trainings."""
     return rows[rows.run.str.startswith("naf")]
 
 
 def of_run(rows: DataFrame, run: str) -> Series:
-    """The row of a run.
-
-    :param rows: of one engine
-    :param run: name of the run
-    """
+    """The row of a run."""
     return rows[rows.run == run].iloc[0]
 
 
@@ -177,13 +170,7 @@ def headroom(rows: DataFrame) -> str:
 
 
 def by_engine(rows: DataFrame, run: str, column: str, unit: str) -> str:
-    """A share in each engine, as words.
-
-    :param rows: of the result
-    :param run: name of the run
-    :param column: column of the share
-    :param unit: what it is a share of
-    """
+    """A share in each engine, as words."""
     shares = {engine: shown(of_run(group, run)[column], ".1%") for engine, group in groups(rows, "engine").items()}
     return " and ".join(f"{share} {unit} in {ENGINE_NAMES[engine]}" for engine, share in shares.items())
 

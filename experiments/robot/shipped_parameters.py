@@ -7,9 +7,10 @@ set that stays keeps its origin: the command and the commit that first shipped i
 
 from __future__ import annotations
 
+import copy
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args
@@ -22,7 +23,6 @@ from experiments.record import Row
 from experiments.robot.balance_trainings import NAMES as BALANCE_NAMES
 from experiments.robot.shipping import CHOSEN
 from experiments.tables import shown, table
-from experiments.trainings import EPISODES
 from sarah.control.parameters import STEPPING_PARAMETERS
 from sarah.episode.evaluation import evaluate
 from sarah.episode.push import Push, PushedConfig
@@ -106,40 +106,21 @@ def ship(result: record.Result, path: Path = FILE) -> None:
 
 
 def sets_of(result: record.Result) -> dict[str, Any]:
-    """Content of the package's file.
+    """Content of the package's file: what it says already, with the values and figures of the rows.
 
     :param result: the result ``shipped_parameters``
     """
-    sets: dict[str, Any] = {}
-    for row in result.rows:
-        name = row["set"]
-        values = _chosen(row)
-        whole = sets.setdefault(name, {"task": name, **values, "origin": _origin(name, values, result), "figures": {}})
-        of_engine = whole["figures"].setdefault(row["engine"], {})
-        figures = {column: float(row[column]) for column in METRICS}
-        of_engine[row["condition"]] = {"episodes": int(row["episodes"]), **figures}
-    return sets
-
-
-def _origin(name: str, values: Mapping[str, Any], result: record.Result) -> Any:
-    """Where a set comes from: what the file says already, if the set stays."""
-    before = shipped()[name]
-    if all(before[key] == value for key, value in values.items()):
-        return before["origin"]
+    sets = copy.deepcopy(shipped())
     versions = dict(word.split(maxsplit=1) for word in result.versions.split(", "))
-    return {"command": result.command, "commit": result.commit, "date": result.date, "versions": versions}
-
-
-def _chosen(row: Mapping[str, str]) -> dict[str, Any]:
-    """Parameters and settings of a row's set."""
-    stepping = {name: float(row[name]) for name in STEPPING_NAMES}
-    if row["set"] == "stepping":
-        return {"parameters": stepping, "settings": {}}
-    config = EPISODES["balance"]
-    assert isinstance(config, BalanceConfig)
-    push = {"newtons": list(config.push.newtons), "sagittal_share": config.push.sagittal_share}
-    settings = {"stepping": list(stepping.values()), "push": push}
-    return {"parameters": {name: float(row[name]) for name in BALANCE_NAMES}, "settings": settings}
+    origin = {"command": result.command, "commit": result.commit, "date": result.date, "versions": versions}
+    for row in result.rows:
+        whole = sets[row["set"]]
+        parameters = {name: float(row[name]) for name in whole["parameters"]}
+        if parameters != whole["parameters"]:
+            whole |= {"parameters": parameters, "origin": origin}
+        figures = {column: float(row[column]) for column in METRICS}
+        whole["figures"][row["engine"]][row["condition"]] = {"episodes": int(row["episodes"]), **figures}
+    return sets
 
 
 def answer(rows: DataFrame) -> str:

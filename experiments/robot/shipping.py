@@ -263,10 +263,7 @@ QUICK = Shipping(time_limit=2.0, budget=5, engines=("mujoco",), seeds=1, rounds=
 
 
 def finalists(rows: DataFrame) -> DataFrame:
-    """Rows of the candidates of the last round, who met all conditions.
-
-    :param rows: of the result
-    """
+    """Rows of the candidates of the last round, who met all conditions."""
     met = rows.groupby("run").condition.transform("nunique")
     return rows[met == met.max()]
 
