@@ -72,17 +72,17 @@ FORMATS = {**dict.fromkeys(NAMES, ".2f"), "overall": ".3f"}
 class Round(NamedTuple):
     """A round of the choice.
 
-    :param candidates: number of the best candidates that take part, beside the shipped set
+    :param candidates: number of the best candidates that take part, beside the shipped set; all of them if it is None
     :param episodes: number of episodes by condition, those of the rounds before included; a direction of a slope has as
         many as level ground
     """
 
-    candidates: int
+    candidates: int | None
     episodes: Mapping[str, int]
 
 
 ROUNDS = (
-    Round(100, {HARD: 24}),
+    Round(None, {HARD: 24}),
     Round(20, {HARD: 60, LEVEL: 4}),
     Round(8, {HARD: 150, LEVEL: 8, WEAK: 60}),
     Round(5, {HARD: 300, LEVEL: 8, WEAK: 100, FINEST: 24, NEW: 300}),
@@ -259,7 +259,7 @@ def rounded(parameters: Parameters) -> Parameters:
 
 
 FULL = Shipping()
-QUICK = Shipping(time_limit=2.0, budget=5, engines=("mujoco",), seeds=1, rounds=(Round(1, {HARD: 3, LEVEL: 1}),))
+QUICK = Shipping(time_limit=2.0, budget=5, engines=("mujoco",), seeds=1, rounds=(Round(None, {HARD: 3, LEVEL: 1}),))
 
 
 def finalists(rows: DataFrame) -> DataFrame:
