@@ -25,7 +25,7 @@ PICTURES = ROOT / "docs" / "results"
 """Folder of the pictures."""
 WIDTH = 120
 """Largest length of a line of text."""
-PROLOGUE = "from experiments.pages import show"
+PROLOGUE = "from docs.from_code import from_code; from experiments.pages import show"
 
 
 def show(part: str) -> None:

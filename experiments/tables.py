@@ -74,7 +74,7 @@ def markdown_table(head: Sequence[str], cells: Iterable[Sequence[str]]) -> list[
     :param head: its head
     :param cells: its cells, row by row
     """
-    return [f"| {' | '.join(line)} |" for line in (head, ["---"] * len(head), *cells)]
+    return [f"| {' | '.join(cell or NOTHING for cell in line)} |" for line in (head, ["---"] * len(head), *cells)]
 
 
 def heading(column: str) -> str:

@@ -1,19 +1,22 @@
-"""Sphinx extension: writes from the code what pages say of settings, parameters, metrics, examples and the robot.
+"""Generated parts of the documentation that come from the code: settings, parameters, metrics, commands, the robot.
 
-It does so before the pages are read. They include what is written here, by the names of :data:`PAGES`.
+``from_code("metrics")`` prints a part, by its name in :data:`PARTS`.
 """
 
 from __future__ import annotations
 
 import dataclasses
+import os
 import re
-from collections.abc import Iterable, Iterator, Mapping
+import subprocess
+import sys
+import textwrap
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from reference_markdown import markdown, shown, table
-from sphinx.application import Sphinx
-
+from experiments.tables import markdown_table
 from sarah.cli.training_defaults import default_training
 from sarah.cli.value_rules import meanings_of
 from sarah.control.constants import STANDARD_CONSTANTS
@@ -33,11 +36,19 @@ from sarah.runs.config_files import settings_by_key
 from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.randomisation import Randomisation
 
-GENERATED = Path("reference") / "generated"
-EXAMPLES = Path(__file__).parents[2] / "examples"
+HELP_WIDTH = 86
+"""Of a command's help, in characters: as wide as the page."""
 
 
-def settings_page() -> Iterator[str]:
+def from_code(name: str) -> None:
+    """Print a part.
+
+    :param name: its name
+    """
+    print("\n" + "\n".join(PARTS[name]()).strip() + "\n")
+
+
+def settings_part() -> Iterator[str]:
     """A table for each group of settings of a training."""
     yield from section("Training", "", own_fields(TrainingConfig), {"default": TrainingConfig()})
     yield from agent_sections()
@@ -56,7 +67,7 @@ def settings_page() -> Iterator[str]:
     yield from groups("episode.", of_tasks)
 
 
-def defaults_page() -> Iterator[str]:
+def defaults_part() -> Iterator[str]:
     """A table of the settings that ``sarah-train`` and ``sarah-compare`` begin with in place of a task's own."""
     rows = []
     for task in TASKS.values():
@@ -121,7 +132,7 @@ def own_fields(config_type: Any, base: Any = None) -> list[str]:
     return [name for name, value in values.items() if isinstance(value, Task) or not dataclasses.is_dataclass(value)]
 
 
-def parameters_page() -> Iterator[str]:
+def parameters_part() -> Iterator[str]:
     """A table of each task's parameters."""
     for task in TASKS.values():
         yield f"## Task `{task.name}`\n"
@@ -129,7 +140,7 @@ def parameters_page() -> Iterator[str]:
         yield from table(["name", "range", "unit", "meaning", "paper"], rows)
 
 
-def dimensions_page() -> Iterator[str]:
+def dimensions_part() -> Iterator[str]:
     """A table of the robot's dimensions."""
     rows = (
         [f"`{name}`", known.unit, f"{known.default:g}", f"{known.low:g} to {known.high:g}", known.meaning]
@@ -138,7 +149,7 @@ def dimensions_page() -> Iterator[str]:
     yield from table(["dimension", "unit", "default", "range", "meaning"], rows)
 
 
-def metrics_page() -> Iterator[str]:
+def metrics_part() -> Iterator[str]:
     """A table of what an episode is judged by."""
     rows = (
         [f"`{name}`", metric.unit, metric.meaning, ", ".join(metric.statistics), metric.paper]
@@ -147,7 +158,7 @@ def metrics_page() -> Iterator[str]:
     yield from table(["metric", "unit", "meaning", "statistics", "paper"], rows)
 
 
-def tick_page() -> Iterator[str]:
+def tick_part() -> Iterator[str]:
     """A table of what a reward and an ending know."""
     fields = {name: markdown(meaning) for name, meaning in meanings_of(Tick).items() if name != "simulator"}
     properties = {
@@ -158,16 +169,6 @@ def tick_page() -> Iterator[str]:
     rows = ([f"`tick.{name}`", meaning[0].lower() + meaning[1:]] for name, meaning in (fields | properties).items())
     yield from table(["name", "what it is"], rows)
     yield "x points to the robot's right, y forward and z up. " + markdown(f"Actuators: {', '.join(ACTUATED_JOINTS)}.")
-
-
-def examples_page() -> Iterator[str]:
-    """What each example says of itself, and its code, in the order of their list."""
-    listed = (EXAMPLES / "README.md").read_text(encoding="utf-8")
-    for name in re.findall(r"\((\w+\.py)\)", listed):
-        _, docstring, code = (EXAMPLES / name).read_text(encoding="utf-8").split('"""', 2)
-        yield f"## `{name}`\n"
-        yield "\n\n".join(markdown(paragraph) for paragraph in docstring.split("\n\n")) + "\n"
-        yield f"```python\n{code.strip()}\n```\n"
 
 
 SIGNALS = (
@@ -191,7 +192,7 @@ POSITIVE = {
 """Positive direction of each kind of actuator."""
 
 
-def signals_page() -> Iterator[str]:
+def signals_part() -> Iterator[str]:
     """A table of the signals of a reading, in order."""
     positions = []
     for index, joint in enumerate(ACTUATED_JOINTS):
@@ -202,7 +203,7 @@ def signals_page() -> Iterator[str]:
     )
 
 
-def targets_page() -> Iterator[str]:
+def targets_part() -> Iterator[str]:
     """A table of the targets, in order."""
     robot, constants = describe_robot(), STANDARD_CONSTANTS
     hips = (-constants.largest_hip_angle, constants.largest_hip_angle, constants.hip_speed)
@@ -228,7 +229,7 @@ def targets_page() -> Iterator[str]:
     yield from table(head, rows)
 
 
-def rates_page() -> Iterator[str]:
+def rates_part() -> Iterator[str]:
     """A table of the times, thresholds and errors that a training assumes."""
     physics, sensors, constants = PHYSICS["standard"], Randomisation(), STANDARD_CONSTANTS
     rows = [
@@ -286,33 +287,64 @@ def unit_of(joint: str) -> str:
     return "m" if JOINT_TYPES[joint] == "prismatic" else "rad"
 
 
-PAGES = {
-    "dimensions": dimensions_page,
-    "settings": settings_page,
-    "defaults": defaults_page,
-    "parameters": parameters_page,
-    "metrics": metrics_page,
-    "examples": examples_page,
-    "rates": rates_page,
-    "signals": signals_page,
-    "targets": targets_page,
-    "tick": tick_page,
-}
-"""What is written, by name of the file."""
+def commands_part() -> Iterator[str]:
+    """What every command says to ``--help``, in the order of setup.cfg."""
+    environment = {**os.environ, "COLUMNS": str(HELP_WIDTH), "NO_COLOR": "1"}
+    for command in metadata.entry_points(group="console_scripts"):
+        if command.name.startswith("sarah-"):
+            path = Path(sys.executable).with_name(command.name)
+            process = subprocess.run([path, "--help"], env=environment, capture_output=True, text=True, check=True)
+            # tyro leaves what a command says of itself to the terminal to wrap.
+            lines = (
+                textwrap.fill(line, HELP_WIDTH) if len(line) > HELP_WIDTH else line.rstrip()
+                for line in process.stdout.splitlines()
+            )
+            yield f"## {command.name}\n\n```text\n{chr(10).join(lines).strip()}\n```\n"
 
 
-def write_reference(app: Sphinx) -> None:
-    """Write what the pages include.
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:
+    """Lines of a table, with an empty one after it.
 
-    :param app: Sphinx, which builds the site
+    :param head: its head
+    :param rows: its cells
     """
-    folder = Path(app.srcdir) / GENERATED
-    folder.mkdir(exist_ok=True)
-    for name, page in PAGES.items():
-        (folder / f"{name}.md").write_text("\n".join(page()), encoding="utf-8")
+    yield from markdown_table(head, rows)
+    yield ""
 
 
-def setup(app: Sphinx) -> dict[str, bool]:
-    """Have the reference written before the pages are read."""
-    app.connect("builder-inited", write_reference)
-    return {"parallel_read_safe": True}
+def markdown(text: str) -> str:
+    """One line of Markdown from a docstring's reStructuredText.
+
+    :param text: text of the docstring
+    """
+    text = re.sub(r":\w+(?::\w+)?:`~?([^`]+)`", r"`\1`", " ".join(text.split()))
+    return text.replace("``", "`").replace("|", r"\|")
+
+
+def shown(value: Any) -> str:
+    """A default as the YAML file would hold it.
+
+    :param value: the default
+    """
+    if isinstance(value, Task):
+        return f"`{value.reference}`"
+    if value in ((), {}):
+        return "none"
+    if isinstance(value, tuple):
+        return f"`[{', '.join(map(str, value))}]`"
+    return f"`{str(value).lower() if isinstance(value, bool) else value}`"
+
+
+PARTS: dict[str, Callable[[], Iterable[str]]] = {
+    "commands": commands_part,
+    "defaults": defaults_part,
+    "dimensions": dimensions_part,
+    "metrics": metrics_part,
+    "parameters": parameters_part,
+    "rates": rates_part,
+    "settings": settings_part,
+    "signals": signals_part,
+    "targets": targets_part,
+    "tick": tick_part,
+}
+"""What writes each part."""
