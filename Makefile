@@ -10,7 +10,7 @@ WORKERS ?= $(shell nproc)
 SEED ?= 1
 RUN ?= runs/$(shell date +%Y%m%d-%H%M%S)
 NAME ?=
-TIMINGS := throughput engines_speed physics_speed updates viewer
+TIMINGS := throughput episodes updates decisions viewer
 ENDURANCE := kills killed_workers resume long_process long_training protections
 
 .PHONY: help install train test test-slow lint format docs results bench endurance mutants clean
@@ -65,7 +65,7 @@ results: install  ## rewrite tables, figures and pictures of all pages; with NAM
 	$(BIN)/python -m experiments.pages
 
 bench: install  ## how fast it is: simulation, workers, learner, viewer; minutes
-	@for name in $(TIMINGS); do $(BIN)/python -m experiments $$name --out build/bench || exit 1; done
+	@for name in $(TIMINGS); do $(BIN)/python -m benchmarks $$name --out build/bench || exit 1; done
 
 endurance: install  ## kills, faults and long runs; half an hour
 	@for name in $(ENDURANCE); do $(BIN)/python -m experiments $$name --out build/endurance || exit 1; done
