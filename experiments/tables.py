@@ -22,7 +22,7 @@ UNITS = {
 """Unit by the end of a column's name."""
 WORDS = {"low": "from", "high": "to", "error": "±", "naf": "NAF", "td3": "TD3", "pybullet": "PyBullet", "v": "V"}
 """Words of column names that are written otherwise."""
-NOTHING = "–"
+NOTHING = "\N{EN DASH}"
 """What stands in an empty cell."""
 
 
