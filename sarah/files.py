@@ -29,6 +29,8 @@ LONGEST_LINE = 16_384
 """Largest size of a line in a table, in bytes."""
 LARGEST = 2**30
 """Largest size of a file of TensorBoard's that is read, in bytes."""
+UNFINISHED = ".new"
+"""Ending of the name of a file that is to replace another one."""
 NO_TEXT = frozenset(("Cc", "Cs", "Zl", "Zp"))
 """Unicode's categories of control characters, of bytes that are not UTF-8, and of ends of lines and paragraphs."""
 
@@ -101,7 +103,7 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
     :param path: path of the file; if writing fails, its old content stays
     """
     check_name(path)
-    unfinished = path.with_name(f".{uuid.uuid4().hex}.new")  # as long as it may be, whatever the other name
+    unfinished = path.with_name(f".{uuid.uuid4().hex}{UNFINISHED}")  # as long as it may be, whatever the other name
     try:
         with unfinished.open("xb") as file:  # "x" goes through no link
             yield file
