@@ -17,7 +17,7 @@ from sarah.streams import keep_streams
 from sarah.versions import SIMULATING, differences, versions
 
 if TYPE_CHECKING:
-    from distributed import Client, Future, LocalCluster
+    from distributed import Client, Future
 
 SCHEDULER_SECONDS = 10
 """Time limit for connecting to a scheduler, in s."""
@@ -41,6 +41,8 @@ UNLIMITED = {
 ENVIRONMENT, FREES_MEMORY = "distributed.nanny.pre-spawn-environ", "MALLOC_TRIM_THRESHOLD_"
 """Dask's setting of the environment of workers, and the variable in it with which they take every array above 128 kB
 from the system and give it back. That slows trainings of large networks."""
+SAFE_PATH = "PYTHONSAFEPATH"
+"""Environment variable that keeps Python 3.11 and later from searching the working folder for modules."""
 ATTEMPTS = 20
 """Largest number of times that a call is submitted: a scheduler gives it up after the deaths of a few workers."""
 
@@ -159,22 +161,20 @@ def _check_worker(worker: str, there: dict[str, str], packages: tuple[str, ...])
         raise WorkersError(f"worker {worker} is refused, because its results would differ: {different}")
 
 
-def connect(address: str) -> Client:
-    """Connect to a scheduler.
+@contextlib.contextmanager
+def connected(address: str) -> Iterator[Client]:
+    """Connection to a scheduler, whose workers go on without it.
 
     :param address: address of the scheduler, such as ``tcp://10.0.0.1:8786``
     :raises WorkersError: if no scheduler answers, or one of its workers has other code or versions
     """
     with _in_one_line(f"no Dask scheduler answers at {address!r}"):
         client = _client_in_time(address)
-    try:
+    with contextlib.closing(client):
         with _in_one_line(f"a worker behind {address!r} tells no versions"):
             for worker, there in client.run(versions, SIMULATING).items():
                 _check_worker(worker, there, SIMULATING)
-    except BaseException:
-        client.close()
-        raise
-    return client
+        yield client
 
 
 def _client_in_time(address: str) -> Client:
@@ -196,13 +196,32 @@ def _client_in_time(address: str) -> Client:
         raise WorkersError(f"no Dask scheduler answers at {address!r}: the port is open, but silent") from error
 
 
-@_in_one_line("no workers can start on this machine")
-def start(count: int) -> tuple[LocalCluster, Client]:
-    """Start workers on this machine.
+@contextlib.contextmanager
+def started(count: int) -> Iterator[Client]:
+    """Workers on this machine, which end with the context.
 
     :param count: number of worker processes
     :raises WorkersError: if they cannot start
     """
+    before, during = dict(os.environ), dict[str, str]()
+    # Otherwise a worker imports modules from the working folder, such as a pickle.py in somebody's run folder.
+    os.environ[SAFE_PATH] = "1"
+    try:
+        with contextlib.ExitStack() as stack:
+            client = _started_client(count, stack)
+            during = dict(os.environ)  # Dask sets others, which workers need as long as they may be started again
+            yield client
+    finally:
+        for name, value in (during or dict(os.environ)).items():
+            if name not in before:
+                os.environ.pop(name, None)
+            elif value != before[name]:
+                os.environ[name] = before[name]
+
+
+@_in_one_line("no workers can start on this machine")
+def _started_client(count: int, stack: contextlib.ExitStack) -> Client:
+    """Client of a new cluster on this machine; the stack closes both."""
     import dask
     from distributed import Client, LocalCluster, WorkerPlugin
 
@@ -225,10 +244,7 @@ def start(count: int) -> tuple[LocalCluster, Client]:
             memory_limit=0,
             silence_logs=logging.CRITICAL,
         )
-    try:
-        client = Client(cluster)
-        client.register_plugin(Serve())
-    except BaseException:
-        cluster.close()
-        raise
-    return cluster, client
+    stack.enter_context(contextlib.closing(cluster))
+    client = stack.enter_context(contextlib.closing(Client(cluster)))
+    client.register_plugin(Serve())
+    return client
