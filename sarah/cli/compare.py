@@ -21,7 +21,7 @@ from sarah.cli.episode_options import (
 )
 from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import say_next, to_open, to_see, to_watch
-from sarah.cli.options import parse_options, pushed_words, run_command, say_engine
+from sarah.cli.options import as_command, parse_options, pushed_words, say_engine
 from sarah.cli.tables import leave_table, prepare_table
 from sarah.cli.training_defaults import default_training
 from sarah.episode.settings import EpisodeConfig
@@ -97,11 +97,6 @@ CompareOptions.__doc__ = str(CompareOptions.__doc__).format(  # read by the help
 )
 
 
-def main() -> None:
-    """Run the command with the arguments of the process."""
-    run_command(COMMAND, _compare)
-
-
 def _defaults(arguments: Sequence[str]) -> CompareOptions:
     """Default options: those of ``sarah-train``, of the type that task and engine take."""
     given = given_options(arguments, "task", "engine", "episode.engine", *DIRECTIONS)
@@ -113,8 +108,10 @@ def _defaults(arguments: Sequence[str]) -> CompareOptions:
     return CompareOptions(task=training.task, episodes=training.episodes, episode=episode)
 
 
-def _compare(arguments: Sequence[str]) -> None:
-    arguments = with_out(COMMAND, arguments, bare=0)
+@as_command(COMMAND)
+def main() -> None:
+    """Run the command with the arguments of the process."""
+    arguments = with_out(COMMAND, sys.argv[1:], bare=0)
     options = parse_options(CompareOptions, COMMAND, arguments, _defaults(arguments))
     if options.out is None:
         raise ConfigurationError("give a folder for the race: --out DIR")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json as json_format
 import shlex
+import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -15,7 +16,7 @@ import tyro
 from sarah.cli.episode_options import UnseenOptions, parse_episode_options
 from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import Step, passed_on, say_next, to_see
-from sarah.cli.options import named_task, run_command, say_engine
+from sarah.cli.options import as_command, named_task, say_engine
 from sarah.cli.subjects import learned_of
 from sarah.cli.tables import leave_table, prepare_table
 from sarah.episode.settings import EpisodeConfig
@@ -87,14 +88,11 @@ class EvalOptions(UnseenOptions):
         return [name for name in REPLACED if getattr(self, name)]
 
 
+@as_command(COMMAND)
 def main() -> None:
     """Run the command with the arguments of the process."""
-    run_command(COMMAND, _evaluate)
-
-
-def _evaluate(arguments: Sequence[str]) -> None:
     former = {option: f"{option} --out" for option in ("--robustness", "--terrain")}
-    arguments = with_out(COMMAND, arguments, former)
+    arguments = with_out(COMMAND, sys.argv[1:], former)
     options = parse_episode_options(COMMAND, arguments, EvalOptions())
     own, algorithm = learned_of(options.subject, named_task(options.task))
     spec = options.applied_to(own)

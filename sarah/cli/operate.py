@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass
 from functools import partial
@@ -17,7 +18,7 @@ from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import interruptible
 from sarah.cli.next_steps import say_next, to_see, to_watch
 from sarah.cli.operated import OperatedConfig, say_differences, settings_in_operation, times_of_session
-from sarah.cli.options import named_task, run_command, say_engine
+from sarah.cli.options import as_command, named_task, say_engine
 from sarah.cli.subjects import episode_of, is_shipped
 from sarah.episode.push import NO_PUSH, PushedConfig
 from sarah.episode.spec import EpisodeSpec
@@ -84,13 +85,10 @@ class OperateOptions(EpisodeOptions):
     compare_frozen: bool = False
 
 
+@as_command(COMMAND)
 def main() -> None:
     """Run the command with the arguments of the process."""
-    run_command(COMMAND, _operate)
-
-
-def _operate(arguments: Sequence[str]) -> None:
-    arguments = with_out(COMMAND, arguments, {"--run-dir": "--out"})
+    arguments = with_out(COMMAND, sys.argv[1:], {"--run-dir": "--out"})
     for argument in arguments:
         if argument.partition("=")[0].replace("_", "-") in WITHOUT_EFFECT:
             raise ConfigurationError(f"{argument} has no effect in an operation: leave it out")

@@ -10,7 +10,7 @@ import itertools
 import os
 import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from difflib import get_close_matches
 from typing import Any, NoReturn, TypeVar
 
@@ -216,17 +216,17 @@ def say_engine(config: EpisodeConfig) -> None:
         print("PyBullet is not installed, so MuJoCo simulates", file=sys.stderr)
 
 
-def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
+@contextlib.contextmanager
+def as_command(command: str) -> Iterator[None]:
     """Run a command, and print one line without a traceback if it raises one of the package's exceptions.
 
     :param command: name of the command
-    :param main: function that runs it with its arguments
     """
     os.environ["MPLBACKEND"] = "Agg"  # figures are files, also where there is a display
     keep_streams()
     try:
         os.getcwd()  # torch ends the process if the working folder is gone
-        main(sys.argv[1:])
+        yield
     except (SarahError, OSError) as error:
         fail(command, str(error))
     except KeyboardInterrupt:

@@ -26,7 +26,7 @@ from sarah.cli.given_settings import say_differences, settings_of_file, settings
 from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import interruptible
 from sarah.cli.next_steps import say_next, to_see, to_watch
-from sarah.cli.options import named_task, parse_options, pushed_words, run_command, say_engine
+from sarah.cli.options import as_command, named_task, parse_options, pushed_words, say_engine
 from sarah.cli.train_text import say_learned
 from sarah.cli.training_defaults import default_training
 from sarah.episode.push import PushedConfig
@@ -82,13 +82,10 @@ class TrainOptions:
     scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
 
 
+@as_command(COMMAND)
 def main() -> None:
     """Run the command with the arguments of the process."""
-    run_command(COMMAND, _train)
-
-
-def _train(arguments: Sequence[str]) -> None:
-    arguments = [re.sub(r"^--simulations(?==|$)", "--episodes", argument) for argument in arguments]  # an alias
+    arguments = [re.sub(r"^--simulations(?==|$)", "--episodes", argument) for argument in sys.argv[1:]]  # an alias
     if arguments and not arguments[0].startswith("-"):  # other commands begin with what they look at
         raise ConfigurationError(f"{arguments[0]!r} is no option: a task is given as --task {arguments[0]}")
     arguments = with_out(COMMAND, arguments, {"--run-dir": "--out"})

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import sys
 import threading
-from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -16,7 +16,7 @@ import tyro
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import say_next, to_open
-from sarah.cli.options import named_task, run_command, say_engine
+from sarah.cli.options import as_command, named_task, say_engine
 from sarah.cli.subjects import episodes_of, is_shipped
 from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError
@@ -56,13 +56,10 @@ class ViewOptions(EpisodeOptions):
     port: Annotated[int, Within(1, 2**16 - 1)] = DEFAULT_PORT
 
 
+@as_command(COMMAND)
 def main() -> None:
     """Run the command with the arguments of the process."""
-    run_command(COMMAND, _view)
-
-
-def _view(arguments: Sequence[str]) -> None:
-    arguments = with_out(COMMAND, arguments, {"--export": "--out"})
+    arguments = with_out(COMMAND, sys.argv[1:], {"--export": "--out"})
     options = parse_episode_options(COMMAND, arguments, ViewOptions())
     if find_spec("viser") is None:
         raise ConfigurationError("this needs the extra view: pip install 'sarah[view]'")
