@@ -106,6 +106,7 @@ class Renderer(HoldsWorld):
         orientation: tuple[float, float, float, float],
         joints: Mapping[str, float],
         ground: Ground = LEVEL,
+        only_feet: bool = False,
     ) -> np.ndarray:
         """Points around all that is drawn of a pose: corners of boxes around the links, and of the feet's shadows.
 
@@ -113,31 +114,13 @@ class Renderer(HoldsWorld):
         :param orientation: orientation of the torso, as a unit quaternion (x, y, z, w)
         :param joints: positions by joint, in rad and m; other joints stay where they were, at first at zero
         :param ground: ground that the shadows lie on
+        :param only_feet: whether to leave out all links but the shoes
         :return: points in the world's frame, in m, of shape (n, 3)
         :raises SimulationError: if other code in the process has changed the renderer's world
         """
         boxes = self._boxes_in(position, orientation, joints)
-        return np.concatenate((*boxes.values(), *self._shadows(boxes, ground)))
-
-    def feet(
-        self,
-        position: Vector,
-        orientation: tuple[float, float, float, float],
-        joints: Mapping[str, float],
-        ground: Ground = LEVEL,
-    ) -> np.ndarray:
-        """Points around both shoes and their shadows in a pose; see :meth:`seen`.
-
-        :param position: position of the torso's centre, in m
-        :param orientation: orientation of the torso, as a unit quaternion (x, y, z, w)
-        :param joints: positions by joint, in rad and m; other joints stay where they were, at first at zero
-        :param ground: ground that the shadows lie on
-        :return: points in the world's frame, in m, of shape (n, 3)
-        :raises SimulationError: if other code in the process has changed the renderer's world
-        """
-        boxes = self._boxes_in(position, orientation, joints)
-        plates = (boxes[self._indices[f"{side}_{plate}"]] for side in Side for plate in PLATES)
-        return np.concatenate((*plates, *self._shadows(boxes, ground)))
+        links = [self._indices[name] for name in ANKLE_JOINTS] if only_feet else boxes
+        return np.concatenate((*(boxes[link] for link in links), *self._shadows(boxes, ground)))
 
     def _boxes_in(
         self, position: Vector, orientation: tuple[float, float, float, float], joints: Mapping[str, float]
