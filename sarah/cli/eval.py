@@ -153,7 +153,7 @@ def _next_steps(options: EvalOptions, arguments: Sequence[str]) -> Iterator[Step
 def _show_robustness(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions, workers: Workers) -> None:
     """Print the table as Markdown, and write the table and the polar plot."""
     from sarah.cli.eval_text import settings_of_table
-    from sarah.reports.robustness import forces_for, push_many, pushed_settings, robustness_table, survival_interval
+    from sarah.reports.robustness import forces_for, push_many, pushed_settings, robustness_table, wilson_interval
     from sarah.reports.training_figures import draw_survival
 
     folder, neutral, parameters, config = options.out, BALANCE.neutral, spec.parameters, spec.config
@@ -169,7 +169,7 @@ def _show_robustness(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions
     for newtons, direction in tables[0]:
         evaluations = [table[newtons, direction] for table in tables]
         cells = "".join(
-            " {:.2f} ({:.2f} to {:.2f})".format(found.survival_rate, *survival_interval(found))
+            " {:.2f} ({:.2f} to {:.2f})".format(found.survival_rate, *wilson_interval(found.survivors, found.episodes))
             + f" | {found.median('score'):.2f} | {100 * found.median('drift'):.1f} cm "
             + f"| {found.median('vibration'):.1f} |"
             for found in evaluations
