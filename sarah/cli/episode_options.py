@@ -17,7 +17,7 @@ from typing import Annotated, Any, TypeVar, get_args
 
 import tyro
 
-from sarah.cli.options import dimension_words, named_task, parse_options
+from sarah.cli.options import named_task, parse_options, without_dimensions
 from sarah.cli.subjects import episode_of, is_there
 from sarah.cli.value_rules import named_numbers
 from sarah.episode.push import NO_PUSH, PushedConfig
@@ -212,7 +212,7 @@ def given_dimensions(arguments: Sequence[str]) -> dict[str, float]:
     :param arguments: arguments of the command
     """
     try:
-        return named_numbers(dimension_words(arguments))
+        return named_numbers(without_dimensions(arguments)[1])
     except ValueError:
         return {}
 

@@ -85,16 +85,11 @@ def _with_both_ends(arguments: Sequence[str], config: Any) -> list[str]:
     return completed
 
 
-def dimension_words(arguments: Sequence[str]) -> list[str]:
-    """Names and numbers that were given for the robot's dimensions, in one option or in several.
+def without_dimensions(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Arguments beside those of the robot's dimensions, and names and numbers of these, of one option or of several.
 
     :param arguments: arguments of a command
     """
-    return _without_dimensions(arguments)[1]
-
-
-def _without_dimensions(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Arguments beside those of the dimensions, and names and numbers of these."""
     others: list[str] = []
     words: list[str] = []
     are_dimensions = False
@@ -110,7 +105,7 @@ def _without_dimensions(arguments: Sequence[str]) -> tuple[list[str], list[str]]
 
 
 def _with_dimensions_once(arguments: Sequence[str]) -> Sequence[str]:
-    others, words = _without_dimensions(arguments)
+    others, words = without_dimensions(arguments)
     return [*others, DIMENSIONS, *words] if words else arguments
 
 
