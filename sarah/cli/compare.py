@@ -28,8 +28,10 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task, load_task
 from sarah.errors import ConfigurationError, check_range
 from sarah.reports.judging import PUSHED, UNPUSHED, evaluations_of
+from sarah.robot.description import describe_robot
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.kinds import SESSION, TRAINING
+from sarah.simulation.engines import check_engine
 
 if TYPE_CHECKING:
     from sarah.reports.race_entry import Entry, RaceCurve
@@ -126,9 +128,6 @@ def main() -> None:
         raise ConfigurationError(f"algorithms must be different ones, at least one, not {options.algorithms!r}")
     episode = options.episode
     base = TrainingConfig(task=options.task, episodes=options.episodes, slots=options.slots, episode=episode)
-    from sarah.robot.description import describe_robot
-    from sarah.simulation.engines import check_engine
-
     describe_robot(episode.dimensions)
     check_engine(episode.engine)
     from sarah.episode.trial import try_task

@@ -26,6 +26,7 @@ from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS
 from sarah.errors import ConfigurationError, unknown_name
 from sarah.ranges import Within, check_ranges
+from sarah.runs.recorded_task import RecordedTask, refuse_to_simulate
 from sarah.simulation.engines import Engine
 from sarah.simulation.physics import PHYSICS, named_physics
 
@@ -64,8 +65,6 @@ class EpisodeOptions:
         :param spec: specification of the episode
         :raises ConfigurationError: if there is no such physics, or if the task is that of a file that was not named
         """
-        from sarah.runs.recorded_task import RecordedTask, refuse_to_simulate
-
         if isinstance(spec.task, RecordedTask):
             refuse_to_simulate(spec.task)
         config = self.episode

@@ -28,12 +28,13 @@ from sarah.errors import ConfigurationError, shortened
 from sarah.files import quoted
 from sarah.formats import read_yaml
 from sarah.number import number
-from sarah.operation.settings import Change, OperationConfig, Parameters
+from sarah.operation.settings import PARAMETERS, Change, OperationConfig, Parameters
 from sarah.runs.kinds import SESSION
+from sarah.runs.session import FORMER_LEARNERS, SessionSpec
+from sarah.simulation.engines import check_engine
 
 if TYPE_CHECKING:
     from sarah.operation.window import Window
-    from sarah.runs.session import SessionSpec
     from sarah.runs.session_folder import SessionFolder
     from sarah.training.operate import SessionResult
 
@@ -113,9 +114,7 @@ def main() -> None:
 def _begun(options: OperateOptions) -> SessionFolder:
     """The folder of a new session."""
     from sarah.recorded.folder import new_path
-    from sarah.runs.session import FORMER_LEARNERS
     from sarah.runs.session_folder import SessionFolder
-    from sarah.simulation.engines import check_engine
 
     if present := FORMER_LEARNERS.get(options.learner):
         say_present(COMMAND, f"--learner {options.learner}", "--learner", present)
@@ -188,8 +187,6 @@ def _check_alone(arguments: Sequence[str]) -> dict[str, str]:
 
 
 def _spec_of(options: OperateOptions) -> SessionSpec:
-    from sarah.runs.session import SessionSpec
-
     subject = episode_of(options.subject, None, named_task(options.task)).spec
     any_pushed = EpisodeSpec(STEPPING.baseline, 0, STEPPING, options.episode)
     robot = options.applied_to(any_pushed).config
@@ -263,8 +260,6 @@ def _watched(
 
 
 def _summarise(result: SessionResult, frozen: SessionResult | None, spec: SessionSpec, path: Path) -> None:
-    from sarah.operation.settings import PARAMETERS
-
     named = zip((parameter.name for parameter in PARAMETERS), result.parameters, strict=True)
     print("\nleft with   " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
     print(f"score       {_scores_of(result)}")

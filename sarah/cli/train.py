@@ -34,11 +34,14 @@ from sarah.episode.reward import equation_2, frequency_hint
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, load_task
 from sarah.errors import ConfigurationError, RunFolderError, TaskError
 from sarah.files import quoted
+from sarah.robot.description import describe_robot
 from sarah.robot.scale import Scale
 from sarah.runs.agent_names import unknown_option
 from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import first_difference
+from sarah.runs.recorded_task import RecordedTask
+from sarah.simulation.engines import check_engine
 
 if TYPE_CHECKING:
     from sarah.episode.workers import Workers
@@ -94,13 +97,10 @@ def main() -> None:
     if options.from_run is not None and config.task is not BALANCE:
         same = f": to train again with its settings, say --config {quoted(options.from_run / 'config.yaml')}"
         raise ConfigurationError(f"--from is for --task {BALANCE.name}, not {config.task.reference!r}{same}")
-    from sarah.robot.description import describe_robot
-
     describe_robot(config.episode.dimensions)  # a bad dimension is refused before anything is written
     from sarah.episode.workers import Workers
     from sarah.recorded.folder import new_path
     from sarah.runs.run_folder import RunFolder
-    from sarah.simulation.engines import check_engine
     from sarah.training.learners import check_device
 
     check_device(config.agent)
@@ -224,7 +224,6 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
 
 def _resumed_defaults(path: Path, given: Mapping[str, str]) -> TrainOptions:
     """Options of the training to go on with; other settings than its own would need other options."""
-    from sarah.runs.recorded_task import RecordedTask
     from sarah.runs.run_folder import RunFolder
 
     task, training = None, RunFolder.open(path, unfinished=True).config()

@@ -7,7 +7,7 @@ import math
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import tyro
 
@@ -16,12 +16,11 @@ from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import passed_on, say_next, to_open, to_see
 from sarah.cli.options import as_command, named_task
 from sarah.cli.subjects import episode_of
+from sarah.episode.ending import ending_words
+from sarah.episode.result import EpisodeResult
+from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError
 from sarah.ranges import Within
-
-if TYPE_CHECKING:
-    from sarah.episode.result import EpisodeResult
-    from sarah.episode.spec import EpisodeSpec
 
 COMMAND = "sarah-video"
 NOT_OF_VIEW = ("out", "seconds", "speed")
@@ -72,7 +71,6 @@ def main() -> None:
     spec, is_alone = _spec(options, options.subject)
     from tqdm import tqdm
 
-    from sarah.episode.ending import ending_words
     from sarah.episode.episode import simulate
 
     result = simulate(spec, record_trace=True)
@@ -105,7 +103,6 @@ def _spec(options: VideoOptions, subject: str) -> tuple[EpisodeSpec, bool]:
 
 def _caption(spec: EpisodeSpec, result: EpisodeResult, is_alone: bool) -> str:
     """Lines about the filmed episode: its parameters and result, and what its pictures leave out."""
-    from sarah.episode.ending import ending_words
     from sarah.runs.episode_words import told_of
 
     names = spec.task.parameter_names

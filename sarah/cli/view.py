@@ -18,11 +18,13 @@ from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import say_next, to_open
 from sarah.cli.options import as_command, named_task, say_engine
 from sarah.cli.subjects import episodes_of, is_shipped
+from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError
 from sarah.files import check_file
 from sarah.ranges import Within
 from sarah.runs.config_files import changed_alike
+from sarah.simulation.engines import check_engine
 
 if TYPE_CHECKING:
     from sarah.runs.run_episodes import RunEpisode
@@ -69,8 +71,6 @@ def main() -> None:
     if changed != chosen.spec:
         choices = [choice.of(_changed_as(choice.spec, chosen.spec, changed)) for choice in choices]
         chosen = chosen.of(changed)
-    from sarah.simulation.engines import check_engine
-
     check_engine(chosen.spec.config.engine)
     if options.seed is not None:
         chosen = chosen.of(dataclasses.replace(chosen.spec, seed=options.seed))
@@ -106,7 +106,6 @@ def _export(path: Path, chosen: RunEpisode) -> None:
 
 
 def _serve(options: ViewOptions, choices: list[RunEpisode], chosen: RunEpisode) -> None:
-    from sarah.episode.parameter_sets import PARAMETER_SETS
     from sarah.viewer.page import Page
     from sarah.viewer.server import serving
 
