@@ -11,14 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
-from sarah.cli.episode_options import (
-    DIRECTIONS,
-    check_episode_options,
-    for_given_robot,
-    given_options,
-    with_given_directions,
-    with_given_engine,
-)
+from sarah.cli.episode_options import DIRECTIONS, given_options, with_given
 from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import say_next, to_open, to_see, to_watch
 from sarah.cli.options import as_command, parse_options, pushed_words, say_engine
@@ -103,10 +96,7 @@ def _defaults(arguments: Sequence[str]) -> CompareOptions:
     """Default options: those of ``sarah-train``, of the type that task and engine take."""
     given = given_options(arguments, "task", "engine", "episode.engine", *DIRECTIONS)
     training = default_training(load_task(given["task"]) if "task" in given else STEPPING)
-    episode = for_given_robot(with_given_engine(training.episode, given), arguments)
-    check_episode_options(arguments, episode)
-    if training.task is BALANCE:
-        episode = with_given_directions(episode, given)
+    episode = with_given(training.episode, arguments, given, is_directed=training.task is BALANCE)
     return CompareOptions(task=training.task, episodes=training.episodes, episode=episode)
 
 

@@ -13,14 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.episode_options import (
-    DIRECTIONS,
-    check_episode_options,
-    for_given_robot,
-    given_options,
-    with_given_directions,
-    with_given_engine,
-)
+from sarah.cli.episode_options import DIRECTIONS, given_options, with_given
 from sarah.cli.former_names import with_out
 from sarah.cli.given_settings import say_differences, settings_of_file, settings_on_stepping
 from sarah.cli.going_on import check_extendable, check_same, finished_words
@@ -213,12 +206,8 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
     _check_agent_options(arguments, training)
     first = given.get("from") if training.task is BALANCE else None
     episode = training.episode if first is None else settings_on_stepping(Path(first), file, arguments)
-    episode = with_given_engine(episode, given)
-    check_episode_options(arguments, episode)
-    if first is None and file is None:  # what a folder or a file has recorded stays as it is
-        episode = for_given_robot(episode, arguments)
-    if file is None and training.task is BALANCE:
-        episode = with_given_directions(episode, given)
+    is_recorded = first is not None or file is not None
+    episode = with_given(episode, arguments, given, is_recorded, file is None and training.task is BALANCE)
     return TrainOptions(dataclasses.replace(training, episode=episode))
 
 
