@@ -130,7 +130,7 @@ PROTECTIONS = (
     Protection(
         "outcomes of workers with other code are refused",
         "episode/cluster.py",
-        "_check_worker(answered.worker, answered.versions, self._packages)",
+        "_check_worker(worker, there, self._packages)",
         "pass",
         "test_a_worker_with_other_code_is_refused_whenever_it_comes",
     ),

@@ -10,14 +10,15 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from concurrent import futures
-from typing import TYPE_CHECKING, Any, NamedTuple
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from sarah.errors import WorkersError, one_line
 from sarah.streams import keep_streams
 from sarah.versions import SIMULATING, differences, versions
 
 if TYPE_CHECKING:
-    from distributed import Client, Future
+    from distributed import Client
 
 SCHEDULER_SECONDS = 10
 """Time limit for connecting to a scheduler, in s."""
@@ -47,29 +48,17 @@ ATTEMPTS = 20
 """Largest number of times that a call is submitted: a scheduler gives it up after the deaths of a few workers."""
 
 
-class Answer(NamedTuple):
-    """What a worker returns.
-
-    :param value: what the call returned
-    :param worker: address of the worker
-    :param versions: versions that the worker has, by name
-    """
-
-    value: Any
-    worker: str
-    versions: dict[str, str]
-
-
-def answer(packages: tuple[str, ...], function: Callable[..., Any], *subjects: Any) -> Answer:
+def answer(packages: tuple[str, ...], function: Callable[..., Any], *subjects: Any) -> tuple[Any, str, dict[str, str]]:
     """Compute a call, in a worker.
 
     :param packages: names of the packages whose versions matter
     :param function: function to call
     :param subjects: arguments of the function
+    :return: what the call returned, the worker's address, and the versions that the worker has, by name
     """
     from distributed import get_worker
 
-    return Answer(function(*subjects), get_worker().address, versions(packages))
+    return function(*subjects), get_worker().address, versions(packages)
 
 
 class RemoteJob:
@@ -84,11 +73,8 @@ class RemoteJob:
     def __init__(self, client: Client, packages: tuple[str, ...], function: Callable[..., Any], *subjects: Any) -> None:
         self._client = client
         self._packages = packages
-        self._call = (answer, packages, function, *subjects)
+        self._submit = partial(client.submit, answer, packages, function, *subjects, pure=False)
         self._future = self._submit()
-
-    def _submit(self) -> Future:
-        return self._client.submit(*self._call, pure=False)
 
     def result(self) -> Any:
         """Wait for the call, and return what it returned.
@@ -96,11 +82,11 @@ class RemoteJob:
         :raises WorkersError: if the worker has other code or versions than this process, or if all workers die and no
             other can start
         """
-        answered = self._wait()
-        _check_worker(answered.worker, answered.versions, self._packages)
-        return answered.value
+        value, worker, there = self._wait()
+        _check_worker(worker, there, self._packages)
+        return value
 
-    def _wait(self) -> Answer:
+    def _wait(self) -> tuple[Any, str, dict[str, str]]:
         from concurrent.futures import CancelledError
 
         from distributed.scheduler import KilledWorker
@@ -108,8 +94,7 @@ class RemoteJob:
         for _ in range(ATTEMPTS):
             try:
                 self._wait_for_its_end()
-                answered: Answer = self._future.result()
-                return answered
+                return self._future.result()
             except KilledWorker:  # the scheduler gave up after a few deaths, but a pure function can be repeated
                 self._future = self._submit()
             except CancelledError as error:
