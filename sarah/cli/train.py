@@ -91,6 +91,7 @@ def main() -> None:
         same = f": to train again with its settings, say --config {quoted(options.from_run / 'config.yaml')}"
         raise ConfigurationError(f"--from is for --task {BALANCE.name}, not {config.task.reference!r}{same}")
     describe_robot(config.episode.dimensions)  # a bad dimension is refused before anything is written
+    from sarah.episode.trial import try_task
     from sarah.episode.workers import Workers
     from sarah.recorded.folder import new_path
     from sarah.runs.run_folder import RunFolder
@@ -109,8 +110,6 @@ def main() -> None:
             return
         with run.journal_of(run.config()):  # what cannot go on is refused before workers start
             pass
-
-    from sarah.episode.trial import try_task
 
     try_task(config.task, config.episode)
     with Workers(options.workers, options.scheduler) as workers:

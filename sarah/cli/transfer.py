@@ -18,6 +18,7 @@ from sarah.cli.subjects import learned_of
 from sarah.cli.tables import leave_table, prepare_table
 from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError
+from sarah.simulation.engines import check_engine
 
 COMMAND = "sarah-transfer"
 
@@ -50,8 +51,7 @@ def main() -> None:
     options = parse_episode_options(COMMAND, arguments, TransferOptions())
     if not options.subjects:
         raise ConfigurationError("give at least one run folder, numbers or a name")
-    from sarah.reports.transfer import ENGINES
-    from sarah.simulation.engines import check_engine
+    from sarah.reports.transfer import ENGINES, as_markdown, transfer
 
     for engine in ENGINES:
         check_engine(engine)
@@ -59,7 +59,6 @@ def main() -> None:
     if options.out is None and not (len(options.subjects) == 1 and first.is_dir()):
         raise ConfigurationError("anything but one run needs a folder for table and figure: --out DIR")
     from sarah.episode.workers import Workers
-    from sarah.reports.transfer import as_markdown, transfer
     from sarah.reports.transfer_figure import draw_transfer
     from sarah.runs.run_folder import RunFolder
 

@@ -9,7 +9,7 @@ import threading
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import tyro
 
@@ -24,10 +24,8 @@ from sarah.errors import ConfigurationError
 from sarah.files import check_file
 from sarah.ranges import Within
 from sarah.runs.config_files import changed_alike
+from sarah.runs.run_episodes import RunEpisode
 from sarah.simulation.engines import check_engine
-
-if TYPE_CHECKING:
-    from sarah.runs.run_episodes import RunEpisode
 
 COMMAND = "sarah-view"
 DEFAULT_PORT = 8080
