@@ -8,7 +8,6 @@ from experiments.balance_trainings import BalanceTrainings
 from experiments.benchmarks.table import BENCHMARKS
 from experiments.ceiling import Ceiling
 from experiments.clock import Clock
-from experiments.conditions import Conditions
 from experiments.endurance.table import ENDURANCE
 from experiments.engines import Engines
 from experiments.maker import Maker
@@ -22,8 +21,6 @@ from experiments.other_sizes import OtherSizes, Robot
 from experiments.physics import FinenessAnywhere, FinenessInConditions
 from experiments.race import Race
 from experiments.robot_dimensions import RobotDimensions
-from experiments.robustness import Robustness
-from experiments.rough_ground import RoughGround
 from experiments.second_training import SecondTraining, SecondTrainingSummary
 from experiments.sensor_faults import SensorFaults
 from experiments.several_actions import SeveralActions
@@ -81,21 +78,6 @@ TABLE: dict[str, Maker] = {
         "Which parameters does the package ship, and how well do they do?",
         ShippedParameters(),
         {**BALANCED, "rounds": (Round(None, 3),), "episodes": 1},
-    ),
-    "robustness": Maker(
-        "How hard a push does the robot come back from?",
-        Robustness(),
-        {**TRAINED, "seed": 0, "episodes": 2, "forces": (150.0,)},
-    ),
-    "conditions": Maker(
-        "What do the shipped parameters do on slopes, with faulty sensors and under pushes?",
-        Conditions(),
-        {"episodes": 1, "reference_episodes": 0, "time_limit": 1.2, "pushed_seconds": 1.2},
-    ),
-    "rough_ground": Maker(
-        "What do the shipped parameters do on bumps and on ground that slips?",
-        RoughGround(),
-        {"episodes": 1, "reference_episodes": 0, "time_limit": 1.1},
     ),
     "transfer_stepping": Maker(
         "How much of its score does a First Training keep in the other engine?",

@@ -110,42 +110,6 @@ def naf_preset(rows: Rows) -> Figure:
     return figure
 
 
-def robustness(rows: Rows) -> Figure:
-    """Survival by force, from the sides and from front and back."""
-    figure, axes = panels(2, 0.4, sharey=True)
-    directions = grouped(chosen(rows, "direction!=all"), "{direction}")
-    for axis, (direction, group) in zip(axes, directions.items(), strict=True):
-        draw_lines(axis, group, "push_n", "survival", "{controller}")
-        axis.set_title(f"{direction} pushes")
-    axes[1].set_ylabel("")
-    legend(figure, axes[0])
-    return figure
-
-
-def pushes(rows: Rows, situation: str) -> Figure:
-    """Survival of pushes by each controller, a panel for each engine.
-
-    :param rows: rows of the result
-    :param situation: column of the situations
-    """
-    engines = grouped(chosen(rows, "push_n>0 and physics=standard"), "{engine}")
-    figure, axes = panels(len(engines), 0.4, sharey=True)
-    names = list(
-        dict.fromkeys(row[situation] for group in engines.values() for row in group)
-    )  # some have one controller
-    for axis, (name, group) in zip(axes, engines.items(), strict=True):
-        for index, (hips, judged) in enumerate(grouped(group, "{hips}").items()):
-            heights = [len(names) - names.index(row[situation]) - 0.2 * index for row in judged]
-            axis.hlines(
-                heights, numbers(judged, "survival_low"), numbers(judged, "survival_high"), color=COLOURS[index]
-            )
-            axis.plot(numbers(judged, "survival"), heights, "o", color=COLOURS[index], markersize=4, label=hips)
-        axis.set_yticks(range(len(names), 0, -1), names)
-        axis.set(title=name, xlabel=heading("survival"))
-    legend(figure, axes[0])
-    return figure
-
-
 def landscape(rows: Rows) -> Figure:
     """Score along each parameter, in both engines."""
     parameters = grouped(rows, "{parameter}")
@@ -248,9 +212,6 @@ PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
     "several_actions": (("several_actions",), partial(learning_curves, panel="{task}")),
     "known_truth": (("known_truth",), known_truth),
     "naf_preset": (("naf_preset",), naf_preset),
-    "robustness": (("robustness",), robustness),
-    "conditions": (("conditions",), partial(pushes, situation="situation")),
-    "rough_ground": (("rough_ground",), partial(pushes, situation="ground")),
     "landscape_stepping": (("landscape_stepping",), landscape),
     "landscape_balance": (("landscape_balance",), landscape),
     "physics": (("physics",), physics),
