@@ -8,27 +8,22 @@ from experiments.balance_trainings import BalanceTrainings
 from experiments.benchmarks.table import BENCHMARKS
 from experiments.box_limit import BoxLimit
 from experiments.ceiling import Ceiling
-from experiments.clock import Clock
 from experiments.conditions import Conditions
 from experiments.contexts import Contexts
 from experiments.endurance.table import ENDURANCE
-from experiments.engines import Engines
-from experiments.maker import Maker
 from experiments.flexion_laws import FlexionLaws
 from experiments.goal_tasks import GoalTasks
 from experiments.held_actions import HeldActions
 from experiments.hopper_actions import HopperActions
 from experiments.known_truth import KnownTruth
-from experiments.landscape import Landscape
 from experiments.lateral_limit import LateralLimit
+from experiments.maker import Maker
 from experiments.naf_preset import NafPreset
 from experiments.observed_reward import ObservedReward
 from experiments.operation import Operation
 from experiments.other_sizes import OtherSizes, Robot
-from experiments.physics import FinenessAnywhere, FinenessInConditions
 from experiments.race import Race
 from experiments.rank_replay import RankReplay
-from experiments.robot_dimensions import RobotDimensions
 from experiments.robustness import Robustness
 from experiments.rough_ground import RoughGround
 from experiments.scaled_actions import ScaledActions
@@ -42,7 +37,6 @@ from experiments.slots import SlotsSchedule
 from experiments.slots_cost import SlotsCost
 from experiments.standard_tasks import NAF_VARIANTS, StandardTask
 from experiments.stepping_and_hips import SteppingAndHips
-from experiments.transfer import TransferBetweenEngines
 
 SHORT = {"time_limit": 2.0}
 TRAINED = {**SHORT, "budget": 5}
@@ -113,16 +107,6 @@ TABLE: dict[str, Maker] = {
         "Do parameters that follow the ground do better than one set for all grounds?",
         Contexts(),
         {"seeds": 1, "budget": 2, "episodes": 1, "time_limit": 1.1},
-    ),
-    "transfer_stepping": Maker(
-        "How much of its score does a First Training keep in the other engine?",
-        TransferBetweenEngines("stepping", episodes=5, budget=100),
-        {**TRAINED, "seeds": 1, "episodes": 2},
-    ),
-    "transfer_balance": Maker(
-        "How much of its score does a Second Training keep in the other engine?",
-        TransferBetweenEngines("balance", episodes=20, budget=300),
-        {**TRAINED, "seeds": 1, "episodes": 2},
     ),
     # A robot that goes on.
     "operation": Maker(
@@ -238,25 +222,10 @@ TABLE: dict[str, Maker] = {
         of_robot=False,
     ),
     # The controller.
-    "landscape_stepping": Maker(
-        "What does each of P1 to P5 do, one at a time around (0.4, 1, 0.1, 1, 1)?",
-        Landscape("stepping", seeds=3, time_limit=12.0),
-        {**SHORT, "seeds": 1, "points": 1},
-    ),
-    "landscape_balance": Maker(
-        "What does each of V1 to V4 do, one at a time around (1, 0, 0, 0) under pushes of 100 N?",
-        Landscape("balance", seeds=12, time_limit=8.0),
-        {**SHORT, "seeds": 1, "points": 1},
-    ),
     "shift_endings": Maker(
         "Which of its conditions ends SHIFT?",
         ShiftEndings(),
         {"time_limit": 3.0, "episodes": 1, "steady_from": 1.0, "p3": ()},
-    ),
-    "clock": Maker(
-        "Can a learner use the time-outs as a clock?",
-        Clock(),
-        {**SHORT, "random_sets": 1},
     ),
     "stepping_and_hips": Maker(
         "Does V1 help whatever P1 to P5 are?",
@@ -282,27 +251,6 @@ TABLE: dict[str, Maker] = {
         "Does the robot go on stepping when its sensors or its control loop fail?",
         SensorFaults(),
         {"time_limit": 1.1, "seeds": 1},
-    ),
-    "robot_dimensions": Maker(
-        "What does each dimension of the robot do for its stability?",
-        RobotDimensions(),
-        {"time_limit": 1.1, "pushed_seconds": 1.1, "pushes": 1, "unpushed": 1},
-    ),
-    # The physics.
-    "physics": Maker(
-        "How far are the scores of coarser physics from those of the finest, with delay and without?",
-        FinenessInConditions(),
-        {"time_limit": 1.2, "seeds": 2, "sets": 1, "control_rates": (100,), "delays": (0.010,)},
-    ),
-    "physics_anywhere": Maker(
-        "How far are the scores of P1 to P5 from anywhere in their box from those of the finest physics?",
-        FinenessAnywhere(),
-        {"time_limit": 1.2, "seeds": 2, "sets": 1},
-    ),
-    "engines": Maker(
-        "How far do the two physics engines agree?",
-        Engines(),
-        {**SHORT, "seeds": 1},
     ),
     **BENCHMARKS,
     **ENDURANCE,

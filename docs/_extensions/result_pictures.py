@@ -17,7 +17,6 @@ from result_rows import chosen
 from result_shapes import (
     COLOURS,
     Rows,
-    draw_against,
     draw_intervals,
     draw_lines,
     draw_strips,
@@ -28,7 +27,7 @@ from result_shapes import (
 )
 
 from experiments import record
-from sarah.pictures.style import COLUMN_WIDTH, STYLE
+from sarah.pictures.style import STYLE
 
 
 def second_training(rows: Rows) -> Figure:
@@ -181,74 +180,6 @@ def stepping_and_hips(rows: Rows) -> Figure:
     return figure
 
 
-def landscape(rows: Rows) -> Figure:
-    """Score along each parameter, in both engines."""
-    parameters = grouped(rows, "{parameter}")
-    figure, axes = panels(len(parameters), 0.28, sharey=True)
-    for axis, (name, group) in zip(axes, parameters.items(), strict=True):
-        draw_lines(axis, group, "value", "score", "{engine}")
-        axis.set(xlabel=name, ylabel="score" if axis is axes[0] else "")
-    legend(figure, axes[0])
-    return figure
-
-
-def physics(rows: Rows) -> Figure:
-    """Score at each setting against the score at the finest, of each set in each condition."""
-    condition = "{parameters}, {control_rate_hz}, {sensors}"
-    finest = {condition.format(**row): row["score"] for row in rows if not row["difference"]}
-    coarser = [{**row, "finest_score": finest[condition.format(**row)]} for row in rows if row["difference"]]
-    settings = grouped(coarser, "{setting}")
-    figure, axes = panels(len(settings), 0.35, sharey=True)
-    for axis, (name, group) in zip(axes, settings.items(), strict=True):
-        draw_against(axis, group, "finest_score", "score", "{sensors}")
-        axis.set_title(name, fontsize="small")
-        axis.set(xlabel="score at the finest", ylabel="score" if axis is axes[0] else "")
-    legend(figure, axes[0])
-    return figure
-
-
-def between_engines(label: str) -> Callable[[Rows], Figure]:
-    """Score in MuJoCo against score in PyBullet.
-
-    :param label: template that names the groups
-    """
-
-    def drawn(rows: Rows) -> Figure:
-        figure, axis = plt.subplots(figsize=(1.2 * COLUMN_WIDTH, 1.1 * COLUMN_WIDTH), layout="constrained")
-        draw_against(axis, rows, "pybullet_score", "mujoco_score", label)
-        scores = [score for engine in ("pybullet", "mujoco") for score in numbers(rows, f"{engine}_score")]
-        limits = (min(scores) - 0.05, max(scores) + 0.05)
-        axis.set(xlim=limits, ylim=limits)
-        figure.legend(*axis.get_legend_handles_labels(), loc="outside upper center", ncols=2)
-        return figure
-
-    return drawn
-
-
-def clock(rows: Rows) -> Figure:
-    """How many random sets score above 0.5, and how many of these by a clock."""
-    figure, (axis,) = panels(1, 0.2)
-    heights = range(len(rows))
-    axis.barh(heights, numbers(rows, "sets_above_half"), color=COLOURS[0], label="random sets that score above 0.5")
-    axis.barh(heights, numbers(rows, "clocks_above_half"), color=COLOURS[1], label="of these, clocks")
-    axis.set_yticks(heights, [f"time-outs of {row['time_out_s']} s" for row in rows])
-    legend(figure, axis)
-    return figure
-
-
-def robot_dimensions(rows: Rows) -> Figure:
-    """Survival of each robot."""
-    figure, axes = panels(2, 0.5, sharey=True)
-    for axis, column in zip(axes, ("lateral_survival", "sagittal_survival"), strict=True):
-        for colour, (name, group) in zip(COLOURS, grouped(rows, "V = {V}").items(), strict=False):
-            heights = range(len(group), 0, -1)
-            axis.plot(numbers(group, column), heights, "o", color=colour, markersize=4, alpha=0.8, label=name)
-            axis.set_yticks(heights, [row["robot"] for row in group])
-        axis.set_xlabel(heading(column))
-    legend(figure, axes[0])
-    return figure
-
-
 def updates(rows: Rows) -> Figure:
     """Updates per second of NAF and TD3."""
     figure, (axis,) = panels(1, 0.3)
@@ -301,13 +232,6 @@ PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
     "lateral_limit": (("lateral_limit",), lateral_limit),
     "flexion_laws": (("flexion_laws",), flexion_laws),
     "stepping_and_hips": (("stepping_and_hips",), stepping_and_hips),
-    "landscape_stepping": (("landscape_stepping",), landscape),
-    "landscape_balance": (("landscape_balance",), landscape),
-    "physics": (("physics",), physics),
-    "engines": (("engines",), between_engines("{task}")),
-    "transfer": (("transfer_stepping", "transfer_balance"), between_engines("{task}, learned in {learned_in}")),
-    "clock": (("clock",), clock),
-    "robot_dimensions": (("robot_dimensions",), robot_dimensions),
     "updates": (("updates",), updates),
     "slots_schedule": (("slots_schedule",), slots_schedule),
     "long_training": (("long_training",), long_training),

@@ -6,8 +6,8 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from experiments.physics import SETTINGS
 from experiments.record import Row
+from experiments.robot.physics import SETTINGS
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
