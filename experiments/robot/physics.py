@@ -162,8 +162,9 @@ def far_off(rows: DataFrame) -> str:
         "shifts_timed_out": ".0%",
     }
     caption = (
-        f"Differences beyond {shown(FAR, '.0%')} with their standard errors, and how the robot steps there: steps per "
-        f"second at the finest setting and at this one, and the share of this one's SHIFTs that timed out."
+        f"Differences from the finest setting's score beyond {shown(FAR, '.0%')} with their standard errors, and how "
+        f"the robot steps there, without a push: steps per second at the finest setting and at this one, and the share "
+        f"of this one's SHIFTs that timed out."
     )
     return table(both[both.difference.abs() > FAR], [*CONDITION, "setting", *formats], formats, caption)
 
