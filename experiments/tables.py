@@ -20,9 +20,18 @@ UNITS = {
     "m2_s4": "m²/s⁴",
 }
 """Unit by the end of a column's name."""
-WORDS = {"low": "from", "high": "to", "error": "±", "naf": "NAF", "td3": "TD3", "pybullet": "PyBullet", "v": "V"}
+WORDS = {
+    "low": "from",
+    "high": "to",
+    "error": "±",
+    "naf": "NAF",
+    "td3": "TD3",
+    "pybullet": "PyBullet",
+    "mujoco": "MuJoCo",
+    "v": "V",
+}
 """Words of column names that are written otherwise."""
-NOTHING = "–"
+NOTHING = "\N{EN DASH}"
 """What stands in an empty cell."""
 
 
@@ -34,7 +43,8 @@ def table(rows: DataFrame, columns: Sequence[str], formats: Mapping[str, str], c
     :param formats: format of the numbers by column; other columns are shown as they stand
     :param caption: sentence above the table
     """
-    cells = [[shown(row[column], formats.get(column, "")) for column in columns] for _, row in rows.iterrows()]
+    shown_columns = [[shown(value, formats.get(column, "")) for value in rows[column]] for column in columns]
+    cells = list(zip(*shown_columns, strict=True))
     return "\n".join([f"**{caption}**", "", *markdown_table([heading(column) for column in columns], cells)])
 
 
@@ -74,7 +84,7 @@ def markdown_table(head: Sequence[str], cells: Iterable[Sequence[str]]) -> list[
     :param head: its head
     :param cells: its cells, row by row
     """
-    return [f"| {' | '.join(line)} |" for line in (head, ["---"] * len(head), *cells)]
+    return [f"| {' | '.join(cell or NOTHING for cell in line)} |" for line in (head, ["---"] * len(head), *cells)]
 
 
 def heading(column: str) -> str:

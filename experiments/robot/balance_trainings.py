@@ -12,10 +12,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from pandas import DataFrame
+
 from experiments import record
 from experiments.experiment import product
 from experiments.judge import Condition, Judge
 from experiments.record import Row, cell
+from experiments.shapes import groups
+from experiments.tables import table
 from experiments.trainings import TrainingExperiment, kept
 from sarah.control.parameters import BALANCE_PARAMETERS, Parameters
 from sarah.episode.parameter_sets import PARAMETER_SETS
@@ -152,3 +156,21 @@ class BalanceTrainings(SecondTrainingExperiment):
 
 FULL = BalanceTrainings()
 QUICK = BalanceTrainings(time_limit=2.0, budget=5, engines=("mujoco",), seeds=1)
+
+
+def settled(rows: DataFrame) -> str:
+    """Where V1 to V4 settle."""
+    found = DataFrame(
+        {
+            "engine": engine,
+            "parameter": name,
+            "lowest": group[name].min(),
+            "median": group[name].median(),
+            "highest": group[name].max(),
+            "median_of_mu": group[f"mu_{name}"].median(),
+        }
+        for engine, group in groups(rows, "engine").items()
+        for name in NAMES
+    )
+    caption = f"What {FULL.seeds} trainings in each engine recommend, and what their networks say (mu)."
+    return table(found, list(found.columns), dict.fromkeys(found.columns[2:], ".2f"), caption)
