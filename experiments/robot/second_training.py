@@ -245,8 +245,8 @@ def claims(rows: DataFrame) -> str:
         (
             "V1 and V3 matter more than V2 and V4",
             "yes",
-            f"V1 ends at {span(runs.V1, '.2f')} and saves the robot from the sides; V3 ends at {span(runs.V3, '.2f')}"
-            " and saves it from front and back",
+            f"V1 ends at {span(runs.V1, '.2f')} and saves the robot from the sides; V3 ends above zero in"
+            f" {(runs.V3 > 0.0).sum()} of {len(runs)} trainings and saves it from front and back",
         ),
         (
             "V3 multiplies the acceleration of the y axis",
