@@ -22,18 +22,13 @@ from experiments.known_truth import KnownTruth
 from experiments.landscape import Landscape
 from experiments.lateral_limit import LateralLimit
 from experiments.naf_preset import NafPreset
-from experiments.observed_reward import ObservedReward
-from experiments.operation import Operation
-from experiments.other_sizes import OtherSizes, Robot
 from experiments.physics import FinenessAnywhere, FinenessInConditions
-from experiments.race import Race
 from experiments.rank_replay import RankReplay
 from experiments.robot_dimensions import RobotDimensions
 from experiments.robustness import Robustness
 from experiments.rough_ground import RoughGround
 from experiments.scaled_actions import ScaledActions
 from experiments.second_training import SecondTraining, SecondTrainingSummary
-from experiments.sensor_faults import SensorFaults
 from experiments.several_actions import SeveralActions
 from experiments.shift_endings import ShiftEndings
 from experiments.shipped_parameters import ShippedParameters
@@ -46,24 +41,11 @@ from experiments.transfer import TransferBetweenEngines
 
 SHORT = {"time_limit": 2.0}
 TRAINED = {**SHORT, "budget": 5}
-RACED = {**TRAINED, "seeds": 1, "algorithms": ("cma-es",), "courses": Path("build/experiments/race")}
 BALANCED = {**TRAINED, "engines": ("mujoco",), "seeds": 1}
 BEST_KNOWN = {**BALANCED, "judging": 3, "candidates": 4}
 
 TABLE: dict[str, Maker] = {
     # What trainings learn.
-    "other_sizes": Maker(
-        "Do robots of other sizes learn by the same commands?",
-        OtherSizes(),
-        {
-            **SHORT,
-            "robots": (Robot(4.0, 0.2, 5.4),),
-            "engines": ("mujoco",),
-            "seeds": 1,
-            "budgets": (5, 5),
-            "episodes": 1,
-        },
-    ),
     "balance_trainings": Maker(
         "Which V1 to V4 does each Second Training recommend, and which does its network say?",
         BalanceTrainings(),
@@ -124,28 +106,7 @@ TABLE: dict[str, Maker] = {
         TransferBetweenEngines("balance", episodes=20, budget=300),
         {**TRAINED, "seeds": 1, "episodes": 2},
     ),
-    # A robot that goes on.
-    "operation": Maker(
-        "What is it worth to renew parameters while the robot runs?",
-        Operation(),
-        {"seeds": 1, "other_seeds": 1, "minutes": 0.1, "best_seeds": 1, "best_minutes": 0.1},
-    ),
-    "observed_reward": Maker(
-        "Does the reward that the robot observes rank parameters as equation 2 does?",
-        ObservedReward(),
-        {"sets": 4, "minutes": 0.1},
-    ),
     # Algorithms.
-    "race_stepping": Maker(
-        "Which algorithm learns to step in the fewest episodes?",
-        Race("stepping", budget=60, first_seed=100),
-        {**RACED, "evaluations": 1},
-    ),
-    "race_balance": Maker(
-        "Which algorithm learns to come back after a push in the fewest episodes?",
-        Race("balance", budget=150, first_seed=300, evaluations_along=12),
-        {**RACED, "evaluations": 1, "evaluations_along": 1},
-    ),
     "naf_preset": Maker(
         "What is each part of NAF's preset for episodes of one step worth?",
         NafPreset(),
@@ -277,11 +238,6 @@ TABLE: dict[str, Maker] = {
         "Does the box around the start end episodes that the robot would have saved?",
         BoxLimit(),
         {"pushes": 1, "time_limit": 3.5},
-    ),
-    "sensor_faults": Maker(
-        "Does the robot go on stepping when its sensors or its control loop fail?",
-        SensorFaults(),
-        {"time_limit": 1.1, "seeds": 1},
     ),
     "robot_dimensions": Maker(
         "What does each dimension of the robot do for its stability?",

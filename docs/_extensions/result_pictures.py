@@ -11,7 +11,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter, MaxNLocator
+from matplotlib.ticker import EngFormatter
 from result_columns import heading
 from result_rows import chosen
 from result_shapes import (
@@ -42,25 +42,6 @@ def second_training(rows: Rows) -> Figure:
         draw_strips(axis, values, {label: float(neutral[column]) for column, label in columns.items()}, "V = 0")
     right.set(ylim=(0.0, 1.05), ylabel="survival of pushes")
     legend(figure, left)
-    return figure
-
-
-def race(rows: Rows) -> Figure:
-    """Final scores with their standard errors, and how many trainings are at 95 % of the best, finally or before."""
-    labels = [row["algorithm"] for row in rows]
-    figure, (left, right) = panels(2, 0.4, sharey=True)
-    scores, errors = numbers(rows, "final_score"), numbers(rows, "final_score_error")
-    ends = [[score + sign * error for score, error in zip(scores, errors, strict=True)] for sign in (-1, 1)]
-    draw_intervals(left, labels, scores, *ends)
-    left.set_xlabel("final score, mean and standard error")
-    heights = range(len(labels), 0, -1)
-    right.hlines(heights, numbers(rows, "final_at_95_low"), numbers(rows, "final_at_95_high"), color=COLOURS[0])
-    named = (("final_at_95", "o", COLOURS[0], "final score"), ("held_95", "s", COLOURS[1], "held along the way"))
-    for column, marker, colour, label in named:
-        right.plot(numbers(rows, column), heights, marker, color=colour, markersize=4, label=label)
-    right.xaxis.set_major_locator(MaxNLocator(integer=True))
-    right.set(xlabel="trainings at 95 % of the best score", xlim=(-0.5, max(numbers(rows, "runs")) + 0.5))
-    legend(figure, right)
     return figure
 
 
@@ -287,8 +268,6 @@ def long_training(rows: Rows) -> Figure:
 
 PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
     "second_training": (("second_training",), second_training),
-    "race_stepping": (("race_stepping",), race),
-    "race_balance": (("race_balance",), race),
     "naf_pendulum": (("naf_pendulum",), standard_task),
     "naf_inverted_pendulum": (("naf_inverted_pendulum",), standard_task),
     "several_actions": (("several_actions",), partial(learning_curves, panel="{task}")),
