@@ -79,9 +79,11 @@ class Operation(Experiment):
         seeds = range(self.other_sessions if learner in OTHERS else self.sessions)
         config = self._config(robot, self.minutes)
         frozen = [session(config, seed) for seed in seeds]
+        found = frozen
         if learner == BEST:
-            found = [session(config, seed, self._best_known(robot)) for seed in seeds]
-        else:
+            best = self._best_known(robot)
+            found = [session(config, seed, best) for seed in seeds]
+        elif learner != "none":
             found = [session(config, seed, learner=learner) for seed in seeds]
         gains = [one.mean_score() - other.mean_score() for one, other in zip(found, frozen, strict=True)]
         yield {
