@@ -1,7 +1,7 @@
-"""What becomes of a stepping robot whose sensors or control loop fail. Faults stay, unless their name says otherwise.
+"""Does the robot go on stepping when its sensors or its control loop fail?
 
-The controller stands behind the fault, which decides what it reads and whether its tick takes place. The simulated
-robot and the judgement of the episode are not touched.
+The controller stands behind the fault, which decides what it reads and whether its tick takes place. Faults stay,
+unless their name says otherwise. The simulated robot and the judgement of the episode are not touched.
 """
 
 from __future__ import annotations
@@ -12,13 +12,15 @@ from dataclasses import dataclass, replace
 from statistics import mean
 from typing import Any, NamedTuple
 
-from experiments.maker import ParallelExperiment
+from pandas import DataFrame
+
+from experiments.experiment import Experiment, product
 from experiments.record import Row
+from experiments.tables import table
 from sarah.control.pattern_generator import PatternGenerator, PhaseChange
 from sarah.episode.episode import Episode
 from sarah.episode.push import Push
 from sarah.episode.tasks import BALANCE, BalanceConfig
-from sarah.episode.workers import Workers
 from sarah.robot.filters import ramped
 from sarah.robot.reading import SensorReading
 
@@ -28,19 +30,14 @@ robot in any phase."""
 STUCK_PAD = 300.0
 """Load that a stuck pad reports, in N: about the weight of the robot."""
 HIPS = {"locked": (0.0, 0.0, 0.0, 0.0), "V1 = 1, V3 = 0.7": (1.0, 0.0, 0.7, 0.0)}
-"""Values of V1 to V4."""
+"""Values of V1 to V4, by name."""
 
 Heard = SensorReading | None
-Change = Callable[[SensorReading, SensorReading, int], Heard]
-"""What the controller hears, of the reading, of the last one before the fault, and of the ticks since the fault began;
-None if its tick does not take place."""
+Change = Callable[[SensorReading, SensorReading], Heard]
+"""What the controller hears, of the reading and of the last one before the fault; None if its tick does not take
+place."""
 NOTHING = SensorReading((math.nan,) * 3, (math.nan,) * 3, (math.nan,) * 4, (math.nan,) * 6)
 """A reading of which no signal has come."""
-
-
-def exact(reading: SensorReading, before: SensorReading, ticks: int) -> Heard:
-    """No fault."""
-    return reading
 
 
 def signal(field: str, elements: tuple[int, ...], value: float | None = None, added: float = 0.0) -> Change:
@@ -52,7 +49,7 @@ def signal(field: str, elements: tuple[int, ...], value: float | None = None, ad
     :param added: constant that is added to them instead
     """
 
-    def change(reading: SensorReading, before: SensorReading, ticks: int) -> Heard:
+    def change(reading: SensorReading, before: SensorReading) -> Heard:
         stuck = getattr(before, field)
         values = [
             x if k not in elements else x + added if added else stuck[k] if value is None else value
@@ -63,26 +60,17 @@ def signal(field: str, elements: tuple[int, ...], value: float | None = None, ad
     return change
 
 
-def at_times(fails: Callable[[int], bool], change: Change) -> Change:
-    """A fault that comes and goes.
-
-    :param fails: whether it is there, by the ticks since it began
-    :param change: the fault
-    """
-    return lambda reading, before, ticks: change(reading, before, ticks) if fails(ticks) else reading
-
-
-def repeated(reading: SensorReading, before: SensorReading, ticks: int) -> Heard:
+def repeated(reading: SensorReading, before: SensorReading) -> Heard:
     """The last reading before the fault again."""
     return before
 
 
-def lost(reading: SensorReading, before: SensorReading, ticks: int) -> Heard:
+def lost(reading: SensorReading, before: SensorReading) -> Heard:
     """No signal is finite."""
     return NOTHING
 
 
-def missed(reading: SensorReading, before: SensorReading, ticks: int) -> Heard:
+def missed(reading: SensorReading, before: SensorReading) -> Heard:
     """No tick: the targets stay."""
     return None
 
@@ -91,12 +79,14 @@ class Fault(NamedTuple):
     """A fault.
 
     :param change: what it does to readings
+    :param when: whether it is there, by the ticks since it began
     :param delay_seconds: delay of all readings, in s
     :param to_zero: whether targets go to zero, at the speeds of the controller, while its ticks do not take place
     :param is_told: whether the controller is told how much time has passed since its last tick
     """
 
-    change: Change = exact
+    change: Change = lambda reading, before: reading
+    when: Callable[[int], bool] = lambda ticks: True
     delay_seconds: float = 0.01
     to_zero: bool = False
     is_told: bool = False
@@ -104,17 +94,17 @@ class Fault(NamedTuple):
 
 FAULTS = {
     "none": Fault(),
-    "one reading in ten is not finite": Fault(at_times(lambda ticks: ticks % 10 == 0, lost)),
-    "every second reading is not finite": Fault(at_times(lambda ticks: ticks % 2 == 0, lost)),
-    "no reading is finite for 0.5 s": Fault(at_times(lambda ticks: ticks < 50, lost)),
+    "one reading in ten is not finite": Fault(lost, lambda ticks: ticks % 10 == 0),
+    "every second reading is not finite": Fault(lost, lambda ticks: ticks % 2 == 0),
+    "no reading is finite for 0.5 s": Fault(lost, lambda ticks: ticks < 50),
     "no reading is finite any more": Fault(lost),
     "lateral acceleration: not finite any more": Fault(signal("acceleration", (0,), math.nan)),
     "rate about y: not finite any more": Fault(signal("angular_rate", (1,), math.nan)),
     "one pad: not finite any more": Fault(signal("pressures", (0,), math.nan)),
     "left flexion joint: not finite any more": Fault(signal("joints", (2,), math.nan)),
     "all joints: not finite any more": Fault(signal("joints", (0, 1, 2, 3, 4, 5), math.nan)),
-    "the same reading comes for 0.1 s": Fault(at_times(lambda ticks: ticks < 10, repeated)),
-    "the same reading comes for 0.5 s": Fault(at_times(lambda ticks: ticks < 50, repeated)),
+    "the same reading comes for 0.1 s": Fault(repeated, lambda ticks: ticks < 10),
+    "the same reading comes for 0.5 s": Fault(repeated, lambda ticks: ticks < 50),
     "the same reading comes for ever": Fault(repeated),
     "lateral acceleration: 0": Fault(signal("acceleration", (0,), 0.0)),
     "lateral acceleration: 0.2 m/s² too high": Fault(signal("acceleration", (0,), added=0.2)),
@@ -130,13 +120,11 @@ FAULTS = {
     "one pad: stuck at 300 N": Fault(signal("pressures", (0,), STUCK_PAD)),
     "right abduction joint: stuck at 0.3 rad": Fault(signal("joints", (1,), 0.3)),
     "right abduction joint: 0.1 rad off": Fault(signal("joints", (1,), added=0.1)),
-    "one tick in ten is missed": Fault(at_times(lambda ticks: ticks % 10 == 0, missed)),
-    "every second tick is missed": Fault(at_times(lambda ticks: ticks % 2 == 0, missed)),
-    "every second tick is missed, and time is told": Fault(
-        at_times(lambda ticks: ticks % 2 == 0, missed), is_told=True
-    ),
-    "ten ticks are missed, once": Fault(at_times(lambda ticks: ticks < 10, missed)),
-    "ten ticks are missed, once, and time is told": Fault(at_times(lambda ticks: ticks < 10, missed), is_told=True),
+    "one tick in ten is missed": Fault(missed, lambda ticks: ticks % 10 == 0),
+    "every second tick is missed": Fault(missed, lambda ticks: ticks % 2 == 0),
+    "every second tick is missed, and time is told": Fault(missed, lambda ticks: ticks % 2 == 0, is_told=True),
+    "ten ticks are missed, once": Fault(missed, lambda ticks: ticks < 10),
+    "ten ticks are missed, once, and time is told": Fault(missed, lambda ticks: ticks < 10, is_told=True),
     "no tick any more, targets stay": Fault(missed),
     "no tick any more, targets go to zero": Fault(missed, to_zero=True),
     "delay of 20 ms": Fault(delay_seconds=0.02),
@@ -144,6 +132,7 @@ FAULTS = {
     "delay of 50 ms": Fault(delay_seconds=0.05),
 }
 """Faults, by what happens; a delay is there from the beginning."""
+FORMATS = {"survival": ".0%", "steps_per_second": ".2f", "phases_by_sensors": ".0%"}
 
 
 class BehindFault:
@@ -180,15 +169,14 @@ class BehindFault:
         self.since += 1
         if since < 0 or self._before is None:
             self._before = reading
-        else:
-            changed = self._fault.change(reading, self._before, since)
-            if changed is None:
-                if self._fault.to_zero:
-                    moves = zip(self.targets, self._largest_moves, strict=True)
-                    self.targets = tuple(ramped(target, 0.0, largest) for target, largest in moves)
-                self._missed += 1
-                return None
-            heard = changed
+        elif self._fault.when(since):
+            heard = self._fault.change(reading, self._before)
+        if heard is None:
+            self._missed += 1
+            if self._fault.to_zero:
+                moves = zip(self.targets, self._largest_moves, strict=True)
+                self.targets = tuple(ramped(target, 0.0, largest) for target, largest in moves)
+            return None
         change = self._generator.tick(heard, (1 + self._missed) * self._dt if self._fault.is_told else None)
         self._missed = 0
         self.targets = self._generator.targets
@@ -197,48 +185,8 @@ class BehindFault:
         return change
 
 
-class Outcome(NamedTuple):
-    """What became of an episode with a fault.
-
-    :param survived: whether the robot stayed in its place to the end
-    :param steps_per_second: steps per second from the fault on
-    :param by_sensors: share of the phases from the fault on that sensors ended
-    """
-
-    survived: bool
-    steps_per_second: float
-    by_sensors: float
-
-
-def simulate(name: str, hips: str, seed: int, time_limit: float) -> Outcome:
-    """Simulate an episode with a fault.
-
-    :param name: name of the fault
-    :param hips: name of V1 to V4
-    :param seed: seed of the episode
-    :param time_limit: time limit of the episode, in s
-    """
-    fault = FAULTS[name]
-    config = BalanceConfig(engine="pybullet", push=Push(newtons=(0.0, 0.0)), time_limit=time_limit)
-    config = replace(config, randomisation=replace(config.randomisation, delay_seconds=fault.delay_seconds))
-    dt = config.physics.control_dt
-    with Episode(config, seed, BALANCE) as episode:
-        episode.stand()
-        episode.start(HIPS[hips])
-        generator = BehindFault(episode.robot.generator, fault, FIRST_TICKS + TICKS_LATER * seed, dt)
-        episode.robot.generator = generator  # type: ignore[assignment]  # whatever an episode asks of it, it has
-        while episode.termination is None:
-            episode.tick()
-    changes, seconds = generator.changes, generator.since * dt
-    return Outcome(
-        episode.termination == "time_limit",
-        sum(change.is_step for change in changes) / seconds if seconds > 0 else 0.0,
-        sum(change.by_sensors for change in changes) / len(changes) if changes else 0.0,
-    )
-
-
 @dataclass(frozen=True)
-class SensorFaults(ParallelExperiment):
+class SensorFaults(Experiment):
     """Faults of sensors and of the control loop, with locked hips and with the hip law, without a push.
 
     :param seeds: number of episodes
@@ -248,17 +196,51 @@ class SensorFaults(ParallelExperiment):
     seeds: int = 20
     time_limit: float = 15.0
 
-    def rows(self) -> Iterator[Row]:
-        """A row for each fault and hips."""
-        with Workers(self.workers) as workers:
-            for name in FAULTS:
-                for hips in HIPS:
-                    jobs = [workers.submit(simulate, name, hips, seed, self.time_limit) for seed in range(self.seeds)]
-                    outcomes = [job.result() for job in jobs]
-                    yield {
-                        "fault": name,
-                        "hips": hips,
-                        "survival": mean(outcome.survived for outcome in outcomes),
-                        "steps_per_second": mean(outcome.steps_per_second for outcome in outcomes),
-                        "phases_by_sensors": mean(outcome.by_sensors for outcome in outcomes),
-                    }
+    def cases(self) -> list[Row]:
+        """Each fault and hips."""
+        return product(fault=FAULTS, hips=HIPS)
+
+    def rows(self, fault: str, hips: str) -> Iterator[Row]:
+        """Survival, and how the robot steps from the fault on.
+
+        :param fault: name of the fault
+        :param hips: name of V1 to V4
+        """
+        outcomes = [self._simulated(FAULTS[fault], HIPS[hips], seed) for seed in range(self.seeds)]
+        survived, steps_per_second, by_sensors = map(mean, zip(*outcomes, strict=True))
+        yield {"survival": survived, "steps_per_second": steps_per_second, "phases_by_sensors": by_sensors}
+
+    def _simulated(self, fault: Fault, hips: tuple[float, ...], seed: int) -> tuple[bool, float, float]:
+        """Whether the robot stays in its place, its steps per second, and its share of phases that sensors end."""
+        config = BalanceConfig(engine="pybullet", push=Push(newtons=(0.0, 0.0)), time_limit=self.time_limit)
+        config = replace(config, randomisation=replace(config.randomisation, delay_seconds=fault.delay_seconds))
+        dt = config.physics.control_dt
+        with Episode(config, seed, BALANCE) as episode:
+            episode.stand()
+            episode.start(hips)
+            generator = BehindFault(episode.robot.generator, fault, FIRST_TICKS + TICKS_LATER * seed, dt)
+            episode.robot.generator = generator  # type: ignore[assignment]  # whatever an episode asks of it, it has
+            while episode.termination is None:
+                episode.tick()
+        changes, seconds = generator.changes, generator.since * dt
+        return (
+            episode.termination == "time_limit",
+            sum(change.is_step for change in changes) / seconds if seconds > 0 else 0.0,
+            sum(change.by_sensors for change in changes) / len(changes) if changes else 0.0,
+        )
+
+
+FULL = SensorFaults()
+QUICK = SensorFaults(seeds=1, time_limit=1.1)
+
+
+def faults(rows: DataFrame) -> str:
+    """What becomes of the robot, with locked hips and with the hip law."""
+    wide = rows.pivot(index="fault", columns="hips", values=list(FORMATS)).reindex(index=list(FAULTS))
+    formats = {f"{column}, {hips}": spec for column, spec in FORMATS.items() for hips in HIPS}
+    wide.columns = [f"{column}, {hips}" for column, hips in wide.columns]
+    caption = (
+        f"Survival of {FULL.seeds} robots with the shipped P1 to P5 in PyBullet, steps per second, and share of phases "
+        f"that sensors end, both from the fault on; with locked hips, and with V1 = 1 and V3 = 0.7."
+    )
+    return table(wide.reset_index(), ["fault", *formats], formats, caption)

@@ -1,0 +1,186 @@
+"""Which algorithm learns in the fewest episodes?
+
+What each would recommend along the way, in MuJoCo, is judged by episodes whose seeds no training sees.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+from statistics import mean
+
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from pandas import DataFrame
+
+from experiments.experiment import product
+from experiments.record import Row
+from experiments.shapes import COLOURS, intervals, legend, panels
+from experiments.tables import shown, span, table
+from experiments.trainings import TrainingExperiment, identity
+from sarah.reports.judging import evaluations_of
+from sarah.reports.race import run_entry
+from sarah.reports.race_entry import RaceCurve, entries_of, read_curve
+from sarah.reports.rankings import rankings
+from sarah.runs.config import ALGORITHMS, TrainingConfig
+from sarah.runs.run_folder import RunFolder
+
+TASKS = {"stepping": (60, 100, 5), "balance": (150, 300, 12)}
+"""Number of episodes of a training, seed of the first one, and number of unseen episodes that judge a recommendation
+along the way, by task."""
+
+
+@dataclass(frozen=True)
+class Race(TrainingExperiment):
+    """Trainings by every algorithm.
+
+    :param seeds: number of trainings of each algorithm
+    :param budget: number of episodes of a training; by default 60 of the First, and 150 of the Second
+    :param evaluations: number of unseen episodes that judge a recommendation; by default those of sarah-compare
+    """
+
+    seeds: int = 20
+    budget: int | None = None
+    evaluations: int | None = None
+
+    def cases(self) -> list[Row]:
+        """Each training."""
+        seeds = {task: range(first, first + self.seeds) for task, (_, first, _) in TASKS.items()}
+        return [case for task in TASKS for case in product(task=[task], seed=seeds[task], algorithm=ALGORITHMS)]
+
+    def rows(self, task: str, seed: int, algorithm: str) -> Iterator[Row]:
+        """How its recommendations do, along the way and in the end. Scores stand in one cell, for their number.
+
+        :param task: name of the task
+        :param seed: seed of the training
+        :param algorithm: name of the algorithm
+        """
+        budget, _, along = TASKS[task]
+        base = TrainingConfig(task, episodes=self.budget or budget, slots=1, episode=self.episode(task, "mujoco"))
+        evaluations = evaluations_of(base.task, self.evaluations, self.evaluations or along)
+        folder = self.runs / f"race-{task}-{identity(base)}"
+        (entry,) = entries_of([algorithm], [seed], base, evaluations, folder)
+        run_entry(entry)
+        episodes = RunFolder(entry.folder).episodes()
+        yield columns(read_curve(entry), mean(float(row["score"]) for row in episodes))
+
+
+def columns(curve: RaceCurve, score_while_learning: float) -> Row:
+    """Columns of a training.
+
+    :param curve: scores of its recommendations
+    :param score_while_learning: mean score of the episodes that it simulated
+    """
+    return {
+        "score_while_learning": score_while_learning,
+        "seconds": curve.seconds,
+        "along": curve.along,
+        "episodes": " ".join(map(str, curve.episodes)),
+        "scores": " ".join(f"{score:.4f}" for score in curve.scores),
+        "final": " ".join(f"{score:.4f}" for score in curve.final),
+    }
+
+
+FULL = Race()
+QUICK = Race(time_limit=2.0, seeds=1, budget=5, evaluations=1)
+FORMATS = {
+    **dict.fromkeys(("final_score", "final_score_error", "over_naf", "over_naf_low", "over_naf_high"), ".3f"),
+    **dict.fromkeys(("score_while_learning", "score_while_learning_error"), ".2f"),
+    **dict.fromkeys(("episodes_to_90", "episodes_to_95"), ".0f"),
+}
+
+
+def ranked(rows: DataFrame, task: str) -> DataFrame:
+    """A row for each algorithm, the quickest first, of the seeds on which all algorithms have been trained.
+
+    :param rows: of the trainings
+    :param task: name of the task
+    """
+    rows = rows[rows.task == task]
+    rows = rows.groupby("seed").filter(lambda group: len(group) == rows.algorithm.nunique())
+    rankings_of_all = rankings([curve_of(row) for row in rows.to_dict("records")], reference="naf")
+    found = DataFrame([rankings_of_all.columns(row) for row in rankings_of_all.rows])
+    learning = rows.groupby("algorithm").score_while_learning
+    found["score_while_learning"] = found.algorithm.map(learning.mean())
+    found["score_while_learning_error"] = found.algorithm.map(learning.sem())
+    return found
+
+
+def curve_of(row: Row) -> RaceCurve:
+    """Scores of a training's recommendations.
+
+    :param row: row of the training
+    """
+    scores, final = (tuple(map(float, str(row[column]).split())) for column in ("scores", "final"))
+    episodes = tuple(map(int, row["episodes"].split()))
+    return RaceCurve(row["algorithm"], episodes, scores, final, row["along"], row["seconds"])
+
+
+def answer(rows: DataFrame) -> str:
+    """Final scores, and which algorithms NAF can be told from."""
+    return f"{_compared(ranked(rows, 'stepping'), 'First')}\n\n{_compared(ranked(rows, 'balance'), 'Second')}"
+
+
+def _compared(algorithms: DataFrame, training: str) -> str:
+    scores = algorithms.set_index("algorithm").final_score
+    better, worse = algorithms.over_naf_low > 0.0, algorithms.over_naf_high < 0.0
+    fewest = algorithms.episodes_to_95.min()
+    return (
+        f"In the {training} Training the final scores are {span(scores, '.2f')}, and NAF's is "
+        f"{shown(scores['naf'], '.2f')}. Better than NAF by more than chance: {_names(algorithms[better])}. Worse: "
+        f"{_names(algorithms[worse])}. First to hold 95 % of the best known score: "
+        f"{_names(algorithms[algorithms.episodes_to_95 == fewest])}, after {shown(fewest, '.0f')} episodes."
+    )
+
+
+def _names(algorithms: DataFrame) -> str:
+    return ", ".join(sorted(algorithms.algorithm)) or "none"
+
+
+def _figure(rows: DataFrame, task: str) -> Figure:
+    """Final scores with their standard errors, and how many trainings are at 95 % of the best, finally or before."""
+    found = ranked(rows, task)
+    drawn, (left, right) = panels(2, 0.4, sharey=True)
+    score, error, heights = found.final_score, found.final_score_error, range(len(found), 0, -1)
+    intervals(left, list(found.algorithm), score, score - error, score + error)
+    left.set_xlabel("final score, mean and standard error")
+    ends = found.final_at_95_low, found.final_at_95_high
+    intervals(right, list(found.algorithm), found.final_at_95, *ends, label="final score")
+    right.plot(found.held_95, heights, "s", color=COLOURS[1], markersize=4, label="held along the way")
+    right.xaxis.set_major_locator(MaxNLocator(integer=True))
+    right.set(xlabel="trainings at 95 % of the best score", xlim=(-0.5, found.runs.max() + 0.5))
+    legend(drawn, right)
+    return drawn
+
+
+def _final(rows: DataFrame, task: str) -> str:
+    """Final scores."""
+    pairs = [f"{column}{end}" for column in ("over_naf", "final_at_95") for end in ("", "_low", "_high")]
+    caption = (
+        f"{_trainings(task)}: mean final score with its standard error, its difference from NAF's and the number of "
+        f"trainings that end with 95 % of the best known score, both with 95 % intervals."
+    )
+    return table(ranked(rows, task), ["algorithm", "final_score", "final_score_error", *pairs], FORMATS, caption)
+
+
+def _way(rows: DataFrame, task: str) -> str:
+    """The way there."""
+    shown_columns = [f"{column}_{share}" for share in (90, 95) for column in ("episodes_to", "held")]
+    learning = ["score_while_learning", "score_while_learning_error", "wall_time_s"]
+    caption = (
+        f"{_trainings(task)}: median number of episodes until 90 and 95 % of the best known score are held, how many "
+        f"trainings hold them, score of the episodes tried, and time of a training."
+    )
+    return table(ranked(rows, task), ["algorithm", *shown_columns, *learning], FORMATS, caption)
+
+
+def _trainings(task: str) -> str:
+    budget, first, _ = TASKS[task]
+    pushes = ", with pushes of 100 to 125 N, half of them from front and back" * (task == "balance")
+    return f"Seeds {first} to {first + FULL.seeds - 1}, {budget} episodes each, in MuJoCo{pushes}"
+
+
+figure_stepping, figure_balance = (partial(_figure, task=task) for task in TASKS)
+final_stepping, final_balance = (partial(_final, task=task) for task in TASKS)
+way_stepping, way_balance = (partial(_way, task=task) for task in TASKS)
