@@ -9,8 +9,8 @@ PUSHES ?= 8
 WORKERS ?= $(shell nproc)
 SEED ?= 1
 RUN ?= runs/$(shell date +%Y%m%d-%H%M%S)
-NAME = $(basename $(notdir $(wildcard results/*.csv)))
-TIMINGS := throughput engines_speed physics_speed updates viewer
+NAME ?=
+TIMINGS := throughput episodes updates decisions viewer
 ENDURANCE := kills killed_workers resume long_process long_training protections
 
 .PHONY: help install train test test-slow lint format docs results bench endurance mutants clean
@@ -57,14 +57,15 @@ format: install  ## put the style right
 	$(BIN)/ruff format .
 
 docs: install  ## the documentation, into build/docs
-	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going docs build/docs
+	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -c docs . build/docs
 	@echo build/docs/index.html
 
-results: install  ## make the results that docs show: all of them (hours), or NAME=clock
+results: install  ## rewrite tables, figures and pictures of all pages; with NAME=clock, make that result first
 	@for name in $(NAME); do $(BIN)/python -m experiments $$name || exit 1; done
+	$(BIN)/python -m experiments.pages
 
 bench: install  ## how fast it is: simulation, workers, learner, viewer; minutes
-	@for name in $(TIMINGS); do $(BIN)/python -m experiments $$name --out build/bench || exit 1; done
+	@for name in $(TIMINGS); do $(BIN)/python -m benchmarks $$name --out build/bench || exit 1; done
 
 endurance: install  ## kills, faults and long runs; half an hour
 	@for name in $(ENDURANCE); do $(BIN)/python -m experiments $$name --out build/endurance || exit 1; done

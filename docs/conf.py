@@ -18,7 +18,14 @@ release = metadata.version("sarah")
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_external_toc"]
 external_toc_path = "docs/contents.yml"
 # The site is made of the files as they lie in the repository, so that links between them lead to the same pages.
-include_patterns = ["*.md", "docs/**", "examples/README.md", "experiments/README.md", "runs/README.md"]
+include_patterns = [
+    "CHANGELOG.md",
+    "CONTRIBUTING.md",
+    "docs/**",
+    "examples/README.md",
+    "experiments/README.md",
+    "runs/README.md",
+]
 exclude_patterns = ["docs/reference/generated/modules.rst"]
 html_theme = "furo"
 html_extra_path = ["_root"]

@@ -71,13 +71,14 @@ def source(found: Found, result: Result) -> str:
     cases = found.full.cases()
     varying = [key for key, value in cases[0].items() if any(case[key] != value for case in cases)]
     only = shlex.join(word for key in varying for word in ("--only", f"{key}={cell(cases[-1][key])}"))
-    lines = [
-        f"{result.remark} " * bool(result.remark) + f"Made at {made_at(result)} by `{command}`;"
-        f" one of its cases by `{command} {only}`. [Data](../../results/{result.name}.csv)."
+    sentences = [
+        result.remark,
+        f"{result.missing} cases are still to be made." if result.missing else "",
+        f"Made at {made_at(result)} by `{command}`.",
+        f"One of its cases alone: `{command} {only}`." if only else "",
+        f"[Data](../../results/{result.name}.csv)",
     ]
-    if result.missing:
-        lines.insert(0, f"{result.missing} cases are still to be made.")
-    return filled(" ".join(lines))
+    return filled(" ".join(filter(None, sentences)))
 
 
 def package_of(name: str) -> Package:

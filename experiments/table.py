@@ -6,42 +6,30 @@ from pathlib import Path
 
 from experiments.balance_trainings import BalanceTrainings
 from experiments.benchmarks.table import BENCHMARKS
-from experiments.box_limit import BoxLimit
 from experiments.ceiling import Ceiling
 from experiments.clock import Clock
 from experiments.conditions import Conditions
-from experiments.contexts import Contexts
 from experiments.endurance.table import ENDURANCE
 from experiments.engines import Engines
 from experiments.maker import Maker
-from experiments.flexion_laws import FlexionLaws
 from experiments.goal_tasks import GoalTasks
-from experiments.held_actions import HeldActions
-from experiments.hopper_actions import HopperActions
 from experiments.known_truth import KnownTruth
 from experiments.landscape import Landscape
-from experiments.lateral_limit import LateralLimit
 from experiments.naf_preset import NafPreset
 from experiments.observed_reward import ObservedReward
 from experiments.operation import Operation
 from experiments.other_sizes import OtherSizes, Robot
 from experiments.physics import FinenessAnywhere, FinenessInConditions
 from experiments.race import Race
-from experiments.rank_replay import RankReplay
 from experiments.robot_dimensions import RobotDimensions
 from experiments.robustness import Robustness
 from experiments.rough_ground import RoughGround
-from experiments.scaled_actions import ScaledActions
 from experiments.second_training import SecondTraining, SecondTrainingSummary
 from experiments.sensor_faults import SensorFaults
 from experiments.several_actions import SeveralActions
-from experiments.shift_endings import ShiftEndings
 from experiments.shipped_parameters import ShippedParameters
 from experiments.shipping_rule import Round, Shipping
-from experiments.slots import SlotsSchedule
-from experiments.slots_cost import SlotsCost
 from experiments.standard_tasks import NAF_VARIANTS, StandardTask
-from experiments.stepping_and_hips import SteppingAndHips
 from experiments.transfer import TransferBetweenEngines
 
 SHORT = {"time_limit": 2.0}
@@ -109,11 +97,6 @@ TABLE: dict[str, Maker] = {
         RoughGround(),
         {"episodes": 1, "reference_episodes": 0, "time_limit": 1.1},
     ),
-    "contexts": Maker(
-        "Do parameters that follow the ground do better than one set for all grounds?",
-        Contexts(),
-        {"seeds": 1, "budget": 2, "episodes": 1, "time_limit": 1.1},
-    ),
     "transfer_stepping": Maker(
         "How much of its score does a First Training keep in the other engine?",
         TransferBetweenEngines("stepping", episodes=5, budget=100),
@@ -152,12 +135,6 @@ TABLE: dict[str, Maker] = {
         {"seeds": 1, "episodes": 5},
         of_robot=False,
     ),
-    "rank_replay": Maker(
-        "What does ranked replay make of a noisy reward?",
-        RankReplay(),
-        {"seeds": 1, "episodes": 8},
-        of_robot=False,
-    ),
     "known_truth": Maker(
         "What does NAF make of tasks whose truth is known?",
         KnownTruth(),
@@ -183,31 +160,6 @@ TABLE: dict[str, Maker] = {
         {"steps": 102, "seeds": 1, "episodes": 1},
         of_robot=False,
     ),
-    "held_actions": Maker(
-        "What does an action decide on Hopper where NAF stays, and what do values make of it?",
-        HeldActions(),
-        {"steps": 120, "seeds": 1, "draws": 2, "held_steps": (1,)},
-        of_robot=False,
-    ),
-    "hopper_actions": Maker(
-        "What does it change on Hopper if actions are held for several steps, larger, or noisier?",
-        HopperActions(),
-        {
-            "actions": ("held for four steps",),
-            "steps": 480,
-            "seeds": 1,
-            "evaluations": 1,
-            "episodes": 1,
-            "courses": Path("build/experiments/several_actions"),
-        },
-        of_robot=False,
-    ),
-    "scaled_actions": Maker(
-        "Where the best action is at the bounds, what do actions change that reach them sooner?",
-        ScaledActions(),
-        {"tasks": ("six actions, clear",), "steps": 120, "seeds": 1, "episodes": 1},
-        of_robot=False,
-    ),
     "naf_pendulum": Maker(
         "How does NAF do on Pendulum-v1, next to TD3, SAC and DDPG?",
         StandardTask("Pendulum-v1", steps=10_000, seeds=10),
@@ -226,17 +178,6 @@ TABLE: dict[str, Maker] = {
         {"steps": 120, "seeds": 1, "episodes": 1},
         of_robot=False,
     ),
-    "slots_cost": Maker(
-        "What do slots cost a training?",
-        SlotsCost(),
-        {**TRAINED, "slots": (1,), "seeds": 1, "budget": 8, "episodes": 1},
-    ),
-    "slots_schedule": Maker(
-        "How many slots a worker keep the workers busy?",
-        SlotsSchedule(),
-        {**TRAINED, "seed": 0, "episodes_per_worker": 2},
-        of_robot=False,
-    ),
     # The controller.
     "landscape_stepping": Maker(
         "What does each of P1 to P5 do, one at a time around (0.4, 1, 0.1, 1, 1)?",
@@ -248,35 +189,10 @@ TABLE: dict[str, Maker] = {
         Landscape("balance", seeds=12, time_limit=8.0),
         {**SHORT, "seeds": 1, "points": 1},
     ),
-    "shift_endings": Maker(
-        "Which of its conditions ends SHIFT?",
-        ShiftEndings(),
-        {"time_limit": 3.0, "episodes": 1, "steady_from": 1.0, "p3": ()},
-    ),
     "clock": Maker(
         "Can a learner use the time-outs as a clock?",
         Clock(),
         {**SHORT, "random_sets": 1},
-    ),
-    "stepping_and_hips": Maker(
-        "Does V1 help whatever P1 to P5 are?",
-        SteppingAndHips(),
-        {"time_limit": 1.1, "v1": (0.7,), "pushes": 1},
-    ),
-    "flexion_laws": Maker(
-        "Which flexion law saves the robot from pushes from front and back?",
-        FlexionLaws(),
-        {"newtons": (105.0,), "pushes": 1, "reference_pushes": 0, "unpushed": 1, "time_limit": 1.2},
-    ),
-    "lateral_limit": Maker(
-        "What decides whether the robot survives a push to the side?",
-        LateralLimit(),
-        {"newtons": (125.0,), "pushes": 1, "time_limit": 3.5},
-    ),
-    "box_limit": Maker(
-        "Does the box around the start end episodes that the robot would have saved?",
-        BoxLimit(),
-        {"pushes": 1, "time_limit": 3.5},
     ),
     "sensor_faults": Maker(
         "Does the robot go on stepping when its sensors or its control loop fail?",

@@ -34,7 +34,8 @@ def table(rows: DataFrame, columns: Sequence[str], formats: Mapping[str, str], c
     :param formats: format of the numbers by column; other columns are shown as they stand
     :param caption: sentence above the table
     """
-    cells = [[shown(row[column], formats.get(column, "")) for column in columns] for _, row in rows.iterrows()]
+    shown_columns = [[shown(value, formats.get(column, "")) for value in rows[column]] for column in columns]
+    cells = list(zip(*shown_columns, strict=True))
     return "\n".join([f"**{caption}**", "", *markdown_table([heading(column) for column in columns], cells)])
 
 

@@ -312,6 +312,13 @@ def test_naf_learns_the_environment_of_the_page_and_goes_on(
     assert names["model"].num_timesteps == 530
     assert "return -" in capsys.readouterr().out
     assert {path.name for path in Path("cart").iterdir()} == {"best_model.zip", "last.zip", "replay.pkl", "scales.pkl"}
+    held, larger = names["HeldActions"](names["Cart"]()), names["larger_actions"](names["Cart"]())
+    plain, cut = names["Cart"](), names["Cart"]()
+    for env in (held, larger, plain, cut):
+        env.reset(seed=0)
+    rewards = [plain.step([0.2])[1] for _ in range(4)]
+    assert held.step([0.2])[1] == pytest.approx(np.mean(rewards))
+    assert larger.step(np.array([0.9], np.float32))[1] == pytest.approx(cut.step([1.0])[1])
 
 
 def test_the_page_of_the_library_links_every_public_name_to_where_it_is_defined() -> None:

@@ -146,41 +146,6 @@ def pushes(rows: Rows, situation: str) -> Figure:
     return figure
 
 
-def lateral_limit(rows: Rows) -> Figure:
-    """Survival by the energy that a robot lacks to tip over, for each controller."""
-    figure, (axis,) = panels(1, 0.35)
-    for index, (name, group) in enumerate(grouped(rows, "{controller}").items()):
-        places = [place + 0.12 * (index - 1) for place in range(len(group))]
-        axis.vlines(places, numbers(group, "survival_low"), numbers(group, "survival_high"), color=COLOURS[index])
-        axis.plot(places, numbers(group, "survival"), "o", color=COLOURS[index], markersize=4, label=name)
-    axis.set_xticks(range(len(group)), [row["lacking"] for row in group])
-    axis.set(xlabel="energy that the robot lacks to tip over when the push ends", ylabel=heading("survival"))
-    legend(figure, axis)
-    return figure
-
-
-def flexion_laws(rows: Rows) -> Figure:
-    """Survival by force under each law, a panel for each engine."""
-    engines = grouped(chosen(rows, "push_n>0 and physics=standard"), "{engine}")
-    figure, axes = panels(len(engines), 0.4, sharey=True)
-    for axis, (name, group) in zip(axes, engines.items(), strict=True):
-        draw_lines(axis, group, "push_n", "survival", "{law}, V3 = {V3}")
-        axis.set_title(name)
-    axes[1].set_ylabel("")
-    legend(figure, axes[0])
-    return figure
-
-
-def stepping_and_hips(rows: Rows) -> Figure:
-    """Scores of twelve sets of P1 to P5."""
-    figure, (axis,) = panels(1, 0.35)
-    neutral = {"V1 = 0": numbers(chosen(rows, "V1=0"), "score")}
-    groups = grouped(chosen(rows, "V1>0"), "{told},\nV1 = {V1}")
-    draw_strips(axis, neutral | {name: numbers(group, "score") for name, group in groups.items()}, {}, "")
-    axis.set_ylabel("score under pushes")
-    return figure
-
-
 def landscape(rows: Rows) -> Figure:
     """Score along each parameter, in both engines."""
     parameters = grouped(rows, "{parameter}")
@@ -262,17 +227,6 @@ def updates(rows: Rows) -> Figure:
     return figure
 
 
-def slots_schedule(rows: Rows) -> Figure:
-    """Share of the time that workers are busy."""
-    schedules = grouped(rows, "{schedule}")
-    figure, axes = panels(len(schedules), 0.35, sharey=True)
-    for axis, (name, group) in zip(axes, schedules.items(), strict=True):
-        draw_lines(axis, group, "slots_per_worker", "busy_share", "{workers} workers")
-        axis.set(title=f"outcomes {name}", ylabel="busy share of the workers' time" if axis is axes[0] else "")
-    legend(figure, axes[0])
-    return figure
-
-
 def long_training(rows: Rows) -> Figure:
     """Memory along a training."""
     figure, (axis,) = panels(1, 0.3)
@@ -292,15 +246,11 @@ PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
     "naf_pendulum": (("naf_pendulum",), standard_task),
     "naf_inverted_pendulum": (("naf_inverted_pendulum",), standard_task),
     "several_actions": (("several_actions",), partial(learning_curves, panel="{task}")),
-    "hopper_actions": (("hopper_actions",), partial(learning_curves, panel="{actions}")),
     "known_truth": (("known_truth",), known_truth),
     "naf_preset": (("naf_preset",), naf_preset),
     "robustness": (("robustness",), robustness),
     "conditions": (("conditions",), partial(pushes, situation="situation")),
     "rough_ground": (("rough_ground",), partial(pushes, situation="ground")),
-    "lateral_limit": (("lateral_limit",), lateral_limit),
-    "flexion_laws": (("flexion_laws",), flexion_laws),
-    "stepping_and_hips": (("stepping_and_hips",), stepping_and_hips),
     "landscape_stepping": (("landscape_stepping",), landscape),
     "landscape_balance": (("landscape_balance",), landscape),
     "physics": (("physics",), physics),
@@ -309,7 +259,6 @@ PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
     "clock": (("clock",), clock),
     "robot_dimensions": (("robot_dimensions",), robot_dimensions),
     "updates": (("updates",), updates),
-    "slots_schedule": (("slots_schedule",), slots_schedule),
     "long_training": (("long_training",), long_training),
 }
 """Results of each picture, and what draws their rows."""

@@ -70,7 +70,9 @@ class ResultDirective(SphinxDirective):
         for result in stale:
             text += nodes.literal("", f"make results NAME={result.name}")
             text += nodes.Text("." if result is stale[-1] else ", ")
-        title = nodes.title("", "Not of today's project" if any(not result.missing for result in stale) else "Not complete")
+        title = nodes.title(
+            "", "Not of today's project" if any(not result.missing for result in stale) else "Not complete"
+        )
         return [nodes.admonition("", title, text, classes=["warning"])]
 
     def source(self, result: record.Result) -> list[nodes.Node]:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from matplotlib.figure import Figure
-from pandas import DataFrame
+from pandas import DataFrame, Series
 
 from experiments.record import Row
 from experiments.shapes import legend, panels, strips
@@ -23,6 +23,10 @@ from sarah.simulation.physics import PHYSICS
 
 NAMES = [parameter.name for parameter in STEPPING_PARAMETERS]
 PAPER = "paper"
+CLAIM = ["claim of the paper", "holds", "what we find"]
+"""Columns of a table of claims."""
+NEAR = 0.1
+"""Difference from the paper's value up to which a parameter has settled there."""
 FORMATS = {
     **dict.fromkeys(NAMES, ".2f"),
     **dict.fromkeys(("score", "reference_score"), ".3f"),
@@ -120,3 +124,46 @@ def gait(rows: DataFrame) -> str:
     """How the robot steps."""
     columns = ["run", "steps_per_second", "shifts_by_sensors", "lifts_by_sensors", "sole_clearance_mm"]
     return table(rows, columns, FORMATS, "How the robot steps in the same episodes.")
+
+
+def claims(rows: DataFrame) -> str:
+    """What the paper claims of its First Training, and what the trainings show."""
+    runs, (paper,) = learned(rows), rows[rows.run == PAPER].to_dict("records")
+    is_human = runs.steps_per_second.round(1).between(3.0, 5.0).all()
+    found = [
+        (
+            "a step frequency as a human's, 3 to 5 per second",
+            "yes" if is_human else "in part",
+            f"{span(runs.steps_per_second, '.1f')} per second; the reward asks for 3",
+        ),
+        *(settling(runs[name], paper[name]) for name in ("P1", "P2", "P3")),
+        (
+            "P1 and P3 limit the rotation about y",
+            "in part",
+            "P1 does; P3 sets a minimum rate here and [has no effect](decisions.md#what-ends-shift)",
+        ),
+        (
+            "P4 and P5 do not matter",
+            "yes",
+            f"robots that step end with a P4 of {span(runs.P4, '.1f')} and a P5 of {span(runs.P5, '.1f')}",
+        ),
+        ("the parameters must be positive", "not tested", "they cannot be negative here"),
+        (
+            "the paper's own values work",
+            "yes",
+            f"they score {shown(paper['score'], '.2f')}, and {shown(paper['survival'], '.0%')} of the robots survive",
+        ),
+    ]
+    return table(DataFrame(found, columns=CLAIM), CLAIM, {}, "First Trainings by NAF in PyBullet, on 12 unseen seeds.")
+
+
+def settling(values: Series[float], claimed: float) -> tuple[str, str, str]:
+    """Cells about the claim that a parameter settles at a value: in all trainings, in part in at least half, or not.
+
+    :param values: what each training recommends
+    :param claimed: value of the paper
+    """
+    near = (values - claimed).abs() <= NEAR
+    verdict = "yes" if near.all() else "in part" if near.mean() >= 0.5 else "no"
+    found = f"{near.sum()} of {len(near)} trainings end within {NEAR} of it; all end from {span(values, '.2f')}"
+    return f"{values.name} stabilises at about {claimed}", verdict, found

@@ -20,7 +20,7 @@ there with the foot in the air, if V3 is above zero.
 The law is a reconstruction. The paper says only that V1 and V3 multiply signals of the x and the y axis, that V2 and
 V4 are constants, and that the sums adjust abduction and flexion. Laws with the forward acceleration did not help, for
 a reason: where the torso sits, the acceleration of a falling robot and its tilt cancel in the accelerometer
-(``make results NAME=flexion_laws`` compares the laws).
+(docs/results/decisions.md compares the laws).
 """
 
 from __future__ import annotations

@@ -1,32 +1,52 @@
 """Every experiment runs, in a size that takes seconds, and makes the columns that the pages expect."""
 
 import dataclasses
-import shutil
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType, SimpleNamespace
+from typing import cast
 
 import pytest
 from laboratory import need
 
 from experiments import record
-from experiments.__main__ import main, makes_the_result, mark_stale
-from experiments.endurance.protections import PROTECTIONS, Protection
-from experiments.maker import Maker, RowByRowExperiment
-from experiments.made_with import made_with
-from experiments.table import TABLE
-from sarah.errors import ConfigurationError
+from experiments.age import age
+from experiments.command import main
+from experiments.experiment import Experiment, product
+from experiments.found import BENCHMARKS, EXPERIMENTS, Found, find, paths_of, questions
+from experiments.making import make
+from experiments.record import Result, Row
+from sarah.errors import ConfigurationError, SarahError
 
-LONG = {
-    "killed_workers",
-    "kills",
-    "long_training",
-    "mutants",
-    "protections",
-    "second_training",
-    "throughput",
-    "viewer",
-}
-"""Experiments that take more than some seconds in any size."""
+
+@dataclass(frozen=True)
+class Squares(Experiment):
+    """Squares of some numbers.
+
+    :param count: how many
+    :param fails_at: number at which the power fails
+    """
+
+    workers: int = 0
+    count: int = 3
+    fails_at: int | None = None
+
+    def cases(self) -> list[Row]:
+        """The numbers."""
+        return product(kind=["whole"], number=range(self.count))
+
+    def rows(self, kind: str, number: int) -> Iterator[Row]:
+        """The square of a number, and its negative."""
+        if number == self.fails_at:
+            raise KeyboardInterrupt
+        yield {"sign": 1, "square": float(number**2)}
+        yield {"sign": -1, "square": -float(number**2)}
+
+
+def squares(full: Squares) -> Found:
+    module = SimpleNamespace(__doc__="How large are squares?\n\nLarge.", FULL=full, QUICK=Squares(count=1))
+    return Found("squares", cast(ModuleType, module))
 
 
 @pytest.fixture(scope="module")
@@ -35,144 +55,103 @@ def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("workplace")
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in record.names()]
-)
+@pytest.mark.parametrize("name", paths_of(EXPERIMENTS, BENCHMARKS))
 def test_an_experiment_makes_the_columns_of_its_result(
     name: str, workplace: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     need("pybullet")
     need("mujoco")
-    if name == "viewer" and shutil.which("chromium") is None:
-        pytest.skip("needs chromium")
     monkeypatch.chdir(workplace)
-    main([name, "--quick", "--out", str(workplace)])
-    made, published = record.read(name, workplace), record.read(name)
-    assert made.columns == published.columns
-    assert made.command == f"python -m experiments {name} --quick --out {workplace}"
-    assert (made.made_with is None) == (published.made_with is None)
+    path = make(find(name), "python -m experiments some", ["--quick", "--workers", "0", "--out", str(workplace)])
+    made = record.read(path.stem, workplace)
+    assert made.rows and made.question.endswith("?") and not made.missing
+    if name in record.names():
+        assert list(made.rows[0]) == list(record.read(name).rows[0])
 
 
-PENDING = {"balance_trainings", "ceiling", "second_training_summary", "shipping"}
-"""Results whose rows take hours and are not made yet."""
+def test_every_result_has_an_experiment() -> None:
+    assert set(record.names()) <= set(paths_of())
 
 
-def test_every_result_has_a_maker_and_every_maker_a_result() -> None:
-    assert set(TABLE) - PENDING == set(record.names()) - PENDING
-
-
-@pytest.mark.parametrize("name", record.names())
-def test_a_result_answers_the_question_of_its_maker(name: str) -> None:
-    assert record.read(name).question == TABLE[name].question
+def test_a_result_answers_the_question_of_its_experiment() -> None:
+    assert {name: record.read(name).question for name in record.names()} == {
+        name: question for name, question in questions().items() if name in record.names()
+    }
 
 
 def test_without_a_name_all_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
-    main([])
+    main(EXPERIMENTS, [])
     listed = capsys.readouterr().out
-    assert all(name in listed and maker.question in listed for name, maker in TABLE.items())
-
-
-def test_the_help_of_an_experiment_has_the_options_of_all_and_its_own(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as end:
-        main(["clock", "--help"])
-    shown = capsys.readouterr().out
-    assert end.value.code == 0 and all(option in shown for option in ("--quick", "--out FOLDER", "--random-sets"))
-
-
-def test_an_unknown_name_is_one_line_with_the_nearest() -> None:
-    with pytest.raises(ConfigurationError, match=r"unknown experiment 'clok', did you mean 'clock'\?"):
-        main(["clok"])
+    assert "first_training" in listed and "Does the robot learn to step" in listed
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
-        ("clock --random-sets 0", "--random-sets must be at least 1, not 0"),
-        ("decisions --episodes 10 -1", "--episodes must be at least 1, not -1"),
-        ("clock --workers -1", "--workers must be at least 0, not -1"),
-        ("several_actions --algorithms NAF", "unknown algorithm 'NAF', did you mean 'naf'. .allowed: ddpg, naf, "),
-        ("several_actions --tasks Hoper-v5", "unknown task 'Hoper-v5': .* Did you mean: `Hopper`"),
-        ("hopper_actions --steps 35", "--steps must be a multiple of 10 evaluations .*, not 35"),
-        ("hopper_actions --actions held", "unknown actions 'held' .allowed: as they are, held for four steps, "),
-        ("scaled_actions --tasks six", "unknown task 'six' .*six actions, clear"),
-        ("naf_pendulum --algorithms NAF", "unknown algorithm 'NAF', did you mean 'naf'. .allowed: ddpg, naf, "),
-        ("scaled_actions --actions NAV", "unknown actions .NAV., did you mean .NAF."),
-        (f"clock --out {__file__}", "--out must be a folder, and .* is a file"),
+        (["firts_training"], r"unknown experiment 'firts_training', did you mean 'first_training'\?"),
+        (["first_training", "--only", "sed=3"], "KEY=VALUE; unknown key 'sed'"),
+        (["first_training", "--only", "run=naf seed 33"], r"unknown run 'naf seed 33', did you mean 'naf seed 3'\?"),
+        (["first_training", "--seeds", "0"], "--seeds must be at least 1, not 0"),
+        (["age", "first_training"], "age takes no arguments, not 'first_training'"),
     ],
 )
-def test_a_mistake_is_one_line_before_anything_is_computed(arguments: str, said: str) -> None:
-    with pytest.raises(ConfigurationError, match=said):
-        main(arguments.split())
+def test_wrong_options_are_named(arguments: list[str], message: str) -> None:
+    with pytest.raises(ConfigurationError, match=message):
+        main(EXPERIMENTS, arguments)
 
 
-@dataclass(frozen=True)
-class Squares(RowByRowExperiment):
-    """Squares, of which one cannot be had at first.
-
-    :param made: file that gets a line for each square that is computed
-    :param fails_at: number whose square cannot be had
-    """
-
-    made: Path
-    fails_at: int
-
-    def keys(self) -> list[record.Row]:
-        """Four numbers."""
-        return [{"number": number} for number in range(4)]
-
-    def row(self, number: int) -> record.Row:
-        """A square."""
-        if number == self.fails_at:
-            raise KeyboardInterrupt
-        self.made.write_text(f"{self.made.read_text()}{number}")
-        return {"square": number * number}
-
-
-def test_an_interrupted_experiment_goes_on_after_its_last_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (made := tmp_path / "made").touch()
-    command = ["squares", "--out", str(tmp_path)]
-    monkeypatch.setitem(TABLE, "squares", Maker("How large?", Squares(made, 2, workers=0), of_robot=False))
+def test_what_was_interrupted_goes_on(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
-        main(command)
+        make(squares(Squares(fails_at=2)), "run squares", ["--out", str(tmp_path)])
     begun = record.read("squares", tmp_path)
-    assert ([row["square"] for row in begun.rows], begun.missing) == (["0", "1"], 2)
-    monkeypatch.setitem(TABLE, "squares", Maker("How large?", Squares(made, 9, workers=0), of_robot=False))
-    main(command)
+    assert len(begun.rows) == 4 and begun.missing == 1
+    (tmp_path / "squares.csv").write_text((tmp_path / "squares.csv").read_text().replace(",-1,-1", ",-1,-7"))
+    make(squares(Squares()), "run squares", ["--out", str(tmp_path), "--workers", "0"])
     whole = record.read("squares", tmp_path)
-    assert ([row["square"] for row in whole.rows], whole.missing) == (["0", "1", "4", "9"], 0)
-    assert made.read_text() == "0123"
-    main(command)
-    assert made.read_text() == "0123" * 2
+    assert [row["square"] for row in whole.rows] == ["0", "-0", "1", "-7", "4", "-4"] and not whole.missing
 
 
-def test_only_the_full_experiment_makes_the_result() -> None:
-    clock = TABLE["clock"]
-    assert makes_the_result(dataclasses.replace(clock.experiment, workers=0), clock.experiment)
-    assert not makes_the_result(dataclasses.replace(clock.experiment, random_sets=100), clock.experiment)
-    assert all(not makes_the_result(maker.quick_experiment, maker.experiment) for maker in TABLE.values())
+def test_another_command_begins_anew(tmp_path: Path) -> None:
+    for words in ("run squares", "run other squares"):
+        with pytest.raises(KeyboardInterrupt):
+            make(squares(Squares(fails_at=1)), words, ["--out", str(tmp_path)])
+    assert record.read("squares", tmp_path).command.startswith("run other squares")
 
 
-def test_a_result_is_stale_only_for_a_reason() -> None:
-    with pytest.raises(ConfigurationError, match="WHY must be a sentence"):
-        main(["stale"])
-    with pytest.raises(ConfigurationError, match=r"unknown result 'clok', did you mean 'clock'\?"):
-        main(["stale", "The clock runs backwards.", "clok"])
+def test_some_cases_alone(tmp_path: Path) -> None:
+    make(squares(Squares()), "run squares", ["--only", "number=2", "--out", str(tmp_path)])
+    assert [row["number"] for row in record.read("squares", tmp_path).rows] == ["2", "2"]
 
 
-def test_what_was_made_with_another_controller_becomes_stale(tmp_path: Path) -> None:
-    others = made_with() | {"controller": "another"}
-    record.write("outdated", [{"score": 1.0}], "How much?", "", others, tmp_path)
-    record.write("todays", [{"score": 1.0}], "How much?", "", made_with(), tmp_path)
-    record.write("of_no_robot", [{"score": 1.0}], "How much?", "", None, tmp_path)
-    mark_stale(tmp_path, "The controller steps backwards.")
-    stale = {name: record.read(name, tmp_path).stale for name in record.names(tmp_path)}
-    assert stale == {"outdated": "The controller steps backwards.", "todays": None, "of_no_robot": None}
-    mark_stale(tmp_path, "Robots are not concerned.", "of_no_robot")
-    assert record.read("of_no_robot", tmp_path).stale == "Robots are not concerned."
+def test_a_result_is_made_of_committed_code_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(record, "RESULTS", tmp_path)
+    monkeypatch.setattr(record, "changed_files", lambda: ["sarah/files.py"])
+    with pytest.raises(SarahError, match="commit first what a result is made of: sarah/files.py has changes"):
+        make(squares(Squares()), "run squares", [])
+    assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("protection", PROTECTIONS, ids=lambda protection: protection.promise)
-def test_a_protection_is_where_it_is_said_to_be(protection: Protection) -> None:
-    """Whether its test fails without it, ``make endurance`` finds out."""
-    assert (record.ROOT / "sarah" / protection.file).read_text(encoding="utf-8").count(protection.code) == 1
-    assert protection.place.startswith("tests/")
+def test_only_the_full_experiment_makes_the_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(record, "RESULTS", tmp_path / "results")
+    monkeypatch.setattr("experiments.making.OTHER_RESULTS", tmp_path / "other")
+    monkeypatch.setattr(record, "changed_files", list)
+    for options in (["--workers", "0"], ["--count", "2"], ["--only", "number=1"], ["--quick"]):
+        path = make(squares(Squares()), "run squares", options)
+        assert (path.parent.name == "results") == (options[0] == "--workers")
+
+
+def test_an_unpacked_archive_cannot_tell_its_commit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(record, "ROOT", tmp_path)
+    assert record.commit() == "unknown"
+    result = Result("some", "How much?", "run some", "0123abc", "2026-01-02")
+    assert age(result, ("sarah",)) == "cannot tell without the whole history"
+
+
+def test_a_result_is_read_as_it_was_written(tmp_path: Path) -> None:
+    rows = [{"run": "a, b # c", "score": 0.123456789, "episodes_to_90": float("inf"), "note": None}]
+    about = Result("some", "How much: all?", "run some", "unknown", "2026-01-02", 1.5, versions="python 3, sarah 1")
+    record.write(dataclasses.replace(about, rows=rows), tmp_path)
+    result = record.read("some", tmp_path)
+    assert result.rows == [{"run": "a, b # c", "score": "0.12346", "episodes_to_90": "inf", "note": ""}]
+    assert dataclasses.replace(result, rows=()) == about
+    assert result.table.to_dict("records")[0]["score"] == 0.12346

@@ -1,6 +1,6 @@
-"""Times what a training computes between two episodes, by how many episodes there have been, on one thread.
+"""How long does a training think between two episodes?
 
-The replay buffer is that of local NAF, which holds the newest 10,000. All disturbances of the episodes matter for their
+By how many episodes there have been, on one thread. The replay buffer is that of local NAF, which holds the newest 10,000. All disturbances of the episodes matter for their
 returns: it takes longest to take out the part of so many.
 """
 
@@ -15,8 +15,11 @@ from typing import Any
 
 import numpy as np
 from gymnasium import spaces
+from pandas import DataFrame
 
+from benchmarks.timing import Timing
 from experiments.record import Row
+from experiments.tables import table
 from sarah.agents import PRESETS, SmoothedReplayBuffer
 from sarah.agents.smoothed_buffer import ADDITIONS_PER_CHOICE
 from sarah.episode.spec import EpisodeSpec
@@ -33,7 +36,7 @@ PRESET: dict[str, Any] = PRESETS["one-step"]
 
 
 @dataclass(frozen=True)
-class Decisions:
+class Decisions(Timing):
     """Time of a decision of local NAF, and of a recommendation. Updates are not among it: they always take as long.
 
     :param episodes: numbers of episodes before
@@ -43,25 +46,30 @@ class Decisions:
     episodes: tuple[int, ...] = (1000, 10_000, 100_000)
     rounds: int = 51
 
-    def rows(self) -> Iterator[Row]:
-        """A row for each number of episodes."""
-        for count in self.episodes:
-            generator = np.random.default_rng(0)
-            actions = generator.uniform(-1, 1, (count, len(CENTRE)))
-            disturbances = generator.random((count, len(DISTURBANCES)))
-            rewards = generator.random(count) + disturbances.sum(axis=1)
-            spaces_of_episodes = spaces.Box(-1, 1, (16,)), spaces.Box(-1, 1, (len(CENTRE),))
-            buffer = SmoothedReplayBuffer(PRESET["buffer_size"], *spaces_of_episodes, "cpu")
-            tried = Tried(STEPPING)
-            for action, reward, own in zip(actions, rewards, disturbances, strict=True):
-                remember(action, reward, own, buffer, tried)
-            note = milliseconds(partial(tried.append, CENTRE, 0.5, DISTURBANCES), self.rounds)
-            recommend = milliseconds(partial(tried.best, CENTRE), self.rounds)
-            yield {
-                "episodes": count,
-                "action_milliseconds": milliseconds(partial(decide, buffer), self.rounds) / ADDITIONS_PER_CHOICE,
-                "recommendation_milliseconds": note + recommend / EPISODES_PER_RECOMMENDATION,
-            }
+    def cases(self) -> list[Row]:
+        """The numbers of episodes."""
+        return [{"episodes": count} for count in self.episodes]
+
+    def rows(self, episodes: int) -> Iterator[Row]:
+        """Times after some episodes.
+
+        :param episodes: number of episodes
+        """
+        generator = np.random.default_rng(0)
+        actions = generator.uniform(-1, 1, (episodes, len(CENTRE)))
+        disturbances = generator.random((episodes, len(DISTURBANCES)))
+        rewards = generator.random(episodes) + disturbances.sum(axis=1)
+        spaces_of_episodes = spaces.Box(-1, 1, (16,)), spaces.Box(-1, 1, (len(CENTRE),))
+        buffer = SmoothedReplayBuffer(PRESET["buffer_size"], *spaces_of_episodes, "cpu")
+        tried = Tried(STEPPING)
+        for action, reward, own in zip(actions, rewards, disturbances, strict=True):
+            remember(action, reward, own, buffer, tried)
+        note = milliseconds(partial(tried.append, CENTRE, 0.5, DISTURBANCES), self.rounds)
+        recommend = milliseconds(partial(tried.best, CENTRE), self.rounds)
+        yield {
+            "action_milliseconds": milliseconds(partial(decide, buffer), self.rounds) / ADDITIONS_PER_CHOICE,
+            "recommendation_milliseconds": note + recommend / EPISODES_PER_RECOMMENDATION,
+        }
 
 
 def remember(
@@ -107,3 +115,18 @@ def milliseconds(action: Callable[[], Any], rounds: int) -> float:
         action()
         times.append(1000.0 * (time.process_time() - start))
     return median(times)
+
+
+FULL = Decisions()
+QUICK = Decisions(episodes=(10,), rounds=1)
+
+
+def times(rows: DataFrame) -> str:
+    """Time of a decision and of a recommendation."""
+    shown = rows.rename(columns=lambda column: column.replace("_milliseconds", " (ms)"))
+    formats = {"action (ms)": ".1f", "recommendation (ms)": ".1f"}
+    caption = (
+        "Processor time beside the updates, after so many episodes: to choose an action, and to note an episode and "
+        "recommend parameters."
+    )
+    return table(shown, ["episodes", *formats], formats, caption)

@@ -1,9 +1,9 @@
-"""Times episodes and trainings, and says where the time goes.
+"""How fast are episodes simulated, and where does the time go?
 
-The closed loop (sensing, pattern generator, reward, result) against bare physics steps on the same trajectory, and
+Timed are the closed loop (sensing, pattern generator, reward, result) against bare physics steps on the same trajectory, and
 these steps with PyBullet's answers, of which nothing is made, against the same; the standard physics against the
 reference and against 500 Hz with 30 iterations; a training with two workers against one, and against two processes
-that know nothing of each other; and the learner's share of a training's time. Everything is measured twice.
+that know nothing of each other; and the learner's share of a training's time. A second run of all shows how far such figures repeat.
 """
 
 from __future__ import annotations
@@ -19,7 +19,11 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+from pandas import DataFrame
+
+from benchmarks.timing import Timing
 from experiments.record import Row
+from experiments.tables import turned_table
 from sarah.control.pattern_generator import STAND_SECONDS, Phase
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.settings import EpisodeConfig
@@ -41,7 +45,7 @@ FINER = PyBulletPhysics(500, 30, added_plate_inertia=0.0)
 
 
 @dataclass(frozen=True)
-class Throughput:
+class Throughput(Timing):
     """Speeds of episodes and of trainings in PyBullet, and their ratios.
 
     :param rounds: number of rounds, each of which measures every loop once; ratios are medians of the rounds'
@@ -57,16 +61,19 @@ class Throughput:
     budget: int = 100
     time_limit: float = 30.0
 
-    def rows(self) -> Iterator[Row]:
-        """A row for each quantity."""
-        first, second = self._figures(), self._figures()
-        for quantity, value in first.items():
-            yield {"quantity": quantity, "value": value, "another_run": second[quantity]}
+    def cases(self) -> list[Row]:
+        """Two runs of all."""
+        return [{"run": "first run"}, {"run": "second run"}]
 
-    def _figures(self) -> dict[str, float]:
+    def rows(self, run: str) -> Iterator[Row]:
+        """A row for each quantity.
+
+        :param run: name of the run
+        """
         with tempfile.TemporaryDirectory() as folder:
             many = [self._trainings(seed, Path(folder, str(seed))) for seed in range(self.trainings)]
-        return {**self._loops(), **{name: median(one[name] for one in many) for name in many[0]}}
+        measured = self._loops() | {name: median(one[name] for one in many) for name in many[0]}
+        yield from ({"quantity": quantity, "value": value} for quantity, value in measured.items())
 
     def _loops(self) -> dict[str, float]:
         ticks = {physics: commands(physics, self.loop_seconds) for physics in (STANDARD, REFERENCE, FINER)}
@@ -256,3 +263,13 @@ def seconds_without_learner(specs: list[EpisodeSpec], folder: Path) -> float:
         file.write_bytes(pickle.dumps(specs[index::2]))
         children.append(subprocess.Popen([sys.executable, "-c", code, str(file)], stdout=subprocess.PIPE, text=True))
     return max(float(child.communicate()[0]) for child in children)
+
+
+FULL = Throughput()
+QUICK = Throughput(time_limit=2.0, rounds=1, trainings=1, budget=5)
+
+
+def speeds(rows: DataFrame) -> str:
+    """All quantities, of both runs."""
+    caption = "Episodes on two cores of a small virtual machine: medians of five rounds, in two runs of the same."
+    return turned_table(rows, ["quantity"], "run", "value", ".3g", caption)

@@ -1,6 +1,6 @@
-"""Times how soon the viewer's page is there, and how many frames per second it plays.
+"""How fast is the viewer?
 
-Frames are counted where they are sent, and where Chromium draws them. Without a graphics card it draws on the
+How soon its page is there, and how many frames per second it plays. Frames are counted where they are sent, and where Chromium draws them. Without a graphics card it draws on the
 processor, which says little of a browser that has one; the page's own work on a frame is the same with either.
 """
 
@@ -19,8 +19,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import playwright.sync_api as playwright
+from pandas import DataFrame
 
+from benchmarks.timing import Timing
 from experiments.record import Row
+from experiments.tables import table
 from sarah.episode.episode import simulate
 from sarah.runs.run_episodes import RunEpisode, episode_of_parameters
 from sarah.viewer.page import Page
@@ -41,7 +44,7 @@ COUNT_DRAWN = """seconds => new Promise(resolve => {
 
 
 @dataclass(frozen=True)
-class Viewer:
+class Viewer(Timing):
     """Start of the page, and its frames.
 
     :param rounds: number of times that everything is measured
@@ -50,6 +53,10 @@ class Viewer:
 
     rounds: int = 3
     seconds: float = 10.0
+
+    def cases(self) -> list[Row]:
+        """One for all, as everything is measured on the same page."""
+        return [{}]
 
     def rows(self) -> Iterator[Row]:
         """A row for each quantity."""
@@ -151,3 +158,14 @@ def seconds_of_the_page(performance: playwright.CDPSession) -> float:
     """
     values = {metric["name"]: metric["value"] for metric in performance.send("Performance.getMetrics")["metrics"]}
     return sum(values[name] for name in ("ScriptDuration", "LayoutDuration", "RecalcStyleDuration"))
+
+
+FULL = Viewer()
+QUICK = Viewer(rounds=1, seconds=1.0)
+
+
+def speeds(rows: DataFrame) -> str:
+    """All that was measured."""
+    return table(
+        rows, ["quantity", "lowest", "highest"], {"lowest": ".1f", "highest": ".1f"}, "The page of `sarah-view`."
+    )

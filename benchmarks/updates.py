@@ -1,6 +1,6 @@
-"""Times gradient updates of NAF and of stable-baselines3's TD3 with equal layers, on one thread.
+"""How many updates per second does NAF make, and TD3?
 
-Every round times each of them once, on random transitions, one after the other; ratios are medians over the rounds. The
+NAF and the TD3 of stable-baselines3 have equal layers, on one thread. Every round times each of them once, on random transitions, one after the other; ratios are medians over the rounds. The
 products are the bare matrix products of NAF's update, forward and backward, as a share of the update's time. NAF is
 timed as it is, without dropout, and with V in place of W: so without W, dropout, normalised layers and the pull.
 """
@@ -18,11 +18,16 @@ import gymnasium as gym
 import numpy as np
 import torch
 from gymnasium import spaces
+from matplotlib.figure import Figure
+from pandas import DataFrame
 from stable_baselines3 import TD3
 from stable_baselines3.common.logger import Logger
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
+from benchmarks.timing import Timing
 from experiments.record import Row
+from experiments.shapes import COLOURS, legend, panels
+from experiments.tables import table
 from sarah.agents import NAF
 
 LAYERS = ((32, 32), (64, 64), (256, 256))
@@ -34,7 +39,7 @@ WARM_UP = 20
 
 
 @dataclass(frozen=True)
-class Updates:
+class Updates(Timing):
     """Updates per second of processor time: other processes of the machine do not count.
 
     :param updates: number of updates in a round
@@ -46,23 +51,31 @@ class Updates:
     rounds: int = 7
     batch_size: int = 256
 
-    def rows(self) -> Iterator[Row]:
-        """A row for each size of layers, observations and actions."""
+    def cases(self) -> list[Row]:
+        """The sizes of layers, observations and actions."""
+        return [
+            {"layers": " x ".join(map(str, layers)), "observations": observations, "actions": actions}
+            for layers in LAYERS
+            for observations, actions in DIMENSIONS
+        ]
+
+    def rows(self, layers: str, observations: int, actions: int) -> Iterator[Row]:
+        """Speed of updates.
+
+        :param layers: widths of the layers
+        :param observations: number of observations
+        :param actions: number of actions
+        """
         torch.set_num_threads(1)
-        for layers in LAYERS:
-            for dimensions in DIMENSIONS:
-                times = self._times(layers, dimensions)
-                yield {
-                    "layers": " x ".join(map(str, layers)),
-                    "observations": dimensions[0],
-                    "actions": dimensions[1],
-                    "naf_updates_per_second": round(1.0 / median(times["naf"])),
-                    "td3_updates_per_second": round(1.0 / median(times["td3"])),
-                    "naf_over_td3": ratio(times["td3"], times["naf"]),
-                    "naf_without_dropout_over_td3": ratio(times["td3"], times["naf without dropout"]),
-                    "naf_with_v_over_td3": ratio(times["td3"], times["naf with V"]),
-                    "products_share": ratio(times["products"], times["naf"]),
-                }
+        times = self._times(tuple(map(int, layers.split(" x "))), (observations, actions))
+        yield {
+            "naf_updates_per_second": round(1.0 / median(times["naf"])),
+            "td3_updates_per_second": round(1.0 / median(times["td3"])),
+            "naf_over_td3": ratio(times["td3"], times["naf"]),
+            "naf_without_dropout_over_td3": ratio(times["td3"], times["naf without dropout"]),
+            "naf_with_v_over_td3": ratio(times["td3"], times["naf with V"]),
+            "products_share": ratio(times["products"], times["naf"]),
+        }
 
     def _times(self, layers: tuple[int, ...], dimensions: tuple[int, int]) -> dict[str, list[float]]:
         """Seconds of an update in every round, by what is timed."""
@@ -152,3 +165,36 @@ def products(model: NAF, batch_size: int) -> Callable[[int], None]:
                     torch.mm(inputs[layer], weights[layer].t())
 
     return run
+
+
+FULL = Updates()
+QUICK = Updates(updates=2, rounds=1, batch_size=8)
+
+
+def figure(rows: DataFrame) -> Figure:
+    """Updates per second of NAF and TD3."""
+    drawn, (axis,) = panels(1, 0.3)
+    for offset, algorithm, colour in ((-0.2, "naf", COLOURS[0]), (0.2, "td3", COLOURS[1])):
+        places = [index + offset for index in range(len(rows))]
+        axis.bar(places, rows[f"{algorithm}_updates_per_second"], 0.38, color=colour, label=algorithm.upper())
+    labels = [f"{row.layers}\n{row.observations} → {row.actions}" for row in rows.itertuples()]
+    axis.set_xticks(range(len(rows)), labels)
+    axis.set_ylabel("updates per second")
+    legend(drawn, axis)
+    return drawn
+
+
+def speeds(rows: DataFrame) -> str:
+    """Updates per second, and the ratios."""
+    heads = {
+        "naf_updates_per_second": "NAF (1/s)",
+        "td3_updates_per_second": "TD3 (1/s)",
+        "naf_over_td3": "NAF over TD3",
+        "naf_without_dropout_over_td3": "without dropout",
+        "naf_with_v_over_td3": "with V",
+        "products_share": "products' share",
+    }
+    formats = {**dict.fromkeys(("NAF over TD3", "without dropout", "with V"), ".2f"), "products' share": ".0%"}
+    columns = ["layers", "observations", "actions", *heads.values()]
+    caption = "Updates per second with batches of 256, and speeds of NAF and two of its variants over that of TD3."
+    return table(rows.rename(columns=heads), columns, formats, caption)

@@ -1,1 +1,0 @@
-"""Timings: how fast simulation, workers, learner and viewer are."""

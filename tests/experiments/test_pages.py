@@ -1,0 +1,63 @@
+"""The pages show today's results, and read as they lie."""
+
+import re
+from pathlib import Path
+
+import pytest
+from pandas import DataFrame
+
+from experiments import record
+from experiments.found import paths_of
+from experiments.pages import write
+from experiments.tables import heading, shown, span, table, turned_table
+
+PAGES = [
+    *record.ROOT.glob("*.md"),
+    *(page for page in record.ROOT.glob("docs/**/*.md") if "generated" not in page.parts),
+]
+OF_MARKUP = re.compile(r"^ *(?:```|:::)+\{|\{[\w:.-]+\}`|\[\[\[|^:\w+:", re.MULTILINE)
+"""Directives, roles, blocks outside comments, and options of directives: what a plain Markdown reader shows as it is."""
+ROWS = DataFrame({"run": ["a", "a", "b"], "engine": ["x", "y", "x"], "score": [0.5, -0.25, 1.0]})
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(record.ROOT)))
+def test_a_page_reads_in_any_reader(page: Path) -> None:
+    if page.name == "api.md":  # the one page for the site
+        return
+    text = re.sub(r"<!--.*?-->", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    assert not OF_MARKUP.findall(text)
+
+
+def test_pages_hold_what_their_functions_write(capsys: pytest.CaptureFixture[str]) -> None:
+    code = write("--check")
+    assert code == 0, f"run make results: {capsys.readouterr().out}"
+
+
+def test_every_result_is_shown_on_a_page() -> None:
+    texts = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
+    assert not {name for name in record.names() if f'show("{name}.' not in texts}
+    assert not set(re.findall(r'show\("(\w+)\.', texts)) - set(paths_of())
+
+
+def test_headings_have_units() -> None:
+    assert heading("sole_clearance_mm") == "sole clearance (mm)"
+    assert heading("vibration_m2_s4") == "vibration (m²/s⁴)"
+    assert heading("score_low") == "from"
+
+
+def test_values_are_written_as_people_write_them() -> None:
+    assert [shown(value, spec) for value, spec in ((-0.126, ".2f"), (0.985, ".0%"), (3, ""), ("a", ".1f"))] == [
+        "−0.13",
+        "98\N{NO-BREAK SPACE}%",
+        "3",
+        "a",
+    ]
+    assert shown(float("nan"), ".2f") == "–" and shown(float("inf"), ".0f") == "not reached"
+    assert span(ROWS.score, ".2f") == "−0.25 to 1.00"
+
+
+def test_a_table_can_be_turned() -> None:
+    straight = table(ROWS, ["run", "score"], {"score": ".1f"}, "Scores.").splitlines()
+    assert straight[:2] == ["**Scores.**", ""] and straight[-1] == "| b | 1.0 |"
+    turned = turned_table(ROWS, ["run"], "engine", "score", ".2f", "Scores.").splitlines()
+    assert turned[2:] == ["| run | x | y |", "| --- | --- | --- |", "| a | 0.50 | −0.25 |", "| b | 1.00 | – |"]
