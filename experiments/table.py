@@ -11,11 +11,8 @@ from experiments.clock import Clock
 from experiments.conditions import Conditions
 from experiments.endurance.table import ENDURANCE
 from experiments.engines import Engines
-from experiments.maker import Maker
-from experiments.goal_tasks import GoalTasks
-from experiments.known_truth import KnownTruth
 from experiments.landscape import Landscape
-from experiments.naf_preset import NafPreset
+from experiments.maker import Maker
 from experiments.observed_reward import ObservedReward
 from experiments.operation import Operation
 from experiments.other_sizes import OtherSizes, Robot
@@ -26,10 +23,8 @@ from experiments.robustness import Robustness
 from experiments.rough_ground import RoughGround
 from experiments.second_training import SecondTraining, SecondTrainingSummary
 from experiments.sensor_faults import SensorFaults
-from experiments.several_actions import SeveralActions
 from experiments.shipped_parameters import ShippedParameters
 from experiments.shipping_rule import Round, Shipping
-from experiments.standard_tasks import NAF_VARIANTS, StandardTask
 from experiments.transfer import TransferBetweenEngines
 
 SHORT = {"time_limit": 2.0}
@@ -128,55 +123,6 @@ TABLE: dict[str, Maker] = {
         "Which algorithm learns to come back after a push in the fewest episodes?",
         Race("balance", budget=150, first_seed=300, evaluations_along=12),
         {**RACED, "evaluations": 1, "evaluations_along": 1},
-    ),
-    "naf_preset": Maker(
-        "What is each part of NAF's preset for episodes of one step worth?",
-        NafPreset(),
-        {"seeds": 1, "episodes": 5},
-        of_robot=False,
-    ),
-    "known_truth": Maker(
-        "What does NAF make of tasks whose truth is known?",
-        KnownTruth(),
-        {"steps": 102, "seeds": 1, "episodes": 1},
-        of_robot=False,
-    ),
-    "several_actions": Maker(
-        "How does NAF do on tasks with several actions, next to DDPG?",
-        SeveralActions(),
-        {
-            "tasks": ("Swimmer-v5",),
-            "steps": 120,
-            "seeds": 1,
-            "evaluations": 1,
-            "episodes": 1,
-            "courses": Path("build/experiments/several_actions"),
-        },
-        of_robot=False,
-    ),
-    "goal_tasks": Maker(
-        "How does NAF do where a place is to be reached, next to DDPG and TD3?",
-        GoalTasks(),
-        {"steps": 102, "seeds": 1, "episodes": 1},
-        of_robot=False,
-    ),
-    "naf_pendulum": Maker(
-        "How does NAF do on Pendulum-v1, next to TD3, SAC and DDPG?",
-        StandardTask("Pendulum-v1", steps=10_000, seeds=10),
-        {"steps": 120, "seeds": 1, "episodes": 1},
-        of_robot=False,
-    ),
-    "pendulum_variants": Maker(
-        "What do noise, pull and dropout change for NAF on Pendulum-v1?",
-        StandardTask("Pendulum-v1", steps=10_000, algorithms=tuple(NAF_VARIANTS), seeds=10),
-        {"steps": 120, "seeds": 1, "episodes": 1},
-        of_robot=False,
-    ),
-    "naf_inverted_pendulum": Maker(
-        "How does NAF do on InvertedPendulum-v5, next to TD3, SAC and DDPG?",
-        StandardTask("InvertedPendulum-v5", steps=5000),
-        {"steps": 120, "seeds": 1, "episodes": 1},
-        of_robot=False,
     ),
     # The controller.
     "landscape_stepping": Maker(

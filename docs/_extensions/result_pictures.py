@@ -11,7 +11,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter, MaxNLocator
+from matplotlib.ticker import MaxNLocator
 from result_columns import heading
 from result_rows import chosen
 from result_shapes import (
@@ -61,52 +61,6 @@ def race(rows: Rows) -> Figure:
     right.xaxis.set_major_locator(MaxNLocator(integer=True))
     right.set(xlabel="trainings at 95 % of the best score", xlim=(-0.5, max(numbers(rows, "runs")) + 0.5))
     legend(figure, right)
-    return figure
-
-
-def standard_task(rows: Rows) -> Figure:
-    """Median return, from the lowest seed to the highest."""
-    figure, (axis,) = panels(1, 0.25)
-    ends = [numbers(rows, f"{which}_return") for which in ("median", "lowest", "highest")]
-    draw_intervals(axis, [f"{row['algorithm']}, {row['seeds']} seeds" for row in rows], *ends)
-    axis.set_xlabel(f"return on {rows[0]['task']} after {rows[0]['steps']} steps: median, lowest and highest seed")
-    return figure
-
-
-def learning_curves(rows: Rows, panel: str) -> Figure:
-    """Return along the training, median and lowest to highest seed, a panel for each group of rows."""
-    groups = grouped(rows, panel)
-    figure, axes = panels(len(groups), 0.35)
-    for axis, (name, group) in zip(axes, groups.items(), strict=True):
-        draw_lines(axis, group, "steps", "return", "{algorithm}", rows)
-        axis.set_title(name, fontsize="small")
-        axis.set_ylabel("return" if axis is axes[0] else "")
-        axis.xaxis.set_major_formatter(EngFormatter(sep=""))
-    legend(figure, axes[0])
-    return figure
-
-
-def known_truth(rows: Rows) -> Figure:
-    """Largest V over its bound by variant of NAF, a panel for each task."""
-    tasks = grouped(chosen(rows, "variant!=DDPG"), "{task}")
-    figure, axes = panels(len(tasks), 0.35, sharey=True, sharex=True)
-    for axis, (name, group) in zip(axes, tasks.items(), strict=True):
-        heights = range(len(group), 0, -1)
-        axis.plot(numbers(group, "largest_v_over_bound"), heights, "o", color=COLOURS[0], markersize=4)
-        axis.axvline(1.0, color="grey", linewidth=0.8)
-        axis.set_yticks(heights, [row["variant"] for row in group])
-        axis.set_title(name.replace(", ", "\n"), fontsize="small")
-        axis.set(xscale="log")
-    figure.supxlabel("largest V over its bound", fontsize="medium")
-    return figure
-
-
-def naf_preset(rows: Rows) -> Figure:
-    """Score of mu: median and lowest seed."""
-    figure, (axis,) = panels(1, 0.55)
-    middle = numbers(rows, "mu_median_score")
-    draw_intervals(axis, [row["variant"] for row in rows], middle, numbers(rows, "mu_lowest_score"), middle)
-    axis.set_xlabel("score of the agent's own action: median of the seeds, and down to the lowest")
     return figure
 
 
@@ -243,11 +197,6 @@ PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
     "second_training": (("second_training",), second_training),
     "race_stepping": (("race_stepping",), race),
     "race_balance": (("race_balance",), race),
-    "naf_pendulum": (("naf_pendulum",), standard_task),
-    "naf_inverted_pendulum": (("naf_inverted_pendulum",), standard_task),
-    "several_actions": (("several_actions",), partial(learning_curves, panel="{task}")),
-    "known_truth": (("known_truth",), known_truth),
-    "naf_preset": (("naf_preset",), naf_preset),
     "robustness": (("robustness",), robustness),
     "conditions": (("conditions",), partial(pushes, situation="situation")),
     "rough_ground": (("rough_ground",), partial(pushes, situation="ground")),

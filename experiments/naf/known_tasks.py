@@ -185,12 +185,12 @@ def points_answer(rows: DataFrame) -> str:
     """How NAF does where a place is to be reached."""
     returns = of_seeds(rows, "return", "median")
     ahead, level = (returns.NAF > returns.TD3).sum(), (returns.NAF == returns.TD3).sum()
+    behind, above_ddpg = returns.index[returns.NAF < returns.TD3], returns.index[returns.NAF > returns.DDPG]
     highest = of_seeds(rows, "v_over_bound", "max").NAF[returns.index].max()
     return (
         f"Where a point is moved, NAF's median return is above TD3's on {ahead or 'none'} of {len(returns)} tasks, "
-        f"equal on {level}, and below it on {quoted(returns.index[returns.NAF < returns.TD3])}. It is above "
-        f"DDPG's on {quoted(returns.index[returns.NAF > returns.DDPG])} only. V comes to {shown(highest, '.2f')} of its bound at "
-        "most."
+        f"equal on {level}, and below it on {quoted(behind)}. It is above DDPG's on {quoted(above_ddpg)} only. V comes "
+        f"to {shown(highest, '.2f')} of its bound at most."
     )
 
 

@@ -176,7 +176,8 @@ def figure(rows: DataFrame) -> Figure:
 
 def returns(rows: DataFrame) -> str:
     """Returns at the end of the trainings."""
-    columns = ["task", "algorithm", "seeds", "return", "return_low", "return_high", "v_over_bound"]
     found = over_seeds(ends(rows), "task", "algorithm")
+    found["steps"] = [TASKS[task].steps for task in found["task"]]
+    columns = ["task", "algorithm", "steps", "seeds", "return", "return_low", "return_high", "v_over_bound"]
     caption = f"Mean return of a training's last {RECENT} evaluations: median, lowest and highest seed."
     return table(found, columns, FORMATS, caption)
