@@ -7,11 +7,9 @@ which sign is of use changes with the state: Q is linear in the action, and the 
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import gymnasium as gym
 import numpy as np
@@ -20,42 +18,20 @@ from gymnasium import spaces
 GAMMA = 0.99
 
 
-class KnownTask(gym.Env, ABC):
-    """A task whose truth is known.
+class KnownTask(gym.Env):
+    """A task whose ``value``, ``mu`` and ``gap`` are known, and the ``curvature`` of Q, which is the same everywhere.
 
     :param observations: number of observations
     :param actions: number of actions
     :param seed: seed of its noise; the task itself is the same for every seed
     """
 
-    curvature: float
-    """Largest eigenvalue of P, the curvature of Q in the actions; the same everywhere."""
     steps_of_an_episode = 200
 
     def __init__(self, observations: int, actions: int, seed: int) -> None:
         self.observation_space = spaces.Box(-np.inf, np.inf, (observations,))
         self.action_space = spaces.Box(-1.0, 1.0, (actions,))
         self._generator = np.random.default_rng(seed)
-
-    @abstractmethod
-    def value(self, states: np.ndarray) -> np.ndarray:
-        """V of states, of shape (n, observations)."""
-
-    @abstractmethod
-    def mu(self, states: np.ndarray) -> np.ndarray:
-        """The best actions of states, of shape (n, observations)."""
-
-    @abstractmethod
-    def gap(self, states: np.ndarray, actions: np.ndarray) -> np.ndarray:
-        """V - Q of actions, of shape (n, actions)."""
-
-    @abstractmethod
-    def begin(self) -> np.ndarray:
-        """A first state."""
-
-    @abstractmethod
-    def follow(self, states: np.ndarray, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The next states of one or several states, and the rewards."""
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict]:
         """Begin near rest."""
@@ -70,32 +46,19 @@ class KnownTask(gym.Env, ABC):
         return self._state.astype(np.float32), float(reward), False, self._steps == self.steps_of_an_episode, {}
 
 
-@dataclass(frozen=True)
-class Size:
-    """A linear-quadratic task.
-
-    :param states: number of states
-    :param actions: number of actions
-    :param decay: factor by which a state shrinks and turns at each step
-    :param gain: effect of an action on the state
-    :param noise: standard deviation of a state's noise
-    :param cost: cost of a state's squared length
-    :param effort: cost of an action's squared length
-    :param offset: reward at rest
-    :param reward_noise: standard deviation of the reward's noise
-    :param steps_of_an_episode: number of steps after which it is cut
-    """
+class Size(NamedTuple):
+    """Numbers of a linear-quadratic task."""
 
     states: int
     actions: int
-    decay: float = 0.95
-    gain: float = 0.3
-    noise: float = 0.1
-    cost: float = 0.5
-    effort: float = 0.5
-    offset: float = 1.0
-    reward_noise: float = 0.3
-    steps_of_an_episode: int = 200
+    decay: float = 0.95  # factor by which a state shrinks and turns at each step
+    gain: float = 0.3  # effect of an action on the state
+    noise: float = 0.1  # standard deviation of the state's
+    cost: float = 0.5  # of the state's squared length
+    effort: float = 0.5  # cost of the action's squared length
+    offset: float = 1.0  # reward at rest
+    reward_noise: float = 0.3  # standard deviation
+    steps_of_an_episode: int = 200  # after which it is cut
 
 
 class LinearQuadratic(KnownTask):
@@ -140,7 +103,7 @@ class LinearQuadratic(KnownTask):
         return np.einsum("ni,ij,nj->n", from_mu, self._half_curvature, from_mu)
 
     def begin(self) -> np.ndarray:
-        """A state within a few steps' noise of rest."""
+        """A first state, within a few steps' noise of rest."""
         return self._generator.normal(0.0, 5.0 * self._size.noise, self._size.states)
 
     def follow(self, states: np.ndarray, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -186,11 +149,11 @@ class Signs(KnownTask):
         return (1.0 - self.mu(states) * actions) @ np.abs(self._slopes)
 
     def begin(self) -> np.ndarray:
-        """A state within a few steps' noise of rest."""
+        """A first state."""
         return self._generator.normal(0.0, np.repeat([5.0 * self.noise, 1.0], len(self._c)))
 
     def follow(self, states: np.ndarray, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The next states of one or several states, and the rewards."""
+        """The next states, and the rewards."""
         x, y = np.split(states, 2, axis=-1)
         rewards = x @ self._c + self._generator.normal(0.0, self.reward_noise, states.shape[:-1])
         next_states = np.concatenate([x @ self._a.T + (np.sign(y) * actions) @ self._b.T, y @ self._d.T], axis=-1)
@@ -212,7 +175,7 @@ FAINT: dict[str, Any] = dict(gain=2.0, noise=3.0, cost=0.0002, effort=0.04, offs
 """Numbers of tasks in which noise decides most of what follows, and states are large."""
 DRIFTING: dict[str, Any] = dict(decay=1.0, noise=0.02, cost=0.3, effort=0.1, reward_noise=0.0, steps_of_an_episode=30)
 """Numbers of a task in which nothing pulls the state back, and episodes are cut long before 1 / (1 - gamma) steps."""
-TASKS: dict[str, Callable[[int], KnownTask]] = {
+KNOWN_TASKS: dict[str, Callable[[int], KnownTask]] = {
     "two actions, clear": partial(LinearQuadratic, Size(2, 2)),
     "six actions, clear": partial(LinearQuadratic, Size(6, 6)),
     "two actions, faint": partial(LinearQuadratic, Size(6, 2, **FAINT)),

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from experiments.known_tasks import GAMMA, TASKS, KnownTask
+from experiments.naf.known_truth import GAMMA, KNOWN_TASKS, KnownTask
 
 ROBOTS, STEPS = 2000, 1200
-INSIDE = [name for name in TASKS if "bounds" not in name]
+INSIDE = [name for name in KNOWN_TASKS if "bounds" not in name]
 """Tasks whose best action is seldom at the bounds, which the equations leave out."""
 
 
@@ -14,9 +14,9 @@ def first_states(task: KnownTask, count: int) -> np.ndarray:
     return np.stack([task.begin() for _ in range(count)])
 
 
-@pytest.mark.parametrize("name", TASKS)
+@pytest.mark.parametrize("name", KNOWN_TASKS)
 def test_v_is_what_the_best_law_earns_also_where_it_is_cut_at_the_bounds(name: str) -> None:
-    task = TASKS[name](0)
+    task = KNOWN_TASKS[name](0)
     states = first_states(task, ROBOTS)
     promised, earned, at_bounds = task.value(states).mean(), 0.0, []
     for step in range(STEPS):
@@ -28,10 +28,10 @@ def test_v_is_what_the_best_law_earns_also_where_it_is_cut_at_the_bounds(name: s
     assert np.mean(at_bounds) < 0.05 or name not in INSIDE
 
 
-@pytest.mark.parametrize("name", TASKS)
+@pytest.mark.parametrize("name", KNOWN_TASKS)
 def test_an_action_loses_the_gap(name: str) -> None:
     """Bellman's equation of Q = V - gap, in the mean of many draws of the noise."""
-    task = TASKS[name](0)
+    task = KNOWN_TASKS[name](0)
     generator = np.random.default_rng(1)
     for state in first_states(task, 3):
         action = generator.uniform(-1.0, 1.0, task.action_space.shape)
@@ -42,9 +42,9 @@ def test_an_action_loses_the_gap(name: str) -> None:
         assert outcomes.mean() == pytest.approx(expected[0], abs=5.0 * outcomes.std() / 100_000**0.5)
 
 
-@pytest.mark.parametrize("name", TASKS)
+@pytest.mark.parametrize("name", KNOWN_TASKS)
 def test_the_best_action_has_no_gap_and_curvature_is_that_of_the_gap(name: str) -> None:
-    task = TASKS[name](0)
+    task = KNOWN_TASKS[name](0)
     states = 0.1 * first_states(task, 1)
     best = task.mu(states)
     assert task.gap(states, best) == pytest.approx(0.0, abs=1e-9)

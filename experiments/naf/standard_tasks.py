@@ -1,0 +1,183 @@
+"""How does NAF do on standard tasks, next to DDPG, TD3 and SAC?
+
+Returns along trainings, with the defaults of each class.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
+
+import gymnasium as gym
+import torch as th
+from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter
+from pandas import DataFrame
+
+from experiments.experiment import Experiment
+from experiments.naf.algorithms import OTHERS, agent, mean_return
+from experiments.record import Row
+from experiments.shapes import groups, legend, lines, panels
+from experiments.tables import shown, table
+
+RECENT = 3
+"""Number of evaluations that are the end of a training: one alone says little, as returns swing."""
+FORMATS = {**dict.fromkeys(("return", "return_low", "return_high"), ".1f"), "v_over_bound": ".2f"}
+
+
+class Trainings(NamedTuple):
+    """Trainings on a task."""
+
+    steps: int  # of each
+    seeds: int  # of each algorithm
+    episodes: int  # of an evaluation
+    algorithms: tuple[str, ...]
+
+
+PENDULUM = ("NAF", "NAF, noise of 0.5", "NAF, no pull to the centre", "NAF, no dropout", "DDPG", "TD3", "SAC")
+TASKS = {
+    "Pendulum-v1": Trainings(10_000, 10, 20, PENDULUM),
+    "InvertedPendulum-v5": Trainings(5_000, 5, 20, ("NAF", "DDPG", "TD3", "SAC")),
+    "HalfCheetah-v5": Trainings(100_000, 5, 5, ("NAF", "DDPG")),
+    "Hopper-v5": Trainings(100_000, 5, 5, ("NAF", "NAF, noise of 0.9", "DDPG")),
+    "Walker2d-v5": Trainings(100_000, 5, 5, ("NAF", "DDPG")),
+    "Reacher-v5": Trainings(100_000, 5, 5, ("NAF", "DDPG")),
+    "Swimmer-v5": Trainings(100_000, 5, 5, ("NAF", "DDPG")),
+}
+"""Which algorithms run where."""
+
+
+@dataclass(frozen=True)
+class StandardTasks(Experiment):
+    """Trainings of algorithms on tasks of gymnasium.
+
+    :param steps: number of steps of a training; by default that of its task
+    :param seeds: number of trainings of each algorithm; by default that of the task
+    :param episodes: number of episodes of an evaluation; by default that of the task
+    :param evaluations: number of evaluations along a training, the last at its end
+    """
+
+    depends_on: ClassVar[tuple[str, ...]] = ("agents",)
+    steps: int | None = None
+    seeds: int | None = None
+    episodes: int | None = None
+    evaluations: int = 10
+
+    def cases(self) -> list[Row]:
+        """Each training, the first seed of all tasks first."""
+        cases = [
+            {"task": task, "algorithm": algorithm, "seed": seed}
+            for task, of in TASKS.items()
+            for algorithm in of.algorithms
+            for seed in range(self.seeds or of.seeds)
+        ]
+        return sorted(cases, key=lambda case: case["seed"])
+
+    def rows(self, task: str, algorithm: str, seed: int) -> Iterator[Row]:
+        """The course of a training.
+
+        :param task: name of the task
+        :param algorithm: name of the algorithm
+        :param seed: seed of the training
+        """
+        th.set_num_threads(1)
+        of = TASKS[task]
+        steps = self.steps or of.steps
+        model, judged, course = agent(algorithm, gym.make(task), seed), gym.make(task), []
+
+        def evaluate(*_: Any) -> bool:
+            if model.num_timesteps % (steps // self.evaluations) == 0:
+                found = mean_return(model, judged, self.episodes or of.episodes)
+                ratio = getattr(model, "highest_ratio", None)
+                course.append({"steps": model.num_timesteps, "return": found, "v_over_bound": ratio})
+            return True
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # that V runs away is what the rows say
+            model.learn(steps, callback=evaluate)
+        yield from course
+
+
+FULL = StandardTasks()
+QUICK = StandardTasks(steps=120, seeds=1, episodes=1, evaluations=1)
+
+
+def ends(rows: DataFrame) -> DataFrame:
+    """A row for each training: means of its last evaluations.
+
+    :param rows: of the result
+    """
+    trainings = rows.groupby(["task", "algorithm", "seed"], sort=False)
+    last = trainings.tail(RECENT).groupby(["task", "algorithm", "seed"], sort=False)
+    return last.agg({"return": "mean", "v_over_bound": "max"}).reset_index()
+
+
+def over_seeds(rows: DataFrame, *columns: str) -> DataFrame:
+    """Median return of the seeds, and the lowest and the highest; the largest V over its bound.
+
+    :param rows: with returns of seeds
+    :param columns: names of the columns that tell groups apart
+    """
+    return (
+        rows.groupby(list(columns), sort=False)
+        .agg(
+            seeds=("seed", "nunique"),
+            **{"return": ("return", "median"), "return_low": ("return", "min"), "return_high": ("return", "max")},
+            v_over_bound=("v_over_bound", "max"),
+        )
+        .reset_index()
+    )
+
+
+def answer(rows: DataFrame) -> str:
+    """How NAF does next to each of the other algorithms, and how near V comes to its bound."""
+    found = over_seeds(ends(rows), "task", "algorithm").set_index(["algorithm", "task"])
+    sentences = [compared(found.loc["NAF"], found.loc[other], other) for other in OTHERS if other in found.index]
+    ratios = found.loc["NAF"].v_over_bound
+    nearest = f"V comes to {shown(ratios.max(), '.2f')} of its bound at most, on {ratios.idxmax()}."
+    return " ".join([*sentences, nearest])
+
+
+def compared(naf: DataFrame, others: DataFrame, name: str) -> str:
+    """How NAF does next to another algorithm, as a sentence.
+
+    :param naf: returns of NAF by task
+    :param others: those of the other algorithm
+    :param name: its name
+    """
+    naf = naf.loc[others.index]
+    above, below = naf.return_low > others.return_high, naf.return_high < others.return_low
+    verdicts = {
+        f"every seed of NAF ends above every seed of {name}": above,
+        f"every seed of NAF ends below every seed of {name}": below,
+        f"the ranges of the seeds of NAF and {name} overlap": ~(above | below),
+    }
+    parts = (f"{verdict} on {', '.join(others.index[where])}" for verdict, where in verdicts.items() if where.any())
+    text = "; ".join(parts)
+    return f"{text[0].upper()}{text[1:]}."
+
+
+def figure(rows: DataFrame) -> Figure:
+    """Return along the longest trainings: median and range of the seeds."""
+    tasks = [task for task, of in TASKS.items() if of.steps == 100_000]
+    plain = rows[rows["task"].isin(tasks) & rows.algorithm.isin(["NAF", *OTHERS])]
+    drawn, axes = panels(len(tasks), 0.35)
+    courses = groups(over_seeds(plain, "task", "algorithm", "steps"), "task")
+    for axis, (task, group) in zip(axes, courses.items(), strict=True):
+        lines(axis, group, "steps", "return", "algorithm", plain)
+        axis.set_title(str(task), fontsize="small")
+        axis.set_ylabel("return" if axis is axes[0] else "")
+        axis.xaxis.set_major_formatter(EngFormatter(sep=""))
+    legend(drawn, axes[0])
+    return drawn
+
+
+def returns(rows: DataFrame) -> str:
+    """Returns at the end of the trainings."""
+    found = over_seeds(ends(rows), "task", "algorithm")
+    found["steps"] = [TASKS[task].steps for task in found["task"]]
+    columns = ["task", "algorithm", "steps", "seeds", "return", "return_low", "return_high", "v_over_bound"]
+    caption = f"Mean return of a training's last {RECENT} evaluations: median, lowest and highest seed."
+    return table(found, columns, FORMATS, caption)
