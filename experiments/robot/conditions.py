@@ -119,7 +119,7 @@ class Conditions(Experiment):
     :param time_limit: time limit of an episode, in s
     """
 
-    episodes: int = 200
+    episodes: int = 100
     time_limit: float = TIME_LIMIT
 
     def cases(self) -> list[Row]:
