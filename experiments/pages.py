@@ -38,10 +38,12 @@ def show(part: str) -> None:
     found = find(name)
     if function not in vars(found.module):
         raise ConfigurationError(unknown_name(f"part of {name}", function, vars(found.module)))
-    result = record.read(name)
-    if function.startswith("figure"):
+    if name not in record.names():
+        text = f"*Still to be made: `{package_of(name).command} {name}`.*"
+    elif function.startswith("figure"):
         text = f"![{found.question}]({picture(name, function).name})"
     else:
+        result = record.read(name)
         text = filled(getattr(found.module, function)(result.table))
         if "\n|" in text:
             text = f"{text}\n\n{source(found, result)}"

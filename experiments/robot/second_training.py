@@ -24,10 +24,9 @@ from experiments.robot.balance_trainings import (
     SHIPPED,
     SecondTrainingExperiment,
 )
-from experiments.robot.first_training import CLAIM
 from experiments.search import around, successive_halving
 from experiments.shapes import groups, legend, panels, strips
-from experiments.tables import shown, span, table
+from experiments.tables import shown, table
 from sarah.control.parameters import Parameters
 from sarah.episode.tasks import BALANCE
 from sarah.reports.robustness import wilson_interval
@@ -236,45 +235,3 @@ def compared(rows: DataFrame) -> str:
         " best known score with its standard error. P1 to P5 are the shipped ones."
     )
     return table(rows[rows.run.isin(KNOWN)].sort_values("engine", kind="stable"), columns, FORMATS, caption)
-
-
-def claims(rows: DataFrame) -> str:
-    """What the paper claims of its Second Training, and what the trainings show."""
-    runs = learned(rows)
-    found = [
-        (
-            "V1 and V3 matter more than V2 and V4",
-            "yes",
-            f"V1 ends at {span(runs.V1, '.2f')} and saves the robot from the sides; V3 ends above zero in"
-            f" {(runs.V3 > 0.0).sum()} of {len(runs)} trainings and saves it from front and back",
-        ),
-        (
-            "V3 multiplies the acceleration of the y axis",
-            "no",
-            "that [does harm](../explanation/hip_law.md#why-v3-does-not-use-the-forward-acceleration); V3 multiplies"
-            " the fall here",
-        ),
-        (
-            "the angular rates about x and z are not necessary",
-            "in part",
-            "the rate about z is not; V3 uses the rate about x",
-        ),
-        (
-            "V1 follows V4, and V2 follows V3, without a logical relation to the reward",
-            "no",
-            "V1 and V3 settle where the score is high, whatever V2 and V4 are",
-        ),
-        (
-            "the randomness of the force makes the training hard",
-            "yes",
-            "up to 100 N the robot survives [most pushes](conditions.md) without any hip law, so one return says"
-            " little",
-        ),
-        (
-            "the robot returns to its initial position",
-            "in part",
-            "it ends [nearer to its start](conditions.md) than without the hip law, but not there",
-        ),
-    ]
-    caption = f"Second Trainings by NAF: {FULL.seeds} in each engine."
-    return table(DataFrame(found, columns=CLAIM), CLAIM, {}, caption)
