@@ -8,6 +8,7 @@ import sys
 from importlib import metadata
 from pathlib import Path
 
+import yaml
 from sphinx.application import Sphinx
 
 HERE = Path(__file__).parent
@@ -15,8 +16,7 @@ HERE = Path(__file__).parent
 project = "sarah"
 author = "the sarah contributors"
 release = metadata.version("sarah")
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_external_toc"]
-external_toc_path = "docs/contents.yml"
+extensions = ["myst_parser", "sphinx.ext.autodoc"]
 # The site is made of the files as they lie in the repository, so that links between them lead to the same pages.
 include_patterns = [
     "CHANGELOG.md",
@@ -36,6 +36,7 @@ html_show_copyright = False
 myst_heading_anchors = 3
 suppress_warnings = ["toc.duplicate_entry"]
 
+CONTENTS: dict[str, dict[str, list[str]]] = yaml.safe_load((HERE / "contents.yml").read_text(encoding="utf-8"))
 GENERATED = HERE / "reference" / "generated"
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
@@ -51,6 +52,14 @@ def write_api(app: Sphinx) -> None:
     subprocess.run([*command, *arguments], env=environment, check=True)
 
 
+def add_contents(app: Sphinx, page: str, source: list[str]) -> None:
+    """Add the contents below a page, which readers of the repository need not see."""
+    for caption, pages in CONTENTS.get(page, {}).items():
+        entries = "\n".join(f"/{name}" for name in pages)
+        source[0] += f"\n```{{toctree}}\n:hidden:\n:caption: {caption}\n:maxdepth: 1\n\n{entries}\n```\n"
+
+
 def setup(app: Sphinx) -> None:
-    """Have the pages of modules written before the others are read."""
+    """Have the pages of modules written before the others are read, and the contents added to these."""
     app.connect("builder-inited", write_api)
+    app.connect("source-read", add_contents)
