@@ -9,7 +9,6 @@ from experiments.benchmarks.table import BENCHMARKS
 from experiments.ceiling import Ceiling
 from experiments.clock import Clock
 from experiments.conditions import Conditions
-from experiments.endurance.table import ENDURANCE
 from experiments.engines import Engines
 from experiments.maker import Maker
 from experiments.goal_tasks import GoalTasks
@@ -221,6 +220,5 @@ TABLE: dict[str, Maker] = {
         {**SHORT, "seeds": 1},
     ),
     **BENCHMARKS,
-    **ENDURANCE,
 }
 """What makes each result, by its name."""

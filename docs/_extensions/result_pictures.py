@@ -227,18 +227,6 @@ def updates(rows: Rows) -> Figure:
     return figure
 
 
-def long_training(rows: Rows) -> Figure:
-    """Memory along a training."""
-    figure, (axis,) = panels(1, 0.3)
-    for colour, name in zip(COLOURS, ("training", "worker_1", "worker_2"), strict=False):
-        memory = numbers(rows, f"{name}_memory_mib")
-        axis.plot(numbers(rows, "episodes"), memory, ".-", color=colour, label=heading(name))
-    axis.set(xlabel="episodes", ylabel="memory (MiB)")
-    axis.set_ylim(bottom=0.0)
-    legend(figure, axis)
-    return figure
-
-
 PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
     "second_training": (("second_training",), second_training),
     "race_stepping": (("race_stepping",), race),
@@ -259,7 +247,6 @@ PICTURES: dict[str, tuple[tuple[str, ...], Callable[[Rows], Figure]]] = {
     "clock": (("clock",), clock),
     "robot_dimensions": (("robot_dimensions",), robot_dimensions),
     "updates": (("updates",), updates),
-    "long_training": (("long_training",), long_training),
 }
 """Results of each picture, and what draws their rows."""
 

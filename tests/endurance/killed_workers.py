@@ -1,0 +1,111 @@
+"""What do killed workers cost a training?
+
+A training whose workers are killed again and again ends with the same bytes as one that is left alone.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import time
+import zipfile
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from pandas import DataFrame
+
+from benchmarks.timing import Timing
+from experiments.experiment import TRAINING
+from experiments.record import ResultError, Row
+from experiments.tables import table
+from sarah.control.parameters import PAPER_STEPPING
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.workers import Workers
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
+from sarah.training.train import train
+from tests.endurance.worker_processes import worker_processes
+
+WORKERS = 2
+
+
+@dataclass(frozen=True)
+class KilledWorkers(Timing):
+    """A First Training with two workers, one of which is killed now and then.
+
+    :param budget: number of episodes of the training
+    :param seconds_between_kills: time from one kill to the next, in s
+    """
+
+    depends_on = TRAINING
+    budget: int = 200
+    seconds_between_kills: float = 20.0
+
+    def cases(self) -> list[Row]:
+        """One."""
+        return [{"episodes": self.budget, "seconds_between_kills": self.seconds_between_kills}]
+
+    def rows(self, episodes: int, seconds_between_kills: float) -> Iterator[Row]:
+        """Kills, and what they cost.
+
+        :param episodes: number of episodes of the training
+        :param seconds_between_kills: time from one kill to the next, in s
+        """
+        with tempfile.TemporaryDirectory() as folder, Workers(WORKERS) as workers:
+            list(workers.simulate_all([EpisodeSpec(PAPER_STEPPING, seed) for seed in range(2 * WORKERS)]))  # warm up
+            alone, expected = trained(episodes, Path(folder, "alone"), workers, None)
+            killer = Killer(workers, seconds_between_kills)
+            disturbed, found = trained(episodes, Path(folder, "disturbed"), workers, killer)
+        if found != expected:
+            raise ResultError(f"after {killer.killed} killed workers the training ends with other bytes")
+        yield {"workers_killed": killer.killed, "time_s": disturbed, "longer": disturbed / alone - 1.0}
+
+
+FULL = KilledWorkers()
+QUICK = KilledWorkers(budget=8)
+
+
+@dataclass
+class Killer:
+    """Kills worker processes in turn.
+
+    :param workers: workers whose processes are killed
+    :param seconds: time from one kill to the next, in s
+    """
+
+    workers: Workers
+    seconds: float
+    killed: int = 0
+    last: float = field(default_factory=time.monotonic)
+
+    def __call__(self) -> bool:
+        """Kill, if it is time. The training, which asks whether to stop, goes on."""
+        if time.monotonic() - self.last > self.seconds and (processes := worker_processes(self.workers)):
+            processes[self.killed % len(processes)].kill()
+            self.killed += 1
+            self.last = time.monotonic()
+        return False
+
+
+def trained(episodes: int, folder: Path, workers: Workers, killer: Killer | None) -> tuple[float, list[bytes]]:
+    """Train.
+
+    :param episodes: number of episodes
+    :param folder: run folder
+    :param workers: workers that simulate
+    :param killer: who kills them meanwhile
+    :return: time in s, and the bytes of what was learned
+    """
+    config = TrainingConfig(episodes=episodes)
+    run = RunFolder.create(folder, config)
+    start = time.perf_counter()
+    train(config, run, workers, interrupted=killer or (lambda: False))
+    elapsed = time.perf_counter() - start
+    weights = zipfile.ZipFile(run.model_path).read("policy.pth")
+    return elapsed, [weights, *((folder / name).read_bytes() for name in ("episodes.csv", "parameters.json"))]
+
+
+def cost(rows: DataFrame) -> str:
+    """Kills, and how much longer the training took."""
+    formats = {"seconds_between_kills": ".0f", "time_s": ".0f", "longer": ".0%"}
+    return table(rows, list(rows), formats, "A First Training with two workers, which were killed in turn.")
