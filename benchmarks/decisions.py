@@ -1,7 +1,7 @@
 """How long does a training think between two episodes?
 
-By how many episodes there have been, on one thread. The replay buffer is that of local NAF, which holds the newest 10,000. All disturbances of the episodes matter for their
-returns: it takes longest to take out the part of so many.
+By how many episodes there have been, on one thread. The replay buffer is that of local NAF, which holds the newest
+10,000. All disturbances of the episodes matter for their returns: it takes longest to take out the part of so many.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
 """How fast are episodes simulated, and where does the time go?
 
-Timed are the closed loop (sensing, pattern generator, reward, result) against bare physics steps on the same trajectory, and
-these steps with PyBullet's answers, of which nothing is made, against the same; the standard physics against the
-reference and against 500 Hz with 30 iterations; a training with two workers against one, and against two processes
-that know nothing of each other; and the learner's share of a training's time. A second run of all shows how far such figures repeat.
+Timed are the closed loop (sensing, pattern generator, reward, result) against bare physics steps on the same
+trajectory, and these steps with PyBullet's answers, of which nothing is made, against the same; the standard physics
+against the reference and against 500 Hz with 30 iterations; a training with two workers against one, and against two
+processes that know nothing of each other; and the learner's share of a training's time. A second run of all shows how
+far such figures repeat.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
 """How many updates per second does NAF make, and TD3?
 
-NAF and the TD3 of stable-baselines3 have equal layers, on one thread. Every round times each of them once, on random transitions, one after the other; ratios are medians over the rounds. The
-products are the bare matrix products of NAF's update, forward and backward, as a share of the update's time. NAF is
-timed as it is, without dropout, and with V in place of W: so without W, dropout, normalised layers and the pull.
+NAF and the TD3 of stable-baselines3 have equal layers, on one thread. Every round times each of them once, on random
+transitions, one after the other; ratios are medians over the rounds. The products are the bare matrix products of
+NAF's update, forward and backward, as a share of the update's time. NAF is timed as it is, without dropout, and with V
+in place of W: so without W, dropout, normalised layers and the pull.
 """
 
 from __future__ import annotations

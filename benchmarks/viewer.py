@@ -1,7 +1,8 @@
 """How fast is the viewer?
 
-How soon its page is there, and how many frames per second it plays. Frames are counted where they are sent, and where Chromium draws them. Without a graphics card it draws on the
-processor, which says little of a browser that has one; the page's own work on a frame is the same with either.
+How soon its page is there, and how many frames per second it plays. Frames are counted where they are sent, and where
+Chromium draws them. Without a graphics card it draws on the processor, which says little of a browser that has one;
+the page's own work on a frame is the same with either.
 """
 
 from __future__ import annotations

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 
 from experiments.age import say_ages
 from experiments.found import Package, find, questions
 from experiments.making import make
-from sarah.cli.options import run_command
+from sarah.cli.options import as_command
 from sarah.errors import ConfigurationError
 
 HELP = """{command} NAME: make a result, and write each of its rows as soon as it is known.
@@ -43,4 +44,5 @@ def run(package: Package) -> None:
 
     :param package: experiments that the command has
     """
-    run_command(package.command, lambda arguments: main(package, arguments))
+    with as_command(package.command):
+        main(package, sys.argv[1:])

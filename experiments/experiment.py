@@ -13,7 +13,7 @@ from typing import Any, ClassVar, NamedTuple
 from experiments.record import Row
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.workers import Workers
-from sarah.reports.robustness import survival_interval
+from sarah.reports.robustness import wilson_interval
 
 EPISODE = ("sarah/control", "sarah/episode", "sarah/robot", "sarah/scenery", "sarah/simulation", "urdf")
 """Folders that decide what an episode returns."""
@@ -88,7 +88,7 @@ def survival(found: Evaluation) -> Row:
 
     :param found: episodes
     """
-    low, high = survival_interval(found)
+    low, high = wilson_interval(found.survivors, found.episodes)
     return {
         "episodes": found.episodes,
         "survival": found.survival_rate,

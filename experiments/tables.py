@@ -20,9 +20,18 @@ UNITS = {
     "m2_s4": "m²/s⁴",
 }
 """Unit by the end of a column's name."""
-WORDS = {"low": "from", "high": "to", "error": "±", "naf": "NAF", "td3": "TD3", "pybullet": "PyBullet", "v": "V"}
+WORDS = {
+    "low": "from",
+    "high": "to",
+    "error": "±",
+    "naf": "NAF",
+    "td3": "TD3",
+    "pybullet": "PyBullet",
+    "mujoco": "MuJoCo",
+    "v": "V",
+}
 """Words of column names that are written otherwise."""
-NOTHING = "–"
+NOTHING = "\N{EN DASH}"
 """What stands in an empty cell."""
 
 

@@ -29,6 +29,8 @@ LONGEST_LINE = 16_384
 """Largest size of a line in a table, in bytes."""
 LARGEST = 2**30
 """Largest size of a file of TensorBoard's that is read, in bytes."""
+UNFINISHED = ".new"
+"""Ending of the name of a file that is to replace another one."""
 NO_TEXT = frozenset(("Cc", "Cs", "Zl", "Zp"))
 """Unicode's categories of control characters, of bytes that are not UTF-8, and of ends of lines and paragraphs."""
 
@@ -93,20 +95,23 @@ def quoted(path: Path | str) -> str:
 
 
 @contextmanager
-def replacing(path: Path) -> Iterator[BinaryIO]:
+def replacing(path: Path, *removed: Path) -> Iterator[BinaryIO]:
     """Write a file that replaces the old one only when it is complete.
 
     Of several writers at once, each writes a file of its own, and the last to end has the name.
 
     :param path: path of the file; if writing fails, its old content stays
+    :param removed: paths of files that belong to the old content only: they go when the new one is on the disk
     """
     check_name(path)
-    unfinished = path.with_name(f".{uuid.uuid4().hex}.new")  # as long as it may be, whatever the other name
+    unfinished = path.with_name(f".{uuid.uuid4().hex}{UNFINISHED}")  # as long as it may be, whatever the other name
     try:
         with unfinished.open("xb") as file:  # "x" goes through no link
             yield file
             file.flush()
             os.fsync(file.fileno())
+        for other in removed:
+            other.unlink(missing_ok=True)
         os.replace(unfinished, path)
     except BaseException:
         unfinished.unlink(missing_ok=True)
@@ -114,13 +119,14 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
     _sync_folder(path.parent)
 
 
-def replace_text(path: Path, text: str) -> None:
+def replace_text(path: Path, text: str, *removed: Path) -> None:
     """Replace a text file as a whole.
 
     :param path: path of the file
     :param text: new content; what UTF-8 lacks, such as a byte of a program's name, is escaped
+    :param removed: paths of files that belong to the old content only
     """
-    with replacing(path) as file:
+    with replacing(path, *removed) as file:
         file.write(text.encode(errors="backslashreplace"))
 
 

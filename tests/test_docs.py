@@ -333,23 +333,3 @@ def test_the_page_of_the_library_links_every_public_name_to_where_it_is_defined(
             assert getattr(import_module(package), alias) is getattr(home, name)
     public = {f"{package}.{name}" for package in ("sarah", "sarah.agents") for name in import_module(package).__all__}
     assert public - {shown for shown, _ in links} == set()
-
-
-def test_survival_is_drawn_beside_its_own_ground(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Also of a controller that was tried on some of the grounds only."""
-    monkeypatch.syspath_prepend(ROOT / "docs" / "_extensions")
-    row = {"engine": "mujoco", "physics": "standard", "push_n": "75", "survival_low": "0.1", "survival_high": "0.9"}
-    tried = [
-        ("plane", "learned", "0.8"),
-        ("ice", "learned", "0.3"),
-        ("bumps", "learned", "0.7"),
-        ("bumps", "V = 0", "0.5"),
-    ]
-    rows = [{**row, "ground": ground, "hips": hips, "survival": survival} for ground, hips, survival in tried]
-    figure = import_module("result_pictures").pushes(rows, "ground")
-    (axis,) = figure.axes
-    places = dict(zip((label.get_text() for label in axis.get_yticklabels()), axis.get_yticks(), strict=True))
-    assert list(places) == ["plane", "ice", "bumps"]
-    learned, locked = axis.get_lines()
-    assert list(learned.get_ydata()) == [places[ground] for ground, hips, _ in tried if hips == "learned"]
-    assert locked.get_ydata() == pytest.approx([places["bumps"]], abs=0.3)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from sarah.errors import ResumeError, RunFolderError
-from sarah.files import check_name, quoted, read_text, replace_text
+from sarah.files import UNFINISHED, check_name, locked, quoted, read_text, replace_text
 from sarah.recorded.journal import Journal
 from sarah.recorded.kind import Kind
 from sarah.versions import differences, versions
@@ -35,6 +35,7 @@ class Folder:
         self.specification_path = path / kind.specification
         self.journal_path = path / "journal.jsonl"
         self.result_path = path / "parameters.json"
+        self._command_path = path / "command.txt"
         self._versions_path = path / "versions.txt"
 
     @property
@@ -47,23 +48,31 @@ class Folder:
 
         :param write_specification: function that writes the specification, and before it what it needs: a folder that
             has it can be resumed
-        :raises RunFolderError: if the folder is not empty, or cannot be written
+        :raises RunFolderError: if the folder is not empty, or cannot be written; what is left then is no obstacle
         """
         check_name(self.path)
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            if any(self.path.iterdir()):
-                can_go_on = self.specification_path.is_file() and self.journal_path.is_file() and not self.is_finished
-                go_on = f", or {self.go_on}" if can_go_on else ""
-                raise RunFolderError(f"{self.kind.folder} {self.path} is not empty: name another with --out{go_on}")
-            self.journal_path.touch(exist_ok=False)  # of two processes at once, one has the folder
-            replace_text(self.path / "command.txt", f"{shlex.join(sys.argv)}\n")
-            self._write_versions()
-            write_specification()
+            self._check_new()
+            with locked(self.journal_path, wait=False) as is_ours:  # of two processes at once, one has the folder
+                self._check_new(is_ours)
+                replace_text(self._command_path, f"{shlex.join(sys.argv)}\n")
+                self._write_versions()
+                write_specification()
         except RunFolderError:
             raise
         except OSError as error:
             raise RunFolderError(f"cannot write {self.kind.folder} {self.path}: {error.strerror or error}") from error
+
+    def _check_new(self, is_ours: bool = True) -> None:
+        """Refuse a folder with more than what is there if a process is stopped before the specification is."""
+        found = {path for path in self.path.iterdir() if path.suffix != UNFINISHED}
+        is_empty = self.journal_path not in found or not self.journal_path.stat().st_size
+        if is_ours and is_empty and found <= {self.journal_path, self._command_path, self._versions_path}:
+            return
+        can_go_on = self.specification_path.is_file() and self.journal_path.is_file() and not self.is_finished
+        go_on = f", or {self.go_on}" if can_go_on else ""
+        raise RunFolderError(f"{self.kind.folder} {self.path} is not empty: name another with --out{go_on}")
 
     @property
     def go_on(self) -> str:

@@ -94,15 +94,16 @@ def _naming(path: Path) -> Iterator[None]:
         raise ConfigurationError(f"{path}: {error}") from error
 
 
-def write_config(config: Any, path: Path) -> None:
+def write_config(config: Any, path: Path, *removed: Path) -> None:
     """Write a configuration as YAML with all its values, so that :func:`read_config` returns it.
 
     :param config: configuration, a dataclass
     :param path: path of the file
+    :param removed: paths of results of the configuration before, which go when this one is on the disk
     """
     import yaml
 
-    replace_text(path, yaml.safe_dump(_to_plain(config), sort_keys=False))
+    replace_text(path, yaml.safe_dump(_to_plain(config), sort_keys=False), *removed)
 
 
 def settings_by_key(config: Any) -> dict[str, Any]:

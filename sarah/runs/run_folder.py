@@ -99,8 +99,7 @@ class RunFolder(Folder):
 
         :param config: settings with the larger budget
         """
-        self.result_path.unlink(missing_ok=True)  # first: with it, what was before would only be finished again
-        write_config(config, self.specification_path)
+        write_config(config, self.specification_path, self.result_path)
 
     def journal_of(self, config: TrainingConfig) -> AbstractContextManager[Journal]:
         """Journal of the training, as a context.

@@ -96,10 +96,8 @@ class SessionFolder(Folder):
 
         :param spec: specification with the longer duration
         """
-        if self.frozen is not None:
-            self.frozen.result_path.unlink(missing_ok=True)
-        self.result_path.unlink(missing_ok=True)  # first: with it, what was before would only be finished again
-        write_config(spec, self.specification_path)
+        frozen = SessionFolder(self.frozen_path)
+        write_config(spec, self.specification_path, frozen.result_path, self.result_path)
 
     def journal_of(self, spec: SessionSpec) -> AbstractContextManager[Journal]:
         """Journal of the session, as a context.

@@ -81,8 +81,8 @@ QUICK = Protections(count=1)
 def answer(rows: DataFrame) -> str:
     """How many protections have a test."""
     return (
-        f"{len(rows)} of {len(PROTECTIONS)} protections were taken out of a copy of the package, one at a time. Each time "
-        "the test that watches it failed."
+        f"{len(rows)} of {len(PROTECTIONS)} protections were taken out of a copy of the package, one at a time. Each "
+        "time the test that watches it failed."
     )
 
 

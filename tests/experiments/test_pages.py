@@ -16,7 +16,7 @@ PAGES = [
     *(page for page in record.ROOT.glob("docs/**/*.md") if "generated" not in page.parts),
 ]
 OF_MARKUP = re.compile(r"^ *(?:```|:::)+\{|\{[\w:.-]+\}`|\[\[\[|^:\w+:", re.MULTILINE)
-"""Directives, roles, blocks outside comments, and options of directives: what a plain Markdown reader shows as it is."""
+"""Directives, roles, blocks outside comments, and options of directives: what plain readers show as it is."""
 ROWS = DataFrame({"run": ["a", "a", "b"], "engine": ["x", "y", "x"], "score": [0.5, -0.25, 1.0]})
 
 
@@ -47,17 +47,22 @@ def test_headings_have_units() -> None:
 
 def test_values_are_written_as_people_write_them() -> None:
     assert [shown(value, spec) for value, spec in ((-0.126, ".2f"), (0.985, ".0%"), (3, ""), ("a", ".1f"))] == [
-        "−0.13",
+        "\N{MINUS SIGN}0.13",
         "98\N{NO-BREAK SPACE}%",
         "3",
         "a",
     ]
-    assert shown(float("nan"), ".2f") == "–" and shown(float("inf"), ".0f") == "not reached"
-    assert span(ROWS.score, ".2f") == "−0.25 to 1.00"
+    assert shown(float("nan"), ".2f") == "\N{EN DASH}" and shown(float("inf"), ".0f") == "not reached"
+    assert span(ROWS.score, ".2f") == "\N{MINUS SIGN}0.25 to 1.00"
 
 
 def test_a_table_can_be_turned() -> None:
     straight = table(ROWS, ["run", "score"], {"score": ".1f"}, "Scores.").splitlines()
     assert straight[:2] == ["**Scores.**", ""] and straight[-1] == "| b | 1.0 |"
     turned = turned_table(ROWS, ["run"], "engine", "score", ".2f", "Scores.").splitlines()
-    assert turned[2:] == ["| run | x | y |", "| --- | --- | --- |", "| a | 0.50 | −0.25 |", "| b | 1.00 | – |"]
+    assert turned[2:] == [
+        "| run | x | y |",
+        "| --- | --- | --- |",
+        "| a | 0.50 | \N{MINUS SIGN}0.25 |",
+        "| b | 1.00 | \N{EN DASH} |",
+    ]

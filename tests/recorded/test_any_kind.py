@@ -1,6 +1,7 @@
 """What a new kind of recorded work has of its own is its settings, requests and outcomes; the rest comes with it."""
 
 import dataclasses
+import errno
 import json
 import subprocess
 import sys
@@ -57,6 +58,31 @@ def test_edited_settings_are_refused(game: Game, words: str, tmp_path: Path) -> 
     with pytest.raises(ResumeError, match=words):
         play(path, game)
     assert (path / "journal.jsonl").read_bytes() == before
+
+
+def test_a_beginning_that_was_cut_is_no_obstacle(tmp_path: Path) -> None:
+    path = tmp_path / "game"
+
+    def cut() -> None:
+        (path / ".0.new").touch()  # what a kill leaves of a file that is being replaced
+        with pytest.raises(RunFolderError, match=r"not empty: name another with --out$"):
+            begun(path)  # as long as the other is at it
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    for _ in range(2):
+        with pytest.raises(RunFolderError, match=r"cannot write folder .*/game: No space left on device"):
+            Folder(path, THROWS).begin(cut)
+    play(begun(path), GAME)
+
+
+@pytest.mark.parametrize("other", ["notes.txt", "config.yaml", "journal.jsonl"])
+def test_what_somebody_else_has_in_a_folder_is_left_alone(other: str, tmp_path: Path) -> None:
+    (tmp_path / "journal.jsonl").touch()
+    (tmp_path / other).write_text("theirs")
+    with pytest.raises(RunFolderError, match=r"not empty: name another with --out$"):
+        begun(tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted({"journal.jsonl", other})
+    assert (tmp_path / other).read_text() == "theirs"
 
 
 def test_its_folder_belongs_to_one(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 import dataclasses
 import itertools
 import re
+import resource
 import shutil
 from collections.abc import Callable
 from contextlib import suppress
@@ -106,6 +107,19 @@ def test_what_is_refused_changes_nothing(finished: Path, tmp_path: Path, monkeyp
         add_frozen(folder)
     with pytest.raises(ConfigurationError, match="extended_from must be in rising order and below minutes"):
         extend(folder, 0.1)
+    assert tree(folder.path) == before
+
+
+def test_a_disk_that_is_full_keeps_both_results(finished: Path, tmp_path: Path) -> None:
+    folder = copied(finished, tmp_path / "mine")
+    before = tree(folder.path)
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1024, limits[1]))  # less than its specification has
+    try:
+        with pytest.raises(OSError, match="File too large"):
+            extend(folder, LONGER)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert tree(folder.path) == before
 
 

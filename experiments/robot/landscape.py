@@ -1,0 +1,123 @@
+"""What does each parameter do?
+
+One of P1 to P5 at a time around (0.4, 1, 0.1, 1, 1), and one of V1 to V4 around (1, 0, 0, 0) under pushes of 100 N.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+
+from matplotlib.figure import Figure
+from pandas import DataFrame
+
+from experiments.experiment import Experiment
+from experiments.record import Row
+from experiments.robot.engines import NEWTONS, settings
+from experiments.shapes import groups, legend, lines, panels
+from experiments.tables import span, turned_table
+from sarah.episode.evaluation import evaluate
+from sarah.episode.tasks import TASKS
+from sarah.reports.transfer import ENGINES
+from sarah.simulation.engines import Engine
+
+COST = 0.05
+"""Loss of score that a good value may have."""
+
+CENTRES = {"stepping": (0.4, 1.0, 0.1, 1.0, 1.0), "balance": (1.0, 0.0, 0.0, 0.0)}
+VALUES = {
+    "stepping": (0.0, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0),
+    "balance": (-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0),
+}
+"""Values of every parameter by task, while the others keep those of the centre."""
+EPISODES = {"stepping": 3, "balance": 12}
+SECONDS = {"stepping": 12.0, "balance": 8.0}
+
+
+@dataclass(frozen=True)
+class Landscape(Experiment):
+    """One parameter at a time, in both engines.
+
+    :param points: number of values of each parameter
+    :param time_limit: time limit of an episode, in s; by default 12 s, and 8 s with pushes
+    """
+
+    points: int = 10
+    time_limit: float | None = None
+
+    def cases(self) -> list[Row]:
+        """Each parameter in each engine."""
+        names = [(task, name) for task in CENTRES for name in TASKS[task].parameter_names]
+        return [{"task": task, "parameter": name, "engine": engine} for task, name in names for engine in ENGINES]
+
+    def rows(self, task: str, parameter: str, engine: Engine) -> Iterator[Row]:
+        """A row for each value.
+
+        :param task: name of the task
+        :param parameter: name of the parameter that is varied
+        :param engine: physics engine
+        """
+        centre, index = CENTRES[task], TASKS[task].parameter_names.index(parameter)
+        config = settings(task, engine, self.time_limit or SECONDS[task])
+        for value in VALUES[task][: self.points]:
+            parameters = (*centre[:index], value, *centre[index + 1 :])
+            found = evaluate(task, parameters, config, range(EPISODES[task]))
+            yield {"value": value, "score": found.median("score"), "survival": found.survival_rate}
+
+
+FULL = Landscape()
+QUICK = Landscape(points=1, time_limit=1.1)
+
+
+def good_values(rows: DataFrame) -> tuple[dict[str, str], dict[str, str]]:
+    """Good values of each parameter, in words: first of those with few, then of those with many.
+
+    :param rows: of the result
+    """
+    few, many = {}, {}
+    for name, group in groups(rows, "parameter").items():
+        worse = group.groupby("value").score.min()  # of the engines
+        good = worse >= worse.max() - COST
+        stretches = [part.index.to_series() for _, part in good[good].groupby((~good).cumsum())]
+        told = few if good.mean() < 0.5 else many
+        told[str(name)] = " and ".join(span(stretch, "g") for stretch in stretches)
+    return few, many
+
+
+def answer(rows: DataFrame) -> str:
+    """Which values are good."""
+    few, many = (", ".join(f"{name} ({values})" for name, values in told.items()) for told in good_values(rows))
+    return (
+        f"The score depends most on the few good values of {few}. The others have a wide range in which they hardly "
+        f"matter: {many}. A value is good if it costs at most {COST} of the score in either engine."
+    )
+
+
+def along(task: str, rows: DataFrame) -> Figure:
+    """Score along each parameter of a task, in both engines."""
+    parameters = groups(rows[rows.task == task], "parameter")
+    drawn, axes = panels(len(parameters), 0.28, sharey=True)
+    for axis, (name, group) in zip(axes, parameters.items(), strict=True):
+        lines(axis, group, "value", "score", "engine")
+        axis.set(xlabel=str(name), ylabel="score" if axis is axes[0] else "")
+    legend(drawn, axes[0])
+    return drawn
+
+
+figure_stepping, figure_balance = partial(along, "stepping"), partial(along, "balance")
+
+
+def stepping(rows: DataFrame) -> str:
+    """Score by P1 and P2."""
+    caption = "Score of a robot that nobody pushes by P1 and by P2, median of three episodes of 12 s."
+    chosen = rows[rows.parameter.isin(["P1", "P2"])]
+    return turned_table(chosen, ["value"], ["parameter", "engine"], "score", ".2f", caption)
+
+
+def balance(rows: DataFrame) -> str:
+    """Score and survival by V1 to V4."""
+    pushed = f"twelve pushes of {NEWTONS:.0f} N at 1 to 4 s with the shipped P1 to P5"
+    tables = (("score", ".2f", f"Median score of {pushed}."), ("survival", ".0%", "Survival of the same pushes."))
+    chosen = rows[rows.task == "balance"]
+    return "\n\n".join(turned_table(chosen, ["value"], ["parameter", "engine"], *one) for one in tables)

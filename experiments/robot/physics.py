@@ -1,0 +1,189 @@
+"""How fine must the physics be?
+
+Scores at several settings of the physics, each on the same seeds: of good parameters with noise and delay and without,
+and of P1 to P5 from anywhere in their box. Differences are from the finest setting.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from statistics import mean, stdev
+
+from pandas import DataFrame
+
+from experiments.experiment import Experiment, product
+from experiments.record import Row
+from experiments.tables import shown, table, turned_table
+from sarah.control.parameters import PAPER_STEPPING
+from sarah.episode.evaluation import evaluate
+from sarah.episode.parameter_sets import PARAMETER_SETS
+from sarah.episode.push import Push
+from sarah.episode.tasks import BALANCE, BalanceConfig
+from sarah.simulation.engines import Engine
+from sarah.simulation.physics import PyBulletPhysics
+from sarah.simulation.randomisation import Randomisation
+
+STANDARD = PyBulletPhysics()
+FINEST = "reference"
+SETTINGS: dict[str, tuple[Engine, PyBulletPhysics]] = {
+    FINEST: ("pybullet", PyBulletPhysics(1000, 100, added_plate_inertia=0.0)),
+    "500 Hz x 30": ("pybullet", PyBulletPhysics(500, 30, added_plate_inertia=0.0)),
+    "no added inertia": ("pybullet", replace(STANDARD, added_plate_inertia=0.0)),
+    "standard": ("pybullet", STANDARD),
+    "mujoco": ("mujoco", STANDARD),
+}
+"""Engine and physics by name: the finest, a coarser one, the standard without and with its added inertia, MuJoCo's."""
+SENSORS = {f"{1000 * delay:g} ms": Randomisation(delay_seconds=delay) for delay in (0.0, 0.010, 0.020)}
+SENSORS["as designed"] = Randomisation(enabled=False)
+LOCKED, MOVING = (0.0, 0.0, 0.0, 0.0), (1.0, 0.0, 1.0, 0.0)
+SHIPPED = PARAMETER_SETS["balance"].spec
+LOW_P1 = (0.02, 0.05, 0.55, 1.8, 1.3)
+"""P1 to P5 that NAF learned in one training, with a P1 near zero."""
+GOOD = {
+    "paper, V = 0": (PAPER_STEPPING, LOCKED),
+    "shipped, V = 0": (SHIPPED.config.stepping, LOCKED),
+    "low P1, V = 0": (LOW_P1, LOCKED),
+    "paper, V1 = V3 = 1": (PAPER_STEPPING, MOVING),
+    "shipped": (SHIPPED.config.stepping, SHIPPED.parameters),
+    "low P1, V1 = V3 = 1": (LOW_P1, MOVING),
+}
+"""P1 to P5 and V1 to V4 that score well, by name."""
+GENERATOR = random.Random(7)
+ANYWHERE = {f"random {n}": (tuple(GENERATOR.uniform(0.0, 2.0) for _ in range(5)), LOCKED) for n in range(40)}
+"""P1 to P5 from anywhere in their box, with locked hips."""
+CONDITION = ["parameters", "control_rate_hz", "sensors"]
+CLOSE, FAR = 0.03, 0.05
+"""Differences up to which a score counts as close, and from which it counts as far off."""
+
+
+@dataclass(frozen=True)
+class Physics(Experiment):
+    """Parameter sets at each setting of the physics, without a push.
+
+    :param seeds: number of episodes of each set at each setting, at least 2
+    :param sets: largest number of the good sets, and of those from anywhere
+    :param time_limit: time limit of an episode, in s
+    """
+
+    seeds: int = 8
+    sets: int = 40
+    time_limit: float = 10.0
+
+    def cases(self) -> list[Row]:
+        """Each good set in each condition, and the random sets in one."""
+        good, anywhere = list(GOOD)[: self.sets], list(ANYWHERE)[: self.sets]
+        return [
+            *product(parameters=good, control_rate_hz=(100, 200), sensors=SENSORS),
+            *product(parameters=anywhere, control_rate_hz=(100,), sensors=("10 ms",)),
+        ]
+
+    def rows(self, parameters: str, control_rate_hz: int, sensors: str) -> Iterator[Row]:
+        """A row for each setting of the physics, the finest first.
+
+        :param parameters: name of the parameter set
+        :param control_rate_hz: control ticks per second
+        :param sensors: delay of the sensors, or none of their errors
+        """
+        stepping, balance = (GOOD | ANYWHERE)[parameters]
+        finest: list[float] = []
+        for setting, (engine, physics) in SETTINGS.items():
+            config = BalanceConfig(
+                physics.at_control_rate(control_rate_hz),
+                engine,
+                randomisation=SENSORS[sensors],
+                time_limit=self.time_limit,
+                stepping=stepping,  # type: ignore[arg-type]
+                push=Push(newtons=(0.0, 0.0)),
+            )
+            seeds = self.seeds if config.randomisation.enabled else 1  # as designed, all episodes are the same
+            found = evaluate(BALANCE, balance, config, range(seeds))
+            scores = [result.score for result in found.results]
+            finest = finest or scores
+            differences = [one - other for one, other in zip(scores, finest, strict=True)]
+            error = stdev(differences) / seeds**0.5 / mean(finest) if seeds > 1 and setting != FINEST else None
+            yield {
+                "setting": setting,
+                "score": mean(scores),
+                "difference_error": error,
+                "steps_per_second": found.mean("steps_per_second"),
+                "shifts_timed_out": 1.0 - found.mean("shifts_by_sensors"),
+            }
+
+
+FULL = Physics()
+QUICK = Physics(seeds=2, sets=1, time_limit=1.2)
+
+
+def good_sets(rows: DataFrame) -> DataFrame:
+    """Rows of the good sets at the coarser settings, with the finest setting's score and steps beside them.
+
+    :param rows: of the result
+    """
+    rows = rows[rows.parameters.isin(GOOD)]
+    finest = rows[rows.setting == FINEST].rename(columns=lambda name: name if name in CONDITION else f"finest_{name}")
+    both = rows[rows.setting != FINEST].merge(finest, on=CONDITION)
+    return both.assign(difference=both.score / both.finest_score - 1.0)
+
+
+def answer(rows: DataFrame) -> str:
+    """How close the standard physics is, and MuJoCo."""
+    off = good_sets(rows).pivot(index=CONDITION, columns="setting", values="difference").abs()
+    close, worst = (off < CLOSE).sum(), off.max().map(lambda value: shown(value, ".0%"))
+    return (
+        f"The standard physics is fine enough, with exceptions: with good parameters its scores are within "
+        f"{shown(CLOSE, '.0%')} of the finest setting's in {close.standard} of {len(off)} combinations of parameters, "
+        f"control rate and sensors, and MuJoCo's in {close.mujoco}. At worst the standard physics is off by "
+        f"{worst.standard}, and MuJoCo by {worst.mujoco}."
+    )
+
+
+def differences(rows: DataFrame) -> str:
+    """How far each coarser setting is from the finest."""
+    both = good_sets(rows)
+    both = both.assign(finest=both.finest_score.map("{:.3f}".format))
+    caption = (
+        f"Mean score at the finest setting, and relative differences at the others: {FULL.seeds} episodes of "
+        f"{FULL.time_limit:.0f} s without a push. The standard error of a difference is "
+        f"{shown(both.difference_error.median(), '.1%')} in the median."
+    )
+    return turned_table(both, [*CONDITION, "finest"], "setting", "difference", "+.1%", caption)
+
+
+def far_off(rows: DataFrame) -> str:
+    """The conditions with large differences, and how the robot steps there."""
+    both = good_sets(rows)
+    formats = {
+        "difference": "+.1%",
+        "difference_error": ".1%",
+        "finest_steps_per_second": ".2f",
+        "steps_per_second": ".2f",
+        "shifts_timed_out": ".0%",
+    }
+    caption = (
+        f"Differences from the finest setting's score beyond {shown(FAR, '.0%')} with their standard errors, and how "
+        f"the robot steps there, without a push: steps per second at the finest setting and at this one, and the share "
+        f"of this one's SHIFTs that timed out."
+    )
+    return table(both[both.difference.abs() > FAR], [*CONDITION, "setting", *formats], formats, caption)
+
+
+def anywhere(rows: DataFrame) -> str:
+    """How far each setting is from the finest on sets from anywhere in the box."""
+    drawn = rows[rows.parameters.isin(ANYWHERE)]
+    scores = drawn.pivot(index="parameters", columns="setting", values="score").reindex(columns=list(SETTINGS))
+    distances = scores.sub(scores[FINEST], axis=0).abs()
+    summary = DataFrame({
+        "setting": list(SETTINGS),
+        "mean_score": scores.mean().tolist(),
+        "rms_distance": (distances**2).mean().pow(0.5).tolist(),
+        "largest_distance": distances.max().tolist(),
+        "share_within_0.02": (distances < 0.02).mean().tolist(),
+    })  # fmt: skip
+    formats = {column: ".3f" for column in summary if column != "setting"} | {"share_within_0.02": ".0%"}
+    caption = (
+        f"Scores of {len(ANYWHERE)} sets drawn from the box of P1 to P5, at 100 Hz with a delay of 10 ms, and their "
+        f"distance from the scores at the finest setting: {FULL.seeds} episodes of each without a push."
+    )
+    return table(summary, list(summary), formats, caption)

@@ -1,0 +1,116 @@
+"""What does each dimension of the robot do for its stability?
+
+Robots that differ from the default in one dimension, or in one constant of the controller.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from statistics import mean
+from typing import Any
+
+from pandas import DataFrame
+
+from experiments.experiment import Experiment, product
+from experiments.record import Row
+from experiments.shapes import groups
+from experiments.tables import shown, table
+from sarah.control.constants import ControllerConstants
+from sarah.episode.episode import simulate
+from sarah.episode.push import Push
+from sarah.episode.result import EpisodeResult
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BALANCE, BalanceConfig
+
+HIPS = {"locked": (0.0, 0.0, 0.0, 0.0), "V1 = V3 = 1": (1.0, 0.0, 1.0, 0.0)}
+LATERAL, SAGITTAL = (0.0, 180.0), (90.0, 270.0)
+"""Directions of the pushes, which come from both sides in turn, in degrees."""
+NEWTONS = 100.0
+ROBOTS: dict[str, dict[str, Any]] = {
+    "defaults": {},
+    **{f"hips ±{x:.2f} m": {"dimensions": {"hip_offset": x}} for x in (0.10, 0.11, 0.12, 0.14)},
+    **{
+        f"sole ±{x:.3f} m long": {"dimensions": {"forefoot_contact": x, "hindfoot_contact": x}}
+        for x in (0.115, 0.125, 0.135, 0.15)
+    },
+    **{f"sole ±{x:.3f} m wide": {"dimensions": {"sole_half_width": x}} for x in (0.045, 0.055)},
+    **{
+        f"shift extension {1000 * x:.0f} mm": {"controller": ControllerConstants(shift_extension=x)}
+        for x in (0.004, 0.006, 0.010)
+    },
+    **{f"lift {1000 * x:.0f} mm": {"controller": ControllerConstants(lift_retraction=x)} for x in (0.02, 0.025, 0.035)},
+}
+"""Settings that differ from the defaults, by the name of the robot."""
+FORMATS = {"score": ".2f", "steps_per_second": ".2f", "lateral_survival": ".0%", "sagittal_survival": ".0%"}
+
+
+@dataclass(frozen=True)
+class RobotDimensions(Experiment):
+    """Stepping without a push, and survival of 100 N, with one dimension away from the defaults.
+
+    :param pushes: number of pushes in each pair of directions
+    :param unpushed: number of episodes without a push
+    :param time_limit: time limit of these, in s
+    :param pushed_seconds: time limit with a push, in s, which comes at 2 to 3 s
+    """
+
+    pushes: int = 20
+    unpushed: int = 2
+    time_limit: float = 15.0
+    pushed_seconds: float = 5.65
+
+    def cases(self) -> list[Row]:
+        """Each robot with locked hips and with hips that move."""
+        return product(hips=HIPS, robot=ROBOTS)
+
+    def rows(self, hips: str, robot: str) -> Iterator[Row]:
+        """How a robot steps, and which pushes it survives.
+
+        :param hips: name of V1 to V4
+        :param robot: name of the robot
+        """
+
+        def episode(seed: int, push: Push, limit: float) -> EpisodeResult:
+            config = BalanceConfig(engine="pybullet", push=push, time_limit=limit, **ROBOTS[robot])
+            return simulate(EpisodeSpec(HIPS[hips], seed, BALANCE, config))
+
+        def survival(degrees: tuple[float, float]) -> float:
+            pushes = [Push((NEWTONS, NEWTONS), (angle, angle), at_seconds=(2.0, 3.0)) for angle in degrees]
+            return mean(episode(seed, pushes[seed % 2], self.pushed_seconds).survived for seed in range(self.pushes))
+
+        free = [episode(seed, Push(newtons=(0.0, 0.0)), self.time_limit) for seed in range(self.unpushed)]
+        yield {
+            "score": mean(result.score for result in free),
+            "steps_per_second": mean(result.steps_per_second for result in free),
+            "lateral_survival": survival(LATERAL),
+            "sagittal_survival": survival(SAGITTAL),
+        }
+
+
+FULL = RobotDimensions()
+QUICK = RobotDimensions(time_limit=1.1, pushed_seconds=1.1, pushes=1, unpushed=1)
+
+
+def answer(rows: DataFrame) -> str:
+    """What the length of the soles and the distance of the hips decide."""
+    cells = rows.set_index(["hips", "robot"])
+    sole = [cells.sagittal_survival["locked", f"sole ±{length} m long"] for length in ("0.115", "0.150")]
+    hips = [cells.lateral_survival["V1 = V3 = 1", f"hips ±{offset} m"] for offset in ("0.10", "0.12")]
+    short, long, narrow, wide = (shown(survival, ".0%") for survival in (*sole, *hips))
+    return (
+        f"Long soles save the robot from pushes from front and back: with locked hips it survives {short} of them with "
+        f"the shortest soles tried, and {long} with the longest. Hips far apart let V1 save it from pushes from the "
+        f"sides: with V1 = V3 = 1 it survives {narrow} with hips at ±0.10 m, and {wide} at ±0.12 m."
+    )
+
+
+def robots(rows: DataFrame) -> str:
+    """Score, steps and survival."""
+    caption = (
+        f"Robots with {{}} and the shipped P1 to P5 in PyBullet: means of {FULL.unpushed} episodes without a push, and "
+        f"survival of {FULL.pushes} lateral and of {FULL.pushes} sagittal pushes of {NEWTONS:.0f} N at 2 to 3 s."
+    )
+    captions = {hips: caption.format("locked hips" if hips == "locked" else hips) for hips in HIPS}
+    told = groups(rows, "hips").items()
+    return "\n\n".join(table(group, ["robot", *FORMATS], FORMATS, captions[str(hips)]) for hips, group in told)
