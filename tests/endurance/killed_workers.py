@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import tempfile
 import time
-import zipfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -24,6 +23,7 @@ from sarah.episode.workers import Workers
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.training.train import train
+from tests.endurance.kills import left_behind
 from tests.endurance.worker_processes import worker_processes
 
 WORKERS = 2
@@ -53,16 +53,17 @@ class KilledWorkers(Timing):
         """
         with tempfile.TemporaryDirectory() as folder, Workers(WORKERS) as workers:
             list(workers.simulate_all([EpisodeSpec(PAPER_STEPPING, seed) for seed in range(2 * WORKERS)]))  # warm up
-            alone, expected = trained(episodes, Path(folder, "alone"), workers, None)
+            alone, disturbed = Path(folder, "alone"), Path(folder, "disturbed")
+            usual = seconds_of_training(episodes, alone, workers, lambda: False)
             killer = Killer(workers, seconds_between_kills)
-            disturbed, found = trained(episodes, Path(folder, "disturbed"), workers, killer)
-        if found != expected:
-            raise ResultError(f"after {killer.killed} killed workers the training ends with other bytes")
-        yield {"workers_killed": killer.killed, "time_s": disturbed, "longer": disturbed / alone - 1.0}
+            seconds = seconds_of_training(episodes, disturbed, workers, killer)
+            if left_behind(alone) != left_behind(disturbed):
+                raise ResultError(f"after {killer.killed} killed workers the training ends with other bytes")
+        yield {"workers_killed": killer.killed, "time_s": seconds, "longer": seconds / usual - 1.0}
 
 
 FULL = KilledWorkers()
-QUICK = KilledWorkers(budget=8)
+QUICK = KilledWorkers(budget=8, seconds_between_kills=60.0)
 
 
 @dataclass
@@ -87,22 +88,18 @@ class Killer:
         return False
 
 
-def trained(episodes: int, folder: Path, workers: Workers, killer: Killer | None) -> tuple[float, list[bytes]]:
-    """Train.
+def seconds_of_training(episodes: int, folder: Path, workers: Workers, interrupted: Callable[[], bool]) -> float:
+    """Train; the time that it takes, in s.
 
     :param episodes: number of episodes
     :param folder: run folder
     :param workers: workers that simulate
-    :param killer: who kills them meanwhile
-    :return: time in s, and the bytes of what was learned
+    :param interrupted: function that is called after each episode
     """
     config = TrainingConfig(episodes=episodes)
-    run = RunFolder.create(folder, config)
     start = time.perf_counter()
-    train(config, run, workers, interrupted=killer or (lambda: False))
-    elapsed = time.perf_counter() - start
-    weights = zipfile.ZipFile(run.model_path).read("policy.pth")
-    return elapsed, [weights, *((folder / name).read_bytes() for name in ("episodes.csv", "parameters.json"))]
+    train(config, RunFolder.create(folder, config), workers, interrupted=interrupted)
+    return time.perf_counter() - start
 
 
 def cost(rows: DataFrame) -> str:

@@ -6,6 +6,7 @@ One change after another is made to a copy of a file. Each is a mutant, and test
 
 from __future__ import annotations
 
+import csv
 import os
 import shlex
 import shutil
@@ -18,16 +19,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from pandas import DataFrame
+from pandas import DataFrame, read_csv
 
 from benchmarks.timing import Timing
 from experiments.record import ROOT, ResultError, Row
 from experiments.tables import shown, table
-from tests.endurance.lines import lines_of
 
 LEAST_KILLED = 0.9
 """Share of each file's mutants that its tests have to kill."""
-SURVIVORS = Path(__file__).with_name("survivors.tsv")
+EXPLAINED = read_csv(Path(__file__).with_name("survivors.tsv"), sep="\t", quoting=csv.QUOTE_NONE)
 COPIED = ("agents", "sarah", "tests", "urdf", "setup.cfg")
 
 
@@ -122,7 +122,7 @@ def judged(file: str, subject: Subject, tree: Path, count: int) -> Row:
         raise ResultError(f"the tests of {file} fail without a change")
     patience = 10.0 * (time.perf_counter() - start)
     tried = mutations(tree / file, subject.definitions)[:count]
-    reasons = {line["code"]: line["reason"] for line in lines_of(SURVIVORS) if line["file"] == file}
+    reasons = {line.code: line.reason for line in EXPLAINED.itertuples() if line.file == file}
     survivors = []
     for mutation in tried:
         with mutated(mutation) as (line, code):

@@ -6,6 +6,7 @@ promise, its code that does, what stands there instead, and the name of the test
 
 from __future__ import annotations
 
+import csv
 import os
 import shutil
 import subprocess
@@ -15,14 +16,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from pandas import DataFrame
+from pandas import DataFrame, read_csv
 
 from benchmarks.timing import Timing
 from experiments.record import ROOT, ResultError, Row
 from experiments.tables import table
-from tests.endurance.lines import lines_of
 
-PROTECTIONS = {line["promise"]: line for line in lines_of(Path(__file__).with_suffix(".tsv"))}
+FILE = Path(__file__).with_suffix(".tsv")
+LINES = read_csv(FILE, sep="\t", quoting=csv.QUOTE_NONE, keep_default_na=False)
+PROTECTIONS = {line["promise"]: line for line in LINES.to_dict("records")}
 """All protections by what they promise."""
 
 

@@ -3,14 +3,14 @@
 from pathlib import Path
 
 import pytest
+from pandas import DataFrame
 
 from experiments import record
 from experiments.found import ENDURANCE, find, paths_of
 from experiments.making import make
 from experiments.record import ROOT, ResultError
 from tests.endurance import mutants
-from tests.endurance.lines import lines_of
-from tests.endurance.mutants import SUBJECTS, SURVIVORS, Subject
+from tests.endurance.mutants import EXPLAINED, SUBJECTS, Subject
 from tests.endurance.protections import PROTECTIONS, place_of
 
 CODE = "def half(x):\n    return x / 2.5\n"
@@ -38,8 +38,8 @@ def test_what_the_tests_do_not_see_survives_with_its_line_or_its_reason(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Within 0.3 of 4 / 2.5 lie 4 / 2.75 and 4 - 2.5, but not 4 / 3.5, 4 / 1.5, 4 + 2.5 or 4 * 2.5."""
-    monkeypatch.setattr(mutants, "SURVIVORS", tmp_path / "survivors.tsv")
-    (tmp_path / "survivors.tsv").write_text("file\tcode\treason\nhalf.py\treturn x / 2.75\ta tenth is nothing\n")
+    explained = [{"file": "half.py", "code": "return x / 2.75", "reason": "a tenth is nothing"}]
+    monkeypatch.setattr(mutants, "EXPLAINED", DataFrame(explained))
     assert judged(tmp_path, 1.6) == {"mutants": 6, "killed": 4, "explained": 1, "survived": 1}
     said = capsys.readouterr().out
     assert "half.py:2: return x / 2.75\n    a tenth is nothing\n" in said
@@ -53,7 +53,7 @@ def test_tests_that_fail_without_a_change_are_no_measure(tmp_path: Path) -> None
 
 
 def test_explanations_are_of_files_that_are_tested() -> None:
-    assert {line["file"] for line in lines_of(SURVIVORS)} <= set(SUBJECTS)
+    assert set(EXPLAINED.file) <= set(SUBJECTS)
     assert all((ROOT / file).is_file() for file in SUBJECTS)
 
 
