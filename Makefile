@@ -11,7 +11,7 @@ SEED ?= 1
 RUN ?= runs/$(shell date +%Y%m%d-%H%M%S)
 NAME ?=
 TIMINGS := throughput episodes updates decisions viewer
-ENDURANCE := kills killed_workers resume long_process long_training protections
+ENDURANCE := kills killed_workers resume long_run protections
 
 .PHONY: help install train test test-slow lint format docs results bench endurance mutants clean
 
@@ -68,11 +68,11 @@ bench: install  ## how fast it is: simulation, workers, learner, viewer; minutes
 	@for name in $(TIMINGS); do $(BIN)/python -m benchmarks $$name --out build/bench || exit 1; done
 
 endurance: install  ## kills, faults and long runs; half an hour
-	@for name in $(ENDURANCE); do $(BIN)/python -m experiments $$name --out build/endurance || exit 1; done
-	$(BIN)/python -m experiments.endurance.stable_baselines3_tests
+	@for name in $(ENDURANCE); do $(BIN)/python -m tests.endurance $$name --out build/endurance || exit 1; done
+	$(BIN)/python -m tests.endurance.stable_baselines3_tests
 
 mutants: install  ## do the tests see changes to core files? each must kill nine of ten; half an hour
-	$(BIN)/python -m experiments mutants --out build/mutants
+	$(BIN)/python -m tests.endurance mutants --out build/endurance
 
 clean:  ## remove what was built, but no runs
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

@@ -13,8 +13,6 @@ from pathlib import Path
 import pytest
 from terminal import COARSE, run
 
-from experiments import record
-
 BIN = Path(sys.executable).parent
 # Long enough to be interrupted three times also where the test itself has to wait for the processor.
 TRAINING = ("--episodes", "60", "--slots", "2", "--out", "run", "--episode.time-limit", "2", *COARSE)
@@ -133,13 +131,3 @@ def test_a_folder_that_cannot_be_written_is_one_line(small_disk: Path) -> None:
     said = "sarah-train: error: cannot write run folder run: Read-only file system\n"
     assert (refused.returncode, refused.stderr) == (2, said)
     assert not list(small_disk.iterdir())
-
-
-@pytest.mark.slow
-def test_killed_at_random_moments(tmp_path: Path) -> None:
-    """Fewer than `make endurance` has."""
-    command = [sys.executable, "-m", "experiments", "kills", "--kills", "3", "--out", str(tmp_path)]
-    process = subprocess.run(command, capture_output=True, text=True, timeout=400, cwd=record.ROOT)
-    assert process.returncode == 0, process.stderr
-    (row,) = record.read("kills", tmp_path).rows
-    assert row["kills"] == "3" and row["same_bytes"] == row["trainings"]

@@ -1,4 +1,4 @@
-"""stable-baselines3's own tests with NAF for TD3: ``python -m experiments.endurance.stable_baselines3_tests``.
+"""stable-baselines3's own tests with NAF for TD3: ``python -m tests.endurance.stable_baselines3_tests``.
 
 Takes the source of the installed version with pip, and runs every test of its that TD3 is a parameter of, as it stands.
 Those that name inner parts of TD3 are left out.

@@ -1,1 +1,0 @@
-"""Kills, faults and long runs: what holds for minutes to hours, run by ``make endurance``."""

@@ -1,0 +1,175 @@
+"""How many changes to core files do the tests of their package see?
+
+One change after another is made to a copy of a file. Each is a mutant, and tests that fail kill it.
+``survivors.tsv`` says which mutants nothing can kill, by their changed line, and why.
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+from pandas import DataFrame, read_csv
+
+from benchmarks.timing import Timing
+from experiments.record import ROOT, ResultError, Row
+from experiments.tables import shown, table
+
+LEAST_KILLED = 0.9
+"""Share of each file's mutants that its tests have to kill."""
+EXPLAINED = read_csv(Path(__file__).with_name("survivors.tsv"), sep="\t", quoting=csv.QUOTE_NONE)
+COPIED = ("agents", "sarah", "tests", "urdf", "setup.cfg")
+
+
+class Subject(NamedTuple):
+    """How a file's mutants are tested.
+
+    :param tests: arguments of pytest that select the fast tests of its package
+    :param definitions: regular expression of the functions and classes that are changed; empty names are the module's
+    """
+
+    tests: str
+    definitions: str = ".*"
+
+
+CONTROL = "tests/control --ignore tests/control/test_any_readings.py -k 'not episode and not papers and not short'"
+EPISODE = "tests/episode/test_gait_and_reward.py"
+ENDING = "tests/episode/test_ending.py -k criteria"
+SENSORS = "tests/simulation/test_sensors.py -k 'not push'"
+CRITIC = "tests/agents/test_naf_equations.py"
+TARGETS = "tests/agents/test_naf_targets.py tests/agents/test_naf_train_eval_mode.py"
+BUFFERS = "tests/agents/test_best_action.py tests/agents/test_rank_buffer.py tests/agents/test_naf_arguments.py"
+
+SUBJECTS = {
+    "sarah/control/baselines.py": Subject(CONTROL),
+    "sarah/control/pattern_generator.py": Subject(CONTROL),
+    "sarah/control/hip_law.py": Subject(CONTROL),
+    "sarah/control/constants.py": Subject(CONTROL, "ControllerConstants"),
+    "sarah/control/parameters.py": Subject(CONTROL),
+    "sarah/episode/reward.py": Subject(EPISODE, "(?!RewardSettings).*"),
+    "sarah/episode/gait.py": Subject(EPISODE, "(?!GaitSettings|GaitMetrics).*"),
+    "sarah/episode/ending.py": Subject(ENDING, "(?!EndingSettings).*"),
+    "sarah/simulation/sensors.py": Subject(SENSORS),
+    "agents/critic.py": Subject(CRITIC),
+    "agents/buffers.py": Subject(BUFFERS),
+    "agents/naf.py": Subject(TARGETS, "train"),
+}
+"""The files. Of the constants those that compute, as the limits beside them catch a mistaken unit, and are rough. Of
+NAF its updates, with the equations."""
+
+
+@dataclass(frozen=True)
+class Mutants(Timing):
+    """Mutants of every file.
+
+    :param files: names of the files
+    :param count: largest number of mutants of a file
+    """
+
+    depends_on = ("agents", "sarah/control", "sarah/episode", "sarah/simulation", "tests")
+    files: tuple[str, ...] = tuple(SUBJECTS)
+    count: int = 10_000
+
+    def cases(self) -> list[Row]:
+        """The files."""
+        return [{"file": file} for file in self.files]
+
+    def rows(self, file: str) -> Iterator[Row]:
+        """How many mutants of a file its tests kill; what survives is printed.
+
+        :param file: name of the file
+        """
+        with tempfile.TemporaryDirectory() as folder:
+            for name in COPIED:
+                if (ROOT / name).is_dir():
+                    ignore = shutil.ignore_patterns("__pycache__")
+                    shutil.copytree(ROOT / name, Path(folder, name), symlinks=True, ignore=ignore)
+                else:
+                    shutil.copy2(ROOT / name, folder)
+            row = judged(file, SUBJECTS[file], Path(folder), self.count)
+        if row["killed"] < LEAST_KILLED * row["mutants"]:
+            raise ResultError(f"tests kill only {row['killed']} of the {row['mutants']} mutants of {file}")
+        yield row
+
+
+FULL = Mutants()
+QUICK = Mutants(files=("sarah/episode/reward.py",), count=2)
+
+
+def judged(file: str, subject: Subject, tree: Path, count: int) -> Row:
+    """Test the mutants of a file, and print what survives.
+
+    :param file: name of the file
+    :param subject: its tests
+    :param tree: copy of the project
+    :param count: largest number of mutants
+    :raises ResultError: if the tests fail without a change
+    """
+    from tests.endurance.mutation import mutated, mutations  # takes long to import
+
+    start = time.perf_counter()
+    if not passes(subject.tests, tree, None):  # leaves compiled modules for the mutants' tests
+        raise ResultError(f"the tests of {file} fail without a change")
+    patience = 10.0 * (time.perf_counter() - start)
+    tried = mutations(tree / file, subject.definitions)[:count]
+    reasons = {line.code: line.reason for line in EXPLAINED.itertuples() if line.file == file}
+    survivors = []
+    for mutation in tried:
+        with mutated(mutation) as (line, code):
+            if passes(subject.tests, tree, patience):
+                survivors.append(code)
+                print(f"{file}:{line}: {code}\n    {reasons.get(code, 'SURVIVED, and nobody says why')}")
+    for code in reasons.keys() - survivors:
+        print(f"{file}: explained, but killed or not tried: {code}")
+    explained = sum(code in reasons for code in survivors)
+    return {
+        "mutants": len(tried),
+        "killed": len(tried) - len(survivors),
+        "explained": explained,
+        "survived": len(survivors) - explained,
+    }
+
+
+def passes(tests: str, tree: Path, patience: float | None) -> bool:
+    """Whether tests pass; an endless loop is a failure.
+
+    :param tests: arguments of pytest that select them
+    :param tree: copy of the project
+    :param patience: longest time for the tests, in s; ``None`` for the file without a change
+    """
+    options = ["-x", "-q", "-p", "no:cacheprovider", "--hypothesis-seed=0", *shlex.split(tests)]
+    environment = {**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "x" if patience else ""}
+    command = [sys.executable, "-m", "pytest", *options]
+    try:
+        done = subprocess.run(command, cwd=tree, env=environment, capture_output=True, timeout=patience)
+    except subprocess.TimeoutExpired:
+        return False
+    return done.returncode == 0
+
+
+def answer(rows: DataFrame) -> str:
+    """How many mutants are killed."""
+    killed, unexplained = rows.killed / rows.mutants, rows.survived.sum()
+    return (
+        f"Tests kill {shown(rows.killed.sum() / rows.mutants.sum(), '.1%')} of all mutants, and at least "
+        f"{shown(killed.min(), '.1%')} of those of each file. {unexplained or 'No'} mutants survive without an "
+        "explanation."
+    )
+
+
+def killed(rows: DataFrame) -> str:
+    """Mutants of each file."""
+    shares = rows.assign(share_killed=rows.killed / rows.mutants)
+    caption = "Mutants of each file: killed by its tests, survivors that no test can kill, and other survivors."
+    columns = ["file", "mutants", "killed", "share_killed", "explained", "survived"]
+    return table(shares, columns, {"share_killed": ".1%"}, caption)
