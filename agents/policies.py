@@ -170,11 +170,7 @@ class NAFPolicy(BasePolicy):
 
         data.update(
             dict(
-                net_arch=self.net_args["net_arch"],
-                activation_fn=self.net_args["activation_fn"],
-                squash_mu=self.net_args["squash_mu"],
-                dropout=self.net_args["dropout"],
-                min_curvature=self.net_args["min_curvature"],
+                self.net_args,
                 lr_schedule=self._dummy_schedule,  # dummy lr schedule, not needed for loading policy alone
                 optimizer_class=self.optimizer_class,
                 optimizer_kwargs=self.optimizer_kwargs,

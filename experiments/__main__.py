@@ -12,13 +12,14 @@ from __future__ import annotations
 
 import argparse
 import shlex
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 from experiments import record
 from experiments.experiment import Experiment, RowByRowExperiment
 from experiments.made_with import differences, made_with
-from sarah.cli.options import parse_options, run_command
+from sarah.cli.options import as_command, parse_options
 from sarah.errors import ConfigurationError, unknown_name
 
 COMMAND = "python -m experiments"
@@ -154,4 +155,5 @@ def is_outdated(result: record.Result) -> bool:
 
 
 if __name__ == "__main__":
-    run_command(COMMAND, main)
+    with as_command(COMMAND):
+        main(sys.argv[1:])

@@ -15,7 +15,7 @@ from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS
 from sarah.episode.workers import Workers
-from sarah.reports.robustness import survival_interval
+from sarah.reports.robustness import wilson_interval
 
 
 class Experiment(Protocol):
@@ -99,7 +99,7 @@ def survival(found: Evaluation) -> Row:
 
     :param found: episodes
     """
-    low, high = survival_interval(found)
+    low, high = wilson_interval(found.survivors, found.episodes)
     return {
         "episodes": found.episodes,
         "survival": found.survival_rate,

@@ -9,7 +9,7 @@ from experiments.record import Row
 from experiments.trainings import TrainingExperiment
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.workers import Workers
-from sarah.reports.robustness import FORCES, push_many, robustness_table, survival_interval
+from sarah.reports.robustness import FORCES, push_many, robustness_table, wilson_interval
 from sarah.runs.config import TrainingConfig
 
 
@@ -42,7 +42,7 @@ class Robustness(TrainingExperiment):
             for controller, parameters in controllers.items():
                 (pushed,) = push_many([parameters], config, workers, self.forces, self.episodes)
                 for (newtons, direction), found in robustness_table(pushed).items():
-                    low, high = survival_interval(found)
+                    low, high = wilson_interval(found.survivors, found.episodes)
                     yield {
                         "controller": controller,
                         "push_n": f"{newtons:g}",

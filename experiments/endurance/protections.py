@@ -52,7 +52,7 @@ PROTECTIONS = (
     Protection(
         "damaged rows of the journal are found",
         "recorded/journal.py",
-        'if checksum == b"%08x" % zlib.crc32(text, seed) else None',
+        "if signature == sign(text) else None",
         "",
         "test_a_damaged_row_costs_its_simulation_only",
     ),
@@ -109,15 +109,15 @@ PROTECTIONS = (
     Protection(
         "a journal without its first row is refused",
         "recorded/journal.py",
-        "there = _read_first_row(first)",
-        "there = _read_first_row(first) or {**self._origin}",
+        "there = _read_signed(first, _hash)",
+        "there = _read_signed(first, _hash) or {**self._origin}",
         "test_without_the_first_row_nothing_goes_on",
     ),
     Protection(
         "rows of another training do not count",
         "recorded/journal.py",
-        'if checksum == b"%08x" % zlib.crc32(text, seed) else None',
-        "",
+        "zlib.crc32(text, self._seed)",
+        "zlib.crc32(text)",
         "test_rows_of_another_training_do_not_count",
     ),
     Protection(
@@ -130,7 +130,7 @@ PROTECTIONS = (
     Protection(
         "outcomes of workers with other code are refused",
         "episode/cluster.py",
-        "_check_worker(answered.worker, answered.versions, self._packages)",
+        "_check_worker(worker, there, self._packages)",
         "pass",
         "test_a_worker_with_other_code_is_refused_whenever_it_comes",
     ),

@@ -11,25 +11,20 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
-from sarah.cli.episode_options import (
-    DIRECTIONS,
-    check_episode_options,
-    for_given_robot,
-    given_options,
-    with_given_directions,
-    with_given_engine,
-)
+from sarah.cli.episode_options import DIRECTIONS, given_options, with_given
 from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import say_next, to_open, to_see, to_watch
-from sarah.cli.options import parse_options, pushed_words, run_command, say_engine
+from sarah.cli.options import as_command, parse_options, pushed_words, say_engine
 from sarah.cli.tables import leave_table, prepare_table
 from sarah.cli.training_defaults import default_training
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task, load_task
 from sarah.errors import ConfigurationError, check_range
 from sarah.reports.judging import PUSHED, UNPUSHED, evaluations_of
+from sarah.robot.description import describe_robot
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.kinds import SESSION, TRAINING
+from sarah.simulation.engines import check_engine
 
 if TYPE_CHECKING:
     from sarah.reports.race_entry import Entry, RaceCurve
@@ -97,24 +92,18 @@ CompareOptions.__doc__ = str(CompareOptions.__doc__).format(  # read by the help
 )
 
 
-def main() -> None:
-    """Run the command with the arguments of the process."""
-    run_command(COMMAND, _compare)
-
-
 def _defaults(arguments: Sequence[str]) -> CompareOptions:
     """Default options: those of ``sarah-train``, of the type that task and engine take."""
     given = given_options(arguments, "task", "engine", "episode.engine", *DIRECTIONS)
     training = default_training(load_task(given["task"]) if "task" in given else STEPPING)
-    episode = for_given_robot(with_given_engine(training.episode, given), arguments)
-    check_episode_options(arguments, episode)
-    if training.task is BALANCE:
-        episode = with_given_directions(episode, given)
+    episode = with_given(training.episode, arguments, given, is_directed=training.task is BALANCE)
     return CompareOptions(task=training.task, episodes=training.episodes, episode=episode)
 
 
-def _compare(arguments: Sequence[str]) -> None:
-    arguments = with_out(COMMAND, arguments, bare=0)
+@as_command(COMMAND)
+def main() -> None:
+    """Run the command with the arguments of the process."""
+    arguments = with_out(COMMAND, sys.argv[1:], bare=0)
     options = parse_options(CompareOptions, COMMAND, arguments, _defaults(arguments))
     if options.out is None:
         raise ConfigurationError("give a folder for the race: --out DIR")
@@ -129,9 +118,6 @@ def _compare(arguments: Sequence[str]) -> None:
         raise ConfigurationError(f"algorithms must be different ones, at least one, not {options.algorithms!r}")
     episode = options.episode
     base = TrainingConfig(task=options.task, episodes=options.episodes, slots=options.slots, episode=episode)
-    from sarah.robot.description import describe_robot
-    from sarah.simulation.engines import check_engine
-
     describe_robot(episode.dimensions)
     check_engine(episode.engine)
     from sarah.episode.trial import try_task

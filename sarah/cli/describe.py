@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -17,7 +17,7 @@ from sarah.cli.episode_options import (
     parse_episode_options,
 )
 from sarah.cli.next_steps import passed_on, say_next
-from sarah.cli.options import named_task, run_command
+from sarah.cli.options import as_command, named_task
 from sarah.cli.subjects import episode_of
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import STEPPING
@@ -53,12 +53,10 @@ class DescribeOptions(EpisodeOptions):
     out: Annotated[Path, tyro.conf.arg(metavar="DIR", help_behavior_hint="(default: the current folder)")] = Path(".")
 
 
+@as_command(COMMAND)
 def main() -> None:
     """Run the command with the arguments of the process."""
-    run_command(COMMAND, _describe)
-
-
-def _describe(arguments: Sequence[str]) -> None:
+    arguments = sys.argv[1:]
     given = given_options(arguments, "config")
 
     def settings(own: EpisodeConfig, _: str | None) -> EpisodeConfig:

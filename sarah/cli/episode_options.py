@@ -17,7 +17,7 @@ from typing import Annotated, Any, TypeVar, get_args
 
 import tyro
 
-from sarah.cli.options import dimension_words, named_task, parse_options
+from sarah.cli.options import named_task, parse_options, without_dimensions
 from sarah.cli.subjects import episode_of, is_there
 from sarah.cli.value_rules import named_numbers
 from sarah.episode.push import NO_PUSH, PushedConfig
@@ -26,6 +26,7 @@ from sarah.episode.spec import FIRST_EVALUATION_SEED, EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS
 from sarah.errors import ConfigurationError, unknown_name
 from sarah.ranges import Within, check_ranges
+from sarah.runs.recorded_task import RecordedTask, refuse_to_simulate
 from sarah.simulation.engines import Engine
 from sarah.simulation.physics import PHYSICS, named_physics
 
@@ -64,8 +65,6 @@ class EpisodeOptions:
         :param spec: specification of the episode
         :raises ConfigurationError: if there is no such physics, or if the task is that of a file that was not named
         """
-        from sarah.runs.recorded_task import RecordedTask, refuse_to_simulate
-
         if isinstance(spec.task, RecordedTask):
             refuse_to_simulate(spec.task)
         config = self.episode
@@ -129,10 +128,8 @@ def parse_episode_options(
     own = adapted(shown, subject)
     if type(own) is EpisodeConfig:  # any robot can be pushed, whether its task has a push or not
         own = PushedConfig(**vars(own), push=own.scale.scaled(NO_PUSH))
-    episode = with_given_directions(with_given_engine(own, given), given)
-    if subject is None or not Path(subject).is_dir():  # what a folder has recorded stays as it is
-        episode = for_given_robot(episode, arguments)
-    check_episode_options(arguments, episode)
+    is_recorded = subject is not None and Path(subject).is_dir()
+    episode = with_given(own, arguments, given, is_recorded)
     return parse_options(type(default), command, arguments, dataclasses.replace(default, episode=episode))
 
 
@@ -144,7 +141,7 @@ def _subject_among(arguments: Sequence[str], default: EpisodeOptions, given: Map
     without = None if "task" in given else getattr(default, "subject", None)
     if {"-h", "--help"} & set(arguments):
         return next(filter(is_there, arguments), without)
-    every = dataclasses.replace(default, episode=with_given_engine(BALANCE.episode, given))
+    every = dataclasses.replace(default, episode=_with_given_engine(BALANCE.episode, given))
     try:
         with contextlib.redirect_stderr(io.StringIO()):
             options: Any = parse_options(type(default), "", arguments, every)
@@ -157,12 +154,32 @@ def _subject_among(arguments: Sequence[str], default: EpisodeOptions, given: Map
     return subject if subject is not None and is_there(subject) else None
 
 
-def check_episode_options(arguments: Sequence[str], config: EpisodeConfig) -> None:
-    """Refuse ``--episode.…`` options whose settings only another task has, or that a short option sets as well.
+def with_given(
+    episode: EpisodeConfig,
+    arguments: Sequence[str],
+    given: Mapping[str, str],
+    is_recorded: bool = False,
+    is_directed: bool = True,
+) -> EpisodeConfig:
+    """Episode settings of the type, for the robot and with the directions of pushes that a command was given.
 
-    :param arguments: all arguments of a command
-    :param config: settings of the task's episodes
+    :param episode: settings of episodes
+    :param arguments: all arguments of the command
+    :param given: values of the options that were given, by name; those of engines and :data:`DIRECTIONS` are used
+    :param is_recorded: whether the settings are those of a folder or a file, and stay as they are with another robot
+    :param is_directed: whether all pushes point where the command was asked to push
+    :raises ConfigurationError: for options whose settings only another task has, or that a short option sets as well
+    :raises DescriptionError: if there is no such dimension, or if it is not near its default
     """
+    episode = _with_given_engine(episode, given)
+    _check_episode_options(arguments, episode)
+    if not is_recorded:
+        episode = for_given_robot(episode, arguments)
+    return _with_given_directions(episode, given) if is_directed else episode
+
+
+def _check_episode_options(arguments: Sequence[str], config: EpisodeConfig) -> None:
+    """Refuse ``--episode.…`` options whose settings only another task has, or that a short option sets as well."""
     names = [argument.partition("=")[0].replace("_", "-") for argument in arguments]
     varied = [name for name in names if name.startswith("--episode.randomisation.")]
     if "--no-randomisation" in names and varied:
@@ -194,12 +211,8 @@ def given_options(arguments: Sequence[str], *names: str) -> dict[str, str]:
         return {}
 
 
-def with_given_engine(episode: EpisodeConfig, given: Mapping[str, str]) -> EpisodeConfig:
-    """Episode settings of the type that the engine takes which a command was given.
-
-    :param episode: settings of episodes
-    :param given: values of the options that were given, by name; ``engine`` and ``episode.engine`` are used
-    """
+def _with_given_engine(episode: EpisodeConfig, given: Mapping[str, str]) -> EpisodeConfig:
+    """Episode settings of the type that the engine takes which a command was given."""
     engine: Any = given.get("engine", given.get("episode.engine"))
     if engine not in get_args(Engine):  # the real parser reports others
         return episode
@@ -212,7 +225,7 @@ def given_dimensions(arguments: Sequence[str]) -> dict[str, float]:
     :param arguments: arguments of the command
     """
     try:
-        return named_numbers(dimension_words(arguments))
+        return named_numbers(without_dimensions(arguments)[1])
     except ValueError:
         return {}
 
@@ -228,12 +241,8 @@ def for_given_robot(episode: ConfigType, arguments: Sequence[str]) -> ConfigType
     return episode.for_robot({**episode.dimensions, **given}) if given else episode
 
 
-def with_given_directions(episode: EpisodeConfig, given: Mapping[str, str]) -> EpisodeConfig:
-    """Episode settings whose pushes all point where a command was asked to push.
-
-    :param episode: settings of episodes
-    :param given: values of the options that were given, by name; :data:`DIRECTIONS` are used
-    """
+def _with_given_directions(episode: EpisodeConfig, given: Mapping[str, str]) -> EpisodeConfig:
+    """Episode settings whose pushes all point where a command was asked to push."""
     degrees, share = DIRECTIONS
     if not isinstance(episode, PushedConfig) or degrees not in given or share in given:
         return episode

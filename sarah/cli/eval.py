@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json as json_format
 import shlex
+import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -15,7 +16,7 @@ import tyro
 from sarah.cli.episode_options import UnseenOptions, parse_episode_options
 from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import Step, passed_on, say_next, to_see
-from sarah.cli.options import named_task, run_command, say_engine
+from sarah.cli.options import as_command, named_task, say_engine
 from sarah.cli.subjects import learned_of
 from sarah.cli.tables import leave_table, prepare_table
 from sarah.episode.settings import EpisodeConfig
@@ -87,14 +88,11 @@ class EvalOptions(UnseenOptions):
         return [name for name in REPLACED if getattr(self, name)]
 
 
+@as_command(COMMAND)
 def main() -> None:
     """Run the command with the arguments of the process."""
-    run_command(COMMAND, _evaluate)
-
-
-def _evaluate(arguments: Sequence[str]) -> None:
     former = {option: f"{option} --out" for option in ("--robustness", "--terrain")}
-    arguments = with_out(COMMAND, arguments, former)
+    arguments = with_out(COMMAND, sys.argv[1:], former)
     options = parse_episode_options(COMMAND, arguments, EvalOptions())
     own, algorithm = learned_of(options.subject, named_task(options.task))
     spec = options.applied_to(own)
@@ -155,7 +153,7 @@ def _next_steps(options: EvalOptions, arguments: Sequence[str]) -> Iterator[Step
 def _show_robustness(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions, workers: Workers) -> None:
     """Print the table as Markdown, and write the table and the polar plot."""
     from sarah.cli.eval_text import settings_of_table
-    from sarah.reports.robustness import forces_for, push_many, pushed_settings, robustness_table, survival_interval
+    from sarah.reports.robustness import forces_for, push_many, pushed_settings, robustness_table, wilson_interval
     from sarah.reports.training_figures import draw_survival
 
     folder, neutral, parameters, config = options.out, BALANCE.neutral, spec.parameters, spec.config
@@ -171,7 +169,7 @@ def _show_robustness(own: EpisodeConfig, spec: EpisodeSpec, options: EvalOptions
     for newtons, direction in tables[0]:
         evaluations = [table[newtons, direction] for table in tables]
         cells = "".join(
-            " {:.2f} ({:.2f} to {:.2f})".format(found.survival_rate, *survival_interval(found))
+            " {:.2f} ({:.2f} to {:.2f})".format(found.survival_rate, *wilson_interval(found.survivors, found.episodes))
             + f" | {found.median('score'):.2f} | {100 * found.median('drift'):.1f} cm "
             + f"| {found.median('vibration'):.1f} |"
             for found in evaluations

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -10,7 +10,7 @@ from typing import Annotated
 import tyro
 
 from sarah.cli.next_steps import Step, say_next, to_open
-from sarah.cli.options import named_task, parse_options, run_command
+from sarah.cli.options import as_command, named_task, parse_options
 from sarah.errors import ConfigurationError
 
 COMMAND = "sarah-figures"
@@ -36,13 +36,10 @@ class FigureOptions:
     out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
 
 
+@as_command(COMMAND)
 def main() -> None:
     """Run the command with the arguments of the process."""
-    run_command(COMMAND, _draw)
-
-
-def _draw(arguments: Sequence[str]) -> None:
-    options = parse_options(FigureOptions, COMMAND, arguments, FigureOptions())
+    options = parse_options(FigureOptions, COMMAND, sys.argv[1:], FigureOptions())
     if not options.runs:
         raise ConfigurationError("give at least one run folder")
     if options.out is None and len(options.runs) > 1:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass
 from functools import partial
@@ -17,7 +18,7 @@ from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import interruptible
 from sarah.cli.next_steps import say_next, to_see, to_watch
 from sarah.cli.operated import OperatedConfig, say_differences, settings_in_operation, times_of_session
-from sarah.cli.options import named_task, run_command, say_engine
+from sarah.cli.options import as_command, named_task, say_engine
 from sarah.cli.subjects import episode_of, is_shipped
 from sarah.episode.push import NO_PUSH, PushedConfig
 from sarah.episode.spec import EpisodeSpec
@@ -27,12 +28,13 @@ from sarah.errors import ConfigurationError, shortened
 from sarah.files import quoted
 from sarah.formats import read_yaml
 from sarah.number import number
-from sarah.operation.settings import Change, OperationConfig, Parameters
+from sarah.operation.settings import PARAMETERS, Change, OperationConfig, Parameters
 from sarah.runs.kinds import SESSION
+from sarah.runs.session import FORMER_LEARNERS, SessionSpec
+from sarah.simulation.engines import check_engine
 
 if TYPE_CHECKING:
     from sarah.operation.window import Window
-    from sarah.runs.session import SessionSpec
     from sarah.runs.session_folder import SessionFolder
     from sarah.training.operate import SessionResult
 
@@ -84,13 +86,10 @@ class OperateOptions(EpisodeOptions):
     compare_frozen: bool = False
 
 
+@as_command(COMMAND)
 def main() -> None:
     """Run the command with the arguments of the process."""
-    run_command(COMMAND, _operate)
-
-
-def _operate(arguments: Sequence[str]) -> None:
-    arguments = with_out(COMMAND, arguments, {"--run-dir": "--out"})
+    arguments = with_out(COMMAND, sys.argv[1:], {"--run-dir": "--out"})
     for argument in arguments:
         if argument.partition("=")[0].replace("_", "-") in WITHOUT_EFFECT:
             raise ConfigurationError(f"{argument} has no effect in an operation: leave it out")
@@ -115,9 +114,7 @@ def _operate(arguments: Sequence[str]) -> None:
 def _begun(options: OperateOptions) -> SessionFolder:
     """The folder of a new session."""
     from sarah.recorded.folder import new_path
-    from sarah.runs.session import FORMER_LEARNERS
     from sarah.runs.session_folder import SessionFolder
-    from sarah.simulation.engines import check_engine
 
     if present := FORMER_LEARNERS.get(options.learner):
         say_present(COMMAND, f"--learner {options.learner}", "--learner", present)
@@ -190,8 +187,6 @@ def _check_alone(arguments: Sequence[str]) -> dict[str, str]:
 
 
 def _spec_of(options: OperateOptions) -> SessionSpec:
-    from sarah.runs.session import SessionSpec
-
     subject = episode_of(options.subject, None, named_task(options.task)).spec
     any_pushed = EpisodeSpec(STEPPING.baseline, 0, STEPPING, options.episode)
     robot = options.applied_to(any_pushed).config
@@ -265,8 +260,6 @@ def _watched(
 
 
 def _summarise(result: SessionResult, frozen: SessionResult | None, spec: SessionSpec, path: Path) -> None:
-    from sarah.operation.settings import PARAMETERS
-
     named = zip((parameter.name for parameter in PARAMETERS), result.parameters, strict=True)
     print("\nleft with   " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
     print(f"score       {_scores_of(result)}")

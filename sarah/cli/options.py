@@ -10,7 +10,7 @@ import itertools
 import os
 import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from difflib import get_close_matches
 from typing import Any, NoReturn, TypeVar
 
@@ -85,16 +85,11 @@ def _with_both_ends(arguments: Sequence[str], config: Any) -> list[str]:
     return completed
 
 
-def dimension_words(arguments: Sequence[str]) -> list[str]:
-    """Names and numbers that were given for the robot's dimensions, in one option or in several.
+def without_dimensions(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Arguments beside those of the robot's dimensions, and names and numbers of these, of one option or of several.
 
     :param arguments: arguments of a command
     """
-    return _without_dimensions(arguments)[1]
-
-
-def _without_dimensions(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Arguments beside those of the dimensions, and names and numbers of these."""
     others: list[str] = []
     words: list[str] = []
     are_dimensions = False
@@ -110,7 +105,7 @@ def _without_dimensions(arguments: Sequence[str]) -> tuple[list[str], list[str]]
 
 
 def _with_dimensions_once(arguments: Sequence[str]) -> Sequence[str]:
-    others, words = _without_dimensions(arguments)
+    others, words = without_dimensions(arguments)
     return [*others, DIMENSIONS, *words] if words else arguments
 
 
@@ -216,17 +211,17 @@ def say_engine(config: EpisodeConfig) -> None:
         print("PyBullet is not installed, so MuJoCo simulates", file=sys.stderr)
 
 
-def run_command(command: str, main: Callable[[Sequence[str]], None]) -> None:
+@contextlib.contextmanager
+def as_command(command: str) -> Iterator[None]:
     """Run a command, and print one line without a traceback if it raises one of the package's exceptions.
 
     :param command: name of the command
-    :param main: function that runs it with its arguments
     """
     os.environ["MPLBACKEND"] = "Agg"  # figures are files, also where there is a display
     keep_streams()
     try:
         os.getcwd()  # torch ends the process if the working folder is gone
-        main(sys.argv[1:])
+        yield
     except (SarahError, OSError) as error:
         fail(command, str(error))
     except KeyboardInterrupt:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -10,7 +10,7 @@ from typing import Annotated
 import tyro
 
 from sarah.cli.next_steps import say_next, to_open, to_see
-from sarah.cli.options import named_task, parse_options, run_command
+from sarah.cli.options import as_command, named_task, parse_options
 from sarah.errors import ConfigurationError
 
 COMMAND = "sarah-report"
@@ -48,13 +48,10 @@ class ReportOptions:
             raise ConfigurationError(f"seconds must be in rising order, not {self.seconds!r}")
 
 
+@as_command(COMMAND)
 def main() -> None:
     """Run the command with the arguments of the process."""
-    run_command(COMMAND, _report)
-
-
-def _report(arguments: Sequence[str]) -> None:
-    options = parse_options(ReportOptions, COMMAND, arguments, ReportOptions())
+    options = parse_options(ReportOptions, COMMAND, sys.argv[1:], ReportOptions())
     if options.run is None:
         raise ConfigurationError("give a run folder")
     from sarah.episode.workers import Workers

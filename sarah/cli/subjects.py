@@ -5,13 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from sarah.episode.parameter_sets import PARAMETER_SETS
+from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
 from sarah.errors import ConfigurationError, shortened, unknown_name
 from sarah.number import number
 from sarah.runs.kinds import SESSION
 
 if TYPE_CHECKING:
-    from sarah.episode.spec import EpisodeSpec
     from sarah.runs.run_episodes import RunEpisode
 
 
@@ -20,8 +21,6 @@ def is_shipped(subject: str) -> bool:
 
     :param subject: path of a run folder, numbers separated by commas, or the name of shipped parameters
     """
-    from sarah.episode.parameter_sets import PARAMETER_SETS
-
     return subject in PARAMETER_SETS and not Path(subject).is_dir()
 
 
@@ -30,8 +29,6 @@ def is_there(subject: str) -> bool:
 
     :param subject: what an argument names
     """
-    from sarah.episode.parameter_sets import PARAMETER_SETS
-
     is_run = Path(subject).joinpath("config.yaml").is_file() or SESSION.owns(Path(subject))
     return subject in PARAMETER_SETS or is_run or ("," in subject and subject.strip(" +-.")[:1].isdigit())
 
@@ -45,7 +42,6 @@ def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tupl
     :param task: task of the numbers, or of a run folder whose task is that of a file
     :raises ConfigurationError: if there is no such subject or episode
     """
-    from sarah.episode.parameter_sets import PARAMETER_SETS
     from sarah.runs.run_episodes import RunEpisode, choose_episode, episode_of_parameters, episodes_of_run
 
     if SESSION.owns(Path(subject)):

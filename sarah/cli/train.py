@@ -13,20 +13,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from sarah.cli.episode_options import (
-    DIRECTIONS,
-    check_episode_options,
-    for_given_robot,
-    given_options,
-    with_given_directions,
-    with_given_engine,
-)
+from sarah.cli.episode_options import DIRECTIONS, given_options, with_given
 from sarah.cli.former_names import with_out
 from sarah.cli.given_settings import say_differences, settings_of_file, settings_on_stepping
 from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import interruptible
 from sarah.cli.next_steps import say_next, to_see, to_watch
-from sarah.cli.options import named_task, parse_options, pushed_words, run_command, say_engine
+from sarah.cli.options import as_command, named_task, parse_options, pushed_words, say_engine
 from sarah.cli.train_text import say_learned
 from sarah.cli.training_defaults import default_training
 from sarah.episode.push import PushedConfig
@@ -34,11 +27,14 @@ from sarah.episode.reward import equation_2, frequency_hint
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig, load_task
 from sarah.errors import ConfigurationError, RunFolderError, TaskError
 from sarah.files import quoted
+from sarah.robot.description import describe_robot
 from sarah.robot.scale import Scale
 from sarah.runs.agent_names import unknown_option
 from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import first_difference
+from sarah.runs.recorded_task import RecordedTask
+from sarah.simulation.engines import check_engine
 
 if TYPE_CHECKING:
     from sarah.episode.workers import Workers
@@ -82,13 +78,10 @@ class TrainOptions:
     scheduler: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS")] = None
 
 
+@as_command(COMMAND)
 def main() -> None:
     """Run the command with the arguments of the process."""
-    run_command(COMMAND, _train)
-
-
-def _train(arguments: Sequence[str]) -> None:
-    arguments = [re.sub(r"^--simulations(?==|$)", "--episodes", argument) for argument in arguments]  # an alias
+    arguments = [re.sub(r"^--simulations(?==|$)", "--episodes", argument) for argument in sys.argv[1:]]  # an alias
     if arguments and not arguments[0].startswith("-"):  # other commands begin with what they look at
         raise ConfigurationError(f"{arguments[0]!r} is no option: a task is given as --task {arguments[0]}")
     arguments = with_out(COMMAND, arguments, {"--run-dir": "--out"})
@@ -97,13 +90,11 @@ def _train(arguments: Sequence[str]) -> None:
     if options.from_run is not None and config.task is not BALANCE:
         same = f": to train again with its settings, say --config {quoted(options.from_run / 'config.yaml')}"
         raise ConfigurationError(f"--from is for --task {BALANCE.name}, not {config.task.reference!r}{same}")
-    from sarah.robot.description import describe_robot
-
     describe_robot(config.episode.dimensions)  # a bad dimension is refused before anything is written
+    from sarah.episode.trial import try_task
     from sarah.episode.workers import Workers
     from sarah.recorded.folder import new_path
     from sarah.runs.run_folder import RunFolder
-    from sarah.simulation.engines import check_engine
     from sarah.training.learners import check_device
 
     check_device(config.agent)
@@ -119,8 +110,6 @@ def _train(arguments: Sequence[str]) -> None:
             return
         with run.journal_of(run.config()):  # what cannot go on is refused before workers start
             pass
-
-    from sarah.episode.trial import try_task
 
     try_task(config.task, config.episode)
     with Workers(options.workers, options.scheduler) as workers:
@@ -216,18 +205,13 @@ def _defaults(arguments: Sequence[str]) -> TrainOptions:
     _check_agent_options(arguments, training)
     first = given.get("from") if training.task is BALANCE else None
     episode = training.episode if first is None else settings_on_stepping(Path(first), file, arguments)
-    episode = with_given_engine(episode, given)
-    check_episode_options(arguments, episode)
-    if first is None and file is None:  # what a folder or a file has recorded stays as it is
-        episode = for_given_robot(episode, arguments)
-    if file is None and training.task is BALANCE:
-        episode = with_given_directions(episode, given)
+    is_recorded = first is not None or file is not None
+    episode = with_given(episode, arguments, given, is_recorded, file is None and training.task is BALANCE)
     return TrainOptions(dataclasses.replace(training, episode=episode))
 
 
 def _resumed_defaults(path: Path, given: Mapping[str, str]) -> TrainOptions:
     """Options of the training to go on with; other settings than its own would need other options."""
-    from sarah.runs.recorded_task import RecordedTask
     from sarah.runs.run_folder import RunFolder
 
     task, training = None, RunFolder.open(path, unfinished=True).config()

@@ -37,10 +37,8 @@ def say_learned(config: TrainingConfig, learned: Learned, path: Path) -> None:
     print(f"by sensors  {shifts:.0%} of shifts, {lifts:.0%} of lifts; sole clearance {clearance:.0f} mm")
     if learned.diverged:
         print(f"diverged    {learned.diverged} episodes: their simulation gave no finite state")
-    if task.must_step and not evaluation.is_gait:
-        print("            no valid gait: the robot steps to a clock, or does not lift its feet")
-    if baseline is not None and evaluation.chatters(baseline):
-        print("            the hips chatter: no real actuator could follow that")
+    for shortcoming in evaluation.shortcomings(task.must_step, baseline):
+        print(f"            {shortcoming}")
     warning = physics_warning(task, learned.parameters, config.episode)
     if warning is not None:
         print(f"physics     {warning}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,11 +13,12 @@ import tyro
 
 from sarah.cli.episode_options import UnseenOptions, parse_episode_options
 from sarah.cli.next_steps import say_next, to_open
-from sarah.cli.options import named_task, run_command
+from sarah.cli.options import as_command, named_task
 from sarah.cli.subjects import learned_of
 from sarah.cli.tables import leave_table, prepare_table
 from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError
+from sarah.simulation.engines import check_engine
 
 COMMAND = "sarah-transfer"
 
@@ -42,17 +44,14 @@ class TransferOptions(UnseenOptions):
     out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
 
 
+@as_command(COMMAND)
 def main() -> None:
     """Run the command with the arguments of the process."""
-    run_command(COMMAND, _transfer)
-
-
-def _transfer(arguments: Sequence[str]) -> None:
+    arguments = sys.argv[1:]
     options = parse_episode_options(COMMAND, arguments, TransferOptions())
     if not options.subjects:
         raise ConfigurationError("give at least one run folder, numbers or a name")
-    from sarah.reports.transfer import ENGINES
-    from sarah.simulation.engines import check_engine
+    from sarah.reports.transfer import ENGINES, as_markdown, transfer
 
     for engine in ENGINES:
         check_engine(engine)
@@ -60,7 +59,6 @@ def _transfer(arguments: Sequence[str]) -> None:
     if options.out is None and not (len(options.subjects) == 1 and first.is_dir()):
         raise ConfigurationError("anything but one run needs a folder for table and figure: --out DIR")
     from sarah.episode.workers import Workers
-    from sarah.reports.transfer import as_markdown, transfer
     from sarah.reports.transfer_figure import draw_transfer
     from sarah.runs.run_folder import RunFolder
 

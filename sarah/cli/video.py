@@ -5,24 +5,22 @@ from __future__ import annotations
 import dataclasses
 import math
 import sys
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import passed_on, say_next, to_open, to_see
-from sarah.cli.options import named_task, run_command
+from sarah.cli.options import as_command, named_task
 from sarah.cli.subjects import episode_of
+from sarah.episode.ending import ending_words
+from sarah.episode.result import EpisodeResult
+from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError
 from sarah.ranges import Within
-
-if TYPE_CHECKING:
-    from sarah.episode.result import EpisodeResult
-    from sarah.episode.spec import EpisodeSpec
 
 COMMAND = "sarah-video"
 NOT_OF_VIEW = ("out", "seconds", "speed")
@@ -59,13 +57,10 @@ class VideoOptions(EpisodeOptions):
             raise ConfigurationError(f"seconds must be two times in rising order, not {self.seconds!r}")
 
 
+@as_command(COMMAND)
 def main() -> None:
     """Run the command with the arguments of the process."""
-    run_command(COMMAND, _film)
-
-
-def _film(arguments: Sequence[str]) -> None:
-    arguments = with_out(COMMAND, arguments, bare=1)
+    arguments = with_out(COMMAND, sys.argv[1:], bare=1)
     options = parse_episode_options(COMMAND, arguments, VideoOptions())
     if options.subject is None or options.out is None:
         raise ConfigurationError("give a run folder, numbers or a name, and the file to write: --out FILE")
@@ -76,7 +71,6 @@ def _film(arguments: Sequence[str]) -> None:
     spec, is_alone = _spec(options, options.subject)
     from tqdm import tqdm
 
-    from sarah.episode.ending import ending_words
     from sarah.episode.episode import simulate
 
     result = simulate(spec, record_trace=True)
@@ -109,7 +103,6 @@ def _spec(options: VideoOptions, subject: str) -> tuple[EpisodeSpec, bool]:
 
 def _caption(spec: EpisodeSpec, result: EpisodeResult, is_alone: bool) -> str:
     """Lines about the filmed episode: its parameters and result, and what its pictures leave out."""
-    from sarah.episode.ending import ending_words
     from sarah.runs.episode_words import told_of
 
     names = spec.task.parameter_names

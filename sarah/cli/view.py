@@ -4,28 +4,28 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import sys
 import threading
-from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import tyro
 
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import say_next, to_open
-from sarah.cli.options import named_task, run_command, say_engine
+from sarah.cli.options import as_command, named_task, say_engine
 from sarah.cli.subjects import episodes_of, is_shipped
+from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError
 from sarah.files import check_file
 from sarah.ranges import Within
 from sarah.runs.config_files import changed_alike
-
-if TYPE_CHECKING:
-    from sarah.runs.run_episodes import RunEpisode
+from sarah.runs.run_episodes import RunEpisode
+from sarah.simulation.engines import check_engine
 
 COMMAND = "sarah-view"
 DEFAULT_PORT = 8080
@@ -56,13 +56,10 @@ class ViewOptions(EpisodeOptions):
     port: Annotated[int, Within(1, 2**16 - 1)] = DEFAULT_PORT
 
 
+@as_command(COMMAND)
 def main() -> None:
     """Run the command with the arguments of the process."""
-    run_command(COMMAND, _view)
-
-
-def _view(arguments: Sequence[str]) -> None:
-    arguments = with_out(COMMAND, arguments, {"--export": "--out"})
+    arguments = with_out(COMMAND, sys.argv[1:], {"--export": "--out"})
     options = parse_episode_options(COMMAND, arguments, ViewOptions())
     if find_spec("viser") is None:
         raise ConfigurationError("this needs the extra view: pip install 'sarah[view]'")
@@ -72,8 +69,6 @@ def _view(arguments: Sequence[str]) -> None:
     if changed != chosen.spec:
         choices = [choice.of(_changed_as(choice.spec, chosen.spec, changed)) for choice in choices]
         chosen = chosen.of(changed)
-    from sarah.simulation.engines import check_engine
-
     check_engine(chosen.spec.config.engine)
     if options.seed is not None:
         chosen = chosen.of(dataclasses.replace(chosen.spec, seed=options.seed))
@@ -109,7 +104,6 @@ def _export(path: Path, chosen: RunEpisode) -> None:
 
 
 def _serve(options: ViewOptions, choices: list[RunEpisode], chosen: RunEpisode) -> None:
-    from sarah.episode.parameter_sets import PARAMETER_SETS
     from sarah.viewer.page import Page
     from sarah.viewer.server import serving
 

@@ -10,14 +10,15 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from concurrent import futures
-from typing import TYPE_CHECKING, Any, NamedTuple
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from sarah.errors import WorkersError, one_line
 from sarah.streams import keep_streams
 from sarah.versions import SIMULATING, differences, versions
 
 if TYPE_CHECKING:
-    from distributed import Client, Future, LocalCluster
+    from distributed import Client
 
 SCHEDULER_SECONDS = 10
 """Time limit for connecting to a scheduler, in s."""
@@ -41,33 +42,23 @@ UNLIMITED = {
 ENVIRONMENT, FREES_MEMORY = "distributed.nanny.pre-spawn-environ", "MALLOC_TRIM_THRESHOLD_"
 """Dask's setting of the environment of workers, and the variable in it with which they take every array above 128 kB
 from the system and give it back. That slows trainings of large networks."""
+SAFE_PATH = "PYTHONSAFEPATH"
+"""Environment variable that keeps Python 3.11 and later from searching the working folder for modules."""
 ATTEMPTS = 20
 """Largest number of times that a call is submitted: a scheduler gives it up after the deaths of a few workers."""
 
 
-class Answer(NamedTuple):
-    """What a worker returns.
-
-    :param value: what the call returned
-    :param worker: address of the worker
-    :param versions: versions that the worker has, by name
-    """
-
-    value: Any
-    worker: str
-    versions: dict[str, str]
-
-
-def answer(packages: tuple[str, ...], function: Callable[..., Any], *subjects: Any) -> Answer:
+def answer(packages: tuple[str, ...], function: Callable[..., Any], *subjects: Any) -> tuple[Any, str, dict[str, str]]:
     """Compute a call, in a worker.
 
     :param packages: names of the packages whose versions matter
     :param function: function to call
     :param subjects: arguments of the function
+    :return: what the call returned, the worker's address, and the versions that the worker has, by name
     """
     from distributed import get_worker
 
-    return Answer(function(*subjects), get_worker().address, versions(packages))
+    return function(*subjects), get_worker().address, versions(packages)
 
 
 class RemoteJob:
@@ -82,11 +73,8 @@ class RemoteJob:
     def __init__(self, client: Client, packages: tuple[str, ...], function: Callable[..., Any], *subjects: Any) -> None:
         self._client = client
         self._packages = packages
-        self._call = (answer, packages, function, *subjects)
+        self._submit = partial(client.submit, answer, packages, function, *subjects, pure=False)
         self._future = self._submit()
-
-    def _submit(self) -> Future:
-        return self._client.submit(*self._call, pure=False)
 
     def result(self) -> Any:
         """Wait for the call, and return what it returned.
@@ -94,11 +82,11 @@ class RemoteJob:
         :raises WorkersError: if the worker has other code or versions than this process, or if all workers die and no
             other can start
         """
-        answered = self._wait()
-        _check_worker(answered.worker, answered.versions, self._packages)
-        return answered.value
+        value, worker, there = self._wait()
+        _check_worker(worker, there, self._packages)
+        return value
 
-    def _wait(self) -> Answer:
+    def _wait(self) -> tuple[Any, str, dict[str, str]]:
         from concurrent.futures import CancelledError
 
         from distributed.scheduler import KilledWorker
@@ -106,8 +94,7 @@ class RemoteJob:
         for _ in range(ATTEMPTS):
             try:
                 self._wait_for_its_end()
-                answered: Answer = self._future.result()
-                return answered
+                return self._future.result()
             except KilledWorker:  # the scheduler gave up after a few deaths, but a pure function can be repeated
                 self._future = self._submit()
             except CancelledError as error:
@@ -159,22 +146,20 @@ def _check_worker(worker: str, there: dict[str, str], packages: tuple[str, ...])
         raise WorkersError(f"worker {worker} is refused, because its results would differ: {different}")
 
 
-def connect(address: str) -> Client:
-    """Connect to a scheduler.
+@contextlib.contextmanager
+def connected(address: str) -> Iterator[Client]:
+    """Connection to a scheduler, whose workers go on without it.
 
     :param address: address of the scheduler, such as ``tcp://10.0.0.1:8786``
     :raises WorkersError: if no scheduler answers, or one of its workers has other code or versions
     """
     with _in_one_line(f"no Dask scheduler answers at {address!r}"):
         client = _client_in_time(address)
-    try:
+    with contextlib.closing(client):
         with _in_one_line(f"a worker behind {address!r} tells no versions"):
             for worker, there in client.run(versions, SIMULATING).items():
                 _check_worker(worker, there, SIMULATING)
-    except BaseException:
-        client.close()
-        raise
-    return client
+        yield client
 
 
 def _client_in_time(address: str) -> Client:
@@ -196,13 +181,32 @@ def _client_in_time(address: str) -> Client:
         raise WorkersError(f"no Dask scheduler answers at {address!r}: the port is open, but silent") from error
 
 
-@_in_one_line("no workers can start on this machine")
-def start(count: int) -> tuple[LocalCluster, Client]:
-    """Start workers on this machine.
+@contextlib.contextmanager
+def started(count: int) -> Iterator[Client]:
+    """Workers on this machine, which end with the context.
 
     :param count: number of worker processes
     :raises WorkersError: if they cannot start
     """
+    before, during = dict(os.environ), dict[str, str]()
+    # Otherwise a worker imports modules from the working folder, such as a pickle.py in somebody's run folder.
+    os.environ[SAFE_PATH] = "1"
+    try:
+        with contextlib.ExitStack() as stack:
+            client = _started_client(count, stack)
+            during = dict(os.environ)  # Dask sets others, which workers need as long as they may be started again
+            yield client
+    finally:
+        for name, value in (during or dict(os.environ)).items():
+            if name not in before:
+                os.environ.pop(name, None)
+            elif value != before[name]:
+                os.environ[name] = before[name]
+
+
+@_in_one_line("no workers can start on this machine")
+def _started_client(count: int, stack: contextlib.ExitStack) -> Client:
+    """Client of a new cluster on this machine; the stack closes both."""
     import dask
     from distributed import Client, LocalCluster, WorkerPlugin
 
@@ -225,10 +229,7 @@ def start(count: int) -> tuple[LocalCluster, Client]:
             memory_limit=0,
             silence_logs=logging.CRITICAL,
         )
-    try:
-        client = Client(cluster)
-        client.register_plugin(Serve())
-    except BaseException:
-        cluster.close()
-        raise
-    return cluster, client
+    stack.enter_context(contextlib.closing(cluster))
+    client = stack.enter_context(contextlib.closing(Client(cluster)))
+    client.register_plugin(Serve())
+    return client

@@ -102,6 +102,19 @@ class Evaluation:
         still = neutral.median("vibration")
         return self.median("vibration") > LARGEST_ACCELERATION_RATIO**2 * still > 0.0
 
+    def shortcomings(self, must_step: bool, neutral: Evaluation | None) -> list[str]:
+        """Reasons in words not to recommend the parameters.
+
+        :param must_step: whether the task wants a gait; otherwise every gait is valid
+        :param neutral: episodes that chatter is judged against; without them nothing chatters
+        """
+        found = []
+        if must_step and not self.is_gait:
+            found.append("no valid gait: the robot steps to a clock, or does not lift its feet")
+        if neutral is not None and self.chatters(neutral):
+            found.append("the hips chatter: no real actuator could follow that")
+        return found
+
     def summary(self) -> dict[str, Any]:
         """Statistics of all metrics by name, for files and for ``--json``."""
         statistics = {

@@ -92,7 +92,7 @@ class RobotSettings:
         dimensions, usual = check_dimensions(dimensions), usual or self
         before, after = (usual._at(scale_of(robot), self.engine) for robot in (self.dimensions, dimensions))
         if (control_rate := self.physics.control_rate) != before.physics.control_rate:  # set by hand
-            before, after = (one._with_control_rate(control_rate) for one in (before, after))
+            before, after = (replace(one, physics=one.physics.at_control_rate(control_rate)) for one in (before, after))
         return replace(_following(self, before, after), dimensions=dimensions)
 
     def _at(self, scale: Scale, engine: Engine) -> RobotSettings:
@@ -100,9 +100,6 @@ class RobotSettings:
         ratio = scale.over(self.scale)
         physics = physics_for(engine, self.physics, self.scale).at_scale(ratio)
         return replace(ratio.scaled(self), engine=engine, physics=physics)
-
-    def _with_control_rate(self, control_rate: int) -> RobotSettings:
-        return replace(self, physics=self.physics.at_control_rate(control_rate))
 
     def check_for_training(self) -> None:
         """Refuse settings with which there is nothing to learn.

@@ -7,13 +7,13 @@ how often it was repeated because a worker died.
 from __future__ import annotations
 
 import functools
-import os
 from abc import ABC, abstractmethod
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from sarah.episode.cluster import RemoteJob, connect, start
+from sarah.episode.cluster import RemoteJob, connected, started
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
@@ -24,13 +24,11 @@ from sarah.simulation.world import HoldsWorld
 from sarah.versions import LEARNING, SIMULATING
 
 if TYPE_CHECKING:
-    from distributed import Client, LocalCluster
+    from distributed import Client
 
 MOST_WAITING = 8
 """Largest number of episodes that a process keeps standing until their parameters are known. Each takes some 15 MB.
 Parameters may go to another process, which then lets the episode stand anew, at a thirtieth of an episode's cost."""
-SAFE_PATH = "PYTHONSAFEPATH"
-"""Environment variable that keeps Python 3.11 and later from searching the working folder for modules."""
 MOST_WORKERS = 256
 """Largest number of workers on one machine."""
 
@@ -159,43 +157,21 @@ class Workers(HoldsWorld, Executor):
         self._count = count
         self._scheduler = scheduler
         self.client = None
-        self._cluster: LocalCluster | None = None
-        self._before: dict[str, str | None] = {}
+        self._stack = ExitStack()
 
     def __enter__(self) -> Workers:
         """Start the workers, or connect to the scheduler."""
         if self._scheduler is not None:
-            self.client = connect(self._scheduler)
+            self.client = self._stack.enter_context(connected(self._scheduler))
         elif self._count:
-            # Otherwise a worker imports modules from the working folder, such as a pickle.py in somebody's run folder.
-            before = dict(os.environ)
-            os.environ[SAFE_PATH] = "1"
-            try:
-                self._cluster, self.client = start(self._count)
-            finally:  # Dask sets others, which workers need as long as they may be started again
-                changed = (name for name, value in os.environ.items() if value != before.get(name))
-                self._before = {name: before.get(name) for name in changed}
-                if self._cluster is None:
-                    self._restore_environment()
+            self.client = self._stack.enter_context(started(self._count))
         return self
 
     def __exit__(self, *error: object) -> None:
         """Stop the workers that were started; the workers of a scheduler go on without this client."""
         close_waiting_episodes()
-        if self.client is not None:
-            self.client.close()
-            self.client = None
-        if self._cluster is not None:
-            self._cluster.close()
-            self._cluster = None
-            self._restore_environment()
-
-    def _restore_environment(self) -> None:
-        for name, value in self._before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
+        self.client = None
+        self._stack.close()
 
     def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
         """Submit a call, of an episode or of a whole training.

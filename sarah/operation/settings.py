@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 from sarah.control.hip_law import BalanceParameters
-from sarah.control.parameters import BALANCE_PARAMETERS, STEPPING_PARAMETERS, Box
+from sarah.control.parameters import BALANCE_PARAMETERS, STEPPING_PARAMETERS, Box, Parameters
 from sarah.control.pattern_generator import SteppingParameters
 from sarah.episode.from_mapping import changed_alone, convert_fields
 from sarah.episode.push import Push, PushedConfig
@@ -23,7 +23,6 @@ PARAMETERS = (*STEPPING_PARAMETERS, *BALANCE_PARAMETERS)
 """The nine parameters that can change while the robot runs: P1 to P5 and V1 to V4."""
 BOX = Box(PARAMETERS, decimals=6)
 """Their ranges together. What a learner chooses is rounded, so that a table shows all of it."""
-Parameters = tuple[float, ...]
 SHIPPED: Parameters = (
     *shipped_parameters("stepping", STEPPING_PARAMETERS),
     *shipped_parameters("balance", BALANCE_PARAMETERS),

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from PIL import Image
+from tensorboard.compat.proto.summary_pb2 import Summary
 
 from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
@@ -23,38 +23,24 @@ EPISODE_SECONDS = 10.0
 """Longest duration of the simulated episode, in s."""
 VIDEO_SECONDS = 3.0
 """Duration of the video, which shows the end of the episode, in s."""
+RGB = 3
+"""Number by which TensorBoard knows the colours of a picture."""
 
 
-@dataclass(frozen=True)
-class Picture:
-    """An encoded picture.
-
-    :param name: name of the picture in TensorBoard
-    :param width: width, in pixels
-    :param height: height, in pixels
-    :param content: bytes of its file, PNG or GIF
-    """
-
-    name: str
-    width: int
-    height: int
-    content: bytes
-
-
-def draw_gait(parameters: tuple[float, ...], task: Task[Any], config: EpisodeConfig) -> list[Picture]:
+def draw_gait(parameters: tuple[float, ...], task: Task[Any], config: EpisodeConfig) -> Summary:
     """Simulate an episode with seed 0, and draw its gait.
 
     :param parameters: values of the task's parameters, in order
     :param task: task that owns the parameters
     :param config: settings of the episode
-    :return: a video, and a gait cycle if the robot completes one; nothing if the robot cannot even stand
+    :return: a video, and a gait cycle if the robot completes one; no picture if the robot cannot even stand
     """
     short = dataclasses.replace(config, time_limit=min(EPISODE_SECONDS, config.time_limit))
     spec = EpisodeSpec(parameters, 0, task, short)
     try:
         trace = simulate(spec, record_trace=True).trace
     except SimulationError:  # the simulation diverges, which the learning curves show
-        return []
+        return Summary()
     assert trace is not None
     stepping, _ = controller_of(task, parameters, config)
     end = trace.time[-1]
@@ -62,14 +48,16 @@ def draw_gait(parameters: tuple[float, ...], task: Task[Any], config: EpisodeCon
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         write_video(frames(trace, spec.robot, times, ground=spec.ground), folder / "video.gif")
-        pictures = [_picture("recommendation/video", folder / "video.gif")]
+        video = _picture("recommendation/video", folder / "video.gif")
         try:
             draw_gait_cycle(trace, stepping, folder / "cycle", config.controller)
         except ConfigurationError:  # the robot completes no gait cycle
-            return pictures
-        return [*pictures, _picture("recommendation/cycle", folder / "cycle.png")]
+            return Summary(value=[video])
+        return Summary(value=[video, _picture("recommendation/cycle", folder / "cycle.png")])
 
 
-def _picture(name: str, path: Path) -> Picture:
+def _picture(name: str, path: Path) -> Summary.Value:
     with Image.open(path) as picture:
-        return Picture(name, picture.width, picture.height, path.read_bytes())
+        width, height = picture.size
+    image = Summary.Image(width=width, height=height, colorspace=RGB, encoded_image_string=path.read_bytes())
+    return Summary.Value(tag=name, image=image)

@@ -29,7 +29,7 @@ def shapes_of(robot: RobotDescription) -> Iterator[Shape]:
 
     :param robot: robot, which stands
     """
-    scene = model_of(robot).scene
+    scene = model_of(robot.urdf).scene
     for node in scene.graph.nodes_geometry:
         place, name = scene.graph.get(node)
         mesh = scene.geometry[name]

@@ -51,7 +51,7 @@ def labels_of(robot: RobotDescription) -> list[Label]:
 
     :param robot: robot, which stands with all joints at zero
     """
-    model, shapes = model_of(robot), list(shapes_of(robot))
+    model, shapes = model_of(robot.urdf), list(shapes_of(robot))
     torso = np.array((0.0, 0.0, robot.standing_height))
 
     def at(link: str, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> np.ndarray:

@@ -103,7 +103,7 @@ def cameras(trace: Trace, robot: RobotDescription, renderer: Renderer, ground: G
     for time in frame_times(trace.time[0], trace.time[-1], POSES_PER_SECOND):
         pose = _pose(trace, trace.tick_at(time))
         seen.append(renderer.seen(*pose, ground))
-        feet.append(renderer.feet(*pose, ground))
+        feet.append(renderer.seen(*pose, ground, only_feet=True))
     camera = renderer.camera._replace(ground=ground).seeing(np.concatenate(seen), WIDTH - 2 * TEXT_WIDTH, HEIGHT)
     shown = [(tick, force) for tick, force in enumerate(trace.shown_pushes()) if force is not None]
     if shown:

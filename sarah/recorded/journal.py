@@ -116,7 +116,7 @@ class Journal:
         :param request: what the program asked for
         :param outcome: outcome, as JSON has it
         """
-        self._append(_checksummed({**request, "outcome": outcome}, self._seed))
+        self._append(_signed({**request, "outcome": outcome}, self._checksum))
 
     def extend(self, index: int, budget: float) -> None:
         """Note that the program goes on to a larger budget, or check that it did so before.
@@ -157,7 +157,7 @@ class Journal:
             raise ResumeError(
                 f"{self._path} has {size} bytes, but such a {self._kind.name} writes at most {self._most_bytes}"
             )
-        expected = _first_row(self._origin)
+        expected = _signed(self._origin, _hash)
         with open(self._path, "rb") as reader:
             first = reader.readline(LONGEST_ROW)
             if not expected.startswith(first) or first == expected:
@@ -171,7 +171,7 @@ class Journal:
         self._seed = int(expected[:8], 16)
 
     def _check_first_row(self, first: bytes) -> None:
-        there = _read_first_row(first)
+        there = _read_signed(first, _hash)
         if there is None:
             raise self._refusal(
                 f"the first row of {self._path.name}, which says with what the {self._kind.name} was begun, is damaged "
@@ -185,7 +185,7 @@ class Journal:
         damaged, whole = 0, reader.tell()
         while line := reader.readline(LONGEST_ROW):
             has_end = line.endswith(b"\n")
-            row = _read_checksummed(line, self._seed) if has_end else None
+            row = _read_signed(line, self._checksum) if has_end else None
             whole = reader.tell() if has_end else whole
             if row is None or type(row.get("index")) is not int:
                 damaged += 1
@@ -194,6 +194,10 @@ class Journal:
         if damaged:
             self._file.truncate(whole)  # a row that was cut has no end
             _log.warning("%s: damaged rows: %d; what they have is asked again", self._path, damaged)
+
+    def _checksum(self, text: bytes) -> bytes:
+        """What signs a row but the first."""
+        return b"%08x" % zlib.crc32(text, self._seed)
 
     def _append(self, row: bytes) -> None:
         """Append a row as a whole."""
@@ -217,42 +221,22 @@ class Journal:
         return ResumeError(f"{self._path.parent} cannot be resumed: {reason}")
 
 
-def _compact_json(row: Mapping[str, Any]) -> bytes:
-    return json.dumps(row, allow_nan=False, separators=(",", ":")).encode()
+def _signed(row: Mapping[str, Any], sign: Callable[[bytes], bytes]) -> bytes:
+    """A row: what signs it, and a JSON object."""
+    text = json.dumps(row, allow_nan=False, separators=(",", ":")).encode()
+    return b"%s %s\n" % (sign(text), text)
 
 
-def _first_row(origin: Mapping[str, Any]) -> bytes:
-    """First row of a journal: a hash and a JSON object."""
-    text = _compact_json(origin)
-    return b"%s %s\n" % (_digest(text), text)
-
-
-def _read_first_row(first: bytes) -> dict[str, Any] | None:
-    """What a first row says; ``None`` if it is damaged."""
-    digest, _, text = first.rstrip(b"\n").partition(b" ")
-    return _object(text) if digest == _digest(text) else None
-
-
-def _checksummed(row: Mapping[str, Any], seed: int) -> bytes:
-    """A row with its checksum."""
-    text = _compact_json(row)
-    return b"%08x %s\n" % (zlib.crc32(text, seed), text)
-
-
-def _read_checksummed(line: bytes, seed: int) -> dict[str, Any] | None:
+def _read_signed(line: bytes, sign: Callable[[bytes], bytes]) -> dict[str, Any] | None:
     """Values of a row; ``None`` if it is damaged."""
-    checksum, _, text = line.rstrip(b"\n").partition(b" ")
-    return _object(text) if checksum == b"%08x" % zlib.crc32(text, seed) else None
-
-
-def _object(text: bytes) -> dict[str, Any] | None:
-    """A JSON object; ``None`` if the text is none."""
+    signature, _, text = line.rstrip(b"\n").partition(b" ")
     try:
-        value = json.loads(text)
+        value = json.loads(text) if signature == sign(text) else None
     except (ValueError, RecursionError):
         return None
     return value if isinstance(value, dict) else None
 
 
-def _digest(text: bytes) -> bytes:
+def _hash(text: bytes) -> bytes:
+    """What signs the first row."""
     return hashlib.sha256(text).hexdigest()[:16].encode()

@@ -70,6 +70,8 @@ def write_report(
             if stem in drawn
         ]
         film, caption = _film(learned, shown, folder, seconds)
+    neutral = None if task.neutral is None else of[task.neutral]
+    shortcomings = of[learned.parameters].shortcomings(task.must_step, neutral)
     page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True).from_string(
         (files("sarah.reports") / "report.html").read_text(encoding="utf-8")
     )
@@ -81,7 +83,7 @@ def write_report(
         episodes=episodes,
         rows=_parameter_rows(learned) + _result_rows(config, of[learned.parameters], of[task.baseline]),
         baseline=task.baseline_label,
-        warnings=_warnings(task, of[learned.parameters], None if task.neutral is None else of[task.neutral]),
+        warnings=[f"{shortcoming.capitalize()}." for shortcoming in shortcomings],
         figures=figures,
         film=film,
         film_caption=caption,
@@ -135,15 +137,6 @@ def _result_rows(config: TrainingConfig, learned: Evaluation, baseline: Evaluati
             ours, theirs = (metric.text(evaluation.statistic(name, how)) for evaluation in (learned, baseline))
             rows.append((f"{metric.label}, {how}", ours, theirs, metric.paper))
     return rows
-
-
-def _warnings(task: Task, learned: Evaluation, neutral: Evaluation | None) -> list[str]:
-    found = []
-    if task.must_step and not learned.is_gait:
-        found.append("This is not a valid gait: the robot steps to a clock, or does not lift its feet.")
-    if neutral is not None and learned.chatters(neutral):
-        found.append("The hips chatter: no real actuator could follow that.")
-    return found
 
 
 def _film(spec: EpisodeSpec, result: EpisodeResult, folder: Path, seconds: tuple[float, float]) -> tuple[str, str]:

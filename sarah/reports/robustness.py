@@ -128,14 +128,6 @@ def robustness_table(episodes: Sequence[PushedEpisode]) -> dict[tuple[float, str
     return table
 
 
-def survival_interval(evaluation: Evaluation) -> tuple[float, float]:
-    """Wilson's 95 % interval of the survival.
-
-    :param evaluation: evaluation of the episodes
-    """
-    return wilson_interval(evaluation.survivors, evaluation.episodes)
-
-
 def wilson_interval(successes: int, trials: int) -> tuple[float, float]:
     """Wilson's 95 % interval of a probability (Wilson 1927), which stays within 0 and 1 and is never empty.
 

@@ -18,7 +18,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
 from sarah.episode.workers import Workers
-from sarah.reports.robustness import push_of_table, rounded, survival_interval
+from sarah.reports.robustness import push_of_table, rounded, wilson_interval
 from sarah.robot.scale import Scale
 from sarah.simulation.terrain import LARGEST_ROUGHNESS, Terrain
 
@@ -132,7 +132,7 @@ def as_markdown(evaluations: Mapping[Situation, Evaluation]) -> str:
         "|---" * 7 + "|",
     ]
     for situation, found in evaluations.items():
-        low, high = survival_interval(found)
+        low, high = wilson_interval(found.survivors, found.episodes)
         lines.append(
             f"| {_ground(situation)} | {situation.newtons:g} N | {found.episodes} "
             f"| {found.mean('score'):.3f} | {found.mean('steps_per_second'):.2f} "

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 
 from sarah.episode.evaluation import Evaluation
 from sarah.pictures.style import COLUMN_WIDTH, own_style, save
-from sarah.reports.robustness import survival_interval
+from sarah.reports.robustness import wilson_interval
 from sarah.reports.terrain import UPHILL, Situation
 
 KINDS = {"slope": ("slope (°)", 1.0), "roughness": ("bumps (mm)", 1000.0), "friction": ("friction", 1.0)}
@@ -74,5 +74,5 @@ def _draw(axis: Axes, evaluations: Mapping[Situation, Evaluation], metric: str, 
             label = f"uphill {uphill}{pushed}" if uphill else f"bumps or friction{pushed}"
             axis.plot(x, found, dashes, marker="o", markersize=2.5, linewidth=1.0, color=colour, label=label)
             if metric == "survival":
-                low, high = zip(*map(survival_interval, line.values()), strict=True)
+                low, high = zip(*(wilson_interval(e.survivors, e.episodes) for e in line.values()), strict=True)
                 axis.fill_between(x, low, high, color=colour, alpha=0.08, linewidth=0.0)

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -24,13 +24,11 @@ from sarah.episode.tasks import BALANCE, STEPPING, Task
 from sarah.files import make_folder
 from sarah.pictures.colours import algorithm_colours, algorithm_label
 from sarah.pictures.style import COLUMN_WIDTH, own_style, save
+from sarah.reports.race_entry import RaceCurve
 from sarah.reports.robustness import PushedEpisode
 from sarah.reports.training_curves import RunCurves, read_curves
 from sarah.reports.uncertainty import standard_error
 from sarah.runs.run_record import RunRecord
-
-if TYPE_CHECKING:  # the import would load the learning algorithms
-    from sarah.reports.race_entry import RaceCurve
 
 WINDOW = 15
 """Number of episodes in the window of the running median."""

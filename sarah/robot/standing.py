@@ -27,16 +27,12 @@ class MassProperties(NamedTuple):
     inertia: np.ndarray
 
 
-def model_of(robot: RobotDescription) -> Any:
+@lru_cache(maxsize=4)
+def model_of(urdf: str) -> Any:
     """Robot as yourdfpy reads it, which must not be changed.
 
-    :param robot: robot
+    :param urdf: text of the robot's URDF
     """
-    return _model_of(robot.urdf)
-
-
-@lru_cache(maxsize=4)
-def _model_of(urdf: str) -> Any:
     import yourdfpy
 
     return yourdfpy.URDF.load(io.StringIO(urdf), load_meshes=False)
@@ -47,7 +43,7 @@ def links_of(robot: RobotDescription) -> dict[str, MassProperties]:
 
     :param robot: robot
     """
-    model = model_of(robot)
+    model = model_of(robot.urdf)
     links = {}
     for name, link in model.link_map.items():
         inertial, to_torso = link.inertial, model.get_transform(name, "torso")

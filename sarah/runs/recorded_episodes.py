@@ -9,7 +9,7 @@ import itertools
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 from sarah.episode.ending import is_ending
 from sarah.episode.episode import simulate
@@ -20,18 +20,8 @@ from sarah.errors import TrainingInterruptedError
 from sarah.recorded.journal import Journal
 from sarah.robot.reading import SensorReading
 
-
-class _Kind(NamedTuple):
-    """Kind of a request.
-
-    :param name: name in the journal
-    :param plain: function that makes values for JSON of an outcome
-    :param read: function that makes the outcome of values from JSON
-    """
-
-    name: str
-    plain: Callable[[Any], Any]
-    read: Callable[[Any], Any]
+_Kind = tuple[str, Callable[[Any], Any], Callable[[Any], Any]]
+"""Name of a request in the journal, what makes values for JSON of its outcome, and what makes the outcome of these."""
 
 
 def _reading(plain: Any) -> SensorReading:
@@ -50,13 +40,13 @@ def _result(plain: Any) -> EpisodeResult:
 
 
 _KINDS: dict[Callable[..., Any], _Kind] = {
-    begin_episode: _Kind("begin", lambda reading: reading, _reading),
-    finish_episode: _Kind(
+    begin_episode: ("begin", lambda reading: reading, _reading),
+    finish_episode: (
         "finish",
         lambda outcome: [outcome.result.fields(), *outcome[1:]],
         lambda p: Outcome(_result(p[0]), _reading(p[1]), p[2] and _reading(p[2])),
     ),
-    simulate: _Kind("simulate", lambda result: result.fields(), _result),
+    simulate: ("simulate", lambda result: result.fields(), _result),
 }
 
 
@@ -87,14 +77,14 @@ class RecordedEpisodes(Executor):
 
         :raises ResumeError: if the training asks for another episode than it did when the journal was written
         """
-        kind, spec = _KINDS[function], subjects[0]
+        (name, plain, read), spec = _KINDS[function], subjects[0]
         assert isinstance(spec, EpisodeSpec)
         index = next(self._numbers)
-        request = {"index": index, "kind": kind.name, "seed": spec.seed, "parameters": list(spec.parameters)}
-        known = self.journal.known(request, kind.read)
+        request = {"index": index, "kind": name, "seed": spec.seed, "parameters": list(spec.parameters)}
+        known = self.journal.known(request, read)
         if known is not None:
             return Job(partial(self._known, known))
-        return Job(partial(self._new, kind, request, self._executor.submit(function, *subjects)))
+        return Job(partial(self._new, plain, request, self._executor.submit(function, *subjects)))
 
     def extend(self, episodes: int) -> None:
         """Note that the training goes on to a larger budget, or check that it did so before.
@@ -108,10 +98,10 @@ class RecordedEpisodes(Executor):
         self._stop_if_interrupted()
         return outcome
 
-    def _new(self, kind: _Kind, request: dict[str, Any], job: Job) -> Any:
+    def _new(self, plain: Callable[[Any], Any], request: dict[str, Any], job: Job) -> Any:
         with self.outside():
             outcome = job.result()
-        self.journal.add(request, kind.plain(outcome))
+        self.journal.add(request, plain(outcome))
         self._stop_if_interrupted()
         return outcome
 

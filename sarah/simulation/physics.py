@@ -89,14 +89,6 @@ PHYSICS = {"standard": PyBulletPhysics(), "reference": PyBulletPhysics(1000, 100
 ignores the fields that it does not have."""
 
 
-def physics_type(engine: str) -> type[Physics]:
-    """Type of the settings that an engine takes.
-
-    :param engine: name of the engine, ``"pybullet"`` or ``"mujoco"``
-    """
-    return PyBulletPhysics if engine == "pybullet" else Physics
-
-
 def named_physics(name: str, scale: Scale, control_rate: int) -> PyBulletPhysics:
     """Named settings for a robot of any size.
 
@@ -114,7 +106,7 @@ def physics_for(engine: str, physics: Physics, scale: Scale) -> Physics:
     :param physics: settings of any engine
     :param scale: size of the robot
     """
-    if type(physics) is physics_type(engine):
+    if type(physics) is (PyBulletPhysics if engine == "pybullet" else Physics):
         return physics
     rate, iterations, control_rate = physics.rate, physics.solver_iterations, physics.control_rate
     if engine != "pybullet":

@@ -26,6 +26,8 @@ MARGIN = 0.01
 """Margin around the robot's corners, as a share of its height; nothing else is drawn."""
 NEAREST = 0.01
 """Smallest distance from the camera at which anything is drawn, in m."""
+SIZE = (640, 480)
+"""Width and height of a picture, in pixels, unless others are given."""
 CUBE = np.array(list(product((-1.0, 1.0), repeat=3)))
 FRONT_OF_SOLE, BACK_OF_SOLE = [2, 6], [4, 0]
 """Corners of the cube that are low and in front, from left to right, and low and behind, from right to left."""
@@ -70,8 +72,8 @@ class Renderer(HoldsWorld):
         position: Vector,
         orientation: tuple[float, float, float, float],
         joints: Mapping[str, float],
-        width: int = 640,
-        height: int = 480,
+        width: int = SIZE[0],
+        height: int = SIZE[1],
         camera: Camera | None = None,
     ) -> np.ndarray:
         """Draw one pose.
@@ -106,6 +108,7 @@ class Renderer(HoldsWorld):
         orientation: tuple[float, float, float, float],
         joints: Mapping[str, float],
         ground: Ground = LEVEL,
+        only_feet: bool = False,
     ) -> np.ndarray:
         """Points around all that is drawn of a pose: corners of boxes around the links, and of the feet's shadows.
 
@@ -113,31 +116,13 @@ class Renderer(HoldsWorld):
         :param orientation: orientation of the torso, as a unit quaternion (x, y, z, w)
         :param joints: positions by joint, in rad and m; other joints stay where they were, at first at zero
         :param ground: ground that the shadows lie on
+        :param only_feet: whether to leave out all links but the shoes
         :return: points in the world's frame, in m, of shape (n, 3)
         :raises SimulationError: if other code in the process has changed the renderer's world
         """
         boxes = self._boxes_in(position, orientation, joints)
-        return np.concatenate((*boxes.values(), *self._shadows(boxes, ground)))
-
-    def feet(
-        self,
-        position: Vector,
-        orientation: tuple[float, float, float, float],
-        joints: Mapping[str, float],
-        ground: Ground = LEVEL,
-    ) -> np.ndarray:
-        """Points around both shoes and their shadows in a pose; see :meth:`seen`.
-
-        :param position: position of the torso's centre, in m
-        :param orientation: orientation of the torso, as a unit quaternion (x, y, z, w)
-        :param joints: positions by joint, in rad and m; other joints stay where they were, at first at zero
-        :param ground: ground that the shadows lie on
-        :return: points in the world's frame, in m, of shape (n, 3)
-        :raises SimulationError: if other code in the process has changed the renderer's world
-        """
-        boxes = self._boxes_in(position, orientation, joints)
-        plates = (boxes[self._indices[f"{side}_{plate}"]] for side in Side for plate in PLATES)
-        return np.concatenate((*plates, *self._shadows(boxes, ground)))
+        links = [self._indices[name] for name in ANKLE_JOINTS] if only_feet else boxes
+        return np.concatenate((*(boxes[link] for link in links), *self._shadows(boxes, ground)))
 
     def _boxes_in(
         self, position: Vector, orientation: tuple[float, float, float, float], joints: Mapping[str, float]
@@ -225,34 +210,26 @@ class Renderer(HoldsWorld):
         picture.paste(robot, mask=robot)
         return np.asarray(picture)
 
-    def draw_simulator(
-        self,
-        simulator: Simulator,
-        width: int = 640,
-        height: int = 480,
-        force: Vector | None = None,
-    ) -> np.ndarray:
+    def draw_simulator(self, simulator: Simulator, force: Vector | None = None) -> np.ndarray:
         """Draw a simulator's robot as it stands, on the simulator's ground.
 
         :param simulator: simulator of any engine
-        :param width: width of the picture, in pixels
-        :param height: height of the picture, in pixels
         :param force: force of a push, which is drawn as an arrow, in N
-        :return: uint8 array of shape (height, width, 3); the ground alone if the simulation has diverged
+        :return: uint8 array of shape (480, 640, 3); the ground alone if the simulation has diverged
         """
         torso, camera = simulator.torso_state(), self.camera._replace(ground=simulator.ground)
         if not torso.is_finite:
-            return floor(width, height, camera).copy()
+            return floor(*SIZE, camera).copy()
         names = ACTUATED_JOINTS + ANKLE_JOINTS
         joints = dict(zip(names, simulator.joint_positions(names), strict=True))
         ends = None if force is None else arrow(np.array(torso.position), np.array(force), self._robot.scale)
         seen = self.seen(torso.position, torso.orientation, joints, camera.ground)
-        camera = camera.seeing(seen if ends is None else np.concatenate((seen, ends)), width, height)
-        picture = self.draw(torso.position, torso.orientation, joints, width, height, camera)
+        camera = camera.seeing(seen if ends is None else np.concatenate((seen, ends)), *SIZE)
+        picture = self.draw(torso.position, torso.orientation, joints, *SIZE, camera)
         if ends is None:
             return picture
         with_arrow = Image.fromarray(picture)
-        draw_arrow(ImageDraw.Draw(with_arrow), View(width, height, camera), ends)
+        draw_arrow(ImageDraw.Draw(with_arrow), View(*SIZE, camera), ends)
         return np.asarray(with_arrow)
 
     def close(self) -> None:

@@ -7,7 +7,6 @@ both are fixed, so that the first windows do not mislead it about what is safe.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import norm
@@ -16,38 +15,29 @@ from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
 
 from sarah.control.parameters import Box, Parameters
 
-
-@dataclass(frozen=True)
-class CarefulSettings:
-    """Settings of the Gaussian process and of its caution. Lengths and steps are shares of each parameter's range.
-
-    :param length: length over which the reward changes
-    :param deviation: standard deviation of the reward between far parameters
-    :param noise: standard deviation of the reward of the same parameters
-    :param pessimism: reward by which parameters that nobody knows are expected to be worse than those of the beginning
-    :param step: standard deviation of a trial's changes from the best parameters
-    :param share: share of the parameters that a trial changes
-    :param candidates: number of candidates for each trial
-    :param horizon: number of windows in which an improvement pays: after that, another one would have been found
-    :param largest_loss: loss against the parameters of the beginning that a trial may risk, in reward
-    :param caution: number of standard deviations by which it must be believed to lose less
-    :param surprise: sum of standard deviations, beyond half a one for each window, by which windows must fall short of
-        what was expected before the robot counts as changed
-    """
-
-    length: float = 0.6
-    deviation: float = 0.3
-    noise: float = 0.03
-    pessimism: float = 0.1
-    step: float = 0.05
-    share: float = 0.5
-    candidates: int = 200
-    horizon: float = 2.0
-    largest_loss: float = 0.1
-    caution: float = 2.0
-    surprise: float = 6.0
-
-
+LENGTH = 0.6
+"""Length over which the reward changes, as a share of each parameter's range."""
+DEVIATION = 0.3
+"""Standard deviation of the reward between far parameters."""
+NOISE = 0.03
+"""Standard deviation of the reward of the same parameters."""
+PESSIMISM = 0.1
+"""Reward by which parameters that nobody knows are expected to be worse than those of the beginning."""
+STEP = 0.05
+"""Standard deviation of a trial's changes from the best parameters, as a share of each parameter's range."""
+SHARE = 0.5
+"""Share of the parameters that a trial changes."""
+CANDIDATES = 200
+"""Number of candidates for each trial."""
+HORIZON = 2.0
+"""Number of windows in which an improvement pays: after that, another one would have been found."""
+LARGEST_LOSS = 0.1
+"""Loss against the parameters of the beginning that a trial may risk, in reward."""
+CAUTION = 2.0
+"""Number of standard deviations by which it must be believed to lose less."""
+SURPRISE = 6.0
+"""Sum of standard deviations, beyond half a one for each window, by which windows must fall short of what was expected
+before the robot counts as changed."""
 DISAPPOINTING = 2.0
 """Number of standard deviations below what was expected at which a reward disappoints. A window in which the robot did
 not fall counts as no worse than that: it may be chance (bounded influence, Huber 1964)."""
@@ -76,15 +66,13 @@ class CarefulSearch:
     :param box: ranges of the parameters
     :param seed: seed of the draws
     :param first: parameters to begin with
-    :param settings: lengths, deviations and caution
     """
 
-    def __init__(self, box: Box, seed: int, first: Parameters, settings: CarefulSettings = CarefulSettings()) -> None:
+    def __init__(self, box: Box, seed: int, first: Parameters) -> None:
         self._box = box
-        self._settings = settings
         self._generator = np.random.default_rng([seed, len(first)])
-        kernel = ConstantKernel(settings.deviation**2) * Matern(settings.length, nu=2.5)
-        self._model = GaussianProcessRegressor(kernel + WhiteKernel(settings.noise**2), optimizer=None)
+        kernel = ConstantKernel(DEVIATION**2) * Matern(LENGTH, nu=2.5)
+        self._model = GaussianProcessRegressor(kernel + WhiteKernel(NOISE**2), optimizer=None)
         self._mean = 0.0
         self._first = self._start = self._asked = np.array(box.shares(first))
         self._tried: list[np.ndarray] = []
@@ -117,7 +105,7 @@ class CarefulSearch:
         """
         self._is_told = True
         self._has_failed = fell and not self._is_trial and self._asked is not self._first
-        expected, spread = self._foreseen(self._asked) if self._tried else (merit, self._settings.noise)
+        expected, spread = self._foreseen(self._asked) if self._tried else (merit, NOISE)
         surprise = (expected - merit) / spread
         self._disappoints = surprise > DISAPPOINTING
         counted = min(surprise, SURPRISE_OF_FALL if fell else DISAPPOINTING)
@@ -128,7 +116,7 @@ class CarefulSearch:
         self._tried.append(self._asked)
         self._rewards.append(merit)
         self._bounded.append(merit if fell else max(merit, expected - DISAPPOINTING * spread))
-        if self._shortfall > self._settings.surprise:
+        if self._shortfall > SURPRISE:
             self._forget()
         del self._tried[:-MOST_WINDOWS], self._rewards[:-MOST_WINDOWS], self._bounded[:-MOST_WINDOWS]
         self._fit()
@@ -140,7 +128,7 @@ class CarefulSearch:
     def _foreseen(self, shares: np.ndarray) -> tuple[float, float]:
         """Mean and standard deviation of a window's reward, as far as they can be known before it."""
         mean, deviation = self._expected(shares[None])
-        return float(mean[0]), float(np.hypot(deviation[0], max(self._settings.noise, self._usual_error())))
+        return float(mean[0]), float(np.hypot(deviation[0], max(NOISE, self._usual_error())))
 
     def _usual_error(self) -> float:
         """Standard deviation of the last rewards from what was expected, by their median, which no fall moves."""
@@ -157,15 +145,15 @@ class CarefulSearch:
 
     def _fit(self) -> None:
         beginning = float(np.mean(self._rewards[:3]))
-        self._mean = beginning - self._settings.pessimism
+        self._mean = beginning - PESSIMISM
         # How deep a robot fell says nothing of the slope where it walks; a cliff would make the process ring.
-        rewards = np.maximum(self._bounded, beginning - 2.0 * self._settings.largest_loss)
+        rewards = np.maximum(self._bounded, beginning - 2.0 * LARGEST_LOSS)
         self._model.fit(np.array(self._tried), rewards - self._mean)
 
     def _expected(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Mean and standard deviation of the reward that the process expects, without the noise of a window."""
         mean, deviation = self._model.predict(places, return_std=True)
-        return mean + self._mean, np.sqrt(np.maximum(deviation**2 - self._settings.noise**2, 1e-12))
+        return mean + self._mean, np.sqrt(np.maximum(deviation**2 - NOISE**2, 1e-12))
 
     def _best(self) -> tuple[np.ndarray, float]:
         """Of the parameters that were tried, those with the highest expected reward, and that reward."""
@@ -178,16 +166,15 @@ class CarefulSearch:
 
         :param windows_left: number of windows after the trial, in which an improvement would pay
         """
-        settings = self._settings
         best, reward = self._best()
-        changes = self._generator.normal(0.0, settings.step, (settings.candidates, len(best)))
-        changes *= self._generator.random(changes.shape) < settings.share
+        changes = self._generator.normal(0.0, STEP, (CANDIDATES, len(best)))
+        changes *= self._generator.random(changes.shape) < SHARE
         places = np.clip(best + changes, 0.0, 1.0)
         mean, deviation = self._expected(places)
-        lowest = self._expected(self._start[None])[0][0] - settings.largest_loss
-        is_safe = mean - settings.caution * deviation >= lowest
+        lowest = self._expected(self._start[None])[0][0] - LARGEST_LOSS
+        is_safe = mean - CAUTION * deviation >= lowest
         better = (mean - reward) / deviation
         improvement = (mean - reward) * norm.cdf(better) + deviation * norm.pdf(better)
-        worth = np.where(is_safe, improvement * min(windows_left, settings.horizon) - (reward - mean), -np.inf)
+        worth = np.where(is_safe, improvement * min(windows_left, HORIZON) - (reward - mean), -np.inf)
         index = int(np.argmax(worth))
         return places[index] if worth[index] > 0.0 else None

@@ -8,7 +8,7 @@ from __future__ import annotations
 import dataclasses
 from collections import deque
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import torch
@@ -56,19 +56,6 @@ SCHEDULED_SHARE = 0.8
 ALL_ALIKE = {"temperature": 0.0}
 """Arguments of the replay buffer with which it prefers no episode."""
 ACTIVATIONS = {"tanh": nn.Tanh, "relu": nn.ReLU, "sigmoid": nn.Sigmoid}
-
-
-class Learner(Protocol):
-    """What learns a task's parameters from episodes, and can go on."""
-
-    def learn(self, episodes: int) -> None:
-        """Learn from more episodes, and have each recorded.
-
-        :param episodes: number of episodes
-        """
-
-    def choice(self) -> Parameters:
-        """The parameters that the algorithm itself would choose now."""
 
 
 def make_learner(plan: Plan, run: RunFolder, recorder: EpisodeRecorder, workers: Executor) -> Learner:
@@ -288,3 +275,7 @@ class _Searching:
         self._disturbances.append(checked_disturbances(disturbances, number))
         self._returns.append(result.episode_return)
         return float(corrected(np.array(self._returns), np.array(self._disturbances))[-1])
+
+
+Learner = _Agent | _Searching
+"""What learns a task's parameters from episodes, and can go on."""

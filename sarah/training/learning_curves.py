@@ -6,7 +6,7 @@ process, and TensorBoard's own writer notices a full disk only in a thread.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from google.protobuf.message import DecodeError
 from stable_baselines3.common.logger import filter_excluded_keys
@@ -21,11 +21,6 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.event_file import EventFile
 from sarah.runs.run_folder import RunFolder
 
-if TYPE_CHECKING:
-    from sarah.pictures.gait_snapshot import Picture
-
-RGB = 3
-"""Number by which TensorBoard knows the colours of a picture."""
 LEARNED = ("unseen/score", "unseen/steps_per_second", "unseen/survival_rate", "unseen/sole_clearance")
 """Names of the final values of a training, which TensorBoard shows beside its hyper-parameters."""
 
@@ -74,20 +69,6 @@ class CurveWriter:
     def close(self) -> None:
         """Close the event file."""
         self._events.close()
-
-
-def summary_of(pictures: list[Picture]) -> Summary:
-    """Pictures as TensorBoard takes them.
-
-    :param pictures: pictures of the same moment
-    """
-    values = []
-    for picture in pictures:
-        image = Summary.Image(
-            width=picture.width, height=picture.height, colorspace=RGB, encoded_image_string=picture.content
-        )
-        values.append(Summary.Value(tag=picture.name, image=image))
-    return Summary(value=values)
 
 
 def kept_pictures(run: RunFolder) -> dict[int, Summary]:

@@ -17,7 +17,7 @@ import numpy as np
 from sarah.agents.corrections import corrected
 from sarah.agents.gaussian_process import GaussianProcess
 from sarah.control.parameters import Parameters
-from sarah.episode.evaluation import SMALLEST_SENSOR_SHARE, Evaluation
+from sarah.episode.evaluation import SMALLEST_SENSOR_SHARE
 from sarah.episode.gait import LEAST_CLEARANCE
 from sarah.episode.result import EpisodeResult
 from sarah.episode.tasks import Task
@@ -117,14 +117,3 @@ class Tried:
     def _expectation(self) -> GaussianProcess:
         places = np.array(self._places).reshape(len(self), len(self._box.parameters))
         return GaussianProcess(places, corrected(np.array(self._merits), np.array(self._disturbances)))
-
-
-def is_valid(evaluation: Evaluation, baseline: Evaluation | None, must_step: bool = True) -> bool:
-    """Whether parameters may be recommended: their gait is valid, and the hips do not chatter.
-
-    :param evaluation: their episodes
-    :param baseline: evaluation that chatter is judged against; without one nothing chatters
-    :param must_step: whether the task wants a gait; otherwise every gait is valid
-    """
-    chatters = baseline is not None and evaluation.chatters(baseline)
-    return (evaluation.is_gait or not must_step) and not chatters

@@ -16,7 +16,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import disturbances_of
 from sarah.runs.recorded_episodes import RecordedEpisodes
 from sarah.runs.run_folder import RunFolder
-from sarah.training.learning_curves import LEARNED, CurveWriter, kept_pictures, summary_of
+from sarah.training.learning_curves import LEARNED, CurveWriter, kept_pictures
 from sarah.training.plan import Plan
 from sarah.training.recommendation import Tried, merit
 
@@ -112,7 +112,7 @@ class EpisodeRecorder(KVWriter):
             from sarah.pictures.gait_snapshot import draw_gait  # slow to import because of matplotlib
 
             with self._outside():
-                summary = summary_of(draw_gait(recommended, self._config.task, self._config.episode))
+                summary = draw_gait(recommended, self._config.task, self._config.episode)
         self._open_curves().show(summary, episodes)
 
     def write(self, key_values: dict[str, Any], key_excluded: dict[str, tuple[str, ...]], step: int = 0) -> None:

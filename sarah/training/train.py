@@ -23,7 +23,6 @@ from sarah.runs.recorded_episodes import RecordedEpisodes
 from sarah.runs.run_folder import RunFolder
 from sarah.training.learners import Learner, make_learner
 from sarah.training.plan import Stage, plan_of
-from sarah.training.recommendation import is_valid
 from sarah.training.recorder import EpisodeRecorder
 
 SUMMARY_EPISODES = 10
@@ -163,5 +162,5 @@ def _recommended(
         for spec, result in zip(specs, results, strict=True):
             recorder.record(spec, result)
         evaluation = Evaluation(results, config.episode.least_clearance)
-        (valid if is_valid(evaluation, baseline, config.task.must_step) else failed).append(candidate)
+        (failed if evaluation.shortcomings(config.task.must_step, baseline) else valid).append(candidate)
     return recorder.tried.best_of(valid or failed)

@@ -9,7 +9,7 @@ import pytest
 from laboratory import NEEDS_PYBULLET, need
 from terminal import BIN, tree
 
-from sarah.cli.options import run_command
+from sarah.cli.options import as_command
 
 GIVEN, PUSHED = "1,1,1,1,1", "1,0,1,0"
 MISTAKES = {
@@ -208,6 +208,6 @@ def test_a_working_folder_that_is_gone(
     folder.mkdir()
     monkeypatch.chdir(folder)
     folder.rmdir()
-    with pytest.raises(SystemExit, match="2"):
-        run_command("sarah-eval", lambda words: None)
+    with pytest.raises(SystemExit, match="2"), as_command("sarah-eval"):
+        pass
     assert capsys.readouterr().err == "sarah-eval: error: [Errno 2] No such file or directory\n"

@@ -126,7 +126,7 @@ def test_pushes_from_all_sides_are_in_the_picture(robot: RobotDescription, rende
             ends = arrow(trace.position[0], force, robot.scale)
             assert is_within(view.pixels(np.concatenate((renderer.seen(*pose), ends))), WIDTH, HEIGHT)
             close = View(FEET_WIDTH, FEET_HEIGHT, feet)
-            assert is_within(close.pixels(renderer.feet(*pose)), FEET_WIDTH, FEET_HEIGHT)
+            assert is_within(close.pixels(renderer.seen(*pose, only_feet=True)), FEET_WIDTH, FEET_HEIGHT)
 
 
 def test_a_standing_robot_of_standard_size_is_seen_as_ever() -> None:

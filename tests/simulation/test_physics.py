@@ -7,11 +7,10 @@ import pytest
 from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError
 from sarah.robot.scale import Scale
-from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics, physics_for, physics_type
+from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics, physics_for
 
 
 def test_only_pybullet_has_an_inertia_to_add() -> None:
-    assert physics_type("pybullet") is PyBulletPhysics and physics_type("mujoco") is Physics
     assert [field.name for field in dataclasses.fields(Physics)] == ["rate", "solver_iterations", "control_rate"]
     assert PHYSICS["standard"].added_plate_inertia > PHYSICS["reference"].added_plate_inertia == 0.0
 

@@ -264,8 +264,8 @@ def test_two_simulations_repeat_bit_for_bit(build: BuildSimulation) -> None:
 @NEEDS_PYBULLET
 def test_picture_shows_the_robot(build: BuildSimulation) -> None:
     simulation = build()
-    picture = Renderer(simulation.robot).draw_simulator(simulation, 160, 120)
-    assert picture.shape == (120, 160, 3) and picture.dtype == np.uint8
+    picture = Renderer(simulation.robot).draw_simulator(simulation)
+    assert picture.shape == (480, 640, 3) and picture.dtype == np.uint8
     red, _, blue = picture.reshape(-1, 3).astype(int).T
     right_leg, left_leg = (red > blue + 60).sum(), (blue > red + 60).sum()
     assert right_leg > 100 and left_leg > 100

@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 from interrupted import EPISODE, interrupted
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+from tensorboard.compat.proto.summary_pb2 import Summary
 
 from sarah.pictures import gait_snapshot
-from sarah.pictures.gait_snapshot import Picture
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.training.train import train
@@ -23,9 +23,10 @@ class Artist:
     def __init__(self) -> None:
         self.drawn = 0
 
-    def __call__(self, *_: Any) -> list[Picture]:
+    def __call__(self, *_: Any) -> Summary:
         self.drawn += 1
-        return [Picture("recommendation/cycle", 1, 1, b"picture %d" % self.drawn)]
+        image = Summary.Image(width=1, height=1, colorspace=3, encoded_image_string=b"picture %d" % self.drawn)
+        return Summary(value=[Summary.Value(tag="recommendation/cycle", image=image)])
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ from sarah.episode.evaluation import Evaluation
 from sarah.episode.tasks import STEPPING, Task
 from sarah.errors import LearningError
 from sarah.training.plan import Stage
-from sarah.training.recommendation import DISTINCT, Tried, is_valid, merit
+from sarah.training.recommendation import DISTINCT, Tried, merit
 
 CHOICE = (1.0, 1.0, 1.0, 1.0, 1.0)
 WIDTH = 2.0
@@ -170,7 +170,7 @@ def test_what_chatters_or_is_no_gait_is_not_valid() -> None:
     still = Evaluation((RESULT,))
     dragging = scoring(0.95, 0.95, sole_clearance=0.0099)
     chattering = scoring(0.95, 0.95, vibration=2.5 * RESULT.vibration)
-    assert is_valid(scoring(0.5, 0.9), still)
-    assert not is_valid(dragging, still) and is_valid(dragging, still, must_step=False)
-    assert is_valid(dataclasses.replace(dragging, least_clearance=0.005), still)
-    assert not is_valid(chattering, still) and is_valid(chattering, None)  # nothing to chatter against
+    assert not scoring(0.5, 0.9).shortcomings(True, still)
+    assert dragging.shortcomings(True, still) and not dragging.shortcomings(False, still)
+    assert not dataclasses.replace(dragging, least_clearance=0.005).shortcomings(True, still)
+    assert chattering.shortcomings(True, still) and not chattering.shortcomings(True, None)  # nothing to compare with

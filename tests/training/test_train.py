@@ -19,7 +19,7 @@ from tensorboard.backend.event_processing.event_accumulator import EventAccumula
 
 from sarah.agents import LocalNAF
 from sarah.episode.episode import simulate
-from sarah.episode.evaluation import evaluate
+from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.result import METRICS, EpisodeResult
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
@@ -230,8 +230,8 @@ def test_what_is_recommended_has_been_tried_within_the_budget(tmp_path: Path, mo
 
 def test_what_fails_its_trial_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Stage, "trials", 2)
-    verdicts = iter((False, True))
-    monkeypatch.setattr("sarah.training.train.is_valid", lambda *judged: next(verdicts))
+    verdicts = iter((["no valid gait"], []))
+    monkeypatch.setattr(Evaluation, "shortcomings", lambda *judged: next(verdicts))
     run = RunFolder.create(tmp_path / "run", TrainingConfig(episodes=16, slots=1, episode=SHORT.episode))
     parameters = train(run.config(), run).parameters
     first, second = (parameters_of(list(run.episodes())[index]) for index in (6, 11))
