@@ -100,8 +100,10 @@ class Folder:
 
         :param settings: settings by name, as JSON has them, without those that change no outcome
         :param most_requests: number of requests that such a program has at most
-        :raises ResumeError: if it was begun with other settings, code or versions, or is in use
+        :raises ResumeError: if it was begun with other settings, code or versions, is in use, or has lost its outcomes
         """
+        if self.is_finished and self.journal_path.is_file() and not self.journal_path.stat().st_size:
+            raise ResumeError(f"{self.path} cannot be resumed: it has a result, and its {self.journal_path.name} is empty")
         origin = {**settings, **versions()}
         with Journal(self.journal_path, origin, self.kind, most_requests) as journal:
             if journal.is_new:

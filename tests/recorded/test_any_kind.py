@@ -75,6 +75,15 @@ def test_a_beginning_that_was_cut_is_no_obstacle(tmp_path: Path) -> None:
     play(begun(path), GAME)
 
 
+def test_a_result_whose_outcomes_are_lost_is_left_alone(tmp_path: Path) -> None:
+    path = begun(tmp_path / "game")
+    play(path, GAME)
+    (path / "journal.jsonl").write_bytes(b"")
+    with pytest.raises(ResumeError, match=r"it has a result, and its journal\.jsonl is empty"):
+        play(path, GAME)
+    assert not (path / "journal.jsonl").stat().st_size
+
+
 @pytest.mark.parametrize("other", ["notes.txt", "config.yaml", "journal.jsonl"])
 def test_what_somebody_else_has_in_a_folder_is_left_alone(other: str, tmp_path: Path) -> None:
     (tmp_path / "journal.jsonl").touch()
