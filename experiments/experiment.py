@@ -37,9 +37,10 @@ class Experiment(ABC):
         """What tells the rows apart, in order: values of their first columns. A case may have several rows."""
 
     @abstractmethod
-    def rows(self, **case: Any) -> Iterable[Row]:
+    def rows(self, *values: Any, **case: Any) -> Iterable[Row]:
         """The other columns of a case's rows, computed in this process. They depend on no other case.
 
+        :param values: none; a subclass names the columns of its cases instead
         :param case: values of the first columns
         """
 

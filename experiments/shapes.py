@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -20,7 +20,7 @@ LEGEND_CHARACTERS = 120
 """As many stand side by side in a legend."""
 
 
-def groups(rows: DataFrame, *columns: str) -> dict[Hashable, DataFrame]:
+def groups(rows: DataFrame, *columns: str) -> dict[Any, DataFrame]:
     """Rows by the values of some columns, in the order in which these come first.
 
     :param rows: of a result

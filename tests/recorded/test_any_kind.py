@@ -79,7 +79,7 @@ def test_a_result_whose_outcomes_are_lost_is_left_alone(tmp_path: Path) -> None:
     path = begun(tmp_path / "game")
     play(path, GAME)
     (path / "journal.jsonl").write_bytes(b"")
-    with pytest.raises(ResumeError, match=r"it has a result, and its journal\.jsonl is empty"):
+    with pytest.raises(ResumeError, match=r"it has a result, but journal\.jsonl is empty"):
         play(path, GAME)
     assert not (path / "journal.jsonl").stat().st_size
 
