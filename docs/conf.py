@@ -18,6 +18,7 @@ author = "the sarah contributors"
 release = metadata.version("sarah")
 extensions = ["myst_parser", "sphinx.ext.autodoc"]
 # The site is made of the files as they lie in the repository, so that links between them lead to the same pages.
+root_doc = "docs/index"
 include_patterns = [
     "CHANGELOG.md",
     "CONTRIBUTING.md",
