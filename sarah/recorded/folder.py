@@ -103,9 +103,7 @@ class Folder:
         :raises ResumeError: if it was begun with other settings, code or versions, is in use, or has lost its outcomes
         """
         if self.is_finished and self.journal_path.is_file() and not self.journal_path.stat().st_size:
-            raise ResumeError(
-                f"{self.path} cannot be resumed: it has a result, and its {self.journal_path.name} is empty"
-            )
+            raise ResumeError(f"{self.path} cannot be resumed: it has a result, but {self.journal_path.name} is empty")
         origin = {**settings, **versions()}
         with Journal(self.journal_path, origin, self.kind, most_requests) as journal:
             if journal.is_new:
