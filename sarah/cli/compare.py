@@ -59,10 +59,10 @@ class CompareOptions:
     :param episode: settings of the episodes; by default those of ``sarah-train``, whose help also names the paper's
     :param evaluations: number of unseen episodes that judge every final recommendation; by default {pushed_final} if
         the task has a push, and {still_final} if not
-    :param evaluations_along: number of these that judge every recommendation along the way; by default {pushed_along}
-        if the task has a push, and {still_along} if not
-    :param best_known: score whose shares are to be reached; by default that of the best training, chosen by other
-        episodes than those that say how good it is
+    :param evaluations_along: number of these episodes that judge every recommendation along the way; by default
+        {pushed_along} if the task has a push, and {still_along} if not
+    :param best_known: score of which a share must be reached; by default that of the best training, where different
+        episodes choose and judge the best
     :param workers: number of processes on this machine that train, one training each; with 0, this process trains
     :param scheduler: address of a Dask scheduler whose workers train instead; they must share the folder's file system
     """

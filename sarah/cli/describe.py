@@ -34,14 +34,14 @@ NAME = "sarah_robot"
 class DescribeOptions(EpisodeOptions):
     """Show a robot: the default one, that of a training, or one of your dimensions.
 
-    ``sarah_robot.png`` shows it from the front and from the side with an arrow for each dimension; what is not the
-    default is bold. ``sarah_robot.urdf`` is the robot for other programs, and needs no other file. Masses, centre of
-    mass, inertias, limits and efforts are printed. Nothing is simulated.
+    It draws ``sarah_robot.png``, from the front and from the side, with an arrow for each dimension; changed dimensions
+    are bold. It writes ``sarah_robot.urdf``, which other programs can load without further files, and prints masses,
+    centre of mass, inertias, limits and efforts. Nothing is simulated.
 
-    Your dimensions are pairs of names and values in SI units: --episode.dimensions thigh_length 0.2 torso_mass 5
+    Give your dimensions as pairs of name and value in SI units: --episode.dimensions thigh_length 0.2 torso_mass 5
 
-    :param subject: whose robot to show: run folder, numbers separated by commas, or the name of shipped parameters; by
-        default the default robot
+    :param subject: robot to show: that of a run folder, of numbers separated by commas, or of shipped parameters;
+        without it, the default robot
     :param config: YAML file of settings whose robot to show, as sarah-train takes it
     :param out: folder for drawing and URDF
     """

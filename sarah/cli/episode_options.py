@@ -84,7 +84,7 @@ class EpisodeOptions:
 class UnseenOptions(EpisodeOptions):
     """Options of commands that simulate on seeds which no training has seen.
 
-    :param episodes: number of episodes; of a table, at each force, on each ground or in each engine
+    :param episodes: number of episodes; for tables, at each force, on each ground or in each engine
     :param first_seed: seed of the first episode; the others follow. No training has seen the default: trainings draw
         seeds from 2^31 up, and their summaries begin at 0
     :param workers: number of processes on this machine that simulate; with 0, this process does. It changes no result

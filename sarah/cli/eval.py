@@ -52,8 +52,8 @@ class EvalOptions(UnseenOptions):
         back from a push
     :param robustness: whether to write a table and a polar plot of survival by force and direction of the push, for
         these parameters and the baseline
-    :param forces: forces of the pushes of --robustness, in N; by default 25 to 150 N for the default robot, and as
-        much of its weight for another
+    :param forces: forces of the pushes of --robustness, in N; by default 25 to 150 N for the default robot, and in
+        proportion to its weight for another
     :param terrain: whether to write a table and a picture of score, steps and survival on slopes, bumps and slippery
         ground, for 10 s without a push, and with one of 75 N for 30 kg at 2 to 4 s
     :param out: folder for the table and the picture of --robustness or --terrain

@@ -45,10 +45,10 @@ WITHOUT_EFFECT = ("--episode.time-limit", "--episode.reward-form", "--episode.pu
 
 @dataclass(frozen=True)
 class OperateOptions(EpisodeOptions):
-    """Let the robot run on in windows, and renew its nine parameters between them, from what its own sensors tell.
+    """Let the robot run in windows, and improve its nine parameters between them, using only its own sensors.
 
-    Describe how the robot differs from the one that its parameters were learned on by --episode.…, such as
-    --episode.randomisation.actuator-bandwidth 12 or --episode.payload 5, and what changes on the way by --change.
+    Give --episode.… for what differs from the robot of the training, such as --episode.randomisation.actuator-bandwidth
+    12 or --episode.payload 5, and --change for what changes during the session.
 
     :param subject: run folder of a training or a session, numbers separated by commas (P1 to P5, V1 to V4, or all
         nine), or the name of shipped parameters: what the robot begins with
@@ -59,16 +59,16 @@ class OperateOptions(EpisodeOptions):
     :param measure_seconds: time that a window measures, in s
     :param fall_seconds: time that a fall costs, in s
     :param push_seconds: time from a push to the next, in s; --episode.push.newtons sets their force
-    :param change: what changes, and when, such as "5: randomisation.actuator_bandwidth=12" at minute 5; once for each
+    :param change: change and its minute, such as "5: randomisation.actuator_bandwidth=12" at minute 5; once for each
         change, in the order of time
     :param out: folder to write, new or empty; by default a new one, runs/operation/<learner>-s<seed>
-    :param resume: folder of an interrupted session to go on with, as it is. A finished session goes on if --minutes is
-        more than its duration. Its windows are then those of a session that was as long from the beginning, unless
-        the learner is careful, which tries less shortly before an end
-    :param extended_from: durations with which the session had ended before it went on, in min, in rising order;
-        --resume with more --minutes adds one
-    :param compare_frozen: whether to run the same robot again without learning, with the parameters of the beginning
-        all along, and to show both. It takes as long again, and changes nothing in the session
+    :param resume: folder of an interrupted session to continue with its settings. A finished session continues if
+        --minutes is more than its duration. Its windows are then those of a session that was as long from the
+        beginning, unless the learner is careful, which tries less shortly before an end
+    :param extended_from: durations before the session was made longer, in min, in rising order; --resume with more
+        --minutes adds one
+    :param compare_frozen: whether to run the same robot again without learning, with its first parameters throughout,
+        and to show both. It takes as long again, and changes nothing in the session
     """
 
     subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"

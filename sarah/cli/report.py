@@ -20,7 +20,8 @@ COMMAND = "sarah-report"
 class ReportOptions:
     """Write a report of a training as one HTML page: results beside the paper's, video, figures, settings and commands.
 
-    The page contains everything that it shows, so one file can be sent to others, and opens without a network.
+    The page is one file that contains everything it shows, so you can send it to others, and it opens without a
+    network.
 
     :param run: run folder of a finished training
     :param task: task of a run whose task is that of a file, such as my_task.py:JUMP

@@ -48,10 +48,10 @@ COMMAND = "sarah-train"
 class TrainOptions:
     """Learn the parameters of the pattern generator or of the hip law, with one action of the agent per episode.
 
-    Settings come from four places, of which a later one wins: the defaults below, the run folder of --from, the file of
-    --config, and the command line. --algo decides which settings the agent has, and --task those of the episodes:
-    give both before --help. The training writes a run folder with the learned parameters (parameters.json), all
-    episodes (episodes.csv), the agent (model.zip) and the curves that TensorBoard shows.
+    Settings come from four places, and later ones win: the defaults below, the run folder of --from, the file of
+    --config, and the command line. The settings of the agent depend on --algo and those of the episodes on --task: give
+    both before --help. The training writes a run folder with the learned parameters (parameters.json), all episodes
+    (episodes.csv), the agent (model.zip) and the curves that TensorBoard shows.
 
     Most robots survive the paper's pushes without learning. So by default --task balance pushes harder, in shorter
     episodes. The paper's settings, for its robot of 30 kg, are --episode.push.newtons 0 100
@@ -61,8 +61,8 @@ class TrainOptions:
     :param training: settings of the training
     :param out: run folder to write, new or empty; by default a new one, runs/<task>/<algo>-s<seed>
     :param config: YAML file of settings, like the config.yaml of any run folder
-    :param resume: run folder of an interrupted training to go on with, with its settings; the result is the same as
-        without the interruption. A finished training goes on if --episodes is larger than its budget
+    :param resume: run folder of an interrupted training to continue with its settings; the result is the same as
+        without the interruption. A finished training continues if --episodes is larger than its budget
     :param from_run: run folder of a First Training, for --task balance: its P1 to P5 and all settings of its episodes
         are used. Push and time limit are this command's defaults, unless --config names others
     :param workers: number of processes on this machine that simulate; with 0, this process does. It changes no result

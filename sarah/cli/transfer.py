@@ -27,9 +27,9 @@ COMMAND = "sarah-transfer"
 class TransferOptions(UnseenOptions):
     """Simulate the learned parameters of trainings in both physics engines, on the same unseen seeds and pushes.
 
-    A table of mean scores, survival, steps per second and vibration is printed, and written to a folder. A figure shows
-    the score in one engine against the score in the other. ``kept`` is the score in the other engine, as a share of
-    that in the engine of the training.
+    The command prints a table of mean scores, survival, steps per second and vibration, and writes it to a folder. A
+    figure shows the score in one engine against the score in the other. ``kept`` is the score in the other engine, as a
+    share of that in the engine of the training.
 
     :param subjects: run folders of finished trainings, of any engine and task; numbers separated by commas; or names of
         shipped parameters. Each keeps its own settings, unless an option changes them

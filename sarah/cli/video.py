@@ -38,7 +38,7 @@ class VideoOptions(EpisodeOptions):
         episodes.csv; by default ``learned``, or ``best`` if the training is not finished
     :param seed: seed of the episode, by which robot, sensors and push vary; by default the episode's own, or 0
     :param seconds: simulated times at which the video begins and ends, in s; by default the whole episode
-    :param speed: speed of the video; 0.25 shows everything four times as slow
+    :param speed: speed of the video; 0.25 is four times slower than real time
     """
 
     subject: Annotated[

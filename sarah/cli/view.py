@@ -44,7 +44,7 @@ class ViewOptions(EpisodeOptions):
     :param seed: seed of the episode, by which robot, sensors and push vary; by default the episode's own, or 0
     :param out: HTML file to write the episode to, instead of showing a page; the file needs no server
     :param host: address to serve the page at. Everyone who can reach another address than 127.0.0.1 can use the page,
-        as there is no password
+        because there is no password
     :param port: port to serve the page at; the next free one if it is taken
     """
 
@@ -113,7 +113,7 @@ def _serve(options: ViewOptions, choices: list[RunEpisode], chosen: RunEpisode) 
         if is_shipped(options.subject):
             print(f"{options.subject}: {PARAMETER_SETS[options.subject].origin}")
         if options.host not in LOCAL:
-            print(f"warning: everyone who can reach {options.host} can use this page, as there is no password")
+            print(f"warning: everyone who can reach {options.host} can use this page, because there is no password")
         print(f"SARAH is at http://{options.host}:{server.get_port()} (Ctrl-C ends)", flush=True)
         with contextlib.suppress(KeyboardInterrupt):
             threading.Event().wait()

@@ -144,8 +144,8 @@ STEPPING_PARAMETERS = (
     Parameter(
         "P3", 0.0, 2.0, "rad/s", "a hundred times the rate over the stance leg at which it may leave", "about 0.1"
     ),
-    Parameter("P4", 0.0, 2.0, "", "stretch of the time-out of LIFT", "hardly matters"),
-    Parameter("P5", 0.0, 2.0, "", "stretch of the time-outs of SHIFT and LAND", "hardly matters"),
+    Parameter("P4", 0.0, 2.0, "", "longer time-out of LIFT, by the factor 1 + P4", "hardly matters"),
+    Parameter("P5", 0.0, 2.0, "", "longer time-outs of SHIFT and LAND, by the factor 1 + P5", "hardly matters"),
 )
 """P1 to P5. The paper observed that they must be positive; the upper ends are this project's."""
 BALANCE_PARAMETERS = (

@@ -29,7 +29,7 @@ class ScoreMetrics:
     score: float = metric(
         "score",
         "",
-        "return over its ceiling; 1 is standing height, start position and the rewarded step frequency all along",
+        "return as a share of the best: standing height, start position and the rewarded step frequency all the time",
         *("median", "mean", "std", "min"),
         group="episode",
         shown=(1.0, 3, ""),

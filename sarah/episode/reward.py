@@ -21,8 +21,8 @@ LITTLE_LOST = 0.9
 class RewardSettings(RobotSettings):
     """Settings of the reward.
 
-    :param reward_form: form of the reward, the paper's equation 2: ``symmetric``, or ``printed`` for the equation to
-        the letter
+    :param reward_form: form of the reward, the paper's equation 2: ``symmetric``, or ``printed`` for the equation as
+        printed
     :param step_frequency: rewarded number of steps per second; the paper's is 3
     :param reward_half_width: displacement from the start at which the reward is zero, in m; the paper's is 0.5
     """

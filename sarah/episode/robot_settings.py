@@ -42,7 +42,7 @@ class RobotSettings:
     :param randomisation: ranges that each episode's seed draws from
     :param terrain: ground, drawn from each episode's seed as well
     :param controller: constants of the pattern generator and the hip law
-    :param payload: mass of what the torso carries, in kg, spread over it as its own mass is
+    :param payload: extra mass in the torso, in kg, distributed like the torso's own mass
     :param dimensions: dimensions of the robot that differ from their defaults: values by name in SI units, such as
         hinge_height 0.04
     :param time_limit: time limit of an episode, in s; the paper's first criterion

@@ -69,8 +69,8 @@ class LearnerSettings(AgentSettings):
     :param buffer_size: number of episodes that the replay buffer holds
     :param learning_starts: number of uniform episodes before the networks learn; twice the slots, if that is more
     :param batch_size: number of episodes in the minibatch of an update
-    :param tau: share of their weights that the target networks take over from the others at an update
-    :param gamma: discount factor of what follows an action; nothing does, as an episode is one action
+    :param tau: share of the new weights that the target networks take over at an update
+    :param gamma: discount factor; without effect, because an episode is one action
     :param gradient_steps: number of updates after each episode
     :param device: device of the networks: cpu, cuda, cuda:1 and so on, or auto, which takes CUDA where there is some
     """

@@ -39,8 +39,8 @@ class TrainingConfig:
         the slots - 1 episodes before it. It changes the result of a training; the number of workers does not
     :param agent: settings of the algorithm; by default the algorithm's own
     :param episode: settings of the episodes; by default the task's own
-    :param extended_from: budgets with which the training had ended before it went on, in rising order; --resume with
-        more episodes adds one
+    :param extended_from: budgets before the training was made longer, in rising order; --resume with more episodes adds
+        one
     :param pictures: number of episodes between pictures of the recommendation for TensorBoard: a gait cycle, and a
         video of 3 s. Each takes some seconds, and changes no result; 0 for none
     """
