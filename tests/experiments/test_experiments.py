@@ -74,7 +74,9 @@ def test_a_timing_makes_the_columns_of_its_result(name: str, workplace: Path) ->
     """The two that are left out take workers and a browser."""
     need("pybullet")
     need("mujoco")
-    made = record.read(make(find(name), "python -m benchmarks some", ["--quick", "--out", str(workplace)]).stem, workplace)
+    made = record.read(
+        make(find(name), "python -m benchmarks some", ["--quick", "--out", str(workplace)]).stem, workplace
+    )
     if name in record.names():
         assert list(made.rows[0]) == list(record.read(name).rows[0])
 
