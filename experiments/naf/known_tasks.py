@@ -31,11 +31,6 @@ SATURATED = 0.95
 """Size of an entry of mu from which on it counts as at the bound."""
 VALUES = ("v_minus_true", "curvature", "true_curvature", "gap_over_true", "distance_of_mu", "saturated")
 COLUMNS = ("score", "return", "v_over_bound", *VALUES)
-FORMATS = {
-    **dict.fromkeys((*COLUMNS, "median", "lowest", "highest"), ".2f"),
-    "v_minus_true": ".1f",
-    "saturated": ".0%",
-}
 
 
 @dataclass(frozen=True)
@@ -213,14 +208,15 @@ def beside(found: DataFrame, caption: str) -> str:
     :param caption: sentence above the table
     """
     wide = found.T.reset_index()
-    return table(wide, list(wide), dict.fromkeys(found.index, ".2f"), caption)
+    return table(wide, list(wide), caption, **dict.fromkeys(found.index, ".2f"))
 
 
 def six_actions(rows: DataFrame) -> str:
     """What the values say of six actions."""
     six = rows[rows["task"].str.startswith("six")]
     found = six.groupby(["task", "algorithm"], sort=False)[list(VALUES)].median().reset_index()
-    return table(found, ["task", "algorithm", *VALUES], FORMATS, f"With six actions: {OF_KNOWN}")
+    formats = dict.fromkeys(VALUES, ".2f") | {"v_minus_true": ".1f", "saturated": ".0%"}
+    return table(found, ["task", "algorithm", *VALUES], f"With six actions: {OF_KNOWN}", **formats)
 
 
 def returns(rows: DataFrame) -> str:
@@ -228,4 +224,4 @@ def returns(rows: DataFrame) -> str:
     grouped = rows.dropna(subset=["return"]).groupby(["task", "algorithm"], sort=False)["return"]
     found = grouped.agg(median="median", lowest="min", highest="max").reset_index()
     caption = f"Return of {FULL.point_episodes} episodes of {FULL.point_seeds} seeds after {FULL.point_steps} steps."
-    return table(found, ["task", "algorithm", "median", "lowest", "highest"], FORMATS, caption)
+    return table(found, list(found), caption, median=".2f", lowest=".2f", highest=".2f")

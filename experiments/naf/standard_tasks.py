@@ -24,7 +24,6 @@ from experiments.tables import shown, table
 
 RECENT = 3
 """Number of evaluations that are the end of a training: one alone says little, as returns swing."""
-FORMATS = {**dict.fromkeys(("return", "return_low", "return_high"), ".1f"), "v_over_bound": ".2f"}
 
 
 class Trainings(NamedTuple):
@@ -180,4 +179,4 @@ def returns(rows: DataFrame) -> str:
     found["steps"] = [TASKS[task].steps for task in found["task"]]
     columns = ["task", "algorithm", "steps", "seeds", "return", "return_low", "return_high", "v_over_bound"]
     caption = f"Mean return of a training's last {RECENT} evaluations: median, lowest and highest seed."
-    return table(found, columns, FORMATS, caption)
+    return table(found, columns, caption, **{"return": ".1f", "v_over_bound": ".2f"})

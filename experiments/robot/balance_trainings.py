@@ -174,7 +174,7 @@ def settled(rows: DataFrame) -> str:
         for name in NAMES
     )
     caption = f"What {FULL.seeds} trainings in each engine recommend, and what their networks say (mu)."
-    return table(found, list(found.columns), dict.fromkeys(found.columns[2:], ".2f"), caption)
+    return table(found, list(found), caption, **dict.fromkeys(found.columns[2:], ".2f"))
 
 
 def claims(rows: DataFrame) -> str:
@@ -215,4 +215,4 @@ def claims(rows: DataFrame) -> str:
         ),
     ]
     caption = f"Second Trainings by NAF: {FULL.seeds} in each engine."
-    return table(DataFrame(found, columns=CLAIM), CLAIM, {}, caption)
+    return table(DataFrame(found, columns=CLAIM), CLAIM, caption)

@@ -87,5 +87,4 @@ def clocks(rows: DataFrame) -> str:
         f"How many of {FULL.random_sets} random sets of P1 to P5 score above 0.5 in PyBullet, how many of these are "
         f"clocks, and the best score of any clock: one episode of {FULL.time_limit:.0f} s each."
     )
-    formats = {"time_out_s": ".1f", "sets_above_half": ".0f", "clocks_above_half": ".0f", "best_clock_score": ".2f"}
-    return table(rows, list(formats), formats, caption)
+    return table(rows, list(rows), caption, time_out_s=".1f", score=".2f")

@@ -39,11 +39,7 @@ SETS = {
 NEWTONS = 100.0
 GOOD = 0.7
 """Score of a set that is worth using."""
-FORMATS = {
-    f"{engine}_{column}": spec
-    for column, spec in (("score", ".3f"), ("steps_per_second", ".2f"), ("survival", ".0%"))
-    for engine in ENGINES
-}
+COLUMNS = [f"{engine}_{column}" for column in ("score", "steps_per_second", "survival") for engine in ENGINES]
 
 
 def settings(task: str, engine: Engine, time_limit: float) -> EpisodeConfig:
@@ -125,6 +121,7 @@ def sets(rows: DataFrame) -> str:
         "stepping": f"P1 to P5 in both engines, without a push: means of the same {FULL.episodes} episodes of 30 s.",
         "balance": f"V1 to V4 with the shipped P1 to P5, and as many pushes of {NEWTONS:.0f} N at 1 to 4 s.",
     }
-    formats = {**FORMATS, "difference": "+.1%"}
     told = groups(compared(rows), "task").items()
-    return "\n\n".join(table(group, ["parameters", *formats], formats, captions[str(task)]) for task, group in told)
+    return "\n\n".join(
+        table(group, ["parameters", *COLUMNS, "difference"], captions[str(task)]) for task, group in told
+    )

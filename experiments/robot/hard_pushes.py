@@ -23,8 +23,6 @@ from sarah.simulation.physics import PHYSICS
 
 SURVIVED, LOST = "s", "l"
 """What stands for a push in the column of all outcomes."""
-FORMATS = dict.fromkeys(("survival", "survival_low", "survival_high"), ".1%")
-DIFFERENCES = dict.fromkeys(("difference", "difference_low", "difference_high"), "+.1%")
 
 
 @dataclass(frozen=True)
@@ -140,13 +138,13 @@ def figure(rows: DataFrame) -> Figure:
 
 def survivals(rows: DataFrame) -> str:
     """Survival in each engine at each physics."""
-    columns = ["push_n", "controller", "engine", "physics", "episodes", *FORMATS]
+    columns = ["push_n", "controller", "engine", "physics", "episodes", "survival", "survival_low", "survival_high"]
     caption = f"Survival of the same pushes from anywhere, with its 95 % interval (Wilson). {SETTINGS}."
-    return table(rows, columns, FORMATS, caption)
+    return table(rows, columns, caption, survival=".1%")
 
 
 def pairs(rows: DataFrame) -> str:
     """The differences between these survivals."""
     caption = "Differences between these survivals in percentage points, push by push, with their 95 % intervals."
     compared = differences(rows)
-    return table(compared, list(compared.columns), DIFFERENCES, caption)
+    return table(compared, list(compared), caption)

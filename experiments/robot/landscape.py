@@ -112,12 +112,12 @@ def stepping(rows: DataFrame) -> str:
     """Score by P1 and P2."""
     caption = "Score of a robot that nobody pushes by P1 and by P2, median of three episodes of 12 s."
     chosen = rows[rows.parameter.isin(["P1", "P2"])]
-    return turned_table(chosen, ["value"], ["parameter", "engine"], "score", ".2f", caption)
+    return turned_table(chosen, ["value"], ["parameter", "engine"], "score", caption, ".2f")
 
 
 def balance(rows: DataFrame) -> str:
     """Score and survival by V1 to V4."""
     pushed = f"twelve pushes of {NEWTONS:.0f} N at 1 to 4 s with the shipped P1 to P5"
-    tables = (("score", ".2f", f"Median score of {pushed}."), ("survival", ".0%", "Survival of the same pushes."))
+    tables = (("score", f"Median score of {pushed}.", ".2f"), ("survival", "Survival of the same pushes."))
     chosen = rows[rows.task == "balance"]
     return "\n\n".join(turned_table(chosen, ["value"], ["parameter", "engine"], *one) for one in tables)

@@ -32,10 +32,6 @@ DEVIATIONS = (0.05, 0.15, 0.4)
 DECIMALS = 3
 """Decimals of the scores that are ranked: below them, sets of robots that do not step differ by nothing that counts."""
 RESAMPLES = 1000
-FORMATS = {
-    **dict.fromkeys(("rank_correlation", "rank_correlation_low", "rank_correlation_high"), ".3f"),
-    "mean_difference": ".3f",
-}
 
 
 @dataclass(frozen=True)
@@ -110,4 +106,4 @@ def ranked(rows: DataFrame) -> str:
         f"scored below a tenth."
     )
     shown_columns = [column for column in rows if column != "sets"]
-    return table(rows, shown_columns, FORMATS, caption)
+    return table(rows, shown_columns, caption, rank_correlation=".3f", mean_difference=".3f")

@@ -41,11 +41,7 @@ BEST = "best known, frozen"
 SPANS = {"0_to_3": (0.0, 3.0), "3_to_5": (3.0, 5.0), "5_to_8": (5.0, 8.0), "from_8": (8.0, math.inf)}
 """Spans of the time of operation, in min."""
 FIRST_SEARCH_SEED = 1000
-FORMATS = {
-    **dict.fromkeys(("score", "gain", "gain_low", "gain_high", "score_of_last_parameters"), ".3f"),
-    **{f"score_{name}_min": ".3f" for name in SPANS},
-    "falls_per_session": ".1f",
-}
+FORMATS = {"gain": ".3f", "_min": ".3f", "parameters": ".3f", "falls_per_session": ".1f"}
 
 
 @dataclass(frozen=True)
@@ -174,7 +170,7 @@ def robots(rows: DataFrame) -> str:
         f"gain over frozen parameters with the 95 % interval, falls, score in the last two minutes, and score of the "
         f"parameters that are left."
     )
-    return table(rows[rows.robot != CHANGING], [*columns, "score_of_last_parameters"], FORMATS, caption)
+    return table(rows[rows.robot != CHANGING], [*columns, "score_of_last_parameters"], caption, **FORMATS)
 
 
 def change(rows: DataFrame) -> str:
@@ -182,4 +178,4 @@ def change(rows: DataFrame) -> str:
     spans = [f"score_{name}_min" for name in ("3_to_5", "5_to_8", "from_8")]
     columns = ["learner", *spans, "gain", "gain_low", "gain_high", "falls_per_session", "score_of_last_parameters"]
     caption = "The servos weaken at minute 5: score before, in the three minutes after, and later."
-    return table(rows[rows.robot == CHANGING], columns, FORMATS, caption)
+    return table(rows[rows.robot == CHANGING], columns, caption, **FORMATS)

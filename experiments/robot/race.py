@@ -84,11 +84,6 @@ def columns(curve: RaceCurve, score_while_learning: float) -> Row:
 
 FULL = Race()
 QUICK = Race(time_limit=2.0, seeds=1, budget=5, evaluations=1)
-FORMATS = {
-    **dict.fromkeys(("final_score", "final_score_error", "over_naf", "over_naf_low", "over_naf_high"), ".3f"),
-    **dict.fromkeys(("score_while_learning", "score_while_learning_error"), ".2f"),
-    **dict.fromkeys(("episodes_to_90", "episodes_to_95"), ".0f"),
-}
 
 
 def ranked(rows: DataFrame, task: str) -> DataFrame:
@@ -161,7 +156,7 @@ def _final(rows: DataFrame, task: str) -> str:
         f"{_trainings(task)}: mean final score with its standard error, its difference from NAF's and the number of "
         f"trainings that end with 95 % of the best known score, both with 95 % intervals."
     )
-    return table(ranked(rows, task), ["algorithm", "final_score", "final_score_error", *pairs], FORMATS, caption)
+    return table(ranked(rows, task), ["algorithm", "final_score", "final_score_error", *pairs], caption, over_naf=".3f")
 
 
 def _way(rows: DataFrame, task: str) -> str:
@@ -172,7 +167,14 @@ def _way(rows: DataFrame, task: str) -> str:
         f"{_trainings(task)}: median number of episodes until 90 and 95 % of the best known score are held, how many "
         f"trainings hold them, score of the episodes tried, and time of a training."
     )
-    return table(ranked(rows, task), ["algorithm", *shown_columns, *learning], FORMATS, caption)
+    return table(
+        ranked(rows, task),
+        ["algorithm", *shown_columns, *learning],
+        caption,
+        learning=".2f",
+        episodes_to_90=".0f",
+        episodes_to_95=".0f",
+    )
 
 
 def _trainings(task: str) -> str:

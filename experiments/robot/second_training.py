@@ -40,12 +40,6 @@ ROUNDS = ((1, 9), (4, 24), (16, 87), (32, 300))
 ENOUGH = 0.95
 """Share of the best known score from which a training counts as close to it."""
 ENGINE_NAMES = {"mujoco": "MuJoCo", "pybullet": "PyBullet"}
-FORMATS = {
-    **dict.fromkeys(NAMES, ".2f"),
-    "score": ".3f",
-    **dict.fromkeys(("of_best", "of_best_error", "of_best_low", "of_best_high", "lowest"), ".1%"),
-    **dict.fromkeys(("within_5_%", "within_5_%_low", "within_5_%_high"), ".0f"),
-}
 
 
 @dataclass(frozen=True)
@@ -204,7 +198,8 @@ def closeness(rows: DataFrame) -> str:
         f"Score over that of the best known set of the engine: mean of {FULL.seeds} trainings, with its 95 % interval"
         " over trainings and pushes; number of trainings within 5 %, with its interval over trainings (Wilson); lowest."
     )
-    return table(summaries, list(summaries.columns), FORMATS, caption)
+    formats = {"within_5_%": ".0f", "of_best": ".1%", "lowest": ".1%"}
+    return table(summaries, list(summaries), caption, **formats)
 
 
 def summary(shares: Series, error: float) -> Row:
@@ -234,4 +229,5 @@ def compared(rows: DataFrame) -> str:
         f"The sets that trainings are compared with: mean score under {FULL.judging} hard pushes, and its share of the"
         " best known score with its standard error. P1 to P5 are the shipped ones."
     )
-    return table(rows[rows.run.isin(KNOWN)].sort_values("engine", kind="stable"), columns, FORMATS, caption)
+    known = rows[rows.run.isin(KNOWN)].sort_values("engine", kind="stable")
+    return table(known, columns, caption, of_best=".1%")

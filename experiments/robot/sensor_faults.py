@@ -16,7 +16,7 @@ from pandas import DataFrame
 
 from experiments.experiment import Experiment, product
 from experiments.record import Row
-from experiments.tables import table
+from experiments.tables import format_of, table
 from sarah.control.pattern_generator import PatternGenerator, PhaseChange
 from sarah.episode.episode import Episode
 from sarah.episode.push import Push
@@ -132,7 +132,6 @@ FAULTS = {
     "delay of 50 ms": Fault(delay_seconds=0.05),
 }
 """Faults, by what happens; a delay is there from the beginning."""
-FORMATS = {"survival": ".0%", "steps_per_second": ".2f", "phases_by_sensors": ".0%"}
 
 
 class BehindFault:
@@ -236,11 +235,12 @@ QUICK = SensorFaults(seeds=1, time_limit=1.1)
 
 def faults(rows: DataFrame) -> str:
     """What becomes of the robot, with locked hips and with the hip law."""
-    wide = rows.pivot(index="fault", columns="hips", values=list(FORMATS)).reindex(index=list(FAULTS))
-    formats = {f"{column}, {hips}": spec for column, spec in FORMATS.items() for hips in HIPS}
+    columns = ("survival", "steps_per_second", "phases_by_sensors")
+    wide = rows.pivot(index="fault", columns="hips", values=list(columns)).reindex(index=list(FAULTS))
+    formats = {f"{column}, {hips}": format_of(column) for column in columns for hips in HIPS}
     wide.columns = [f"{column}, {hips}" for column, hips in wide.columns]
     caption = (
         f"Survival of {FULL.seeds} robots with the shipped P1 to P5 in PyBullet, steps per second, and share of phases "
         f"that sensors end, both from the fault on; with locked hips, and with V1 = 1 and V3 = 0.7."
     )
-    return table(wide.reset_index(), ["fault", *formats], formats, caption)
+    return table(wide.reset_index(), ["fault", *formats], caption, **formats)

@@ -41,8 +41,8 @@ CONDITIONS = {
     "125 N": (125.0, 0.0),
 }
 """Force in N, and share of sagittal pushes, by the condition that parameters are evaluated in."""
-METRICS = {"survival": ".0%", "score": ".3f", "steps_per_second": ".2f"}
-"""Columns that the package's file keeps beside the number of episodes, with their formats."""
+METRICS = ("survival", "score", "steps_per_second")
+"""Columns that the package's file keeps beside the number of episodes."""
 STEPPING_NAMES = [parameter.name for parameter in STEPPING_PARAMETERS]
 
 
@@ -141,7 +141,7 @@ def values(rows: DataFrame) -> str:
     names = [*STEPPING_NAMES, *BALANCE_NAMES]
     sets = rows.drop_duplicates("set").set_index("set")[names].T.rename_axis("parameter").reset_index()
     caption = "The values. The hips of the set stepping are locked."
-    return table(sets, ["parameter", "stepping", "balance"], dict.fromkeys(("stepping", "balance"), ".2f"), caption)
+    return table(sets, ["parameter", "stepping", "balance"], caption, stepping=".2f", balance=".2f")
 
 
 def survived(rows: DataFrame) -> str:
@@ -150,7 +150,7 @@ def survived(rows: DataFrame) -> str:
         f"Means of {FULL.episodes} episodes of each set, engine and condition. Sagittal pushes come from within 30"
         " degrees of front or back, the others from anywhere. Episodes end 10 s after the latest push."
     )
-    return table(rows, ["set", "engine", "condition", *METRICS], METRICS, caption)
+    return table(rows, ["set", "engine", "condition", *METRICS], caption)
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ from pandas import DataFrame
 
 from experiments.experiment import product
 from experiments.record import Row
-from experiments.robot.engines import FORMATS, in_both
+from experiments.robot.engines import COLUMNS, in_both
 from experiments.shapes import against, groups, legend, panels
 from experiments.tables import shown, span, table
 from experiments.trainings import TrainingExperiment
@@ -94,8 +94,8 @@ def trainings(rows: DataFrame) -> str:
         "stepping": "First Trainings by NAF, judged on the same {} episodes of 30 s in each engine.",
         "balance": "Second Trainings by NAF, judged on the same {} pushes of 100 N at 1 to 4 s in each engine.",
     }
-    formats = {column: spec for column, spec in FORMATS.items() if "survival" not in column} | {"kept": ".0%"}
+    columns = ["run", "learned_in", *(column for column in COLUMNS if "survival" not in column), "kept"]
     return "\n\n".join(
-        table(group, ["run", "learned_in", *formats], formats, captions[str(task)].format(EPISODES[str(task)]))
+        table(group, columns, captions[str(task)].format(EPISODES[str(task)]))
         for task, group in groups(compared(rows), "task").items()
     )
