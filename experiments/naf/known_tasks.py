@@ -59,12 +59,7 @@ class KnownTasks(Experiment):
         return known + product(task=POINT_TASKS, algorithm=ON_POINT_TASKS, seed=range(self.point_seeds))
 
     def rows(self, task: str, algorithm: str, seed: int) -> Iterator[Row]:
-        """What an agent has learned.
-
-        :param task: name of the task
-        :param algorithm: name of the algorithm
-        :param seed: seed of the training
-        """
+        """What an agent has learned."""
         th.set_num_threads(1)
         known = KNOWN_TASKS.get(task)
         env = known(seed) if known else POINT_TASKS[task]()

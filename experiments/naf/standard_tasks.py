@@ -75,12 +75,7 @@ class StandardTasks(Experiment):
         return sorted(cases, key=lambda case: case["seed"])
 
     def rows(self, task: str, algorithm: str, seed: int) -> Iterator[Row]:
-        """The course of a training.
-
-        :param task: name of the task
-        :param algorithm: name of the algorithm
-        :param seed: seed of the training
-        """
+        """The course of a training."""
         th.set_num_threads(1)
         of = TASKS[task]
         steps = self.steps or of.steps

@@ -147,11 +147,7 @@ class BalanceTrainings(SecondTrainingExperiment):
         return product(engine=self.engines, seed=self.training_seeds)
 
     def rows(self, engine: Engine, seed: int) -> Iterator[Row]:
-        """What a training learns.
-
-        :param engine: physics engine
-        :param seed: seed of the training
-        """
+        """What a training learns."""
         yield self.learned(engine, seed)
 
 

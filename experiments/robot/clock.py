@@ -43,10 +43,7 @@ class Clock(Experiment):
         return product(time_out_s=TIME_OUTS)
 
     def rows(self, time_out_s: float) -> Iterator[Row]:
-        """How many sets score above 0.5, how many of them are clocks, and the best clock.
-
-        :param time_out_s: time-out of a phase whose parameter is 0, in s
-        """
+        """How many sets score above 0.5, how many of them are clocks, and the best clock."""
         generator = random.Random(0)
         drawn = [tuple(generator.uniform(0.0, 2.0) for _ in range(5)) for _ in range(self.random_sets)]
         constants = ControllerConstants(time_out_seconds=time_out_s)

@@ -120,13 +120,7 @@ class Conditions(Experiment):
         return [case for case in cases if case["situation"] == LEVEL or case["push_n"] in (0.0, NEWTONS)]
 
     def rows(self, engine: Engine, situation: str, push_n: float, controller: str) -> Iterator[Row]:
-        """A row for all pushes, and one for each group of directions.
-
-        :param engine: physics engine
-        :param situation: name of the situation
-        :param push_n: force of the push, in N
-        :param controller: name of V1 to V4
-        """
+        """A row for all pushes, and one for each group of directions."""
         met, v = SITUATIONS[situation], CONTROLLERS[controller]
         config = pushed(push_n, engine=engine, terrain=met.terrain, time_limit=self.time_limit)
         seeds = range(FIRST_EVALUATION_SEED, FIRST_EVALUATION_SEED + self.episodes)

@@ -86,11 +86,7 @@ class Engines(Experiment):
         return [{"task": task, "parameters": ", ".join(f"{value:g}" for value in values)} for task, values in pairs]
 
     def rows(self, task: str, parameters: str) -> Iterator[Row]:
-        """What a set does in both engines.
-
-        :param task: name of the task
-        :param parameters: values of its parameters
-        """
+        """What a set does in both engines."""
         values = tuple(float(value) for value in parameters.split(", "))
         yield in_both(task, values, self.episodes, self.time_limit)
 

@@ -49,10 +49,7 @@ class FirstTraining(TrainingExperiment):
         return [{"run": PAPER}, *({"run": f"naf seed {seed}"} for seed in range(self.seeds))]
 
     def rows(self, run: str) -> Iterator[Row]:
-        """The parameters of a run, and what the robot does with them.
-
-        :param run: the paper, or a training with its seed
-        """
+        """The parameters of a run, and what the robot does with them."""
         config = self.episode("stepping")
         parameters = PAPER_STEPPING
         if run != PAPER:

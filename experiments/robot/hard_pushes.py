@@ -42,13 +42,7 @@ class HardPushes(Experiment):
         return product(push_n=(125.0, 100.0), controller=CONTROLLERS, engine=get_args(Engine), physics=physics)
 
     def rows(self, push_n: float, controller: str, engine: Engine, physics: str) -> Iterator[Row]:
-        """How many pushes the robot survives, and which.
-
-        :param push_n: force of the pushes, in N
-        :param controller: name of V1 to V4
-        :param engine: physics engine
-        :param physics: name of the resolution of the physics
-        """
+        """How many pushes the robot survives, and which."""
         config = pushed(push_n, engine=engine, physics=PHYSICS[physics], time_limit=self.time_limit)
         seeds = range(FIRST_EVALUATION_SEED, FIRST_EVALUATION_SEED + self.pushes)
         found = evaluate(BALANCE, CONTROLLERS[controller], config, seeds)

@@ -52,12 +52,7 @@ class Landscape(Experiment):
         return [{"task": task, "parameter": name, "engine": engine} for task, name in names for engine in ENGINES]
 
     def rows(self, task: str, parameter: str, engine: Engine) -> Iterator[Row]:
-        """A row for each value.
-
-        :param task: name of the task
-        :param parameter: name of the parameter that is varied
-        :param engine: physics engine
-        """
+        """A row for each value."""
         centre, index = CENTRES[task], TASKS[task].parameter_names.index(parameter)
         config = settings(task, engine, self.time_limit or SECONDS[task])
         for value in VALUES[task][: self.points]:

@@ -51,11 +51,7 @@ class ObservedReward(Experiment):
         return product(engine=ENGINES, ground=GROUNDS)
 
     def rows(self, engine: Engine, ground: str) -> Iterator[Row]:
-        """How well one reward ranks the sets as the other does, with a bootstrap's interval over the sets.
-
-        :param engine: physics engine
-        :param ground: name of the ground
-        """
+        """How well one reward ranks the sets as the other does, with a bootstrap's interval over the sets."""
         robot = from_mapping(OperationConfig().robot, {"engine": engine, **GROUNDS[ground]})
         config = OperationConfig(robot, minutes=self.minutes)
         sessions = [run_session(SessionSpec(drawn(seed), "none", seed, config)) for seed in range(self.sets)]

@@ -67,11 +67,7 @@ class Operation(Experiment):
         return [*product(robot=ROBOTS, learner=(*LEARNERS, BEST)), *product(robot=[CHANGING], learner=LEARNERS)]
 
     def rows(self, robot: str, learner: str) -> Iterator[Row]:
-        """Means over the sessions of a learner.
-
-        :param robot: name of the robot
-        :param learner: name of the learner, or the best known parameters
-        """
+        """Means over the sessions of a learner."""
         seeds = range(self.other_sessions if learner in OTHERS else self.sessions)
         config = self._config(robot, self.minutes)
         frozen = [session(config, seed) for seed in seeds]

@@ -52,12 +52,7 @@ class OtherSizes(TrainingExperiment):
         return product(seed=range(FIRST_SEED, FIRST_SEED + self.seeds), engine=("mujoco", "pybullet"), robot=ROBOTS)
 
     def rows(self, seed: int, engine: Engine, robot: str) -> Iterator[Row]:
-        """How a robot does after both trainings.
-
-        :param seed: seed of both trainings
-        :param engine: physics engine
-        :param robot: name of the robot
-        """
+        """How a robot does after both trainings."""
         (mass, leg_length, step_frequency), (first, second) = ROBOTS[robot], self.budgets
         dimensions = dimensions_alike(leg_length / LEGS, mass / MASS)
         usual = self.episode("stepping", engine).for_robot(dimensions)

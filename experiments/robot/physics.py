@@ -80,12 +80,7 @@ class Physics(Experiment):
         ]
 
     def rows(self, parameters: str, control_rate_hz: int, sensors: str) -> Iterator[Row]:
-        """A row for each setting of the physics, the finest first.
-
-        :param parameters: name of the parameter set
-        :param control_rate_hz: control ticks per second
-        :param sensors: delay of the sensors, or none of their errors
-        """
+        """A row for each setting of the physics, the finest first."""
         stepping, balance = (GOOD | ANYWHERE)[parameters]
         finest: list[float] = []
         for setting, (engine, physics) in SETTINGS.items():

@@ -50,12 +50,7 @@ class Race(TrainingExperiment):
         return [case for task in TASKS for case in product(task=[task], seed=seeds[task], algorithm=ALGORITHMS)]
 
     def rows(self, task: str, seed: int, algorithm: str) -> Iterator[Row]:
-        """How its recommendations do, along the way and in the end. Scores stand in one cell, for their number.
-
-        :param task: name of the task
-        :param seed: seed of the training
-        :param algorithm: name of the algorithm
-        """
+        """How its recommendations do, along the way and in the end. Scores stand in one cell, for their number."""
         budget, _, along = TASKS[task]
         base = TrainingConfig(task, episodes=self.budget or budget, slots=1, episode=self.episode(task, "mujoco"))
         evaluations = evaluations_of(base.task, self.evaluations, self.evaluations or along)

@@ -64,11 +64,7 @@ class RobotDimensions(Experiment):
         return product(hips=HIPS, robot=ROBOTS)
 
     def rows(self, hips: str, robot: str) -> Iterator[Row]:
-        """How a robot steps, and which pushes it survives.
-
-        :param hips: name of V1 to V4
-        :param robot: name of the robot
-        """
+        """How a robot steps, and which pushes it survives."""
 
         def episode(seed: int, push: Push, limit: float) -> EpisodeResult:
             config = BalanceConfig(engine="pybullet", push=push, time_limit=limit, **ROBOTS[robot])

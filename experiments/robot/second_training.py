@@ -61,11 +61,7 @@ class SecondTraining(SecondTrainingExperiment):
         return [{"engine": engine, "run": run} for run in runs for engine in self.engines]
 
     def rows(self, engine: Engine, run: str) -> Iterator[Row]:
-        """How a set does, or all trainings together.
-
-        :param engine: physics engine
-        :param run: a known set, a training, or the mean
-        """
+        """How a set does, or all trainings together."""
         trainings = self.trainings(engine)
         known = self.known(engine, trainings)
         best = self.scores(engine, [known[BEST]])

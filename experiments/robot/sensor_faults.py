@@ -200,11 +200,7 @@ class SensorFaults(Experiment):
         return product(fault=FAULTS, hips=HIPS)
 
     def rows(self, fault: str, hips: str) -> Iterator[Row]:
-        """Survival, and how the robot steps from the fault on.
-
-        :param fault: name of the fault
-        :param hips: name of V1 to V4
-        """
+        """Survival, and how the robot steps from the fault on."""
         outcomes = [self._simulated(FAULTS[fault], HIPS[hips], seed) for seed in range(self.seeds)]
         survived, steps_per_second, by_sensors = map(mean, zip(*outcomes, strict=True))
         yield {"survival": survived, "steps_per_second": steps_per_second, "phases_by_sensors": by_sensors}

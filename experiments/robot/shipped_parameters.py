@@ -60,12 +60,7 @@ class ShippedParameters(Experiment):
         return product(set=("stepping", "balance"), engine=get_args(Engine), condition=CONDITIONS)
 
     def rows(self, set: str, engine: Engine, condition: str) -> Iterator[Row]:
-        """The values of a set, and how well it does.
-
-        :param set: name of the set, which is that of its task too
-        :param engine: physics engine
-        :param condition: name of the condition
-        """
+        """The values of a set, and how well it does."""
         newtons, sagittal_share = CONDITIONS[condition]
         push = Push((newtons, newtons), at_seconds=PUSHED_BETWEEN, sagittal_share=sagittal_share)
         limit = PUSHED_BETWEEN[1] + push.duration + SECONDS_AFTER

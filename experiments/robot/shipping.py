@@ -148,10 +148,7 @@ class Shipping(SecondTrainingExperiment):
         return [{"engine": engine} for engine in self.engines]
 
     def rows(self, engine: Engine) -> Iterator[Row]:
-        """The conditions that each candidate met in an engine, the best candidate first.
-
-        :param engine: physics engine
-        """
+        """The conditions that each candidate met in an engine, the best candidate first."""
         candidates = self.judged(first=engine)
         chosen = self.choice(candidates)
         for candidate in candidates:

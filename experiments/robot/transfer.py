@@ -44,12 +44,7 @@ class Transfer(TrainingExperiment):
         return product(task=BUDGETS, learned_in=ENGINES, run=runs)
 
     def rows(self, task: str, learned_in: Engine, run: str) -> Iterator[Row]:
-        """What the parameters of a training do in both engines.
-
-        :param task: name of the task
-        :param learned_in: engine of the training
-        :param run: the training with its seed
-        """
+        """What the parameters of a training do in both engines."""
         config, seed = self.episode(task, learned_in), int(run.split()[-1])
         training = TrainingConfig(task, episodes=self.budget or BUDGETS[task], seed=seed, episode=config)
         yield in_both(task, self.trained(training).parameters(), EPISODES[task], config.time_limit)
