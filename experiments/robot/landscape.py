@@ -66,10 +66,7 @@ QUICK = Landscape(points=1, time_limit=1.1)
 
 
 def good_values(rows: DataFrame) -> tuple[dict[str, str], dict[str, str]]:
-    """Good values of each parameter, in words: first of those with few, then of those with many.
-
-    :param rows: of the result
-    """
+    """Good values of each parameter, in words: first of those with few, then of those with many."""
     few, many = {}, {}
     for name, group in groups(rows, "parameter").items():
         worse = group.groupby("value").score.min()  # of the engines
@@ -89,7 +86,7 @@ def answer(rows: DataFrame) -> str:
     )
 
 
-def along(task: str, rows: DataFrame) -> Figure:
+def _along(task: str, rows: DataFrame) -> Figure:
     """Score along each parameter of a task, in both engines."""
     parameters = groups(rows[rows.task == task], "parameter")
     drawn, axes = panels(len(parameters), 0.28, sharey=True)
@@ -100,19 +97,10 @@ def along(task: str, rows: DataFrame) -> Figure:
     return drawn
 
 
-figure_stepping, figure_balance = partial(along, "stepping"), partial(along, "balance")
-
-
-def stepping(rows: DataFrame) -> str:
-    """Score by P1 and P2."""
-    caption = "Score of a robot that nobody pushes by P1 and by P2, median of three episodes of 12 s."
-    chosen = rows[rows.parameter.isin(["P1", "P2"])]
-    return turned_table(chosen, ["value"], ["parameter", "engine"], "score", caption, ".2f")
+figure_stepping, figure_balance = partial(_along, "stepping"), partial(_along, "balance")
 
 
 def balance(rows: DataFrame) -> str:
-    """Score and survival by V1 to V4."""
-    pushed = f"twelve pushes of {NEWTONS:.0f} N at 1 to 4 s with the shipped P1 to P5"
-    tables = (("score", f"Median score of {pushed}.", ".2f"), ("survival", "Survival of the same pushes."))
-    chosen = rows[rows.task == "balance"]
-    return "\n\n".join(turned_table(chosen, ["value"], ["parameter", "engine"], *one) for one in tables)
+    """Survival by V1 to V4."""
+    caption = f"Survival of twelve pushes of {NEWTONS:.0f} N at 1 to 4 s with the shipped P1 to P5."
+    return turned_table(rows[rows.task == "balance"], ["value"], ["parameter", "engine"], "survival", caption)

@@ -10,13 +10,10 @@ from dataclasses import dataclass
 from functools import partial
 from statistics import mean
 
-from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 from pandas import DataFrame
 
 from experiments.experiment import product
 from experiments.record import Row
-from experiments.shapes import COLOURS, intervals, legend, panels
 from experiments.tables import shown, span, table
 from experiments.trainings import TrainingExperiment, identity
 from sarah.reports.judging import evaluations_of
@@ -62,11 +59,7 @@ class Race(TrainingExperiment):
 
 
 def columns(curve: RaceCurve, score_while_learning: float) -> Row:
-    """Columns of a training.
-
-    :param curve: scores of its recommendations
-    :param score_while_learning: mean score of the episodes that it simulated
-    """
+    """Columns of a training."""
     return {
         "score_while_learning": score_while_learning,
         "seconds": curve.seconds,
@@ -82,11 +75,7 @@ QUICK = Race(time_limit=2.0, seeds=1, budget=5, evaluations=1)
 
 
 def ranked(rows: DataFrame, task: str) -> DataFrame:
-    """A row for each algorithm, the quickest first, of the seeds on which all algorithms have been trained.
-
-    :param rows: of the trainings
-    :param task: name of the task
-    """
+    """A row for each algorithm, the quickest first, of the seeds on which all algorithms have been trained."""
     rows = rows[rows.task == task]
     rows = rows.groupby("seed").filter(lambda group: len(group) == rows.algorithm.nunique())
     rankings_of_all = rankings([curve_of(row) for row in rows.to_dict("records")], reference="naf")
@@ -98,10 +87,7 @@ def ranked(rows: DataFrame, task: str) -> DataFrame:
 
 
 def curve_of(row: Row) -> RaceCurve:
-    """Scores of a training's recommendations.
-
-    :param row: row of the training
-    """
+    """Scores of a training's recommendations."""
     scores, final = (tuple(map(float, str(row[column]).split())) for column in ("scores", "final"))
     episodes = tuple(map(int, row["episodes"].split()))
     return RaceCurve(row["algorithm"], episodes, scores, final, row["along"], row["seconds"])
@@ -126,22 +112,6 @@ def _compared(algorithms: DataFrame, training: str) -> str:
 
 def _names(algorithms: DataFrame) -> str:
     return ", ".join(sorted(algorithms.algorithm)) or "none"
-
-
-def _figure(rows: DataFrame, task: str) -> Figure:
-    """Final scores with their standard errors, and how many trainings are at 95 % of the best, finally or before."""
-    found = ranked(rows, task)
-    drawn, (left, right) = panels(2, 0.4, sharey=True)
-    score, error, heights = found.final_score, found.final_score_error, range(len(found), 0, -1)
-    intervals(left, list(found.algorithm), score, score - error, score + error)
-    left.set_xlabel("final score, mean and standard error")
-    ends = found.final_at_95_low, found.final_at_95_high
-    intervals(right, list(found.algorithm), found.final_at_95, *ends, label="final score")
-    right.plot(found.held_95, heights, "s", color=COLOURS[1], markersize=4, label="held along the way")
-    right.xaxis.set_major_locator(MaxNLocator(integer=True))
-    right.set(xlabel="trainings at 95 % of the best score", xlim=(-0.5, found.runs.max() + 0.5))
-    legend(drawn, right)
-    return drawn
 
 
 def _final(rows: DataFrame, task: str) -> str:
@@ -178,6 +148,5 @@ def _trainings(task: str) -> str:
     return f"Seeds {first} to {first + FULL.seeds - 1}, {budget} episodes each, in MuJoCo{pushes}"
 
 
-figure_stepping, figure_balance = (partial(_figure, task=task) for task in TASKS)
 final_stepping, final_balance = (partial(_final, task=task) for task in TASKS)
 way_stepping, way_balance = (partial(_way, task=task) for task in TASKS)
