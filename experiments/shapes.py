@@ -48,6 +48,25 @@ def lines(axis: Axes, rows: DataFrame, x: str, y: str, label: str, of_figure: Da
     axis.set(xlabel=heading(x), ylabel=heading(y))
 
 
+def line_panels(rows: DataFrame, panel: str, *columns: str, height: float = 0.35, **settings: Any) -> Figure:
+    """Panels side by side with :func:`lines`, a colour for the same label in all.
+
+    :param rows: of a result
+    :param panel: column that names the panels
+    :param columns: columns x, y and label
+    :param height: height over width of the whole
+    :param settings: of :func:`panels`
+    """
+    parts = groups(rows, panel)
+    figure, axes = panels(len(parts), height, **settings)
+    for axis, (name, part) in zip(axes, parts.items(), strict=True):
+        lines(axis, part, *columns, of_figure=rows)
+        axis.set_title(str(name), fontsize="small")
+        axis.set_ylabel(heading(columns[1]) if axis is axes[0] else "")
+    legend(figure, axes[0])
+    return figure
+
+
 def strips(
     axis: Axes, columns: Mapping[str, Series[Any]], marks: Mapping[str, float] | None = None, mark: str = ""
 ) -> None:
@@ -75,8 +94,6 @@ def panels(count: int, height: float = 0.45, **settings: Any) -> tuple[Figure, l
     :param height: height over width of the whole
     :param settings: of :func:`matplotlib.pyplot.subplots`
     """
-    if ratios := settings.pop("width_ratios", None):
-        settings["gridspec_kw"] = {"width_ratios": ratios}
     size = (WIDTH, height * WIDTH)
     figure, axes = plt.subplots(1, count, squeeze=False, figsize=size, layout="constrained", **settings)
     return figure, list(axes[0])

@@ -16,7 +16,7 @@ from pandas import DataFrame
 from experiments.experiment import Experiment, product, survival
 from experiments.pushes import CONTROLLERS, SETTINGS, TIME_LIMIT, pushed
 from experiments.record import Row
-from experiments.shapes import groups, legend, lines, panels
+from experiments.shapes import line_panels
 from experiments.tables import span, table, turned_table
 from sarah.episode.episode import Episode
 from sarah.episode.robot_settings import conditions_of
@@ -154,13 +154,8 @@ def answer(rows: DataFrame) -> str:
 def figure_pushes(rows: DataFrame) -> Figure:
     """Survival by force on level ground, a panel for each group of directions."""
     level = _on_level_ground(rows)
-    directions = groups(level.assign(line=level.engine + ", " + level.controller), "direction")
-    drawn, axes = panels(len(directions), 0.35, sharey=True)
-    for axis, (direction, group) in zip(axes, directions.items(), strict=True):
-        lines(axis, group, "push_n", "survival", "line")
-        axis.set(title=direction, ylabel="survival" if axis is axes[0] else "")
-    legend(drawn, axes[0])
-    return drawn
+    named = level.assign(line=level.engine + ", " + level.controller)
+    return line_panels(named, "direction", "push_n", "survival", "line", sharey=True)
 
 
 def _everywhere(rows: DataFrame, newtons: float) -> DataFrame:

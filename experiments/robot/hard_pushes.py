@@ -56,8 +56,8 @@ QUICK = HardPushes(pushes=1, time_limit=1.1)
 def difference(ones: str, others: str) -> Row:
     """Columns of the difference of two survivals with its 95 % interval.
 
-    Pushes with the same outcome in both say nothing about it. Half a push is added to each of the four pairs of outcomes, so that the interval is never empty (Agresti and Min
-    2005).
+    Pushes with the same outcome in both say nothing about it. Half a push is added to each of the four pairs of
+    outcomes, so that the interval is never empty (Agresti and Min 2005).
 
     :param ones: outcomes of the first
     :param others: outcomes of the same pushes, whose survival is subtracted

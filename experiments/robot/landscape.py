@@ -15,7 +15,7 @@ from pandas import DataFrame
 from experiments.experiment import Experiment
 from experiments.record import Row
 from experiments.robot.engines import NEWTONS, settings
-from experiments.shapes import groups, legend, lines, panels
+from experiments.shapes import groups, line_panels
 from experiments.tables import span, turned_table
 from sarah.episode.evaluation import evaluate
 from sarah.episode.tasks import TASKS
@@ -88,13 +88,7 @@ def answer(rows: DataFrame) -> str:
 
 def _along(task: str, rows: DataFrame) -> Figure:
     """Score along each parameter of a task, in both engines."""
-    parameters = groups(rows[rows.task == task], "parameter")
-    drawn, axes = panels(len(parameters), 0.28, sharey=True)
-    for axis, (name, group) in zip(axes, parameters.items(), strict=True):
-        lines(axis, group, "value", "score", "engine")
-        axis.set(xlabel=str(name), ylabel="score" if axis is axes[0] else "")
-    legend(drawn, axes[0])
-    return drawn
+    return line_panels(rows[rows.task == task], "parameter", "value", "score", "engine", height=0.28, sharey=True)
 
 
 figure_stepping, figure_balance = partial(_along, "stepping"), partial(_along, "balance")
