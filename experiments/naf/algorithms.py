@@ -107,19 +107,15 @@ def agent(
         net_arch = {variant.values: layers, "shared": layers, "mu": [], "L": []}
         settings["policy_kwargs"] = {"net_arch": net_arch, "dropout": variant.dropout}
         base = NAF.policy_aliases[policy]
-        return Watched(policy_with(variant.critic, base), env, exploration_std=variant.exploration_std, **settings)
+        return Watched(_policy_with(variant.critic, base), env, exploration_std=variant.exploration_std, **settings)
     if algorithm in ("DDPG", "TD3"):
         zeros = np.zeros(env.action_space.shape)
         settings["action_noise"] = NormalActionNoise(zeros, np.full_like(zeros, DOCUMENTED_STD))
     return OTHERS[algorithm](policy, env, policy_kwargs={"net_arch": layers} if layers else None, **settings)
 
 
-def policy_with(critic: type[QuadraticCritic], base: type[NAFPolicy]) -> type[NAFPolicy]:
-    """A policy with another critic.
-
-    :param critic: class of the critic
-    :param base: class of the policy
-    """
+def _policy_with(critic: type[QuadraticCritic], base: type[NAFPolicy]) -> type[NAFPolicy]:
+    """A policy with another critic."""
 
     class Policy(base):  # type: ignore[valid-type, misc]
         def make_q_net(self) -> QuadraticCritic:

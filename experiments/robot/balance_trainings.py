@@ -122,15 +122,12 @@ class SecondTrainingExperiment(TrainingExperiment):
         """
         episode = self.episode("balance", engine)
         run = self.trained(TrainingConfig("balance", episodes=self.budget, seed=seed, slots=1, episode=episode))
-        values = [*run.parameters(), *kept(run.path / "mu.json", network_says, run)]
+        values = [*run.parameters(), *kept(run.path / "mu.json", _network_says, run)]
         return {name: cell(float(value)) for name, value in zip([*NAMES, *MU_NAMES], values, strict=True)}
 
 
-def network_says(run: RunFolder) -> Parameters:
-    """V1 to V4 that the network of a finished training says for the robot as designed, without exploration.
-
-    :param run: run folder of the training
-    """
+def _network_says(run: RunFolder) -> Parameters:
+    """V1 to V4 that the network of a finished training says for the robot as designed, without exploration."""
     from sarah.training.learners import AGENTS, chosen_parameters, nominal_observation
 
     config = run.config()

@@ -53,8 +53,8 @@ class Clock(Experiment):
         good = [result for result in results[: self.random_sets] if result.score > 0.5]
         yield {
             "sets_above_half": len(good),
-            "clocks_above_half": sum(map(is_clock, good)),
-            "best_clock_score": max((result.score for result in results if is_clock(result)), default=0.0),
+            "clocks_above_half": sum(map(_is_clock, good)),
+            "best_clock_score": max((result.score for result in results if _is_clock(result)), default=0.0),
         }
 
 
@@ -62,11 +62,8 @@ FULL = Clock()
 QUICK = Clock(random_sets=1, time_limit=2.0)
 
 
-def is_clock(result: EpisodeResult) -> bool:
-    """Whether time-outs rather than sensors ended the phases of an episode.
-
-    :param result: result of the episode
-    """
+def _is_clock(result: EpisodeResult) -> bool:
+    """Whether time-outs rather than sensors ended the phases of an episode."""
     return min(result.shifts_by_sensors, result.lifts_by_sensors) < SMALLEST_SENSOR_SHARE
 
 

@@ -124,12 +124,12 @@ FULL = SecondTraining()
 QUICK = SecondTraining(time_limit=2.0, budget=5, engines=("mujoco",), seeds=1, judging=3, candidates=4, surviving=1)
 
 
-def learned(rows: DataFrame) -> DataFrame:
+def _learned(rows: DataFrame) -> DataFrame:
     """Rows of the trainings."""
     return rows[rows.run.str.startswith("naf")]
 
 
-def of_run(rows: DataFrame, run: str) -> Series:
+def _of_run(rows: DataFrame, run: str) -> Series:
     """The row of a run."""
     return rows[rows.run == run].iloc[0]
 
@@ -138,7 +138,7 @@ def answer(rows: DataFrame) -> str:
     """Whether the robot learns to come back."""
     sentences = []
     for engine, group in groups(rows, "engine").items():
-        mean, neutral, runs = of_run(group, MEAN), of_run(group, NEUTRAL), learned(group)
+        mean, neutral, runs = _of_run(group, MEAN), _of_run(group, NEUTRAL), _learned(group)
         survival = [shown(share, ".0%") for share in (mean.survival_100, runs.survival_100.min(), neutral.survival_100)]
         sentences.append(
             f"In {ENGINE_NAMES[engine]} the robot survives {survival[0]} of pushes of 100 N after a training,"
@@ -151,17 +151,17 @@ def answer(rows: DataFrame) -> str:
 
 def network(rows: DataFrame) -> str:
     """What the robot survives with what the networks say."""
-    return f"With mu the robot survives {by_engine(rows, MEAN, 'mu_survival_100', 'of pushes of 100 N')}."
+    return f"With mu the robot survives {_by_engine(rows, MEAN, 'mu_survival_100', 'of pushes of 100 N')}."
 
 
 def headroom(rows: DataFrame) -> str:
     """How much better than the shipped V1 to V4 could be."""
-    return f"The shipped V1 to V4 reach {by_engine(rows, 'shipped', 'of_best', 'of the best known score')}."
+    return f"The shipped V1 to V4 reach {_by_engine(rows, 'shipped', 'of_best', 'of the best known score')}."
 
 
-def by_engine(rows: DataFrame, run: str, column: str, unit: str) -> str:
+def _by_engine(rows: DataFrame, run: str, column: str, unit: str) -> str:
     """A share in each engine, as words."""
-    shares = {engine: shown(of_run(group, run)[column], ".1%") for engine, group in groups(rows, "engine").items()}
+    shares = {engine: shown(_of_run(group, run)[column], ".1%") for engine, group in groups(rows, "engine").items()}
     return " and ".join(f"{share} {unit} in {ENGINE_NAMES[engine]}" for engine, share in shares.items())
 
 
@@ -171,11 +171,11 @@ def figure(rows: DataFrame) -> Figure:
     drawn, (*settled, shares) = panels(len(engines) + 1, 0.35)
     columns = {}
     for axis, (engine, group) in zip(settled, engines.items(), strict=True):
-        best = of_run(group, BEST)
-        strips(axis, {name: learned(group)[name] for name in NAMES}, {name: best[name] for name in NAMES}, BEST)
+        best = _of_run(group, BEST)
+        strips(axis, {name: _learned(group)[name] for name in NAMES}, {name: best[name] for name in NAMES}, BEST)
         axis.set_title(ENGINE_NAMES[engine], fontsize="small")
-        columns[f"{ENGINE_NAMES[engine]}\nlearned"] = learned(group).of_best
-        columns[f"{ENGINE_NAMES[engine]}\nmu"] = learned(group).mu_of_best
+        columns[f"{ENGINE_NAMES[engine]}\nlearned"] = _learned(group).of_best
+        columns[f"{ENGINE_NAMES[engine]}\nmu"] = _learned(group).mu_of_best
     strips(shares, columns, dict.fromkeys(columns, 1.0))
     shares.set_ylabel("score over the best known one")
     shares.tick_params(axis="x", labelsize="x-small")
@@ -186,7 +186,7 @@ def figure(rows: DataFrame) -> Figure:
 def closeness(rows: DataFrame) -> str:
     """How close trainings come to the best known set, for what they recommend and for what their networks say."""
     summaries = DataFrame(
-        {"engine": engine, "set": kind, **summary(learned(group)[column], of_run(group, MEAN)[f"{column}_error"])}
+        {"engine": engine, "set": kind, **summary(_learned(group)[column], _of_run(group, MEAN)[f"{column}_error"])}
         for engine, group in groups(rows, "engine").items()
         for kind, column in (("recommended", "of_best"), ("mu", "mu_of_best"))
     )

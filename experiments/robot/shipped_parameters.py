@@ -96,15 +96,12 @@ def ship(result: record.Result, path: Path = FILE) -> None:
     :param result: the result ``shipped_parameters``
     :param path: the file
     """
-    text = json.dumps(sets_of(result), indent=2, ensure_ascii=False)
+    text = json.dumps(_sets_of(result), indent=2, ensure_ascii=False)
     replace_text(path, re.sub(r"\[[^\[\]]*\]", lambda numbers: " ".join(numbers[0].split()), text) + "\n")
 
 
-def sets_of(result: record.Result) -> dict[str, Any]:
-    """Content of the package's file: what it says already, with the values and figures of the rows.
-
-    :param result: the result ``shipped_parameters``
-    """
+def _sets_of(result: record.Result) -> dict[str, Any]:
+    """Content of the package's file: what it says already, with the values and figures of the rows."""
     sets = copy.deepcopy(shipped())
     versions = dict(word.split(maxsplit=1) for word in result.versions.split(", "))
     origin = {"command": result.command, "commit": result.commit, "date": result.date, "versions": versions}

@@ -258,7 +258,7 @@ FULL = Shipping()
 QUICK = Shipping(time_limit=2.0, budget=5, engines=("mujoco",), seeds=1, rounds=(Round(None, {HARD: 3, LEVEL: 1}),))
 
 
-def finalists(rows: DataFrame) -> DataFrame:
+def _finalists(rows: DataFrame) -> DataFrame:
     """Rows of the candidates of the last round, who met all conditions."""
     met = rows.groupby("run").condition.transform("nunique")
     return rows[met == met.max()]
@@ -279,10 +279,10 @@ def verdicts(rows: DataFrame) -> str:
         "The candidates of the last round and their score over that of the set that shipped before (geometric mean"
         " over conditions)."
     )
-    return table(finalists(rows).drop_duplicates("run"), ["run", *NAMES, "overall", "verdict"], caption, overall=".3f")
+    return table(_finalists(rows).drop_duplicates("run"), ["run", *NAMES, "overall", "verdict"], caption, overall=".3f")
 
 
 def conditions(rows: DataFrame) -> str:
     """What the candidates of the last round score in each condition."""
     caption = "Score over that of the set that shipped before, by condition, for the candidates of the last round."
-    return turned_table(finalists(rows), ["engine", "condition", "episodes"], "run", "relative", caption, ".3f")
+    return turned_table(_finalists(rows), ["engine", "condition", "episodes"], "run", "relative", caption, ".3f")
