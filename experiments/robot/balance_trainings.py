@@ -18,9 +18,8 @@ from experiments import record
 from experiments.experiment import product
 from experiments.judge import Condition, Judge
 from experiments.record import Row, cell
-from experiments.robot.first_training import CLAIM
 from experiments.shapes import groups
-from experiments.tables import span, table
+from experiments.tables import table
 from experiments.trainings import TrainingExperiment, kept
 from sarah.control.parameters import BALANCE_PARAMETERS, Parameters
 from sarah.episode.parameter_sets import PARAMETER_SETS
@@ -168,44 +167,3 @@ def settled(rows: DataFrame) -> str:
     )
     caption = f"What {FULL.seeds} trainings in each engine recommend, and what their networks say (mu)."
     return table(found, list(found), caption, **dict.fromkeys(found.columns[2:], ".2f"))
-
-
-def claims(rows: DataFrame) -> str:
-    """What the paper claims of its Second Training, and what the trainings show."""
-    found = [
-        (
-            "V1 and V3 matter more than V2 and V4",
-            "yes",
-            f"V1 ends at {span(rows.V1, '.2f')} and saves the robot from the sides; V3 ends above zero in"
-            f" {(rows.V3 > 0.0).sum()} of {len(rows)} trainings and saves it from front and back",
-        ),
-        (
-            "V3 multiplies the acceleration of the y axis",
-            "no",
-            "that [does harm](../explanation/hip_law.md#why-v3-does-not-use-the-forward-acceleration); V3 multiplies"
-            " the fall here",
-        ),
-        (
-            "the angular rates about x and z are not necessary",
-            "in part",
-            "the rate about z is not; V3 uses the rate about x",
-        ),
-        (
-            "V1 follows V4, and V2 follows V3, without a logical relation to the reward",
-            "no",
-            "V1 and V3 settle where the score is high, whatever V2 and V4 are",
-        ),
-        (
-            "the randomness of the force makes the training hard",
-            "yes",
-            "up to 100 N the robot survives [most pushes](conditions.md) without any hip law, so one return says"
-            " little",
-        ),
-        (
-            "the robot returns to its initial position",
-            "in part",
-            "it ends [nearer to its start](conditions.md) than without the hip law, but not there",
-        ),
-    ]
-    caption = f"Second Trainings by NAF: {FULL.seeds} in each engine."
-    return table(DataFrame(found, columns=CLAIM), CLAIM, caption)

@@ -43,24 +43,13 @@ COLUMNS = [f"{engine}_{column}" for column in ("score", "steps_per_second", "sur
 
 
 def settings(task: str, engine: Engine, time_limit: float) -> EpisodeConfig:
-    """Settings of a task's episodes, with pushes of 100 N if the task has pushes.
-
-    :param task: name of the task
-    :param engine: physics engine
-    :param time_limit: time limit, in s
-    """
+    """Settings of a task's episodes in an engine, with pushes of 100 N if the task has pushes."""
     push: dict[str, Any] = {"push": Push(newtons=(NEWTONS, NEWTONS))} if TASKS[task].has_push else {}
     return dataclasses.replace(TASKS[task].episode, engine=engine, time_limit=time_limit, **push)
 
 
 def in_both(task: str, parameters: tuple[float, ...], episodes: int, time_limit: float) -> Row:
-    """Means of the same episodes in each engine.
-
-    :param task: name of the task
-    :param parameters: values of its parameters
-    :param episodes: number of episodes
-    :param time_limit: their time limit, in s
-    """
+    """Means of the same episodes of a task in each engine."""
     found = {e: evaluate(task, parameters, settings(task, e, time_limit), range(episodes)) for e in ENGINES}
     return {
         **{f"{engine}_score": one.mean("score") for engine, one in found.items()},

@@ -54,7 +54,7 @@ class ObservedReward(Experiment):
         """How well one reward ranks the sets as the other does, with a bootstrap's interval over the sets."""
         robot = from_mapping(OperationConfig().robot, {"engine": engine, **GROUNDS[ground]})
         config = OperationConfig(robot, minutes=self.minutes)
-        sessions = [run_session(SessionSpec(drawn(seed), "none", seed, config)) for seed in range(self.sets)]
+        sessions = [run_session(SessionSpec(_drawn(seed), "none", seed, config)) for seed in range(self.sets)]
         scores = np.round([one.mean_score() for one in sessions], DECIMALS)
         observed = np.round([mean(window.observed_reward for window in one.windows) for one in sessions], DECIMALS)
         generator = np.random.default_rng(0)
@@ -72,11 +72,8 @@ class ObservedReward(Experiment):
         }
 
 
-def drawn(seed: int) -> Parameters:
-    """Parameters around the shipped ones.
-
-    :param seed: seed of the draw
-    """
+def _drawn(seed: int) -> Parameters:
+    """Parameters around the shipped ones."""
     generator = random.Random(f"observed {seed}")
     deviation = DEVIATIONS[seed % len(DEVIATIONS)]
     return BOX.at_shares(share + deviation * generator.gauss(0.0, 1.0) for share in BOX.shares(SHIPPED))
