@@ -6,6 +6,7 @@ import argparse
 import dataclasses
 import shlex
 import sys
+import time
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from experiments.found import Found
 from experiments.record import Result, Row, cell
 from sarah.cli.options import parse_options
 from sarah.errors import ConfigurationError, unknown_name
+from sarah.versions import versions
 
 OTHER_RESULTS = record.ROOT / "build" / "experiments"
 """Folder for the rows of experiments that options change."""
@@ -106,7 +108,8 @@ def _begun(found: Found, folder: Path, command: str) -> Result:
     commit = record.commit()
     if commit == record.UNKNOWN:
         print("without a git history the result cannot tell its commit", file=sys.stderr)
-    new = Result(found.name, found.question, command, commit, record.today(), 0.0, versions=record.versions_here())
+    used = ", ".join(f"{name} {version}" for name, version in versions().items())
+    new = Result(found.name, found.question, command, commit, time.strftime("%Y-%m-%d"), 0.0, versions=used)
     if found.name not in record.names(folder):
         return new
     before = record.read(found.name, folder)
@@ -138,11 +141,11 @@ def _compute(experiment: Experiment, cases: Sequence[Row], result: Result, folde
     left = [case for case in cases if tuple(map(cell, case.values())) not in known]
     rows, seconds = [*result.rows], 60.0 * (result.minutes or 0.0)
     with tqdm(total=len(left), unit=" cases") as progress:
-        for number, outcome in enumerate(experiment.outcomes(left), start=1):
-            for row in outcome.rows:
+        for number, (made, duration) in enumerate(experiment.outcomes(left), start=1):
+            for row in made:
                 tqdm.write(", ".join(f"{column} {cell(value)}" for column, value in row.items()))
-            rows += outcome.rows
-            seconds += outcome.seconds
+            rows += made
+            seconds += duration
             missing = len(left) - number
             record.write(dataclasses.replace(result, rows=rows, missing=missing, minutes=seconds / 60.0), folder)
             progress.update()
