@@ -47,8 +47,7 @@ def neighbourhood_means(
     weights -= np.square(places).sum(axis=1) / 2
     weights /= distance**2
     np.exp(weights, out=weights)
-    means: np.ndarray = weights @ values.astype(weights.dtype) / (weights.sum(axis=1) + doubt)
-    return means
+    return weights @ values.astype(weights.dtype) / (weights.sum(axis=1) + doubt)
 
 
 def average_ranks(values: np.ndarray) -> np.ndarray:
@@ -196,8 +195,7 @@ class RankReplayBuffer(ReplayBuffer):
         actions, ranks = self._newest()
         highest = np.argsort(-ranks, kind="stable")[:BEST_CANDIDATES]
         means = neighbourhood_means(actions[highest], actions, ranks, NEIGHBOURHOOD)
-        best: np.ndarray = actions[highest[np.argmax(means)]]
-        return best
+        return actions[highest[np.argmax(means)]]
 
     def _check_not_empty(self) -> None:
         if self.size() == 0:
@@ -215,8 +213,7 @@ class RankReplayBuffer(ReplayBuffer):
         drawn = np.random.normal(best, std, (draws, len(best)))
         # Reflected at the bounds, where otherwise every wide draw would end
         drawn = np.where(np.abs(drawn) > 1, 2 * np.sign(drawn) - drawn, drawn).clip(-1, 1).astype(np.float32)
-        promising: np.ndarray = drawn[np.argmax(self._promises(drawn, std))]
-        return promising
+        return drawn[np.argmax(self._promises(drawn, std))]
 
     def _promising_centre(self) -> np.ndarray:
         """Action that others are drawn around."""

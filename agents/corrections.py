@@ -60,8 +60,7 @@ def corrected(returns: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
     products = known_features.T @ known_features + PENALTY * np.eye(features.shape[1])
     explained = features @ np.linalg.solve(products, known_features.T @ targets)
     explained -= explained[known].mean()  # not 0 where the fit leaves some out
-    without: np.ndarray = returns - scale * explained
-    return without
+    return returns - scale * explained
 
 
 def _telling(disturbances: np.ndarray, targets: np.ndarray) -> np.ndarray:
@@ -79,8 +78,7 @@ def _telling(disturbances: np.ndarray, targets: np.ndarray) -> np.ndarray:
     curves /= np.sqrt((curves**2).mean(axis=0)) + SMALLEST_DEVIATION  # 0 if there are two values only
     explained = sum((parts.T @ targets) ** 2 for parts in (lines, curves)) / (len(targets) * (targets @ targets))
     probabilities = (1 - np.minimum(explained, 1)) ** ((len(targets) - 3) / 2)
-    telling: np.ndarray = kept[probabilities < CHANCE]
-    return telling
+    return kept[probabilities < CHANCE]
 
 
 def _features(fitted: np.ndarray, every: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

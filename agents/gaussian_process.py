@@ -64,8 +64,7 @@ class GaussianProcess:
         :return: Expected rewards, of shape (m,)
         """
         covariances = _covariances(_squared_distances(actions, self._known), self._length)
-        expected: np.ndarray = self._doubt + covariances @ self._weights
-        return expected
+        return self._doubt + covariances @ self._weights
 
     def upper_bounds(self, actions: np.ndarray, deviations: float) -> np.ndarray:
         """
@@ -80,8 +79,7 @@ class GaussianProcess:
         covariances = _covariances(_squared_distances(actions, self._known), self._length)
         explained = solve_triangular(self._factor, covariances.T, lower=True) ** 2
         unknown = self._variance * np.maximum(1 - explained.sum(axis=0), 0)
-        bounds: np.ndarray = self._doubt + covariances @ self._weights + deviations * np.sqrt(unknown)
-        return bounds
+        return self._doubt + covariances @ self._weights + deviations * np.sqrt(unknown)
 
     def best(self, candidates: np.ndarray | None = None, deviations: float = 0.0) -> np.ndarray:
         """
@@ -104,8 +102,7 @@ class GaussianProcess:
             draws = generator.normal(np.repeat(places[highest], DRAWS, axis=0), step).clip(-1, 1)
             places = np.vstack([places[highest], draws])
             values = np.concatenate([values[highest], value_of(draws)])
-        best: np.ndarray = places[np.argmax(values)]
-        return best
+        return places[np.argmax(values)]
 
 
 def _likeliest(distances: np.ndarray, rewards: np.ndarray, lengths: Sequence[float]) -> tuple[float, float]:
@@ -134,5 +131,4 @@ def _squared_distances(actions: np.ndarray, others: np.ndarray) -> np.ndarray:
 
 @np.errstate(under="ignore")  # What is far away says nothing
 def _covariances(squared_distances: np.ndarray, length: float) -> np.ndarray:
-    covariances: np.ndarray = np.exp(squared_distances / (-2 * length**2))
-    return covariances
+    return np.exp(squared_distances / (-2 * length**2))

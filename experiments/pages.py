@@ -68,7 +68,7 @@ def _source(found: Found, result: Result) -> str:
     only = shlex.join(word for key in varying for word in ("--only", f"{key}={cell(cases[-1][key])}"))
     sentences = [
         result.remark,
-        f"{result.missing} cases are still to be made." if result.missing else "",
+        "Some cases are still to be made." if result.missing else "",
         f"Made at {made_at(result)} by `{command}`.",
         f"One of its cases alone: `{command} {only}`." if only else "",
         f"[Data](../../results/{result.name}.csv)",
