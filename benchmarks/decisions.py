@@ -124,9 +124,8 @@ QUICK = Decisions(episodes=(10,), rounds=1)
 def times(rows: DataFrame) -> str:
     """Time of a decision and of a recommendation."""
     shown = rows.rename(columns=lambda column: column.replace("_milliseconds", " (ms)"))
-    formats = {"action (ms)": ".1f", "recommendation (ms)": ".1f"}
     caption = (
         "Processor time beside the updates, after so many episodes: to choose an action, and to note an episode and "
         "recommend parameters."
     )
-    return table(shown, ["episodes", *formats], formats, caption)
+    return table(shown, ["episodes", "action (ms)", "recommendation (ms)"], caption, **{"(ms)": ".1f"})

@@ -35,7 +35,6 @@ GROUNDS = {
     "bumps of 20 mm every 5 cm": Terrain(roughness=(0.02, 0.02), cell=(0.05, 0.05)),
     "friction 0.25": Terrain(friction_left=(0.25, 0.25), friction_right=(0.25, 0.25)),
 }
-FORMATS = {"times_real_time": ".0f", **dict.fromkeys(("time_ratio", "time_ratio_low", "time_ratio_high"), ".2f")}
 
 
 @dataclass(frozen=True)
@@ -93,9 +92,9 @@ def answer(rows: DataFrame) -> str:
 
 def speeds(rows: DataFrame) -> str:
     """Speed of all cases."""
-    columns = ["engine", "physics", "ground", *FORMATS]
+    columns = ["engine", "physics", "ground", "times_real_time", "time_ratio", "time_ratio_low", "time_ratio_high"]
     caption = (
         "Speed of an episode, and its processor time over that in PyBullet at the standard physics on the plane: "
         "the median, the smallest and the largest of seven."
     )
-    return table(rows, columns, FORMATS, caption)
+    return table(rows, columns, caption, real_time=".0f", time_ratio=".2f")

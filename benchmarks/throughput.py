@@ -273,4 +273,4 @@ QUICK = Throughput(time_limit=2.0, rounds=1, trainings=1, budget=5)
 def speeds(rows: DataFrame) -> str:
     """All quantities, of both runs."""
     caption = "Episodes on two cores of a small virtual machine: medians of five rounds, in two runs of the same."
-    return turned_table(rows, ["quantity"], "run", "value", ".3g", caption)
+    return turned_table(rows, ["quantity"], "run", "value", caption, ".3g")

@@ -167,6 +167,4 @@ QUICK = Viewer(rounds=1, seconds=1.0)
 
 def speeds(rows: DataFrame) -> str:
     """All that was measured."""
-    return table(
-        rows, ["quantity", "lowest", "highest"], {"lowest": ".1f", "highest": ".1f"}, "The page of `sarah-view`."
-    )
+    return table(rows, ["quantity", "lowest", "highest"], "The page of `sarah-view`.", lowest=".1f", highest=".1f")

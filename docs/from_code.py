@@ -20,7 +20,6 @@ from experiments.tables import markdown_table
 from sarah.cli.training_defaults import default_training
 from sarah.cli.value_rules import meanings_of
 from sarah.control.constants import STANDARD_CONSTANTS
-from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.result import METRICS
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS, Task
@@ -34,7 +33,6 @@ from sarah.runs.agent_settings import AGENT_SETTINGS, LearnerSettings, NAFSettin
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import settings_by_key
 from sarah.simulation.physics import PHYSICS, Physics
-from sarah.simulation.randomisation import Randomisation
 
 HELP_WIDTH = 86
 """Of a command's help, in characters: as wide as the page."""
@@ -171,36 +169,12 @@ def tick_part() -> Iterator[str]:
     yield "x points to the robot's right, y forward and z up. " + markdown(f"Actuators: {', '.join(ACTUATED_JOINTS)}.")
 
 
-SIGNALS = (
-    ("acceleration[0]", "m/s²", "a push to the right; negative while the standing robot leans to the right", "yes"),
-    ("acceleration[1]", "m/s²", "a push forward; negative while the standing robot leans forward", "no"),
-    ("acceleration[2]", "m/s²", "up: 9.81 at rest", "for falls"),
-    ("angular_rate[0]", "rad/s", "the torso tips backward", "by V3"),
-    ("angular_rate[1]", "rad/s", "the torso tips to the right", "yes"),
-    ("angular_rate[2]", "rad/s", "the torso turns to the left", "no"),
-    ("pressures[0]", "N", "load on the left forefoot's pad", "yes"),
-    ("pressures[1]", "N", "load on the left hindfoot's pad", "yes"),
-    ("pressures[2]", "N", "load on the right forefoot's pad", "yes"),
-    ("pressures[3]", "N", "load on the right hindfoot's pad", "yes"),
-)
-"""Name, unit, meaning and use of the signals of a reading, but for the actuators' positions."""
 POSITIVE = {
     "hip_abduction": "the foot goes to the left: outward on the left leg, inward on the right",
     "hip_flexion": "the foot goes forward",
     "leg_length": "the leg gets shorter",
 }
 """Positive direction of each kind of actuator."""
-
-
-def signals_part() -> Iterator[str]:
-    """A table of the signals of a reading, in order."""
-    positions = []
-    for index, joint in enumerate(ACTUATED_JOINTS):
-        used = "no" if joint.endswith("length") else "by V3" if joint.endswith("flexion") else "by V1"
-        positions.append([f"`joints[{index}]`", unit_of(joint), f"position of `{joint}`, positive as its target", used])
-    yield from table(
-        ["signal", "unit", "positive", "used"], [[f"`{name}`", *rest] for name, *rest in SIGNALS] + positions
-    )
 
 
 def targets_part() -> Iterator[str]:
@@ -210,81 +184,13 @@ def targets_part() -> Iterator[str]:
     legs = (-constants.shift_extension, constants.lift_retraction, constants.leg_speed)
     rows = []
     for index, joint in enumerate(ACTUATED_JOINTS):
-        kind, unit = joint.partition("_")[2], unit_of(joint)
+        kind, unit = joint.partition("_")[2], "m" if JOINT_TYPES[joint] == "prismatic" else "rad"
         low, high, speed = legs if kind == "leg_length" else hips
-        ends = robot.limits[joint]
-        effort = f"{robot.efforts[joint]:g} {'N' if unit == 'm' else 'Nm'}"
-        rows.append(
-            [
-                f"`targets[{index}]`",
-                f"`{joint}`",
-                POSITIVE[kind],
-                f"{low:g} to {high:g} {unit}",
-                f"{speed:g} {unit}/s",
-                f"{ends[0]:g} to {ends[1]:g} {unit}",
-                effort,
-            ]
-        )
+        ends, effort = robot.limits[joint], f"{robot.efforts[joint]:g} {'N' if unit == 'm' else 'Nm'}"
+        ranges = [f"{low:g} to {high:g} {unit}", f"{speed:g} {unit}/s", f"{ends[0]:g} to {ends[1]:g} {unit}"]
+        rows.append([f"`targets[{index}]`", f"`{joint}`", POSITIVE[kind], *ranges, effort])
     head = ["target", "joint", "positive", "range of the target", "its speed", "range of the joint", "largest effort"]
     yield from table(head, rows)
-
-
-def rates_part() -> Iterator[str]:
-    """A table of the times, thresholds and errors that a training assumes."""
-    physics, sensors, constants = PHYSICS["standard"], Randomisation(), STANDARD_CONSTANTS
-    rows = [
-        ["control rate", f"{physics.control_rate} Hz", "`episode.physics.control_rate`"],
-        ["standing before the first step", f"{STAND_SECONDS:g} s", "fixed"],
-        [
-            "delay from sensing to acting",
-            f"{1000 * sensors.delay_seconds:g} ms",
-            "`episode.randomisation.delay_seconds`",
-        ],
-        ["bandwidth of the position servos", f"{span(sensors.actuator_bandwidth)} per second", "`…actuator_bandwidth`"],
-        [
-            "load above which a foot counts as loaded",
-            f"{constants.pad_threshold:g} N",
-            "`episode.controller.pad_threshold`",
-        ],
-        ["error of a pad's gain", f"up to {100 * sensors.pad_gain:g} %", "`episode.randomisation.pad_gain`"],
-        ["noise of a pad", f"{sensors.pad_noise_density:g} N per √Hz", "`…pad_noise_density`"],
-        [
-            "noise of the accelerometer",
-            f"{sensors.acceleration_noise_density:g} m/s² per √Hz",
-            "`…acceleration_noise_density`",
-        ],
-        [
-            "noise of the gyroscope",
-            f"{sensors.angular_rate_noise_density:g} rad/s per √Hz",
-            "`…angular_rate_noise_density`",
-        ],
-        ["constant error of the accelerometer", f"up to {sensors.acceleration_bias:g} m/s²", "`…acceleration_bias`"],
-        ["constant error of the gyroscope", f"up to {sensors.angular_rate_bias:g} rad/s", "`…angular_rate_bias`"],
-        ["inertial unit mounted askew", f"by up to {sensors.imu_tilt_degrees:g} degrees", "`…imu_tilt_degrees`"],
-        [
-            "torso's centre of mass, along each axis",
-            f"off by up to {1000 * sensors.mass_offset:g} mm",
-            "`…mass_offset`",
-        ],
-        ["low-pass of both", f"{sensors.imu_bandwidth:g} Hz", "`…imu_bandwidth`"],
-    ]
-    yield from table(["what", "in a training", "setting"], rows)
-
-
-def span(ends: tuple[float, float]) -> str:
-    """A range as words.
-
-    :param ends: its ends
-    """
-    return f"{ends[0]:g} to {ends[1]:g}"
-
-
-def unit_of(joint: str) -> str:
-    """Unit of a joint's position.
-
-    :param joint: name of the joint
-    """
-    return "m" if JOINT_TYPES[joint] == "prismatic" else "rad"
 
 
 def commands_part() -> Iterator[str]:
@@ -341,9 +247,7 @@ PARTS: dict[str, Callable[[], Iterable[str]]] = {
     "dimensions": dimensions_part,
     "metrics": metrics_part,
     "parameters": parameters_part,
-    "rates": rates_part,
     "settings": settings_part,
-    "signals": signals_part,
     "targets": targets_part,
     "tick": tick_part,
 }

@@ -8,7 +8,7 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 from experiments.record import Row
 from sarah.episode.evaluation import Evaluation
@@ -44,36 +44,20 @@ class Experiment(ABC):
         :param case: values of the first columns
         """
 
-    def outcomes(self, cases: Sequence[Row]) -> Iterator[Outcome]:
-        """Outcomes of some cases, in their order, each as soon as it is known; one for each worker at a time.
+    def outcomes(self, cases: Sequence[Row]) -> Iterator[tuple[list[Row], float]]:
+        """Rows of some cases and the time that they took, in s: in order, each as soon as it is known.
 
         :param cases: the cases
         """
         with Workers(self.workers) as workers:
-            jobs = [workers.submit(outcome, self, case) for case in cases]
+            jobs = [workers.submit(_outcome, self, case) for case in cases]
             yield from (job.result() for job in jobs)
 
 
-class Outcome(NamedTuple):
-    """Outcome of a case.
-
-    :param rows: its rows, the case's columns first
-    :param seconds: time that they took, in s
-    """
-
-    rows: list[Row]
-    seconds: float
-
-
-def outcome(experiment: Experiment, case: Row) -> Outcome:
-    """Compute a case in this process.
-
-    :param experiment: the experiment
-    :param case: the case
-    """
+def _outcome(experiment: Experiment, case: Row) -> tuple[list[Row], float]:
     start = time.perf_counter()
     rows = [{**case, **row} for row in experiment.rows(**case)]
-    return Outcome(rows, time.perf_counter() - start)
+    return rows, time.perf_counter() - start
 
 
 def product(**values: Iterable[Any]) -> list[Row]:

@@ -6,6 +6,7 @@ import argparse
 import dataclasses
 import shlex
 import sys
+import time
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from experiments.found import Found
 from experiments.record import Result, Row, cell
 from sarah.cli.options import parse_options
 from sarah.errors import ConfigurationError, unknown_name
+from sarah.versions import versions
 
 OTHER_RESULTS = record.ROOT / "build" / "experiments"
 """Folder for the rows of experiments that options change."""
@@ -40,28 +42,25 @@ def make(found: Found, command: str, arguments: Sequence[str]) -> Path:
     :raises ConfigurationError: for options that are wrong
     :raises ResultError: if a result of the project was to be made of code that no commit has
     """
-    shared, own = parse_shared(arguments)
+    shared, own = _parse_shared(arguments)
     default = found.quick if shared.quick else found.full
     experiment = parse_options(type(default), command, own, default)
-    check_counts(experiment)
-    cases = chosen(experiment.cases(), shared.only)
+    _check_counts(experiment)
+    cases = _chosen(experiment.cases(), shared.only)
     is_whole = dataclasses.replace(experiment, workers=found.full.workers) == found.full and not shared.only
     folder = shared.out or (record.RESULTS if is_whole else OTHER_RESULTS)
     if folder.resolve() == record.RESULTS and (changed := record.changed_files()):
         raise record.ResultError(f"commit first what a result is made of: {', '.join(changed[:3])} has changes")
     folder.mkdir(parents=True, exist_ok=True)
-    whole = shlex.join([*command.split(), *without_workers(arguments)])
-    result = begun(found, folder, whole)
-    say_duration(found, result)
-    compute(experiment, cases, result, folder)
+    whole = shlex.join([*command.split(), *_without_workers(arguments)])
+    result = _begun(found, folder, whole)
+    _say_duration(found, result)
+    _compute(experiment, cases, result, folder)
     return folder / f"{found.name}.csv"
 
 
-def parse_shared(arguments: Sequence[str]) -> tuple[argparse.Namespace, list[str]]:
-    """The options that all experiments have, and the other arguments.
-
-    :param arguments: options
-    """
+def _parse_shared(arguments: Sequence[str]) -> tuple[argparse.Namespace, list[str]]:
+    """The options that all experiments have, and the other arguments."""
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--only", action="append", default=[])
@@ -74,21 +73,15 @@ def parse_shared(arguments: Sequence[str]) -> tuple[argparse.Namespace, list[str
     return shared, own
 
 
-def without_workers(arguments: Sequence[str]) -> list[str]:
-    """Arguments but for the number of workers, on which no row depends.
-
-    :param arguments: options
-    """
+def _without_workers(arguments: Sequence[str]) -> list[str]:
+    """Arguments but for the number of workers, on which no row depends."""
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--workers")
     return parser.parse_known_args(arguments)[1]
 
 
-def check_counts(experiment: Experiment) -> None:
-    """Refuse whole numbers that are too low.
-
-    :param experiment: an experiment with some options
-    """
+def _check_counts(experiment: Experiment) -> None:
+    """Refuse whole numbers that are too low."""
     for option, value in vars(experiment).items():
         lowest = 0 if option in MAY_BE_0 else 1
         for number in value if isinstance(value, tuple) else (value,):
@@ -96,12 +89,8 @@ def check_counts(experiment: Experiment) -> None:
                 raise ConfigurationError(f"--{option.replace('_', '-')} must be at least {lowest}, not {number}")
 
 
-def chosen(cases: Sequence[Row], only: Iterable[str]) -> list[Row]:
-    """Cases with the given values.
-
-    :param cases: all cases
-    :param only: conditions ``KEY=VALUE``
-    """
+def _chosen(cases: Sequence[Row], only: Iterable[str]) -> list[Row]:
+    """Cases with the given values."""
     kept = list(cases)
     for condition in only:
         key, equals, value = condition.partition("=")
@@ -114,17 +103,13 @@ def chosen(cases: Sequence[Row], only: Iterable[str]) -> list[Row]:
     return kept
 
 
-def begun(found: Found, folder: Path, command: str) -> Result:
-    """The result that this command has begun, or a new one.
-
-    :param found: the experiment
-    :param folder: folder of the result
-    :param command: the command
-    """
+def _begun(found: Found, folder: Path, command: str) -> Result:
+    """The result that this command has begun, or a new one."""
     commit = record.commit()
     if commit == record.UNKNOWN:
         print("without a git history the result cannot tell its commit", file=sys.stderr)
-    new = Result(found.name, found.question, command, commit, record.today(), 0.0, versions=record.versions_here())
+    used = ", ".join(f"{name} {version}" for name, version in versions().items())
+    new = Result(found.name, found.question, command, commit, time.strftime("%Y-%m-%d"), 0.0, versions=used)
     if found.name not in record.names(folder):
         return new
     before = record.read(found.name, folder)
@@ -134,46 +119,33 @@ def begun(found: Found, folder: Path, command: str) -> Result:
     return dataclasses.replace(new, commit=commits, minutes=before.minutes, rows=before.rows)
 
 
-def say_duration(found: Found, result: Result) -> None:
-    """Say how long the whole experiment took when it was made last.
-
-    :param found: the experiment
-    :param result: the result that is made now
-    """
+def _say_duration(found: Found, result: Result) -> None:
+    """Say how long the whole experiment took when it was made last."""
     known = record.read(found.name).minutes if found.name in record.names() else None
     if result.rows:
         print(f"goes on after {len(result.rows)} rows", file=sys.stderr)
     if known:
-        print(f"the whole of {found.name} took {duration(known)} of one core", file=sys.stderr)
+        print(f"the whole of {found.name} took {_duration(known)} of one core", file=sys.stderr)
 
 
-def duration(minutes: float) -> str:
-    """A time for people.
-
-    :param minutes: the time, in minutes
-    """
+def _duration(minutes: float) -> str:
+    """A time for people."""
     if minutes < 1.0:
         return f"{60.0 * minutes:.0f} seconds"
     return f"{minutes:.0f} minutes" if minutes < 100.0 else f"{minutes / 60.0:.1f} hours"
 
 
-def compute(experiment: Experiment, cases: Sequence[Row], result: Result, folder: Path) -> None:
-    """Compute the cases that a result lacks, and write it after each.
-
-    :param experiment: the experiment
-    :param cases: all cases
-    :param result: what is known
-    :param folder: folder of the result
-    """
+def _compute(experiment: Experiment, cases: Sequence[Row], result: Result, folder: Path) -> None:
+    """Compute the cases that a result lacks, and write it after each."""
     known = {tuple(row[column] for column in cases[0]) for row in result.rows}
     left = [case for case in cases if tuple(map(cell, case.values())) not in known]
     rows, seconds = [*result.rows], 60.0 * (result.minutes or 0.0)
     with tqdm(total=len(left), unit=" cases") as progress:
-        for number, outcome in enumerate(experiment.outcomes(left), start=1):
-            for row in outcome.rows:
+        for number, (made, duration) in enumerate(experiment.outcomes(left), start=1):
+            for row in made:
                 tqdm.write(", ".join(f"{column} {cell(value)}" for column, value in row.items()))
-            rows += outcome.rows
-            seconds += outcome.seconds
+            rows += made
+            seconds += duration
             missing = len(left) - number
             record.write(dataclasses.replace(result, rows=rows, missing=missing, minutes=seconds / 60.0), folder)
             progress.update()

@@ -39,22 +39,19 @@ def show(part: str) -> None:
     if function not in vars(found.module):
         raise ConfigurationError(unknown_name(f"part of {name}", function, vars(found.module)))
     if name not in record.names():
-        text = f"*Still to be made: `{package_of(name).command} {name}`.*"
+        text = f"*Still to be made: `{_package_of(name).command} {name}`.*"
     elif function.startswith("figure"):
-        text = f"![{found.question}]({picture(name, function).name})"
+        text = f"![{found.question}]({_picture(name, function).name})"
     else:
         result = record.read(name)
-        text = filled(getattr(found.module, function)(result.table))
+        text = _filled(getattr(found.module, function)(result.table))
         if "\n|" in text:
-            text = f"{text}\n\n{source(found, result)}"
+            text = f"{text}\n\n{_source(found, result)}"
     print(f"\n{text}\n")
 
 
-def filled(text: str) -> str:
-    """Text whose paragraphs are broken into lines; tables stay.
-
-    :param text: Markdown
-    """
+def _filled(text: str) -> str:
+    """Text whose paragraphs are broken into lines; tables stay."""
     return "\n\n".join(block if block.startswith("|") else _broken(block) for block in text.split("\n\n"))
 
 
@@ -63,13 +60,9 @@ def _broken(paragraph: str) -> str:
     return textwrap.fill(whole, WIDTH, break_long_words=False, break_on_hyphens=False).replace("\0", " ")
 
 
-def source(found: Found, result: Result) -> str:
-    """The line below a table: how to make it or one of its rows again, where and when it was made, and its data.
-
-    :param found: the experiment
-    :param result: its result
-    """
-    command = f"{package_of(found.name).command} {found.name}"
+def _source(found: Found, result: Result) -> str:
+    """The line below a table: how to make it or one of its rows again, where and when it was made, and its data."""
+    command = f"{_package_of(found.name).command} {found.name}"
     cases = found.full.cases()
     varying = [key for key, value in cases[0].items() if any(case[key] != value for case in cases)]
     only = shlex.join(word for key in varying for word in ("--only", f"{key}={cell(cases[-1][key])}"))
@@ -80,23 +73,16 @@ def source(found: Found, result: Result) -> str:
         f"One of its cases alone: `{command} {only}`." if only else "",
         f"[Data](../../results/{result.name}.csv)",
     ]
-    return filled(" ".join(filter(None, sentences)))
+    return _filled(" ".join(filter(None, sentences)))
 
 
-def package_of(name: str) -> Package:
-    """Package of an experiment.
-
-    :param name: name of the experiment
-    """
+def _package_of(name: str) -> Package:
+    """Package of an experiment."""
     return next(package for package in PACKAGES if name in paths_of(package))
 
 
-def picture(name: str, function: str) -> Path:
-    """File of a picture.
-
-    :param name: name of the experiment
-    :param function: name of the function that draws it
-    """
+def _picture(name: str, function: str) -> Path:
+    """File of a picture."""
     return PICTURES / f"{name}{function.removeprefix('figure')}.svg"
 
 
@@ -111,7 +97,7 @@ def pictures() -> Iterator[Path]:
             continue
         module, rows = find(name).module, record.read(name).table
         for function in (one for one in vars(module) if one.startswith("figure")):
-            path = picture(name, function)
+            path = _picture(name, function)
             with plt.rc_context({**STYLE, "svg.hashsalt": name}):
                 figure = getattr(module, function)(rows)
                 figure.savefig(path, metadata={"Date": None})

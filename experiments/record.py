@@ -6,7 +6,6 @@ import csv
 import io
 import re
 import subprocess
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 from sarah.errors import SarahError
 from sarah.files import replace_text
-from sarah.versions import versions
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -62,11 +60,6 @@ class Result:
     remark: str = ""
     versions: str = ""
     rows: Sequence[Mapping[str, str]] = field(default=(), repr=False)
-
-    @property
-    def path(self) -> Path:
-        """Path of the file in the project's results."""
-        return RESULTS / f"{self.name}.csv"
 
     @property
     def table(self) -> DataFrame:
@@ -134,16 +127,6 @@ def cell(value: Any) -> str:
     if value is None:
         return ""
     return f"{value:.5g}" if isinstance(value, float) else str(value)
-
-
-def today() -> str:
-    """Day, as YYYY-MM-DD."""
-    return time.strftime("%Y-%m-%d")
-
-
-def versions_here() -> str:
-    """Versions of Python, the project and the packages that it computes with, in one line."""
-    return ", ".join(f"{name} {version}" for name, version in versions().items())
 
 
 def git(*arguments: str) -> str | None:

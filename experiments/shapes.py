@@ -1,8 +1,8 @@
-"""Shapes that pictures of results share: lines, strips of dots, dots with intervals, one column against another."""
+"""Shapes that pictures of results share: lines and strips of dots."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -48,6 +48,25 @@ def lines(axis: Axes, rows: DataFrame, x: str, y: str, label: str, of_figure: Da
     axis.set(xlabel=heading(x), ylabel=heading(y))
 
 
+def line_panels(rows: DataFrame, panel: str, *columns: str, height: float = 0.35, **settings: Any) -> Figure:
+    """Panels side by side with :func:`lines`, a colour for the same label in all.
+
+    :param rows: of a result
+    :param panel: column that names the panels
+    :param columns: columns x, y and label
+    :param height: height over width of the whole
+    :param settings: of :func:`panels`
+    """
+    parts = groups(rows, panel)
+    figure, axes = panels(len(parts), height, **settings)
+    for axis, (name, part) in zip(axes, parts.items(), strict=True):
+        lines(axis, part, *columns, of_figure=rows)
+        axis.set_title(str(name), fontsize="small")
+        axis.set_ylabel(heading(columns[1]) if axis is axes[0] else "")
+    legend(figure, axes[0])
+    return figure
+
+
 def strips(
     axis: Axes, columns: Mapping[str, Series[Any]], marks: Mapping[str, float] | None = None, mark: str = ""
 ) -> None:
@@ -68,41 +87,6 @@ def strips(
     axis.grid(visible=False, axis="x")
 
 
-def intervals(
-    axis: Axes, labels: Sequence[str], values: Series[Any], low: Series[Any], high: Series[Any], **style: Any
-) -> None:
-    """A dot with its interval for each label, from top to bottom.
-
-    :param axis: to draw on
-    :param labels: of the rows
-    :param values: of the dots
-    :param low: lower ends
-    :param high: upper ends
-    :param style: offset of the heights, colour and label of the dots
-    """
-    offset, colour = style.pop("offset", 0.0), style.pop("color", COLOURS[0])
-    heights = [height - offset for height in range(len(labels), 0, -1)]
-    axis.hlines(heights, low, high, color=colour, linewidth=1.0)
-    axis.plot(values, heights, "o", color=colour, markersize=4, **style)
-    axis.set_yticks(range(len(labels), 0, -1), labels)
-    axis.grid(visible=False, axis="y")
-
-
-def against(axis: Axes, rows: DataFrame, x: str, y: str, label: str) -> None:
-    """One column against another, a colour for each group; equal values lie on the grey line.
-
-    :param axis: to draw on
-    :param rows: of results
-    :param x: column
-    :param y: column
-    :param label: column that names the groups
-    """
-    axis.axline((0.0, 0.0), slope=1.0, color="grey", linewidth=0.8)
-    for colour, (name, group) in zip(COLOURS, groups(rows, label).items(), strict=False):
-        axis.plot(group[x], group[y], "o", color=colour, markersize=4, alpha=0.7, label=str(name))
-    axis.set(xlabel=heading(x), ylabel=heading(y), aspect="equal")
-
-
 def panels(count: int, height: float = 0.45, **settings: Any) -> tuple[Figure, list[Axes]]:
     """Axes side by side, as wide as a page.
 
@@ -110,8 +94,6 @@ def panels(count: int, height: float = 0.45, **settings: Any) -> tuple[Figure, l
     :param height: height over width of the whole
     :param settings: of :func:`matplotlib.pyplot.subplots`
     """
-    if ratios := settings.pop("width_ratios", None):
-        settings["gridspec_kw"] = {"width_ratios": ratios}
     size = (WIDTH, height * WIDTH)
     figure, axes = plt.subplots(1, count, squeeze=False, figsize=size, layout="constrained", **settings)
     return figure, list(axes[0])

@@ -31,25 +31,35 @@ WORDS = {
     "v": "V",
 }
 """Words of column names that are written otherwise."""
+FORMATS = {
+    **dict.fromkeys(("P1", "P2", "P3", "P4", "P5", "V1", "V2", "V3", "V4", "steps_per_second"), ".2f"),
+    **dict.fromkeys(("survival", "by_sensors", "kept"), ".0%"),
+    **dict.fromkeys(("_n", "_mm", "_kb", "_mib"), ".0f"),
+    "score": ".3f",
+    "difference": "+.1%",
+    "_cm": ".1f",
+}
+"""Format of numbers by the end of a column's name; that of their intervals and errors is the same."""
 NOTHING = "\N{EN DASH}"
 """What stands in an empty cell."""
 
 
-def table(rows: DataFrame, columns: Sequence[str], formats: Mapping[str, str], caption: str) -> str:
+def table(rows: DataFrame, columns: Sequence[str], caption: str, **formats: str) -> str:
     """A table with a caption; each cell has one number or one text.
 
     :param rows: of a result
     :param columns: names of the columns, in order
-    :param formats: format of the numbers by column; other columns are shown as they stand
     :param caption: sentence above the table
+    :param formats: formats by the end of a column's name, beside those of :data:`FORMATS`
     """
-    shown_columns = [[shown(value, formats.get(column, "")) for value in rows[column]] for column in columns]
+    specs = {column: format_of(column, formats) for column in columns}
+    shown_columns = [[shown(value, spec) for value in rows[column]] for column, spec in specs.items()]
     cells = list(zip(*shown_columns, strict=True))
     return "\n".join([f"**{caption}**", "", *markdown_table([heading(column) for column in columns], cells)])
 
 
 def turned_table(
-    rows: DataFrame, kept: Sequence[str], across: str | Sequence[str], column: str, spec: str, caption: str
+    rows: DataFrame, kept: Sequence[str], across: str | Sequence[str], column: str, caption: str, spec: str = ""
 ) -> str:
     """A table of one column, whose values stand side by side.
 
@@ -57,15 +67,26 @@ def turned_table(
     :param kept: columns that stay, which name the rows of the table
     :param across: columns whose values name the columns of the table
     :param column: column whose values are shown
-    :param spec: format of these
     :param caption: sentence above the table
+    :param spec: format of the values; by default that of the column
     """
     names = [across] if isinstance(across, str) else list(across)
     wide = rows.pivot(index=list(kept), columns=names, values=column)
     wide = wide.reindex(index=unique(rows, kept), columns=unique(rows, names))
     heads = [", ".join(map(str, name)) if isinstance(name, tuple) else str(name) for name in wide.columns]
     wide.columns = heads  # type: ignore[assignment]  # the stubs know an index only
-    return table(wide.reset_index(), [*kept, *heads], dict.fromkeys(heads, spec), caption)
+    return table(wide.reset_index(), [*kept, *heads], caption, **dict.fromkeys(heads, spec or format_of(column)))
+
+
+def format_of(column: str, formats: Mapping[str, str] = FORMATS) -> str:
+    """Format of a column's numbers; none if they are shown as they stand.
+
+    :param column: name of the column
+    :param formats: formats by the end of the name, which go before those of :data:`FORMATS`
+    """
+    name = re.sub("_(low|high|error)$", "", column)
+    known = [*formats.items(), *FORMATS.items()]
+    return next((spec for end, spec in known if column.endswith(end) or name.endswith(end)), "")
 
 
 def unique(rows: DataFrame, columns: Sequence[str]) -> list[Any]:

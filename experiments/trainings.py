@@ -83,19 +83,12 @@ def kept(file: Path, make: Callable[..., Any], *arguments: Any) -> Any:
     return json.loads(file.read_text(encoding="utf-8"))
 
 
-def short_hash(values: Any) -> str:
-    """Twelve hexadecimal digits.
-
-    :param values: numbers, texts, and lists of these
-    """
-    return hashlib.sha256(json.dumps(values).encode()).hexdigest()[:12]
-
-
 def identity(settings: object, packages: Sequence[str] = (".",)) -> str:
-    """Name for a folder of trainings or outcomes with these settings, made with today's code and versions.
+    """Name for a folder of trainings or outcomes with these settings, made with this code and these versions.
 
     :param settings: settings of the trainings, which say all that these take from the shipped parameters
     :param packages: names of the parts of sarah that the trainings depend on; by default those of any result
     """
     sources = [source_hash(SARAH / name, CODE) for name in packages]
-    return short_hash([repr(settings), versions() | {"sarah-sources": sources}])
+    values = json.dumps([repr(settings), versions() | {"sarah-sources": sources}])
+    return hashlib.sha256(values.encode()).hexdigest()[:12]

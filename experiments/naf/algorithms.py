@@ -61,46 +61,6 @@ class NoPull(QuadraticCritic):
         return values._replace(mu=th.zeros_like(values.mu))
 
 
-class ExpectedUnderNoise(QuadraticCritic):
-    """Targets take the mean of Q under the exploration noise: V less half its variance times the trace of P."""
-
-    def target_value(self, obs: th.Tensor) -> th.Tensor:
-        """Mean of Q under the noise."""
-        trace = self.lower(obs).square().sum(dim=(1, 2)).unsqueeze(1)
-        return self.value(obs) - 0.5 * EXPLORATION_STD**2 * trace
-
-
-class OneCurvature(QuadraticCritic):
-    """One matrix L for all states: its entries are those of the last layer's bias."""
-
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
-        super().__init__(*args, **kwargs)
-        nn.init.zeros_(self.lower_net[-1].bias)
-
-    def _entries(self, shared: th.Tensor) -> th.Tensor:
-        return super()._entries(th.zeros_like(shared))
-
-
-class BoundedCurvature(QuadraticCritic):
-    """Entries of L within one of zero."""
-
-    def _entries(self, shared: th.Tensor) -> th.Tensor:
-        outputs = self.lower_net(shared)
-        return th.where(self.on_diagonal, outputs.sigmoid(), outputs.tanh())
-
-
-class NormalisedLayers(QuadraticCritic):
-    """Layer normalisation in all layers of V."""
-
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
-        super().__init__(*args, **kwargs)
-        *hidden, output = self.value_net
-        layers: list[nn.Module] = []
-        for layer in hidden:
-            layers += [layer, nn.LayerNorm(layer.out_features)] if isinstance(layer, nn.Linear) else [layer]
-        self.value_net = nn.Sequential(*layers, output)
-
-
 class Variant(NamedTuple):
     """A variant of NAF.
 
@@ -122,14 +82,9 @@ VARIANTS = {
     "NAF, no dropout": Variant(dropout=0.0),
     "NAF, no normalisation": Variant(PlainValues),
     "NAF, no pull to the centre": Variant(NoPull),
-    "NAF, one L for all states": Variant(OneCurvature),
     "NAF, noise of 0.5": Variant(exploration_std=0.5),
     "NAF, noise of 0.9": Variant(exploration_std=0.9),
     "NAF with V, as published": Variant(values="V"),
-    "NAF with V less the cost of noise": Variant(ExpectedUnderNoise, "V"),
-    "NAF with V, one L for all states": Variant(OneCurvature, "V"),
-    "NAF with V, entries of L within 1": Variant(BoundedCurvature, "V"),
-    "NAF with V, layer normalisation": Variant(NormalisedLayers, "V"),
 }
 OTHERS: dict[str, type[OffPolicyAlgorithm]] = {"DDPG": DDPG, "TD3": TD3, "SAC": SAC}
 
@@ -152,19 +107,15 @@ def agent(
         net_arch = {variant.values: layers, "shared": layers, "mu": [], "L": []}
         settings["policy_kwargs"] = {"net_arch": net_arch, "dropout": variant.dropout}
         base = NAF.policy_aliases[policy]
-        return Watched(policy_with(variant.critic, base), env, exploration_std=variant.exploration_std, **settings)
+        return Watched(_policy_with(variant.critic, base), env, exploration_std=variant.exploration_std, **settings)
     if algorithm in ("DDPG", "TD3"):
         zeros = np.zeros(env.action_space.shape)
         settings["action_noise"] = NormalActionNoise(zeros, np.full_like(zeros, DOCUMENTED_STD))
     return OTHERS[algorithm](policy, env, policy_kwargs={"net_arch": layers} if layers else None, **settings)
 
 
-def policy_with(critic: type[QuadraticCritic], base: type[NAFPolicy]) -> type[NAFPolicy]:
-    """A policy with another critic.
-
-    :param critic: class of the critic
-    :param base: class of the policy
-    """
+def _policy_with(critic: type[QuadraticCritic], base: type[NAFPolicy]) -> type[NAFPolicy]:
+    """A policy with another critic."""
 
     class Policy(base):  # type: ignore[valid-type, misc]
         def make_q_net(self) -> QuadraticCritic:

@@ -31,11 +31,6 @@ SATURATED = 0.95
 """Size of an entry of mu from which on it counts as at the bound."""
 VALUES = ("v_minus_true", "curvature", "true_curvature", "gap_over_true", "distance_of_mu", "saturated")
 COLUMNS = ("score", "return", "v_over_bound", *VALUES)
-FORMATS = {
-    **dict.fromkeys((*COLUMNS, "median", "lowest", "highest"), ".2f"),
-    "v_minus_true": ".1f",
-    "saturated": ".0%",
-}
 
 
 @dataclass(frozen=True)
@@ -64,12 +59,7 @@ class KnownTasks(Experiment):
         return known + product(task=POINT_TASKS, algorithm=ON_POINT_TASKS, seed=range(self.point_seeds))
 
     def rows(self, task: str, algorithm: str, seed: int) -> Iterator[Row]:
-        """What an agent has learned.
-
-        :param task: name of the task
-        :param algorithm: name of the algorithm
-        :param seed: seed of the training
-        """
+        """What an agent has learned."""
         th.set_num_threads(1)
         known = KNOWN_TASKS.get(task)
         env = known(seed) if known else POINT_TASKS[task]()
@@ -79,18 +69,14 @@ class KnownTasks(Experiment):
             model = agent(algorithm, env, seed, LAYERS, **settings).learn(steps)
         found = dict.fromkeys(COLUMNS) | {"v_over_bound": getattr(model, "highest_ratio", None)}
         if known:
-            found |= {"score": score(known, model, self.episodes), **beside_truth(model, env)}
+            found |= {"score": _score(known, model, self.episodes), **_beside_truth(model, env)}
         else:
             found["return"] = mean_return(model, POINT_TASKS[task](), self.point_episodes)
         yield found
 
 
-def beside_truth(model: OffPolicyAlgorithm, env: KnownTask) -> Row:
-    """Columns of what an agent says of its newest transitions; DDPG has a mu only.
-
-    :param model: the agent
-    :param env: its task
-    """
+def _beside_truth(model: OffPolicyAlgorithm, env: KnownTask) -> Row:
+    """Columns of what an agent says of its newest transitions; DDPG has a mu only."""
     buffer = model.replay_buffer
     newest = np.arange(buffer.pos - min(buffer.size(), FRESH), buffer.pos)  # in a full buffer, negative ones are older
     states, actions = (array[newest, 0].astype(float) for array in (buffer.observations, buffer.actions))
@@ -114,13 +100,8 @@ def beside_truth(model: OffPolicyAlgorithm, env: KnownTask) -> Row:
     }
 
 
-def score(make: Callable[[int], KnownTask], model: OffPolicyAlgorithm, episodes: int) -> float:
-    """Return in some episodes, the same for all, from that of the centre, 0, to that of the best law, 1.
-
-    :param make: makes the task
-    :param model: the agent
-    :param episodes: number of episodes
-    """
+def _score(make: Callable[[int], KnownTask], model: OffPolicyAlgorithm, episodes: int) -> float:
+    """Return in some episodes, the same for all, from that of the centre, 0, to that of the best law, 1."""
 
     def earned(law: Callable[[KnownTask, np.ndarray], np.ndarray]) -> float:
         env, total = make(EVALUATION_SEED), 0.0
@@ -153,30 +134,24 @@ def of_seeds(rows: DataFrame, column: str, how: str) -> DataFrame:
     return wide.reindex(index=unique(known, ["task"]), columns=unique(known, ["algorithm"]))
 
 
-def of_known(rows: DataFrame) -> DataFrame:
-    """Rows of tasks whose truth is known.
-
-    :param rows: of the result
-    """
+def _of_known(rows: DataFrame) -> DataFrame:
+    """Rows of tasks whose truth is known."""
     return rows[rows["task"].isin(KNOWN_TASKS)]
 
 
-def quoted(names: Index[Any]) -> str:
-    """Names of tasks in a sentence.
-
-    :param names: the names
-    """
+def _quoted(names: Index[Any]) -> str:
+    """Names of tasks in a sentence."""
     return ", ".join(f"“{name}”" for name in names) or "none"
 
 
 def answer(rows: DataFrame) -> str:
     """How NAF does where the truth is known."""
-    scores, ratios = of_seeds(rows, "score", "median"), of_seeds(of_known(rows), "v_over_bound", "max")
+    scores, ratios = of_seeds(rows, "score", "median"), of_seeds(_of_known(rows), "v_over_bound", "max")
     behind, published = scores.index[scores.NAF <= scores.DDPG], ratios["NAF with V, as published"]
     return (
         f"Where the truth is known, NAF's median score is above DDPG's on {len(scores) - len(behind)} of {len(scores)} "
-        f"tasks, but not on {quoted(behind)}. Its V comes to {shown(ratios.NAF.max(), '.2f')} of the bound at most. "
-        f"With V in the targets, as published, V runs away on {quoted(ratios.index[published > 1])}: it comes to "
+        f"tasks, but not on {_quoted(behind)}. Its V comes to {shown(ratios.NAF.max(), '.2f')} of the bound at most. "
+        f"With V in the targets, as published, V runs away on {_quoted(ratios.index[published > 1])}: it comes to "
         f"{shown(published.max(), '.1f')} times the bound."
     )
 
@@ -189,38 +164,35 @@ def points_answer(rows: DataFrame) -> str:
     highest = of_seeds(rows, "v_over_bound", "max").NAF[returns.index].max()
     return (
         f"Where a point is moved, NAF's median return is above TD3's on {ahead or 'none'} of {len(returns)} tasks, "
-        f"equal on {level}, and below it on {quoted(behind)}. It is above DDPG's on {quoted(above_ddpg)} only. V comes "
-        f"to {shown(highest, '.2f')} of its bound at most."
+        f"equal on {level}, and below it on {_quoted(behind)}. It is above DDPG's on {_quoted(above_ddpg)} only. V "
+        f"comes to {shown(highest, '.2f')} of its bound at most."
     )
 
 
 def scores(rows: DataFrame) -> str:
     """Scores on all tasks whose truth is known."""
     caption = f"Return from that of the centre, 0, to that of the best law, 1, in {FULL.episodes} episodes: {OF_KNOWN}"
-    return beside(of_seeds(rows, "score", "median"), caption)
+    return _beside(of_seeds(rows, "score", "median"), caption)
 
 
 def bounds(rows: DataFrame) -> str:
     """How near V comes to its bound on these tasks."""
     caption = f"Largest V of a batch over its bound: the worst of {FULL.seeds} seeds in {FULL.steps} steps."
-    return beside(of_seeds(of_known(rows), "v_over_bound", "max"), caption)
+    return _beside(of_seeds(_of_known(rows), "v_over_bound", "max"), caption)
 
 
-def beside(found: DataFrame, caption: str) -> str:
-    """A table with a column for each task.
-
-    :param found: values, a row for each task and a column for each algorithm
-    :param caption: sentence above the table
-    """
+def _beside(found: DataFrame, caption: str) -> str:
+    """A table with a column for each task."""
     wide = found.T.reset_index()
-    return table(wide, list(wide), dict.fromkeys(found.index, ".2f"), caption)
+    return table(wide, list(wide), caption, **dict.fromkeys(found.index, ".2f"))
 
 
 def six_actions(rows: DataFrame) -> str:
     """What the values say of six actions."""
     six = rows[rows["task"].str.startswith("six")]
     found = six.groupby(["task", "algorithm"], sort=False)[list(VALUES)].median().reset_index()
-    return table(found, ["task", "algorithm", *VALUES], FORMATS, f"With six actions: {OF_KNOWN}")
+    formats = dict.fromkeys(VALUES, ".2f") | {"v_minus_true": ".1f", "saturated": ".0%"}
+    return table(found, ["task", "algorithm", *VALUES], f"With six actions: {OF_KNOWN}", **formats)
 
 
 def returns(rows: DataFrame) -> str:
@@ -228,4 +200,4 @@ def returns(rows: DataFrame) -> str:
     grouped = rows.dropna(subset=["return"]).groupby(["task", "algorithm"], sort=False)["return"]
     found = grouped.agg(median="median", lowest="min", highest="max").reset_index()
     caption = f"Return of {FULL.point_episodes} episodes of {FULL.point_seeds} seeds after {FULL.point_steps} steps."
-    return table(found, ["task", "algorithm", "median", "lowest", "highest"], FORMATS, caption)
+    return table(found, list(found), caption, median=".2f", lowest=".2f", highest=".2f")

@@ -72,8 +72,8 @@ class LinearQuadratic(KnownTask):
         super().__init__(size.states, size.actions, seed)
         self._size, self.steps_of_an_episode = size, size.steps_of_an_episode
         fixed = np.random.default_rng(size.actions)
-        self._a = size.decay * rotation(size.states, fixed)
-        self._b = size.gain * rotation(size.states, fixed)[:, : size.actions] * np.linspace(1.0, 0.5, size.actions)
+        self._a = size.decay * _rotation(size.states, fixed)
+        self._b = size.gain * _rotation(size.states, fixed)[:, : size.actions] * np.linspace(1.0, 0.5, size.actions)
         self._solve()
 
     def _solve(self) -> None:
@@ -128,8 +128,8 @@ class Signs(KnownTask):
     def __init__(self, actions: int, seed: int) -> None:
         super().__init__(2 * actions, actions, seed)
         fixed = np.random.default_rng(actions)
-        self._a, self._d = 0.95 * rotation(actions, fixed), 0.9 * rotation(actions, fixed)
-        self._b = 0.3 * rotation(actions, fixed) * np.linspace(1.0, 0.5, actions)
+        self._a, self._d = 0.95 * _rotation(actions, fixed), 0.9 * _rotation(actions, fixed)
+        self._b = 0.3 * _rotation(actions, fixed) * np.linspace(1.0, 0.5, actions)
         self._c = fixed.normal(size=actions) / np.sqrt(actions)
         # V = value_of_x x + constant, as x' is linear in x and the best action's use is the same everywhere
         self._value_of_x = np.linalg.solve(np.eye(actions) - GAMMA * self._a.T, self._c)
@@ -161,12 +161,8 @@ class Signs(KnownTask):
         return next_states + self._generator.normal(0.0, noise, states.shape), rewards
 
 
-def rotation(size: int, generator: np.random.Generator) -> np.ndarray:
-    """A random orthogonal matrix.
-
-    :param size: number of its rows
-    :param generator: source of the draws
-    """
+def _rotation(size: int, generator: np.random.Generator) -> np.ndarray:
+    """A random orthogonal matrix."""
     q, r = np.linalg.qr(generator.normal(size=(size, size)))
     return q * np.sign(np.diag(r))
 

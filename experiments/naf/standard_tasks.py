@@ -19,12 +19,11 @@ from pandas import DataFrame
 from experiments.experiment import Experiment
 from experiments.naf.algorithms import OTHERS, agent, mean_return
 from experiments.record import Row
-from experiments.shapes import groups, legend, lines, panels
+from experiments.shapes import line_panels
 from experiments.tables import shown, table
 
 RECENT = 3
 """Number of evaluations that are the end of a training: one alone says little, as returns swing."""
-FORMATS = {**dict.fromkeys(("return", "return_low", "return_high"), ".1f"), "v_over_bound": ".2f"}
 
 
 class Trainings(NamedTuple):
@@ -76,12 +75,7 @@ class StandardTasks(Experiment):
         return sorted(cases, key=lambda case: case["seed"])
 
     def rows(self, task: str, algorithm: str, seed: int) -> Iterator[Row]:
-        """The course of a training.
-
-        :param task: name of the task
-        :param algorithm: name of the algorithm
-        :param seed: seed of the training
-        """
+        """The course of a training."""
         th.set_num_threads(1)
         of = TASKS[task]
         steps = self.steps or of.steps
@@ -105,21 +99,14 @@ QUICK = StandardTasks(steps=120, seeds=1, episodes=1, evaluations=1)
 
 
 def ends(rows: DataFrame) -> DataFrame:
-    """A row for each training: means of its last evaluations.
-
-    :param rows: of the result
-    """
+    """A row for each training: means of its last evaluations."""
     trainings = rows.groupby(["task", "algorithm", "seed"], sort=False)
     last = trainings.tail(RECENT).groupby(["task", "algorithm", "seed"], sort=False)
     return last.agg({"return": "mean", "v_over_bound": "max"}).reset_index()
 
 
 def over_seeds(rows: DataFrame, *columns: str) -> DataFrame:
-    """Median return of the seeds, and the lowest and the highest; the largest V over its bound.
-
-    :param rows: with returns of seeds
-    :param columns: names of the columns that tell groups apart
-    """
+    """Median return of the seeds of each group, and the lowest and the highest; the largest V over its bound."""
     return (
         rows.groupby(list(columns), sort=False)
         .agg(
@@ -134,19 +121,14 @@ def over_seeds(rows: DataFrame, *columns: str) -> DataFrame:
 def answer(rows: DataFrame) -> str:
     """How NAF does next to each of the other algorithms, and how near V comes to its bound."""
     found = over_seeds(ends(rows), "task", "algorithm").set_index(["algorithm", "task"])
-    sentences = [compared(found.loc["NAF"], found.loc[other], other) for other in OTHERS if other in found.index]
+    sentences = [_compared(found.loc["NAF"], found.loc[other], other) for other in OTHERS if other in found.index]
     ratios = found.loc["NAF"].v_over_bound
     nearest = f"V comes to {shown(ratios.max(), '.2f')} of its bound at most, on {ratios.idxmax()}."
     return " ".join([*sentences, nearest])
 
 
-def compared(naf: DataFrame, others: DataFrame, name: str) -> str:
-    """How NAF does next to another algorithm, as a sentence.
-
-    :param naf: returns of NAF by task
-    :param others: those of the other algorithm
-    :param name: its name
-    """
+def _compared(naf: DataFrame, others: DataFrame, name: str) -> str:
+    """How NAF does next to another algorithm, as a sentence."""
     naf = naf.loc[others.index]
     above, below = naf.return_low > others.return_high, naf.return_high < others.return_low
     verdicts = {
@@ -163,14 +145,10 @@ def figure(rows: DataFrame) -> Figure:
     """Return along the longest trainings: median and range of the seeds."""
     tasks = [task for task, of in TASKS.items() if of.steps == 100_000]
     plain = rows[rows["task"].isin(tasks) & rows.algorithm.isin(["NAF", *OTHERS])]
-    drawn, axes = panels(len(tasks), 0.35)
-    courses = groups(over_seeds(plain, "task", "algorithm", "steps"), "task")
-    for axis, (task, group) in zip(axes, courses.items(), strict=True):
-        lines(axis, group, "steps", "return", "algorithm", plain)
-        axis.set_title(str(task), fontsize="small")
-        axis.set_ylabel("return" if axis is axes[0] else "")
+    courses = over_seeds(plain, "task", "algorithm", "steps")
+    drawn = line_panels(courses, "task", "steps", "return", "algorithm")
+    for axis in drawn.axes:
         axis.xaxis.set_major_formatter(EngFormatter(sep=""))
-    legend(drawn, axes[0])
     return drawn
 
 
@@ -180,4 +158,4 @@ def returns(rows: DataFrame) -> str:
     found["steps"] = [TASKS[task].steps for task in found["task"]]
     columns = ["task", "algorithm", "steps", "seeds", "return", "return_low", "return_high", "v_over_bound"]
     caption = f"Mean return of a training's last {RECENT} evaluations: median, lowest and highest seed."
-    return table(found, columns, FORMATS, caption)
+    return table(found, columns, caption, **{"return": ".1f", "v_over_bound": ".2f"})

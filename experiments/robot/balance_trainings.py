@@ -18,9 +18,8 @@ from experiments import record
 from experiments.experiment import product
 from experiments.judge import Condition, Judge
 from experiments.record import Row, cell
-from experiments.robot.first_training import CLAIM
 from experiments.shapes import groups
-from experiments.tables import span, table
+from experiments.tables import table
 from experiments.trainings import TrainingExperiment, kept
 from sarah.control.parameters import BALANCE_PARAMETERS, Parameters
 from sarah.episode.parameter_sets import PARAMETER_SETS
@@ -122,15 +121,12 @@ class SecondTrainingExperiment(TrainingExperiment):
         """
         episode = self.episode("balance", engine)
         run = self.trained(TrainingConfig("balance", episodes=self.budget, seed=seed, slots=1, episode=episode))
-        values = [*run.parameters(), *kept(run.path / "mu.json", network_says, run)]
+        values = [*run.parameters(), *kept(run.path / "mu.json", _network_says, run)]
         return {name: cell(float(value)) for name, value in zip([*NAMES, *MU_NAMES], values, strict=True)}
 
 
-def network_says(run: RunFolder) -> Parameters:
-    """V1 to V4 that the network of a finished training says for the robot as designed, without exploration.
-
-    :param run: run folder of the training
-    """
+def _network_says(run: RunFolder) -> Parameters:
+    """V1 to V4 that the network of a finished training says for the robot as designed, without exploration."""
     from sarah.training.learners import AGENTS, chosen_parameters, nominal_observation
 
     config = run.config()
@@ -147,11 +143,7 @@ class BalanceTrainings(SecondTrainingExperiment):
         return product(engine=self.engines, seed=self.training_seeds)
 
     def rows(self, engine: Engine, seed: int) -> Iterator[Row]:
-        """What a training learns.
-
-        :param engine: physics engine
-        :param seed: seed of the training
-        """
+        """What a training learns."""
         yield self.learned(engine, seed)
 
 
@@ -174,45 +166,4 @@ def settled(rows: DataFrame) -> str:
         for name in NAMES
     )
     caption = f"What {FULL.seeds} trainings in each engine recommend, and what their networks say (mu)."
-    return table(found, list(found.columns), dict.fromkeys(found.columns[2:], ".2f"), caption)
-
-
-def claims(rows: DataFrame) -> str:
-    """What the paper claims of its Second Training, and what the trainings show."""
-    found = [
-        (
-            "V1 and V3 matter more than V2 and V4",
-            "yes",
-            f"V1 ends at {span(rows.V1, '.2f')} and saves the robot from the sides; V3 ends above zero in"
-            f" {(rows.V3 > 0.0).sum()} of {len(rows)} trainings and saves it from front and back",
-        ),
-        (
-            "V3 multiplies the acceleration of the y axis",
-            "no",
-            "that [does harm](../explanation/hip_law.md#why-v3-does-not-use-the-forward-acceleration); V3 multiplies"
-            " the fall here",
-        ),
-        (
-            "the angular rates about x and z are not necessary",
-            "in part",
-            "the rate about z is not; V3 uses the rate about x",
-        ),
-        (
-            "V1 follows V4, and V2 follows V3, without a logical relation to the reward",
-            "no",
-            "V1 and V3 settle where the score is high, whatever V2 and V4 are",
-        ),
-        (
-            "the randomness of the force makes the training hard",
-            "yes",
-            "up to 100 N the robot survives [most pushes](conditions.md) without any hip law, so one return says"
-            " little",
-        ),
-        (
-            "the robot returns to its initial position",
-            "in part",
-            "it ends [nearer to its start](conditions.md) than without the hip law, but not there",
-        ),
-    ]
-    caption = f"Second Trainings by NAF: {FULL.seeds} in each engine."
-    return table(DataFrame(found, columns=CLAIM), CLAIM, {}, caption)
+    return table(found, list(found), caption, **dict.fromkeys(found.columns[2:], ".2f"))

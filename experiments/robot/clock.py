@@ -43,10 +43,7 @@ class Clock(Experiment):
         return product(time_out_s=TIME_OUTS)
 
     def rows(self, time_out_s: float) -> Iterator[Row]:
-        """How many sets score above 0.5, how many of them are clocks, and the best clock.
-
-        :param time_out_s: time-out of a phase whose parameter is 0, in s
-        """
+        """How many sets score above 0.5, how many of them are clocks, and the best clock."""
         generator = random.Random(0)
         drawn = [tuple(generator.uniform(0.0, 2.0) for _ in range(5)) for _ in range(self.random_sets)]
         constants = ControllerConstants(time_out_seconds=time_out_s)
@@ -56,8 +53,8 @@ class Clock(Experiment):
         good = [result for result in results[: self.random_sets] if result.score > 0.5]
         yield {
             "sets_above_half": len(good),
-            "clocks_above_half": sum(map(is_clock, good)),
-            "best_clock_score": max((result.score for result in results if is_clock(result)), default=0.0),
+            "clocks_above_half": sum(map(_is_clock, good)),
+            "best_clock_score": max((result.score for result in results if _is_clock(result)), default=0.0),
         }
 
 
@@ -65,11 +62,8 @@ FULL = Clock()
 QUICK = Clock(random_sets=1, time_limit=2.0)
 
 
-def is_clock(result: EpisodeResult) -> bool:
-    """Whether time-outs rather than sensors ended the phases of an episode.
-
-    :param result: result of the episode
-    """
+def _is_clock(result: EpisodeResult) -> bool:
+    """Whether time-outs rather than sensors ended the phases of an episode."""
     return min(result.shifts_by_sensors, result.lifts_by_sensors) < SMALLEST_SENSOR_SHARE
 
 
@@ -87,5 +81,4 @@ def clocks(rows: DataFrame) -> str:
         f"How many of {FULL.random_sets} random sets of P1 to P5 score above 0.5 in PyBullet, how many of these are "
         f"clocks, and the best score of any clock: one episode of {FULL.time_limit:.0f} s each."
     )
-    formats = {"time_out_s": ".1f", "sets_above_half": ".0f", "clocks_above_half": ".0f", "best_clock_score": ".2f"}
-    return table(rows, list(formats), formats, caption)
+    return table(rows, list(rows), caption, time_out_s=".1f", score=".2f")

@@ -16,8 +16,8 @@ from pandas import DataFrame
 from experiments.experiment import Experiment, product, survival
 from experiments.pushes import CONTROLLERS, SETTINGS, TIME_LIMIT, pushed
 from experiments.record import Row
-from experiments.shapes import COLOURS, groups, intervals, legend, lines, panels
-from experiments.tables import heading, span, table, turned_table
+from experiments.shapes import line_panels
+from experiments.tables import span, table, turned_table
 from sarah.episode.episode import Episode
 from sarah.episode.robot_settings import conditions_of
 from sarah.episode.spec import FIRST_EVALUATION_SEED
@@ -32,14 +32,6 @@ NEWTONS = 100.0
 """Force of the pushes that come in every situation, in N."""
 FORCES = (50.0, 75.0, NEWTONS, 125.0, 150.0)
 """Forces of the pushes on level ground, in N."""
-FORMATS = {
-    "survival": ".1%",
-    "score": ".3f",
-    "steps_per_second": ".2f",
-    "shifts_by_sensors": ".0%",
-    "sole_clearance_mm": ".0f",
-    "final_distance_cm": ".1f",
-}
 
 
 def askew(drawn: SensorConditions) -> SensorConditions:
@@ -61,12 +53,7 @@ def biased(drawn: SensorConditions) -> SensorConditions:
     return replace(drawn, angular_rate_bias=(x, y, z))
 
 
-def friction(left: float, right: float) -> Terrain:
-    """Ground with a friction coefficient under each foot.
-
-    :param left: coefficient under the left foot
-    :param right: coefficient under the right foot
-    """
+def _friction(left: float, right: float) -> Terrain:
     return Terrain(friction_left=(left, left), friction_right=(right, right))
 
 
@@ -87,21 +74,15 @@ SITUATIONS = {
     "gyroscope 0.05 rad/s off": Situation(sensors=biased),
     **{f"slope of {degrees}°": Situation(Terrain(slope_degrees=(degrees, degrees))) for degrees in (4, 8)},
     **{f"bumps of {mm} mm": Situation(Terrain(roughness=(mm / 1000, mm / 1000))) for mm in (10, 20)},
-    "friction 0.25": Situation(friction(0.25, 0.25)),
-    "friction 0.15": Situation(friction(0.15, 0.15)),
-    "ice under the left foot": Situation(friction(0.15, 0.9)),
+    "friction 0.25": Situation(_friction(0.25, 0.25)),
+    "friction 0.15": Situation(_friction(0.15, 0.15)),
+    "ice under the left foot": Situation(_friction(0.15, 0.9)),
 }
 """Situations by name. All else varies from seed to seed as in trainings."""
 
 
-def simulate(situation: Situation, config: BalanceConfig, v: tuple[float, ...], seed: int) -> PushedEpisode:
-    """Simulate an episode, and note the direction of its push.
-
-    :param situation: what the robot meets
-    :param config: settings of the episode
-    :param v: values of V1 to V4
-    :param seed: seed of the episode
-    """
+def _simulated(situation: Situation, config: BalanceConfig, v: tuple[float, ...], seed: int) -> PushedEpisode:
+    """An episode, and the direction of its push."""
     drawn = conditions_of(config, seed)
     conditions = replace(drawn, sensors=situation.sensors(drawn.sensors))
     with Episode(config, seed, BALANCE, conditions=conditions) as episode:
@@ -128,17 +109,11 @@ class Conditions(Experiment):
         return [case for case in cases if case["situation"] == LEVEL or case["push_n"] in (0.0, NEWTONS)]
 
     def rows(self, engine: Engine, situation: str, push_n: float, controller: str) -> Iterator[Row]:
-        """A row for all pushes, and one for each group of directions.
-
-        :param engine: physics engine
-        :param situation: name of the situation
-        :param push_n: force of the push, in N
-        :param controller: name of V1 to V4
-        """
+        """A row for all pushes, and one for each group of directions."""
         met, v = SITUATIONS[situation], CONTROLLERS[controller]
         config = pushed(push_n, engine=engine, terrain=met.terrain, time_limit=self.time_limit)
         seeds = range(FIRST_EVALUATION_SEED, FIRST_EVALUATION_SEED + self.episodes)
-        episodes = [simulate(met, config, v, seed) for seed in seeds]
+        episodes = [_simulated(met, config, v, seed) for seed in seeds]
         for (_, direction), found in robustness_table(episodes).items():
             if push_n or direction == "all":
                 yield {
@@ -160,11 +135,11 @@ def answer(rows: DataFrame) -> str:
     """What the robot survives, with the shipped V and with its hips locked."""
 
     def survived(controller: str, newtons: float, situation: str = LEVEL) -> str:
-        chosen = everywhere(rows, newtons).query("controller == @controller and situation == @situation")
+        chosen = _everywhere(rows, newtons).query("controller == @controller and situation == @situation")
         return span(chosen.survival, ".1%")
 
     ours, locked = CONTROLLERS
-    score = everywhere(rows, 0.0).query("controller == @ours").set_index("situation").score
+    score = _everywhere(rows, 0.0).query("controller == @ours").set_index("situation").score
     kept = score["slope of 8°"] / score[LEVEL].to_numpy()
     return (
         f"On level ground the robot survives {survived(ours, NEWTONS)} of pushes of {NEWTONS:.0f} N with the shipped "
@@ -178,75 +153,51 @@ def answer(rows: DataFrame) -> str:
 
 def figure_pushes(rows: DataFrame) -> Figure:
     """Survival by force on level ground, a panel for each group of directions."""
-    level = on_level_ground(rows)
-    directions = groups(level.assign(line=level.engine + ", " + level.controller), "direction")
-    drawn, axes = panels(len(directions), 0.35, sharey=True)
-    for axis, (direction, group) in zip(axes, directions.items(), strict=True):
-        lines(axis, group, "push_n", "survival", "line")
-        axis.set(title=direction, ylabel="survival" if axis is axes[0] else "")
-    legend(drawn, axes[0])
-    return drawn
+    level = _on_level_ground(rows)
+    named = level.assign(line=level.engine + ", " + level.controller)
+    return line_panels(named, "direction", "push_n", "survival", "line", sharey=True)
 
 
-def figure_situations(rows: DataFrame) -> Figure:
-    """Survival of pushes in each situation, a panel for each engine."""
-    drawn, axes = panels(2, 0.4, sharey=True)
-    for axis, (engine, of_engine) in zip(axes, groups(everywhere(rows, NEWTONS), "engine").items(), strict=True):
-        for index, (name, group) in enumerate(groups(of_engine, "controller").items()):
-            ends = group.survival, group.survival_low, group.survival_high
-            intervals(axis, list(group.situation), *ends, offset=0.25 * index, color=COLOURS[index], label=str(name))
-        axis.set(title=engine, xlabel=heading("survival"))
-    legend(drawn, axes[0])
-    return drawn
-
-
-def everywhere(rows: DataFrame, newtons: float) -> DataFrame:
-    """Rows of all situations, with pushes of one force from everywhere."""
+def _everywhere(rows: DataFrame, newtons: float) -> DataFrame:
     return rows[(rows.push_n == newtons) & (rows.direction == "all")]
 
 
-def on_level_ground(rows: DataFrame) -> DataFrame:
-    """Rows of pushes on level ground."""
+def _on_level_ground(rows: DataFrame) -> DataFrame:
     return rows[(rows.situation == LEVEL) & (rows.push_n > 0.0)]
 
 
-def compared(rows: DataFrame, kept: Sequence[str], column: str, what: str) -> str:
-    """A table of one column by engine and V.
-
-    :param rows: rows of pushed episodes
-    :param kept: columns that name the rows of the table
-    :param column: column that is shown
-    :param what: words for it
-    """
+def _compared(rows: DataFrame, kept: Sequence[str], column: str, what: str) -> str:
+    """A table of one column by engine and V."""
     caption = f"{what}, of {rows.episodes.max()} pushes each, at the standard physics. {SETTINGS}."
-    return turned_table(rows, kept, ("engine", "controller"), column, FORMATS[column], caption)
+    return turned_table(rows, kept, ("engine", "controller"), column, caption, ".1%" if column == "survival" else "")
 
 
 def forces(rows: DataFrame) -> str:
     """Survival by force and direction."""
-    level = on_level_ground(rows)
-    return compared(level, ("push_n", "direction"), "survival", "Survival on level ground by force and direction")
+    level = _on_level_ground(rows)
+    return _compared(level, ("push_n", "direction"), "survival", "Survival on level ground by force and direction")
 
 
 def distances(rows: DataFrame) -> str:
     """How far from its start the robot ends."""
-    level = on_level_ground(rows)
+    level = _on_level_ground(rows)
     what = "Median distance from the start at the end in cm, on level ground"
-    return compared(level[level.direction == "all"], ("push_n",), "final_distance_cm", what)
+    return _compared(level[level.direction == "all"], ("push_n",), "final_distance_cm", what)
 
 
 def situations(rows: DataFrame) -> str:
     """Survival in each situation."""
     what = f"Survival of pushes of {NEWTONS:.0f} N from everywhere by situation"
-    return compared(everywhere(rows, NEWTONS), ("situation",), "survival", what)
+    return _compared(_everywhere(rows, NEWTONS), ("situation",), "survival", what)
 
 
 def unpushed(rows: DataFrame) -> str:
     """How the robot steps in each situation without a push."""
-    still = everywhere(rows, 0.0)
+    still = _everywhere(rows, 0.0)
     ours = still[still.controller == "shipped V"]
     caption = (
         f"How the robot steps without a push, with the shipped P1 to P5 and V1 to V4: means of {ours.episodes.max()} "
         f"episodes of {TIME_LIMIT:.0f} s at the standard physics, and the median of the final distance."
     )
-    return table(ours, ["engine", "situation", *FORMATS], FORMATS, caption)
+    columns = ["survival", "score", "steps_per_second", "shifts_by_sensors", "sole_clearance_mm", "final_distance_cm"]
+    return table(ours, ["engine", "situation", *columns], caption, survival=".1%")

@@ -39,32 +39,17 @@ SETS = {
 NEWTONS = 100.0
 GOOD = 0.7
 """Score of a set that is worth using."""
-FORMATS = {
-    f"{engine}_{column}": spec
-    for column, spec in (("score", ".3f"), ("steps_per_second", ".2f"), ("survival", ".0%"))
-    for engine in ENGINES
-}
+COLUMNS = [f"{engine}_{column}" for column in ("score", "steps_per_second", "survival") for engine in ENGINES]
 
 
 def settings(task: str, engine: Engine, time_limit: float) -> EpisodeConfig:
-    """Settings of a task's episodes, with pushes of 100 N if the task has pushes.
-
-    :param task: name of the task
-    :param engine: physics engine
-    :param time_limit: time limit, in s
-    """
+    """Settings of a task's episodes in an engine, with pushes of 100 N if the task has pushes."""
     push: dict[str, Any] = {"push": Push(newtons=(NEWTONS, NEWTONS))} if TASKS[task].has_push else {}
     return dataclasses.replace(TASKS[task].episode, engine=engine, time_limit=time_limit, **push)
 
 
 def in_both(task: str, parameters: tuple[float, ...], episodes: int, time_limit: float) -> Row:
-    """Means of the same episodes in each engine.
-
-    :param task: name of the task
-    :param parameters: values of its parameters
-    :param episodes: number of episodes
-    :param time_limit: their time limit, in s
-    """
+    """Means of the same episodes of a task in each engine."""
     found = {e: evaluate(task, parameters, settings(task, e, time_limit), range(episodes)) for e in ENGINES}
     return {
         **{f"{engine}_score": one.mean("score") for engine, one in found.items()},
@@ -90,11 +75,7 @@ class Engines(Experiment):
         return [{"task": task, "parameters": ", ".join(f"{value:g}" for value in values)} for task, values in pairs]
 
     def rows(self, task: str, parameters: str) -> Iterator[Row]:
-        """What a set does in both engines.
-
-        :param task: name of the task
-        :param parameters: values of its parameters
-        """
+        """What a set does in both engines."""
         values = tuple(float(value) for value in parameters.split(", "))
         yield in_both(task, values, self.episodes, self.time_limit)
 
@@ -125,6 +106,7 @@ def sets(rows: DataFrame) -> str:
         "stepping": f"P1 to P5 in both engines, without a push: means of the same {FULL.episodes} episodes of 30 s.",
         "balance": f"V1 to V4 with the shipped P1 to P5, and as many pushes of {NEWTONS:.0f} N at 1 to 4 s.",
     }
-    formats = {**FORMATS, "difference": "+.1%"}
     told = groups(compared(rows), "task").items()
-    return "\n\n".join(table(group, ["parameters", *formats], formats, captions[str(task)]) for task, group in told)
+    return "\n\n".join(
+        table(group, ["parameters", *COLUMNS, "difference"], captions[str(task)]) for task, group in told
+    )

@@ -27,13 +27,6 @@ CLAIM = ["claim of the paper", "holds", "what we find"]
 """Columns of a table of claims."""
 NEAR = 0.1
 """Difference from the paper's value up to which a parameter has settled there."""
-FORMATS = {
-    **dict.fromkeys(NAMES, ".2f"),
-    **dict.fromkeys(("score", "reference_score"), ".3f"),
-    **dict.fromkeys(("survival", "kept", "shifts_by_sensors", "lifts_by_sensors"), ".0%"),
-    "steps_per_second": ".2f",
-    "sole_clearance_mm": ".0f",
-}
 
 
 @dataclass(frozen=True)
@@ -56,10 +49,7 @@ class FirstTraining(TrainingExperiment):
         return [{"run": PAPER}, *({"run": f"naf seed {seed}"} for seed in range(self.seeds))]
 
     def rows(self, run: str) -> Iterator[Row]:
-        """The parameters of a run, and what the robot does with them.
-
-        :param run: the paper, or a training with its seed
-        """
+        """The parameters of a run, and what the robot does with them."""
         config = self.episode("stepping")
         parameters = PAPER_STEPPING
         if run != PAPER:
@@ -117,13 +107,13 @@ def figure(rows: DataFrame) -> Figure:
 def settled(rows: DataFrame) -> str:
     """What the trainings recommend."""
     columns = ["run", *NAMES, "score", "survival", "reference_score", "kept"]
-    return table(rows, columns, FORMATS, "First Trainings by NAF and the paper's own parameters, on 12 unseen seeds.")
+    return table(rows, columns, "First Trainings by NAF and the paper's own parameters, on 12 unseen seeds.")
 
 
 def gait(rows: DataFrame) -> str:
     """How the robot steps."""
     columns = ["run", "steps_per_second", "shifts_by_sensors", "lifts_by_sensors", "sole_clearance_mm"]
-    return table(rows, columns, FORMATS, "How the robot steps in the same episodes.")
+    return table(rows, columns, "How the robot steps in the same episodes.")
 
 
 def claims(rows: DataFrame) -> str:
@@ -154,7 +144,7 @@ def claims(rows: DataFrame) -> str:
             f"they score {shown(paper['score'], '.2f')}, and {shown(paper['survival'], '.0%')} of the robots survive",
         ),
     ]
-    return table(DataFrame(found, columns=CLAIM), CLAIM, {}, "First Trainings by NAF in PyBullet, on 12 unseen seeds.")
+    return table(DataFrame(found, columns=CLAIM), CLAIM, "First Trainings by NAF in PyBullet, on 12 unseen seeds.")
 
 
 def settling(values: Series[float], claimed: float) -> tuple[str, str, str]:

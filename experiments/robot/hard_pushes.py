@@ -5,16 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import NamedTuple, get_args
+from typing import get_args
 
-from matplotlib.figure import Figure
 from pandas import DataFrame
 
 from experiments.experiment import Experiment, product, survival
 from experiments.pushes import CONTROLLERS, SETTINGS, TIME_LIMIT, pushed
 from experiments.record import Row
-from experiments.shapes import COLOURS, groups, intervals, legend, panels
-from experiments.tables import heading, shown, table
+from experiments.shapes import groups
+from experiments.tables import shown, table
 from sarah.episode.evaluation import evaluate
 from sarah.episode.spec import FIRST_EVALUATION_SEED
 from sarah.episode.tasks import BALANCE
@@ -23,8 +22,6 @@ from sarah.simulation.physics import PHYSICS
 
 SURVIVED, LOST = "s", "l"
 """What stands for a push in the column of all outcomes."""
-FORMATS = dict.fromkeys(("survival", "survival_low", "survival_high"), ".1%")
-DIFFERENCES = dict.fromkeys(("difference", "difference_low", "difference_high"), "+.1%")
 
 
 @dataclass(frozen=True)
@@ -44,13 +41,7 @@ class HardPushes(Experiment):
         return product(push_n=(125.0, 100.0), controller=CONTROLLERS, engine=get_args(Engine), physics=physics)
 
     def rows(self, push_n: float, controller: str, engine: Engine, physics: str) -> Iterator[Row]:
-        """How many pushes the robot survives, and which.
-
-        :param push_n: force of the pushes, in N
-        :param controller: name of V1 to V4
-        :param engine: physics engine
-        :param physics: name of the resolution of the physics
-        """
+        """How many pushes the robot survives, and which."""
         config = pushed(push_n, engine=engine, physics=PHYSICS[physics], time_limit=self.time_limit)
         seeds = range(FIRST_EVALUATION_SEED, FIRST_EVALUATION_SEED + self.pushes)
         found = evaluate(BALANCE, CONTROLLERS[controller], config, seeds)
@@ -62,24 +53,11 @@ FULL = HardPushes()
 QUICK = HardPushes(pushes=1, time_limit=1.1)
 
 
-class Difference(NamedTuple):
-    """Difference of two survivals of the same pushes, with its 95 % interval.
+def difference(ones: str, others: str) -> Row:
+    """Columns of the difference of two survivals with its 95 % interval.
 
-    :param difference: the first survival minus the other
-    :param difference_low: lower end
-    :param difference_high: upper end
-    """
-
-    difference: float
-    difference_low: float
-    difference_high: float
-
-
-def difference(ones: str, others: str) -> Difference:
-    """Difference of two survivals. Pushes with the same outcome in both say nothing about it.
-
-    Half a push is added to each of the four pairs of outcomes, so that the interval is never empty (Agresti and Min
-    2005).
+    Pushes with the same outcome in both say nothing about it. Half a push is added to each of the four pairs of
+    outcomes, so that the interval is never empty (Agresti and Min 2005).
 
     :param ones: outcomes of the first
     :param others: outcomes of the same pushes, whose survival is subtracted
@@ -88,10 +66,11 @@ def difference(ones: str, others: str) -> Difference:
     gained, lost, count = pairs.count((SURVIVED, LOST)), pairs.count((LOST, SURVIVED)), len(pairs)
     middle = (gained - lost) / (count + 2)
     error = math.sqrt((gained + lost + 1) / (count + 2) - middle**2) / math.sqrt(count + 2)
-    return Difference((gained - lost) / count, middle - 1.96 * error, middle + 1.96 * error)
+    low, high = middle - 1.96 * error, middle + 1.96 * error
+    return {"difference": (gained - lost) / count, "difference_low": low, "difference_high": high}
 
 
-def differences(rows: DataFrame) -> DataFrame:
+def _differences(rows: DataFrame) -> DataFrame:
     """Differences between the physics of each engine, and between the engines at each physics."""
     pybullet, mujoco = get_args(Engine)
     compared = [((engine, "standard"), (engine, "reference")) for engine in (pybullet, mujoco)]
@@ -102,7 +81,7 @@ def differences(rows: DataFrame) -> DataFrame:
         for ones, others in compared:
             names = dict(zip(("push_n", "controller"), keys, strict=True))
             names |= {"survival_in": " ".join(ones), "minus_that_in": " ".join(others)}
-            found.append({**names, **difference(outcomes[ones], outcomes[others])._asdict()})
+            found.append({**names, **difference(outcomes[ones], outcomes[others])})
     return DataFrame(found)
 
 
@@ -125,28 +104,15 @@ def answer(rows: DataFrame) -> str:
     )
 
 
-def figure(rows: DataFrame) -> Figure:
-    """Survival in each engine at each physics, a panel for each force."""
-    drawn, axes = panels(rows.push_n.nunique(), 0.35, sharey=True)
-    for axis, (newtons, of_force) in zip(axes, groups(rows, "push_n").items(), strict=True):
-        for index, (name, group) in enumerate(groups(of_force, "controller").items()):
-            ends = group.survival, group.survival_low, group.survival_high
-            labels = list(group.engine + ", " + group.physics)
-            intervals(axis, labels, *ends, offset=0.2 * index, color=COLOURS[index], label=str(name))
-        axis.set(title=f"pushes of {newtons} N", xlabel=heading("survival"))
-    legend(drawn, axes[0])
-    return drawn
-
-
 def survivals(rows: DataFrame) -> str:
     """Survival in each engine at each physics."""
-    columns = ["push_n", "controller", "engine", "physics", "episodes", *FORMATS]
+    columns = ["push_n", "controller", "engine", "physics", "episodes", "survival", "survival_low", "survival_high"]
     caption = f"Survival of the same pushes from anywhere, with its 95 % interval (Wilson). {SETTINGS}."
-    return table(rows, columns, FORMATS, caption)
+    return table(rows, columns, caption, survival=".1%")
 
 
 def pairs(rows: DataFrame) -> str:
     """The differences between these survivals."""
     caption = "Differences between these survivals in percentage points, push by push, with their 95 % intervals."
-    compared = differences(rows)
-    return table(compared, list(compared.columns), DIFFERENCES, caption)
+    compared = _differences(rows)
+    return table(compared, list(compared), caption)

@@ -15,7 +15,7 @@ from pandas import DataFrame
 from experiments.experiment import Experiment
 from experiments.record import Row
 from experiments.robot.engines import NEWTONS, settings
-from experiments.shapes import groups, legend, lines, panels
+from experiments.shapes import groups, line_panels
 from experiments.tables import span, turned_table
 from sarah.episode.evaluation import evaluate
 from sarah.episode.tasks import TASKS
@@ -52,12 +52,7 @@ class Landscape(Experiment):
         return [{"task": task, "parameter": name, "engine": engine} for task, name in names for engine in ENGINES]
 
     def rows(self, task: str, parameter: str, engine: Engine) -> Iterator[Row]:
-        """A row for each value.
-
-        :param task: name of the task
-        :param parameter: name of the parameter that is varied
-        :param engine: physics engine
-        """
+        """A row for each value."""
         centre, index = CENTRES[task], TASKS[task].parameter_names.index(parameter)
         config = settings(task, engine, self.time_limit or SECONDS[task])
         for value in VALUES[task][: self.points]:
@@ -71,10 +66,7 @@ QUICK = Landscape(points=1, time_limit=1.1)
 
 
 def good_values(rows: DataFrame) -> tuple[dict[str, str], dict[str, str]]:
-    """Good values of each parameter, in words: first of those with few, then of those with many.
-
-    :param rows: of the result
-    """
+    """Good values of each parameter, in words: first of those with few, then of those with many."""
     few, many = {}, {}
     for name, group in groups(rows, "parameter").items():
         worse = group.groupby("value").score.min()  # of the engines
@@ -94,30 +86,15 @@ def answer(rows: DataFrame) -> str:
     )
 
 
-def along(task: str, rows: DataFrame) -> Figure:
+def _along(task: str, rows: DataFrame) -> Figure:
     """Score along each parameter of a task, in both engines."""
-    parameters = groups(rows[rows.task == task], "parameter")
-    drawn, axes = panels(len(parameters), 0.28, sharey=True)
-    for axis, (name, group) in zip(axes, parameters.items(), strict=True):
-        lines(axis, group, "value", "score", "engine")
-        axis.set(xlabel=str(name), ylabel="score" if axis is axes[0] else "")
-    legend(drawn, axes[0])
-    return drawn
+    return line_panels(rows[rows.task == task], "parameter", "value", "score", "engine", height=0.28, sharey=True)
 
 
-figure_stepping, figure_balance = partial(along, "stepping"), partial(along, "balance")
-
-
-def stepping(rows: DataFrame) -> str:
-    """Score by P1 and P2."""
-    caption = "Score of a robot that nobody pushes by P1 and by P2, median of three episodes of 12 s."
-    chosen = rows[rows.parameter.isin(["P1", "P2"])]
-    return turned_table(chosen, ["value"], ["parameter", "engine"], "score", ".2f", caption)
+figure_stepping, figure_balance = partial(_along, "stepping"), partial(_along, "balance")
 
 
 def balance(rows: DataFrame) -> str:
-    """Score and survival by V1 to V4."""
-    pushed = f"twelve pushes of {NEWTONS:.0f} N at 1 to 4 s with the shipped P1 to P5"
-    tables = (("score", ".2f", f"Median score of {pushed}."), ("survival", ".0%", "Survival of the same pushes."))
-    chosen = rows[rows.task == "balance"]
-    return "\n\n".join(turned_table(chosen, ["value"], ["parameter", "engine"], *one) for one in tables)
+    """Survival by V1 to V4."""
+    caption = f"Survival of twelve pushes of {NEWTONS:.0f} N at 1 to 4 s with the shipped P1 to P5."
+    return turned_table(rows[rows.task == "balance"], ["value"], ["parameter", "engine"], "survival", caption)

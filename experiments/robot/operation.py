@@ -12,16 +12,17 @@ from dataclasses import dataclass
 from statistics import mean
 from typing import Any
 
+import numpy as np
 from matplotlib.figure import Figure
 from pandas import DataFrame
 
 from experiments.experiment import TRAINING, Experiment, product
-from experiments.interval import with_interval
 from experiments.record import Row
 from experiments.shapes import COLOURS, groups, legend, panels
 from experiments.tables import shown, span, table
 from sarah.episode.from_mapping import from_mapping
 from sarah.operation.settings import SHIPPED, Change, OperationConfig, Parameters
+from sarah.reports.uncertainty import difference
 from sarah.runs.session import SessionSpec
 from sarah.training.operate import SessionResult, run_session
 
@@ -41,11 +42,7 @@ BEST = "best known, frozen"
 SPANS = {"0_to_3": (0.0, 3.0), "3_to_5": (3.0, 5.0), "5_to_8": (5.0, 8.0), "from_8": (8.0, math.inf)}
 """Spans of the time of operation, in min."""
 FIRST_SEARCH_SEED = 1000
-FORMATS = {
-    **dict.fromkeys(("score", "gain", "gain_low", "gain_high", "score_of_last_parameters"), ".3f"),
-    **{f"score_{name}_min": ".3f" for name in SPANS},
-    "falls_per_session": ".1f",
-}
+FORMATS = {"gain": ".3f", "_min": ".3f", "parameters": ".3f", "falls_per_session": ".1f"}
 
 
 @dataclass(frozen=True)
@@ -71,25 +68,24 @@ class Operation(Experiment):
         return [*product(robot=ROBOTS, learner=(*LEARNERS, BEST)), *product(robot=[CHANGING], learner=LEARNERS)]
 
     def rows(self, robot: str, learner: str) -> Iterator[Row]:
-        """Means over the sessions of a learner.
-
-        :param robot: name of the robot
-        :param learner: name of the learner, or the best known parameters
-        """
+        """Means over the sessions of a learner."""
         seeds = range(self.other_sessions if learner in OTHERS else self.sessions)
         config = self._config(robot, self.minutes)
-        frozen = [session(config, seed) for seed in seeds]
+        frozen = [_session(config, seed) for seed in seeds]
         found = frozen
         if learner == BEST:
             best = self._best_known(robot)
-            found = [session(config, seed, best) for seed in seeds]
+            found = [_session(config, seed, best) for seed in seeds]
         elif learner != "none":
-            found = [session(config, seed, learner=learner) for seed in seeds]
-        gains = [one.mean_score() - other.mean_score() for one, other in zip(found, frozen, strict=True)]
+            found = [_session(config, seed, learner=learner) for seed in seeds]
+        scores, others = (np.array([[one.mean_score()] for one in sessions]) for sessions in (found, frozen))
+        gain, low, high = difference(scores, others)
         yield {
-            "score": mean(one.mean_score() for one in found),
+            "score": float(scores.mean()),
             **{f"score_{name}_min": mean(one.mean_score(*ends) for one in found) for name, ends in SPANS.items()},
-            **with_interval("gain", gains),
+            "gain": gain,
+            "gain_low": low,
+            "gain_high": high,
             "falls_per_session": mean(one.falls for one in found),
             "score_of_last_parameters": None if learner == BEST else self._left(robot, found),
         }
@@ -98,7 +94,7 @@ class Operation(Experiment):
         """Score of the parameters that sessions end with, frozen on the same robots as they are in the end."""
         in_the_end = "weak servos" if robot == CHANGING else robot
         config = self._config(in_the_end, max(0.1, self.minutes / 5.0))
-        return mean(session(config, seed, one.parameters).mean_score() for seed, one in enumerate(found))
+        return mean(_session(config, seed, one.parameters).mean_score() for seed, one in enumerate(found))
 
     def _config(self, robot: str, minutes: float) -> OperationConfig:
         changes = (Change(minutes / 2.0, WEAK),) if robot == CHANGING else ()
@@ -109,20 +105,14 @@ class Operation(Experiment):
         """Of what long sessions on other seeds end with, the parameters that do best on these seeds."""
         seeds = range(FIRST_SEARCH_SEED, FIRST_SEARCH_SEED + self.search_sessions)
         long, short = (self._config(robot, minutes) for minutes in (self.search_minutes, min(2.0, self.search_minutes)))
-        candidates = [SHIPPED, *(session(long, seed, learner="careful").parameters for seed in seeds)]
-        return max(candidates, key=lambda one: mean(session(short, seed, one).mean_score() for seed in seeds))
+        candidates = [SHIPPED, *(_session(long, seed, learner="careful").parameters for seed in seeds)]
+        return max(candidates, key=lambda one: mean(_session(short, seed, one).mean_score() for seed in seeds))
 
 
-def session(
+def _session(
     config: OperationConfig, seed: int, parameters: Parameters = SHIPPED, learner: str = "none"
 ) -> SessionResult:
-    """Run a session.
-
-    :param config: settings of the operation
-    :param seed: seed of robot and learner
-    :param parameters: parameters that it begins with
-    :param learner: name of the learner
-    """
+    """Run a session."""
     return run_session(SessionSpec(parameters, learner, seed, config))
 
 
@@ -174,7 +164,7 @@ def robots(rows: DataFrame) -> str:
         f"gain over frozen parameters with the 95 % interval, falls, score in the last two minutes, and score of the "
         f"parameters that are left."
     )
-    return table(rows[rows.robot != CHANGING], [*columns, "score_of_last_parameters"], FORMATS, caption)
+    return table(rows[rows.robot != CHANGING], [*columns, "score_of_last_parameters"], caption, **FORMATS)
 
 
 def change(rows: DataFrame) -> str:
@@ -182,4 +172,4 @@ def change(rows: DataFrame) -> str:
     spans = [f"score_{name}_min" for name in ("3_to_5", "5_to_8", "from_8")]
     columns = ["learner", *spans, "gain", "gain_low", "gain_high", "falls_per_session", "score_of_last_parameters"]
     caption = "The servos weaken at minute 5: score before, in the three minutes after, and later."
-    return table(rows[rows.robot == CHANGING], columns, FORMATS, caption)
+    return table(rows[rows.robot == CHANGING], columns, caption, **FORMATS)

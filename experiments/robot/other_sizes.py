@@ -32,12 +32,6 @@ ROBOTS = {"4 kg, legs of 0.2 m": (4.0, 0.2, 5.4), "60 kg, legs of 0.8 m": (60.0,
 """Mass, in kg, length of thigh and shank, in m, and rewarded frequency of steps, near the natural one, in 1/s."""
 LEGS = sum(dimensions_alike(1.0, 1.0)[name] for name in ("thigh_length", "shank_length"))
 """Length of the default robot's thigh and shank, in m."""
-FORMATS = {
-    **dict.fromkeys(("score", "reference_score", "pushed_score"), ".3f"),
-    **dict.fromkeys(("survival", "survival_low", "survival_high"), ".0%"),
-    "steps_per_second": ".2f",
-    "push_n": ".0f",
-}
 
 
 @dataclass(frozen=True)
@@ -58,12 +52,7 @@ class OtherSizes(TrainingExperiment):
         return product(seed=range(FIRST_SEED, FIRST_SEED + self.seeds), engine=("mujoco", "pybullet"), robot=ROBOTS)
 
     def rows(self, seed: int, engine: Engine, robot: str) -> Iterator[Row]:
-        """How a robot does after both trainings.
-
-        :param seed: seed of both trainings
-        :param engine: physics engine
-        :param robot: name of the robot
-        """
+        """How a robot does after both trainings."""
         (mass, leg_length, step_frequency), (first, second) = ROBOTS[robot], self.budgets
         dimensions = dimensions_alike(leg_length / LEGS, mass / MASS)
         usual = self.episode("stepping", engine).for_robot(dimensions)
@@ -112,11 +101,11 @@ def answer(rows: DataFrame) -> str:
 def stepping(rows: DataFrame) -> str:
     """What First Trainings end with."""
     columns = ["robot", "engine", "seed", "score", "reference_score", "steps_per_second"]
-    return table(rows, columns, FORMATS, f"First Trainings by NAF, on {FULL.episodes} unseen seeds without a push.")
+    return table(rows, columns, f"First Trainings by NAF, on {FULL.episodes} unseen seeds without a push.")
 
 
 def pushes(rows: DataFrame) -> str:
     """What Second Trainings end with."""
     columns = ["robot", "engine", "seed", "push_n", "survival", "survival_low", "survival_high", "pushed_score"]
     caption = f"Second Trainings, on {FULL.episodes} unseen pushes: survival with its 95 % interval, and score."
-    return table(rows, columns, FORMATS, caption)
+    return table(rows, columns, caption)

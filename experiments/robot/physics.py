@@ -80,12 +80,7 @@ class Physics(Experiment):
         ]
 
     def rows(self, parameters: str, control_rate_hz: int, sensors: str) -> Iterator[Row]:
-        """A row for each setting of the physics, the finest first.
-
-        :param parameters: name of the parameter set
-        :param control_rate_hz: control ticks per second
-        :param sensors: delay of the sensors, or none of their errors
-        """
+        """A row for each setting of the physics, the finest first."""
         stepping, balance = (GOOD | ANYWHERE)[parameters]
         finest: list[float] = []
         for setting, (engine, physics) in SETTINGS.items():
@@ -148,25 +143,21 @@ def differences(rows: DataFrame) -> str:
         f"{FULL.time_limit:.0f} s without a push. The standard error of a difference is "
         f"{shown(both.difference_error.median(), '.1%')} in the median."
     )
-    return turned_table(both, [*CONDITION, "finest"], "setting", "difference", "+.1%", caption)
+    return turned_table(both, [*CONDITION, "finest"], "setting", "difference", caption)
 
 
 def far_off(rows: DataFrame) -> str:
     """The conditions with large differences, and how the robot steps there."""
     both = good_sets(rows)
-    formats = {
-        "difference": "+.1%",
-        "difference_error": ".1%",
-        "finest_steps_per_second": ".2f",
-        "steps_per_second": ".2f",
-        "shifts_timed_out": ".0%",
-    }
+    columns = ["difference", "difference_error", "finest_steps_per_second", "steps_per_second", "shifts_timed_out"]
     caption = (
         f"Differences from the finest setting's score beyond {shown(FAR, '.0%')} with their standard errors, and how "
         f"the robot steps there, without a push: steps per second at the finest setting and at this one, and the share "
         f"of this one's SHIFTs that timed out."
     )
-    return table(both[both.difference.abs() > FAR], [*CONDITION, "setting", *formats], formats, caption)
+    far = both[both.difference.abs() > FAR]
+    formats = {"difference_error": ".1%", "timed_out": ".0%"}
+    return table(far, [*CONDITION, "setting", *columns], caption, **formats)
 
 
 def anywhere(rows: DataFrame) -> str:
@@ -181,9 +172,8 @@ def anywhere(rows: DataFrame) -> str:
         "largest_distance": distances.max().tolist(),
         "share_within_0.02": (distances < 0.02).mean().tolist(),
     })  # fmt: skip
-    formats = {column: ".3f" for column in summary if column != "setting"} | {"share_within_0.02": ".0%"}
     caption = (
         f"Scores of {len(ANYWHERE)} sets drawn from the box of P1 to P5, at 100 Hz with a delay of 10 ms, and their "
         f"distance from the scores at the finest setting: {FULL.seeds} episodes of each without a push."
     )
-    return table(summary, list(summary), formats, caption)
+    return table(summary, list(summary), caption, distance=".3f", **{"share_within_0.02": ".0%"})

@@ -10,13 +10,10 @@ from dataclasses import dataclass
 from functools import partial
 from statistics import mean
 
-from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 from pandas import DataFrame
 
 from experiments.experiment import product
 from experiments.record import Row
-from experiments.shapes import COLOURS, intervals, legend, panels
 from experiments.tables import shown, span, table
 from experiments.trainings import TrainingExperiment, identity
 from sarah.reports.judging import evaluations_of
@@ -50,12 +47,7 @@ class Race(TrainingExperiment):
         return [case for task in TASKS for case in product(task=[task], seed=seeds[task], algorithm=ALGORITHMS)]
 
     def rows(self, task: str, seed: int, algorithm: str) -> Iterator[Row]:
-        """How its recommendations do, along the way and in the end. Scores stand in one cell, for their number.
-
-        :param task: name of the task
-        :param seed: seed of the training
-        :param algorithm: name of the algorithm
-        """
+        """How its recommendations do, along the way and in the end. Scores stand in one cell, for their number."""
         budget, _, along = TASKS[task]
         base = TrainingConfig(task, episodes=self.budget or budget, slots=1, episode=self.episode(task, "mujoco"))
         evaluations = evaluations_of(base.task, self.evaluations, self.evaluations or along)
@@ -67,11 +59,7 @@ class Race(TrainingExperiment):
 
 
 def columns(curve: RaceCurve, score_while_learning: float) -> Row:
-    """Columns of a training.
-
-    :param curve: scores of its recommendations
-    :param score_while_learning: mean score of the episodes that it simulated
-    """
+    """Columns of a training."""
     return {
         "score_while_learning": score_while_learning,
         "seconds": curve.seconds,
@@ -84,19 +72,10 @@ def columns(curve: RaceCurve, score_while_learning: float) -> Row:
 
 FULL = Race()
 QUICK = Race(time_limit=2.0, seeds=1, budget=5, evaluations=1)
-FORMATS = {
-    **dict.fromkeys(("final_score", "final_score_error", "over_naf", "over_naf_low", "over_naf_high"), ".3f"),
-    **dict.fromkeys(("score_while_learning", "score_while_learning_error"), ".2f"),
-    **dict.fromkeys(("episodes_to_90", "episodes_to_95"), ".0f"),
-}
 
 
 def ranked(rows: DataFrame, task: str) -> DataFrame:
-    """A row for each algorithm, the quickest first, of the seeds on which all algorithms have been trained.
-
-    :param rows: of the trainings
-    :param task: name of the task
-    """
+    """A row for each algorithm, the quickest first, of the seeds on which all algorithms have been trained."""
     rows = rows[rows.task == task]
     rows = rows.groupby("seed").filter(lambda group: len(group) == rows.algorithm.nunique())
     rankings_of_all = rankings([curve_of(row) for row in rows.to_dict("records")], reference="naf")
@@ -108,10 +87,7 @@ def ranked(rows: DataFrame, task: str) -> DataFrame:
 
 
 def curve_of(row: Row) -> RaceCurve:
-    """Scores of a training's recommendations.
-
-    :param row: row of the training
-    """
+    """Scores of a training's recommendations."""
     scores, final = (tuple(map(float, str(row[column]).split())) for column in ("scores", "final"))
     episodes = tuple(map(int, row["episodes"].split()))
     return RaceCurve(row["algorithm"], episodes, scores, final, row["along"], row["seconds"])
@@ -138,22 +114,6 @@ def _names(algorithms: DataFrame) -> str:
     return ", ".join(sorted(algorithms.algorithm)) or "none"
 
 
-def _figure(rows: DataFrame, task: str) -> Figure:
-    """Final scores with their standard errors, and how many trainings are at 95 % of the best, finally or before."""
-    found = ranked(rows, task)
-    drawn, (left, right) = panels(2, 0.4, sharey=True)
-    score, error, heights = found.final_score, found.final_score_error, range(len(found), 0, -1)
-    intervals(left, list(found.algorithm), score, score - error, score + error)
-    left.set_xlabel("final score, mean and standard error")
-    ends = found.final_at_95_low, found.final_at_95_high
-    intervals(right, list(found.algorithm), found.final_at_95, *ends, label="final score")
-    right.plot(found.held_95, heights, "s", color=COLOURS[1], markersize=4, label="held along the way")
-    right.xaxis.set_major_locator(MaxNLocator(integer=True))
-    right.set(xlabel="trainings at 95 % of the best score", xlim=(-0.5, found.runs.max() + 0.5))
-    legend(drawn, right)
-    return drawn
-
-
 def _final(rows: DataFrame, task: str) -> str:
     """Final scores."""
     pairs = [f"{column}{end}" for column in ("over_naf", "final_at_95") for end in ("", "_low", "_high")]
@@ -161,7 +121,7 @@ def _final(rows: DataFrame, task: str) -> str:
         f"{_trainings(task)}: mean final score with its standard error, its difference from NAF's and the number of "
         f"trainings that end with 95 % of the best known score, both with 95 % intervals."
     )
-    return table(ranked(rows, task), ["algorithm", "final_score", "final_score_error", *pairs], FORMATS, caption)
+    return table(ranked(rows, task), ["algorithm", "final_score", "final_score_error", *pairs], caption, over_naf=".3f")
 
 
 def _way(rows: DataFrame, task: str) -> str:
@@ -172,7 +132,14 @@ def _way(rows: DataFrame, task: str) -> str:
         f"{_trainings(task)}: median number of episodes until 90 and 95 % of the best known score are held, how many "
         f"trainings hold them, score of the episodes tried, and time of a training."
     )
-    return table(ranked(rows, task), ["algorithm", *shown_columns, *learning], FORMATS, caption)
+    return table(
+        ranked(rows, task),
+        ["algorithm", *shown_columns, *learning],
+        caption,
+        learning=".2f",
+        episodes_to_90=".0f",
+        episodes_to_95=".0f",
+    )
 
 
 def _trainings(task: str) -> str:
@@ -181,6 +148,5 @@ def _trainings(task: str) -> str:
     return f"Seeds {first} to {first + FULL.seeds - 1}, {budget} episodes each, in MuJoCo{pushes}"
 
 
-figure_stepping, figure_balance = (partial(_figure, task=task) for task in TASKS)
 final_stepping, final_balance = (partial(_final, task=task) for task in TASKS)
 way_stepping, way_balance = (partial(_way, task=task) for task in TASKS)

@@ -42,7 +42,6 @@ ROBOTS: dict[str, dict[str, Any]] = {
     **{f"lift {1000 * x:.0f} mm": {"controller": ControllerConstants(lift_retraction=x)} for x in (0.02, 0.025, 0.035)},
 }
 """Settings that differ from the defaults, by the name of the robot."""
-FORMATS = {"score": ".2f", "steps_per_second": ".2f", "lateral_survival": ".0%", "sagittal_survival": ".0%"}
 
 
 @dataclass(frozen=True)
@@ -65,11 +64,7 @@ class RobotDimensions(Experiment):
         return product(hips=HIPS, robot=ROBOTS)
 
     def rows(self, hips: str, robot: str) -> Iterator[Row]:
-        """How a robot steps, and which pushes it survives.
-
-        :param hips: name of V1 to V4
-        :param robot: name of the robot
-        """
+        """How a robot steps, and which pushes it survives."""
 
         def episode(seed: int, push: Push, limit: float) -> EpisodeResult:
             config = BalanceConfig(engine="pybullet", push=push, time_limit=limit, **ROBOTS[robot])
@@ -113,4 +108,5 @@ def robots(rows: DataFrame) -> str:
     )
     captions = {hips: caption.format("locked hips" if hips == "locked" else hips) for hips in HIPS}
     told = groups(rows, "hips").items()
-    return "\n\n".join(table(group, ["robot", *FORMATS], FORMATS, captions[str(hips)]) for hips, group in told)
+    columns = ["robot", "score", "steps_per_second", "lateral_survival", "sagittal_survival"]
+    return "\n\n".join(table(group, columns, captions[str(hips)], score=".2f") for hips, group in told)

@@ -12,9 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 from pandas import DataFrame, Series
-from scipy.stats import t as student
 
-from experiments.interval import ratio
 from experiments.record import Row
 from experiments.robot.balance_trainings import (
     CHOOSING_SEED,
@@ -29,7 +27,7 @@ from experiments.shapes import groups, legend, panels, strips
 from experiments.tables import shown, table
 from sarah.control.parameters import Parameters
 from sarah.episode.tasks import BALANCE
-from sarah.reports.robustness import wilson_interval
+from sarah.reports.uncertainty import standard_error
 from sarah.simulation.engines import Engine
 
 NEUTRAL, BEST, MEAN = "V = 0", "best known", "mean of trainings"
@@ -40,12 +38,6 @@ ROUNDS = ((1, 9), (4, 24), (16, 87), (32, 300))
 ENOUGH = 0.95
 """Share of the best known score from which a training counts as close to it."""
 ENGINE_NAMES = {"mujoco": "MuJoCo", "pybullet": "PyBullet"}
-FORMATS = {
-    **dict.fromkeys(NAMES, ".2f"),
-    "score": ".3f",
-    **dict.fromkeys(("of_best", "of_best_error", "of_best_low", "of_best_high", "lowest"), ".1%"),
-    **dict.fromkeys(("within_5_%", "within_5_%_low", "within_5_%_high"), ".0f"),
-}
 
 
 @dataclass(frozen=True)
@@ -67,53 +59,35 @@ class SecondTraining(SecondTrainingExperiment):
         return [{"engine": engine, "run": run} for run in runs for engine in self.engines]
 
     def rows(self, engine: Engine, run: str) -> Iterator[Row]:
-        """How a set does, or all trainings together.
-
-        :param engine: physics engine
-        :param run: a known set, a training, or the mean
-        """
+        """How a set does, or all trainings together."""
         trainings = self.trainings(engine)
-        known = self.known(engine, trainings)
-        best = self.scores(engine, [known[BEST]])
+        known = self._known(engine, trainings)
+        best = self._scores(engine, [known[BEST]])
         asked = [training for name, training in trainings.items() if run in (name, MEAN)]
         recommended = [one for one, _ in asked] or [known[run]]
         yield {
             **dict(zip(NAMES, [None] * len(NAMES) if run == MEAN else recommended[0], strict=True)),
-            "score": float(self.scores(engine, recommended).mean()),
-            **self.judged("", engine, recommended, best),
-            **self.judged("mu_", engine, [mu for _, mu in asked], best),
+            "score": float(self._scores(engine, recommended).mean()),
+            **self._judged("", engine, recommended, best),
+            **self._judged("mu_", engine, [mu for _, mu in asked], best),
         }
 
-    def judged(self, prefix: str, engine: Engine, sets: Sequence[Parameters], best: np.ndarray) -> Row:
-        """Columns of what the judge says about sets.
-
-        :param prefix: beginning of the columns' names
-        :param engine: physics engine
-        :param sets: sets of V1 to V4; with none the cells are empty
-        :param best: scores of the best known set
-        """
+    def _judged(self, prefix: str, engine: Engine, sets: Sequence[Parameters], best: np.ndarray) -> Row:
+        """Columns of what the judge says about sets."""
         of_best, survival = f"{prefix}of_best", f"{prefix}survival_100"
         if not sets:
             return dict.fromkeys((of_best, f"{of_best}_error", survival))
         survivable = self.condition("100 N", engine, JUDGING_SEED + 2000, self.surviving, PUSH_100)
         survived = [self.judge.outcomes(one, survivable)["survived"] for one in sets]
-        return {**ratio(of_best, self.scores(engine, sets), best), survival: float(np.mean(survived))}
+        return {**ratio(of_best, self._scores(engine, sets), best), survival: float(np.mean(survived))}
 
-    def scores(self, engine: Engine, sets: Sequence[Parameters]) -> np.ndarray:
-        """Scores under the pushes that judge, of shape (sets, pushes).
-
-        :param engine: physics engine
-        :param sets: sets of V1 to V4
-        """
+    def _scores(self, engine: Engine, sets: Sequence[Parameters]) -> np.ndarray:
+        """Scores under the pushes that judge, of shape (sets, pushes)."""
         asked = self.pushes(engine, JUDGING_SEED, self.judging)
         return np.array([self.judge.scores(one, asked) for one in sets])
 
-    def known(self, engine: Engine, trainings: Mapping[str, tuple[Parameters, Parameters]]) -> dict[str, Parameters]:
-        """The sets that trainings are compared with, by name. Outcomes of the search are kept, so it is made once.
-
-        :param engine: physics engine
-        :param trainings: trainings in this engine
-        """
+    def _known(self, engine: Engine, trainings: Mapping[str, tuple[Parameters, Parameters]]) -> dict[str, Parameters]:
+        """The sets that trainings are compared with, by name. Outcomes of the search are kept, so it is made once."""
         assert BALANCE.neutral is not None
         recommended = [one for one, _ in trainings.values()]
         known = list(dict.fromkeys([SHIPPED, *recommended, *(mu for _, mu in trainings.values())]))
@@ -134,12 +108,23 @@ FULL = SecondTraining()
 QUICK = SecondTraining(time_limit=2.0, budget=5, engines=("mujoco",), seeds=1, judging=3, candidates=4, surviving=1)
 
 
-def learned(rows: DataFrame) -> DataFrame:
+def ratio(name: str, values: np.ndarray, others: np.ndarray) -> Row:
+    """Columns of the ratio of two means and of its standard error, which is small where values go with the others.
+
+    :param name: name of the column
+    :param values: values of the numerator, of shape (sets, episodes)
+    :param others: values of the denominator in the same episodes
+    """
+    found = float(values.mean() / others.mean())
+    return {name: found, f"{name}_error": standard_error(values - found * others) / float(others.mean())}
+
+
+def _learned(rows: DataFrame) -> DataFrame:
     """Rows of the trainings."""
     return rows[rows.run.str.startswith("naf")]
 
 
-def of_run(rows: DataFrame, run: str) -> Series:
+def _of_run(rows: DataFrame, run: str) -> Series:
     """The row of a run."""
     return rows[rows.run == run].iloc[0]
 
@@ -148,7 +133,7 @@ def answer(rows: DataFrame) -> str:
     """Whether the robot learns to come back."""
     sentences = []
     for engine, group in groups(rows, "engine").items():
-        mean, neutral, runs = of_run(group, MEAN), of_run(group, NEUTRAL), learned(group)
+        mean, neutral, runs = _of_run(group, MEAN), _of_run(group, NEUTRAL), _learned(group)
         survival = [shown(share, ".0%") for share in (mean.survival_100, runs.survival_100.min(), neutral.survival_100)]
         sentences.append(
             f"In {ENGINE_NAMES[engine]} the robot survives {survival[0]} of pushes of 100 N after a training,"
@@ -159,20 +144,13 @@ def answer(rows: DataFrame) -> str:
     return " ".join(sentences)
 
 
-def network(rows: DataFrame) -> str:
-    """What the robot survives with what the networks say."""
-    return f"With mu the robot survives {by_engine(rows, MEAN, 'mu_survival_100', 'of pushes of 100 N')}."
-
-
 def headroom(rows: DataFrame) -> str:
     """How much better than the shipped V1 to V4 could be."""
-    return f"The shipped V1 to V4 reach {by_engine(rows, 'shipped', 'of_best', 'of the best known score')}."
-
-
-def by_engine(rows: DataFrame, run: str, column: str, unit: str) -> str:
-    """A share in each engine, as words."""
-    shares = {engine: shown(of_run(group, run)[column], ".1%") for engine, group in groups(rows, "engine").items()}
-    return " and ".join(f"{share} {unit} in {ENGINE_NAMES[engine]}" for engine, share in shares.items())
+    reached = [
+        f"{shown(_of_run(group, 'shipped').of_best, '.1%')} of the best known score in {ENGINE_NAMES[engine]}"
+        for engine, group in groups(rows, "engine").items()
+    ]
+    return f"The shipped V1 to V4 reach {' and '.join(reached)}."
 
 
 def figure(rows: DataFrame) -> Figure:
@@ -181,11 +159,11 @@ def figure(rows: DataFrame) -> Figure:
     drawn, (*settled, shares) = panels(len(engines) + 1, 0.35)
     columns = {}
     for axis, (engine, group) in zip(settled, engines.items(), strict=True):
-        best = of_run(group, BEST)
-        strips(axis, {name: learned(group)[name] for name in NAMES}, {name: best[name] for name in NAMES}, BEST)
+        best = _of_run(group, BEST)
+        strips(axis, {name: _learned(group)[name] for name in NAMES}, {name: best[name] for name in NAMES}, BEST)
         axis.set_title(ENGINE_NAMES[engine], fontsize="small")
-        columns[f"{ENGINE_NAMES[engine]}\nlearned"] = learned(group).of_best
-        columns[f"{ENGINE_NAMES[engine]}\nmu"] = learned(group).mu_of_best
+        columns[f"{ENGINE_NAMES[engine]}\nlearned"] = _learned(group).of_best
+        columns[f"{ENGINE_NAMES[engine]}\nmu"] = _learned(group).mu_of_best
     strips(shares, columns, dict.fromkeys(columns, 1.0))
     shares.set_ylabel("score over the best known one")
     shares.tick_params(axis="x", labelsize="x-small")
@@ -195,36 +173,20 @@ def figure(rows: DataFrame) -> Figure:
 
 def closeness(rows: DataFrame) -> str:
     """How close trainings come to the best known set, for what they recommend and for what their networks say."""
-    summaries = DataFrame(
-        {"engine": engine, "set": kind, **summary(learned(group)[column], of_run(group, MEAN)[f"{column}_error"])}
-        for engine, group in groups(rows, "engine").items()
-        for kind, column in (("recommended", "of_best"), ("mu", "mu_of_best"))
-    )
+    found = []
+    for engine, group in groups(rows, "engine").items():
+        for kind, prefix in (("recommended", ""), ("mu", "mu_")):
+            shares, mean = _learned(group)[f"{prefix}of_best"], _of_run(group, MEAN)
+            columns = {column: mean[f"{prefix}{column}"] for column in ("of_best", "of_best_error", "survival_100")}
+            close = {"within_5_%": (shares >= ENOUGH).sum(), "lowest": shares.min()}
+            found.append({"engine": engine, "set": kind, **columns, **close})
     caption = (
-        f"Score over that of the best known set of the engine: mean of {FULL.seeds} trainings, with its 95 % interval"
-        " over trainings and pushes; number of trainings within 5 %, with its interval over trainings (Wilson); lowest."
+        f"Score over that of the best known set of the engine: mean of {FULL.seeds} trainings, with its standard error"
+        " over trainings and pushes; mean survival of pushes of 100 N; number of trainings within 5 % of the best known"
+        " score; lowest share of a training."
     )
-    return table(summaries, list(summaries.columns), FORMATS, caption)
-
-
-def summary(shares: Series, error: float) -> Row:
-    """Columns of the mean share, of the number of trainings that are close to the best known set, and the lowest.
-
-    :param shares: scores over that of the best known set
-    :param error: standard error of their mean, over trainings and pushes
-    """
-    half = float(student.ppf(0.975, len(shares) - 1)) * error
-    close = int((shares >= ENOUGH).sum())
-    low, high = (len(shares) * end for end in wilson_interval(close, len(shares)))
-    return {
-        "of_best": shares.mean(),
-        "of_best_low": shares.mean() - half,
-        "of_best_high": shares.mean() + half,
-        "within_5_%": close,
-        "within_5_%_low": low,
-        "within_5_%_high": high,
-        "lowest": shares.min(),
-    }
+    formats = dict.fromkeys(("of_best", "survival_100", "lowest"), ".1%")
+    return table(DataFrame(found), list(found[0]), caption, **formats)
 
 
 def compared(rows: DataFrame) -> str:
@@ -234,4 +196,5 @@ def compared(rows: DataFrame) -> str:
         f"The sets that trainings are compared with: mean score under {FULL.judging} hard pushes, and its share of the"
         " best known score with its standard error. P1 to P5 are the shipped ones."
     )
-    return table(rows[rows.run.isin(KNOWN)].sort_values("engine", kind="stable"), columns, FORMATS, caption)
+    known = rows[rows.run.isin(KNOWN)].sort_values("engine", kind="stable")
+    return table(known, columns, caption, of_best=".1%")

@@ -16,10 +16,10 @@ from pandas import DataFrame
 
 from experiments.experiment import Experiment, product
 from experiments.record import Row
-from experiments.tables import table
+from experiments.tables import format_of, table
 from sarah.control.pattern_generator import PatternGenerator, PhaseChange
 from sarah.episode.episode import Episode
-from sarah.episode.push import Push
+from sarah.episode.push import NO_PUSH
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.robot.filters import ramped
 from sarah.robot.reading import SensorReading
@@ -27,8 +27,6 @@ from sarah.robot.reading import SensorReading
 FIRST_TICKS, TICKS_LATER = 200, 3
 """Ticks of stepping before the fault begins, and how many later it does in each further episode. So faults meet the
 robot in any phase."""
-STUCK_PAD = 300.0
-"""Load that a stuck pad reports, in N: about the weight of the robot."""
 HIPS = {"locked": (0.0, 0.0, 0.0, 0.0), "V1 = 1, V3 = 0.7": (1.0, 0.0, 0.7, 0.0)}
 """Values of V1 to V4, by name."""
 
@@ -40,38 +38,28 @@ NOTHING = SensorReading((math.nan,) * 3, (math.nan,) * 3, (math.nan,) * 4, (math
 """A reading of which no signal has come."""
 
 
-def signal(field: str, elements: tuple[int, ...], value: float | None = None, added: float = 0.0) -> Change:
-    """A fault of some elements of a signal.
-
-    :param field: name of the signal
-    :param elements: indices of the elements that fail
-    :param value: value that they are stuck at; by default the last one before the fault, unless something is added
-    :param added: constant that is added to them instead
-    """
+def _signal(field: str, elements: tuple[int, ...], value: float | None = None, added: float = 0.0) -> Change:
+    """Some elements of a signal are stuck, at their last value unless another is given, or something is added."""
 
     def change(reading: SensorReading, before: SensorReading) -> Heard:
-        stuck = getattr(before, field)
-        values = [
-            x if k not in elements else x + added if added else stuck[k] if value is None else value
-            for k, x in enumerate(getattr(reading, field))
-        ]
+        values = list(getattr(reading, field))
+        for k in elements:
+            stuck = getattr(before, field)[k] if value is None else value
+            values[k] = values[k] + added if added else stuck
         return reading._replace(**{field: tuple(values)})
 
     return change
 
 
-def repeated(reading: SensorReading, before: SensorReading) -> Heard:
-    """The last reading before the fault again."""
+def _repeated(reading: SensorReading, before: SensorReading) -> Heard:
     return before
 
 
-def lost(reading: SensorReading, before: SensorReading) -> Heard:
-    """No signal is finite."""
+def _lost(reading: SensorReading, before: SensorReading) -> Heard:
     return NOTHING
 
 
-def missed(reading: SensorReading, before: SensorReading) -> Heard:
-    """No tick: the targets stay."""
+def _missed(reading: SensorReading, before: SensorReading) -> Heard:
     return None
 
 
@@ -94,77 +82,62 @@ class Fault(NamedTuple):
 
 FAULTS = {
     "none": Fault(),
-    "one reading in ten is not finite": Fault(lost, lambda ticks: ticks % 10 == 0),
-    "every second reading is not finite": Fault(lost, lambda ticks: ticks % 2 == 0),
-    "no reading is finite for 0.5 s": Fault(lost, lambda ticks: ticks < 50),
-    "no reading is finite any more": Fault(lost),
-    "lateral acceleration: not finite any more": Fault(signal("acceleration", (0,), math.nan)),
-    "rate about y: not finite any more": Fault(signal("angular_rate", (1,), math.nan)),
-    "one pad: not finite any more": Fault(signal("pressures", (0,), math.nan)),
-    "left flexion joint: not finite any more": Fault(signal("joints", (2,), math.nan)),
-    "all joints: not finite any more": Fault(signal("joints", (0, 1, 2, 3, 4, 5), math.nan)),
-    "the same reading comes for 0.1 s": Fault(repeated, lambda ticks: ticks < 10),
-    "the same reading comes for 0.5 s": Fault(repeated, lambda ticks: ticks < 50),
-    "the same reading comes for ever": Fault(repeated),
-    "lateral acceleration: 0": Fault(signal("acceleration", (0,), 0.0)),
-    "lateral acceleration: 0.2 m/s² too high": Fault(signal("acceleration", (0,), added=0.2)),
-    "lateral acceleration: 0.5 m/s² too high": Fault(signal("acceleration", (0,), added=0.5)),
-    "rate about y: 0": Fault(signal("angular_rate", (1,), 0.0)),
-    "rate about y: stuck": Fault(signal("angular_rate", (1,))),
-    "rate about y: 0.1 rad/s too high": Fault(signal("angular_rate", (1,), added=0.1)),
-    "rate about x: 0": Fault(signal("angular_rate", (0,), 0.0)),
-    "rate about x: 0.1 rad/s too high": Fault(signal("angular_rate", (0,), added=0.1)),
-    "one pad: 0 N": Fault(signal("pressures", (0,), 0.0)),
-    "both pads of a foot: 0 N": Fault(signal("pressures", (0, 1), 0.0)),
-    "all pads: 0 N": Fault(signal("pressures", (0, 1, 2, 3), 0.0)),
-    "one pad: stuck at 300 N": Fault(signal("pressures", (0,), STUCK_PAD)),
-    "right abduction joint: stuck at 0.3 rad": Fault(signal("joints", (1,), 0.3)),
-    "right abduction joint: 0.1 rad off": Fault(signal("joints", (1,), added=0.1)),
-    "one tick in ten is missed": Fault(missed, lambda ticks: ticks % 10 == 0),
-    "every second tick is missed": Fault(missed, lambda ticks: ticks % 2 == 0),
-    "every second tick is missed, and time is told": Fault(missed, lambda ticks: ticks % 2 == 0, is_told=True),
-    "ten ticks are missed, once": Fault(missed, lambda ticks: ticks < 10),
-    "ten ticks are missed, once, and time is told": Fault(missed, lambda ticks: ticks < 10, is_told=True),
-    "no tick any more, targets stay": Fault(missed),
-    "no tick any more, targets go to zero": Fault(missed, to_zero=True),
+    "one reading in ten is not finite": Fault(_lost, lambda ticks: ticks % 10 == 0),
+    "every second reading is not finite": Fault(_lost, lambda ticks: ticks % 2 == 0),
+    "no reading is finite for 0.5 s": Fault(_lost, lambda ticks: ticks < 50),
+    "no reading is finite any more": Fault(_lost),
+    "lateral acceleration: not finite any more": Fault(_signal("acceleration", (0,), math.nan)),
+    "rate about y: not finite any more": Fault(_signal("angular_rate", (1,), math.nan)),
+    "one pad: not finite any more": Fault(_signal("pressures", (0,), math.nan)),
+    "left flexion joint: not finite any more": Fault(_signal("joints", (2,), math.nan)),
+    "all joints: not finite any more": Fault(_signal("joints", (0, 1, 2, 3, 4, 5), math.nan)),
+    "the same reading comes for 0.1 s": Fault(_repeated, lambda ticks: ticks < 10),
+    "the same reading comes for 0.5 s": Fault(_repeated, lambda ticks: ticks < 50),
+    "the same reading comes for ever": Fault(_repeated),
+    "lateral acceleration: 0": Fault(_signal("acceleration", (0,), 0.0)),
+    "lateral acceleration: 0.2 m/s² too high": Fault(_signal("acceleration", (0,), added=0.2)),
+    "lateral acceleration: 0.5 m/s² too high": Fault(_signal("acceleration", (0,), added=0.5)),
+    "rate about y: 0": Fault(_signal("angular_rate", (1,), 0.0)),
+    "rate about y: stuck": Fault(_signal("angular_rate", (1,))),
+    "rate about y: 0.1 rad/s too high": Fault(_signal("angular_rate", (1,), added=0.1)),
+    "rate about x: 0": Fault(_signal("angular_rate", (0,), 0.0)),
+    "rate about x: 0.1 rad/s too high": Fault(_signal("angular_rate", (0,), added=0.1)),
+    "one pad: 0 N": Fault(_signal("pressures", (0,), 0.0)),
+    "both pads of a foot: 0 N": Fault(_signal("pressures", (0, 1), 0.0)),
+    "all pads: 0 N": Fault(_signal("pressures", (0, 1, 2, 3), 0.0)),
+    "one pad: stuck at 300 N": Fault(_signal("pressures", (0,), 300.0)),
+    "right abduction joint: stuck at 0.3 rad": Fault(_signal("joints", (1,), 0.3)),
+    "right abduction joint: 0.1 rad off": Fault(_signal("joints", (1,), added=0.1)),
+    "one tick in ten is missed": Fault(_missed, lambda ticks: ticks % 10 == 0),
+    "every second tick is missed": Fault(_missed, lambda ticks: ticks % 2 == 0),
+    "every second tick is missed, and time is told": Fault(_missed, lambda ticks: ticks % 2 == 0, is_told=True),
+    "ten ticks are missed, once": Fault(_missed, lambda ticks: ticks < 10),
+    "ten ticks are missed, once, and time is told": Fault(_missed, lambda ticks: ticks < 10, is_told=True),
+    "no tick any more, targets stay": Fault(_missed),
+    "no tick any more, targets go to zero": Fault(_missed, to_zero=True),
     "delay of 20 ms": Fault(delay_seconds=0.02),
     "delay of 30 ms": Fault(delay_seconds=0.03),
     "delay of 50 ms": Fault(delay_seconds=0.05),
 }
 """Faults, by what happens; a delay is there from the beginning."""
-FORMATS = {"survival": ".0%", "steps_per_second": ".2f", "phases_by_sensors": ".0%"}
 
 
-class BehindFault:
-    """A pattern generator that hears its sensors through a fault.
-
-    :param generator: pattern generator
-    :param fault: fault
-    :param begin: ticks of stepping before the fault begins
-    :param dt: control period, in s
-    """
+class _BehindFault:
+    """A pattern generator that hears its sensors through a fault, which begins after some ticks of stepping."""
 
     def __init__(self, generator: PatternGenerator, fault: Fault, begin: int, dt: float) -> None:
         self.since = -begin
         self.targets: tuple[float, ...] = generator.targets
         self.changes: list[PhaseChange] = []
+        self._generator, self._fault, self._dt, self._missed = generator, fault, dt, 0
         constants = generator.constants
-        self._generator = generator
-        self._fault = fault
         self._largest_moves = [constants.hip_speed * dt] * 4 + [constants.leg_speed * dt] * 2
         self._before: SensorReading | None = None
-        self._dt = dt
-        self._missed = 0
 
     def __getattr__(self, name: str) -> Any:
-        """Anything else is the pattern generator's."""
         return getattr(self._generator, name)
 
     def tick(self, reading: SensorReading) -> PhaseChange | None:
-        """Advance by one control tick, unless the fault is that it does not take place.
-
-        :param reading: sensor reading of this tick, without the fault
-        """
         since, heard = self.since, reading
         self.since += 1
         if since < 0 or self._before is None:
@@ -178,8 +151,7 @@ class BehindFault:
                 self.targets = tuple(ramped(target, 0.0, largest) for target, largest in moves)
             return None
         change = self._generator.tick(heard, (1 + self._missed) * self._dt if self._fault.is_told else None)
-        self._missed = 0
-        self.targets = self._generator.targets
+        self._missed, self.targets = 0, self._generator.targets
         if since >= 0 and change is not None:
             self.changes.append(change)
         return change
@@ -201,24 +173,20 @@ class SensorFaults(Experiment):
         return product(fault=FAULTS, hips=HIPS)
 
     def rows(self, fault: str, hips: str) -> Iterator[Row]:
-        """Survival, and how the robot steps from the fault on.
-
-        :param fault: name of the fault
-        :param hips: name of V1 to V4
-        """
+        """Survival, and how the robot steps from the fault on."""
         outcomes = [self._simulated(FAULTS[fault], HIPS[hips], seed) for seed in range(self.seeds)]
         survived, steps_per_second, by_sensors = map(mean, zip(*outcomes, strict=True))
         yield {"survival": survived, "steps_per_second": steps_per_second, "phases_by_sensors": by_sensors}
 
     def _simulated(self, fault: Fault, hips: tuple[float, ...], seed: int) -> tuple[bool, float, float]:
         """Whether the robot stays in its place, its steps per second, and its share of phases that sensors end."""
-        config = BalanceConfig(engine="pybullet", push=Push(newtons=(0.0, 0.0)), time_limit=self.time_limit)
+        config = BalanceConfig(engine="pybullet", push=NO_PUSH, time_limit=self.time_limit)
         config = replace(config, randomisation=replace(config.randomisation, delay_seconds=fault.delay_seconds))
         dt = config.physics.control_dt
         with Episode(config, seed, BALANCE) as episode:
             episode.stand()
             episode.start(hips)
-            generator = BehindFault(episode.robot.generator, fault, FIRST_TICKS + TICKS_LATER * seed, dt)
+            generator = _BehindFault(episode.robot.generator, fault, FIRST_TICKS + TICKS_LATER * seed, dt)
             episode.robot.generator = generator  # type: ignore[assignment]  # whatever an episode asks of it, it has
             while episode.termination is None:
                 episode.tick()
@@ -236,11 +204,12 @@ QUICK = SensorFaults(seeds=1, time_limit=1.1)
 
 def faults(rows: DataFrame) -> str:
     """What becomes of the robot, with locked hips and with the hip law."""
-    wide = rows.pivot(index="fault", columns="hips", values=list(FORMATS)).reindex(index=list(FAULTS))
-    formats = {f"{column}, {hips}": spec for column, spec in FORMATS.items() for hips in HIPS}
+    columns = ("survival", "steps_per_second", "phases_by_sensors")
+    wide = rows.pivot(index="fault", columns="hips", values=list(columns)).reindex(index=list(FAULTS))
+    formats = {f"{column}, {hips}": format_of(column) for column in columns for hips in HIPS}
     wide.columns = [f"{column}, {hips}" for column, hips in wide.columns]
     caption = (
         f"Survival of {FULL.seeds} robots with the shipped P1 to P5 in PyBullet, steps per second, and share of phases "
         f"that sensors end, both from the fault on; with locked hips, and with V1 = 1 and V3 = 0.7."
     )
-    return table(wide.reset_index(), ["fault", *formats], formats, caption)
+    return table(wide.reset_index(), ["fault", *formats], caption, **formats)

@@ -41,8 +41,8 @@ CONDITIONS = {
     "125 N": (125.0, 0.0),
 }
 """Force in N, and share of sagittal pushes, by the condition that parameters are evaluated in."""
-METRICS = {"survival": ".0%", "score": ".3f", "steps_per_second": ".2f"}
-"""Columns that the package's file keeps beside the number of episodes, with their formats."""
+METRICS = ("survival", "score", "steps_per_second")
+"""Columns that the package's file keeps beside the number of episodes."""
 STEPPING_NAMES = [parameter.name for parameter in STEPPING_PARAMETERS]
 
 
@@ -60,12 +60,7 @@ class ShippedParameters(Experiment):
         return product(set=("stepping", "balance"), engine=get_args(Engine), condition=CONDITIONS)
 
     def rows(self, set: str, engine: Engine, condition: str) -> Iterator[Row]:
-        """The values of a set, and how well it does.
-
-        :param set: name of the set, which is that of its task too
-        :param engine: physics engine
-        :param condition: name of the condition
-        """
+        """The values of a set, and how well it does."""
         newtons, sagittal_share = CONDITIONS[condition]
         push = Push((newtons, newtons), at_seconds=PUSHED_BETWEEN, sagittal_share=sagittal_share)
         limit = PUSHED_BETWEEN[1] + push.duration + SECONDS_AFTER
@@ -103,15 +98,12 @@ def ship(result: record.Result, path: Path = FILE) -> None:
     :param result: the result ``shipped_parameters``
     :param path: the file
     """
-    text = json.dumps(sets_of(result), indent=2, ensure_ascii=False)
+    text = json.dumps(_sets_of(result), indent=2, ensure_ascii=False)
     replace_text(path, re.sub(r"\[[^\[\]]*\]", lambda numbers: " ".join(numbers[0].split()), text) + "\n")
 
 
-def sets_of(result: record.Result) -> dict[str, Any]:
-    """Content of the package's file: what it says already, with the values and figures of the rows.
-
-    :param result: the result ``shipped_parameters``
-    """
+def _sets_of(result: record.Result) -> dict[str, Any]:
+    """Content of the package's file: what it says already, with the values and figures of the rows."""
     sets = copy.deepcopy(shipped())
     versions = dict(word.split(maxsplit=1) for word in result.versions.split(", "))
     origin = {"command": result.command, "commit": result.commit, "date": result.date, "versions": versions}
@@ -143,7 +135,7 @@ def values(rows: DataFrame) -> str:
     names = [*STEPPING_NAMES, *BALANCE_NAMES]
     sets = rows.drop_duplicates("set").set_index("set")[names].T.rename_axis("parameter").reset_index()
     caption = "The values. The hips of the set stepping are locked."
-    return table(sets, ["parameter", "stepping", "balance"], dict.fromkeys(("stepping", "balance"), ".2f"), caption)
+    return table(sets, ["parameter", "stepping", "balance"], caption, stepping=".2f", balance=".2f")
 
 
 def survived(rows: DataFrame) -> str:
@@ -152,7 +144,7 @@ def survived(rows: DataFrame) -> str:
         f"Means of {FULL.episodes} episodes of each set, engine and condition. Sagittal pushes come from within 30"
         " degrees of front or back, the others from anywhere. Episodes end 10 s after the latest push."
     )
-    return table(rows, ["set", "engine", "condition", *METRICS], METRICS, caption)
+    return table(rows, ["set", "engine", "condition", *METRICS], caption)
 
 
 if __name__ == "__main__":

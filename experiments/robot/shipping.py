@@ -66,7 +66,6 @@ DIRECTIONS = tuple(45.0 * index for index in range(8))
 """Directions that lead uphill, in degrees."""
 SIGNIFICANT = 1.645
 """Number of standard errors from which a difference counts."""
-FORMATS = {**dict.fromkeys(NAMES, ".2f"), "overall": ".3f"}
 
 
 class Round(NamedTuple):
@@ -149,10 +148,7 @@ class Shipping(SecondTrainingExperiment):
         return [{"engine": engine} for engine in self.engines]
 
     def rows(self, engine: Engine) -> Iterator[Row]:
-        """The conditions that each candidate met in an engine, the best candidate first.
-
-        :param engine: physics engine
-        """
+        """The conditions that each candidate met in an engine, the best candidate first."""
         candidates = self.judged(first=engine)
         chosen = self.choice(candidates)
         for candidate in candidates:
@@ -262,7 +258,7 @@ FULL = Shipping()
 QUICK = Shipping(time_limit=2.0, budget=5, engines=("mujoco",), seeds=1, rounds=(Round(None, {HARD: 3, LEVEL: 1}),))
 
 
-def finalists(rows: DataFrame) -> DataFrame:
+def _finalists(rows: DataFrame) -> DataFrame:
     """Rows of the candidates of the last round, who met all conditions."""
     met = rows.groupby("run").condition.transform("nunique")
     return rows[met == met.max()]
@@ -272,7 +268,7 @@ def answer(rows: DataFrame) -> str:
     """Which set the rule chooses."""
     runs = rows.drop_duplicates("run")
     (chosen,) = runs[runs.verdict == CHOSEN].to_dict("records")
-    values = ", ".join(shown(chosen[name], FORMATS[name]) for name in NAMES)
+    values = ", ".join(shown(chosen[name], ".2f") for name in NAMES)
     origin = "shipped before" if chosen["run"] == BEFORE else f"{chosen['run']}, recommends"
     return f"Of {len(runs)} sets the rule chooses V1 to V4 = ({values}), which {origin}."
 
@@ -283,10 +279,10 @@ def verdicts(rows: DataFrame) -> str:
         "The candidates of the last round and their score over that of the set that shipped before (geometric mean"
         " over conditions)."
     )
-    return table(finalists(rows).drop_duplicates("run"), ["run", *NAMES, "overall", "verdict"], FORMATS, caption)
+    return table(_finalists(rows).drop_duplicates("run"), ["run", *NAMES, "overall", "verdict"], caption, overall=".3f")
 
 
 def conditions(rows: DataFrame) -> str:
     """What the candidates of the last round score in each condition."""
     caption = "Score over that of the set that shipped before, by condition, for the candidates of the last round."
-    return turned_table(finalists(rows), ["engine", "condition", "episodes"], "run", "relative", ".3f", caption)
+    return turned_table(_finalists(rows), ["engine", "condition", "episodes"], "run", "relative", caption, ".3f")

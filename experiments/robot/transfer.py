@@ -8,13 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from matplotlib.figure import Figure
 from pandas import DataFrame
 
 from experiments.experiment import product
 from experiments.record import Row
-from experiments.robot.engines import FORMATS, in_both
-from experiments.shapes import against, groups, legend, panels
+from experiments.robot.engines import COLUMNS, in_both
+from experiments.shapes import groups
 from experiments.tables import shown, span, table
 from experiments.trainings import TrainingExperiment
 from sarah.reports.transfer import ENGINES
@@ -44,12 +43,7 @@ class Transfer(TrainingExperiment):
         return product(task=BUDGETS, learned_in=ENGINES, run=runs)
 
     def rows(self, task: str, learned_in: Engine, run: str) -> Iterator[Row]:
-        """What the parameters of a training do in both engines.
-
-        :param task: name of the task
-        :param learned_in: engine of the training
-        :param run: the training with its seed
-        """
+        """What the parameters of a training do in both engines."""
         config, seed = self.episode(task, learned_in), int(run.split()[-1])
         training = TrainingConfig(task, episodes=self.budget or BUDGETS[task], seed=seed, episode=config)
         yield in_both(task, self.trained(training).parameters(), EPISODES[task], config.time_limit)
@@ -76,26 +70,14 @@ def answer(rows: DataFrame) -> str:
     )
 
 
-def figure(rows: DataFrame) -> Figure:
-    """Score in MuJoCo against score in PyBullet."""
-    drawn, (axis,) = panels(1, 0.5)
-    named = rows.assign(training=rows.task + ", learned in " + rows.learned_in)
-    against(axis, named, "pybullet_score", "mujoco_score", "training")
-    scores = rows[["pybullet_score", "mujoco_score"]].stack()
-    limits = scores.min() - 0.02, scores.max() + 0.02
-    axis.set(xlim=limits, ylim=limits)
-    legend(drawn, axis)
-    return drawn
-
-
 def trainings(rows: DataFrame) -> str:
     """Scores, steps and what is kept."""
-    captions = {
-        "stepping": "First Trainings by NAF, judged on the same {} episodes of 30 s in each engine.",
-        "balance": "Second Trainings by NAF, judged on the same {} pushes of 100 N at 1 to 4 s in each engine.",
-    }
-    formats = {column: spec for column, spec in FORMATS.items() if "survival" not in column} | {"kept": ".0%"}
-    return "\n\n".join(
-        table(group, ["run", "learned_in", *formats], formats, captions[str(task)].format(EPISODES[str(task)]))
-        for task, group in groups(compared(rows), "task").items()
+    found = compared(rows).groupby(["task", "learned_in"], sort=False)
+    kept = {"kept": found.kept.median(), "kept_low": found.kept.min(), "kept_high": found.kept.max()}
+    caption = (
+        f"Medians of {FULL.seeds} trainings by NAF, each judged in both engines on the same episodes: "
+        f"{EPISODES['stepping']} of 30 s after a First Training, and {EPISODES['balance']} pushes of 100 N at 1 to 4 s "
+        "after a Second; what is kept with its range."
     )
+    medians = found[[column for column in COLUMNS if "survival" not in column]].median().assign(**kept).reset_index()
+    return table(medians, list(medians), caption)

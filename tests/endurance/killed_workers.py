@@ -104,5 +104,5 @@ def seconds_of_training(episodes: int, folder: Path, workers: Workers, interrupt
 
 def cost(rows: DataFrame) -> str:
     """Kills, and how much longer the training took."""
-    formats = {"seconds_between_kills": ".0f", "time_s": ".0f", "longer": ".0%"}
-    return table(rows, list(rows), formats, "A First Training with two workers, which were killed in turn.")
+    formats = {"kills": ".0f", "_s": ".0f", "longer": ".0%"}
+    return table(rows, list(rows), "A First Training with two workers, which were killed in turn.", **formats)

@@ -140,4 +140,4 @@ def left_behind(folder: Path) -> dict[str, object]:
 def counts(rows: DataFrame) -> str:
     """How often trainings were killed."""
     caption = f"Trainings of {EPISODES} episodes that ended with the same bytes as without kills, and their kills."
-    return table(rows, ["algorithm", "trainings", "kills"], {}, caption)
+    return table(rows, ["algorithm", "trainings", "kills"], caption)

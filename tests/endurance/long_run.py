@@ -137,5 +137,4 @@ def ends(rows: DataFrame) -> str:
     """Memory and open files at both ends."""
     found = growths(rows)
     columns = [column for column in found if column != "growth_mib"]
-    formats = {"memory_mib": ".0f", "later_memory_mib": ".0f"}
-    return table(found, columns, formats, "Memory and open files of each process, after few episodes and after many.")
+    return table(found, columns, "Memory and open files of each process, after few episodes and after many.")

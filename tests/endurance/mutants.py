@@ -172,4 +172,4 @@ def killed(rows: DataFrame) -> str:
     shares = rows.assign(share_killed=rows.killed / rows.mutants)
     caption = "Mutants of each file: killed by its tests, survivors that no test can kill, and other survivors."
     columns = ["file", "mutants", "killed", "share_killed", "explained", "survived"]
-    return table(shares, columns, {"share_killed": ".1%"}, caption)
+    return table(shares, columns, caption, share_killed=".1%")

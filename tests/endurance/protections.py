@@ -91,4 +91,4 @@ def answer(rows: DataFrame) -> str:
 def watched(rows: DataFrame) -> str:
     """What is promised, and the test of it."""
     shown = rows.assign(test=[f"`{place.partition('::')[2]}`" for place in rows.test])
-    return table(shown, ["promise", "test"], {}, "Protections, and the test that fails without each.")
+    return table(shown, ["promise", "test"], "Protections, and the test that fails without each.")

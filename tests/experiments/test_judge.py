@@ -8,13 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from pandas import Series
 
 from experiments import judge as module
 from experiments import trainings
-from experiments.interval import ratio
 from experiments.judge import KEPT_TOGETHER, Condition, Judge
-from experiments.robot.second_training import summary
+from experiments.robot.second_training import ratio
 from experiments.search import around, successive_halving
 from experiments.trainings import identity
 from sarah.control.parameters import BALANCE_PARAMETERS
@@ -132,10 +130,3 @@ def test_the_error_of_a_mean_ratio_knows_the_noise_of_pushes_and_of_trainings() 
     of_one = ratio("share", pushes[np.newaxis], best)["share_error"]
     assert ratio("share", np.array([pushes, pushes]), best)["share_error"] == pytest.approx(of_one)
     assert of_one == pytest.approx(np.std(pushes / 0.5, ddof=1) / 2.0)
-
-
-def test_a_summary_counts_trainings_near_the_best_known() -> None:
-    found = summary(Series([1.0, 0.96, 0.8]), error=0.01)
-    assert (found["within_5_%"], found["lowest"]) == (2, 0.8)
-    assert found["of_best"] == pytest.approx(0.92)
-    assert found["of_best_high"] - 0.92 == pytest.approx(0.043, abs=1e-4)  # Student, two degrees of freedom

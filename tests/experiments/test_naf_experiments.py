@@ -4,7 +4,7 @@ import gymnasium as gym
 import pytest
 from pandas import DataFrame
 
-from experiments.naf import known_tasks, naf_preset, standard_tasks
+from experiments.naf import known_tasks, standard_tasks
 from experiments.naf.algorithms import OTHERS, VARIANTS, agent
 
 
@@ -39,13 +39,6 @@ def test_statistics_of_seeds_leave_out_tasks_that_lack_the_column() -> None:
     rows = [("a", "NAF", 1.0), ("a", "NAF", 4.0), ("a", "DDPG", 2.0), ("b", "NAF", None)]
     found = known_tasks.of_seeds(DataFrame(rows, columns=["task", "algorithm", "score"]), "score", "max")
     assert found.to_dict("index") == {"a": {"NAF": 4.0, "DDPG": 2.0}}
-
-
-@pytest.mark.parametrize(
-    ("scores", "episodes"), [([0.9] * 3, 5.0), ([0.9, 0.9, 0.1, 0.8, 0.8, 0.8], 20.0), ([0.1, 0.9, 0.9], float("inf"))]
-)
-def test_a_score_is_reached_when_it_is_held(scores: list[float], episodes: float) -> None:
-    assert naf_preset.episodes_until(scores, 0.8) == episodes
 
 
 @pytest.mark.parametrize("name", [*VARIANTS, *OTHERS])

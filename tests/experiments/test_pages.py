@@ -57,9 +57,9 @@ def test_values_are_written_as_people_write_them() -> None:
 
 
 def test_a_table_can_be_turned() -> None:
-    straight = table(ROWS, ["run", "score"], {"score": ".1f"}, "Scores.").splitlines()
+    straight = table(ROWS, ["run", "score"], "Scores.", score=".1f").splitlines()
     assert straight[:2] == ["**Scores.**", ""] and straight[-1] == "| b | 1.0 |"
-    turned = turned_table(ROWS, ["run"], "engine", "score", ".2f", "Scores.").splitlines()
+    turned = turned_table(ROWS, ["run"], "engine", "score", "Scores.", ".2f").splitlines()
     assert turned[2:] == [
         "| run | x | y |",
         "| --- | --- | --- |",
