@@ -22,7 +22,7 @@ def made_at(result: record.Result) -> str:
 
     :param result: the result
     """
-    dirty = " with changes that no commit has" if result.tree else ""
+    dirty = " with uncommitted changes" if result.tree else ""
     return f"{result.commit.split()[-1]}{dirty} on {result.date}"
 
 

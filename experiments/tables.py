@@ -136,6 +136,16 @@ def shown(value: Any, spec: str = "") -> str:
     return re.sub("^-", "\N{MINUS SIGN}", format(value, spec)).replace("%", "\N{NO-BREAK SPACE}%")
 
 
+def share_of(count: int, total: int, what: str) -> str:
+    """How many of some things, in words: ``all 10 trainings``, or ``8 of 10 trainings``.
+
+    :param count: how many
+    :param total: number of all
+    :param what: name of the things
+    """
+    return f"all {total} {what}" if count == total else f"{count} of {total} {what}"
+
+
 def span(values: Series[Any], spec: str) -> str:
     """The lowest and the highest of some values, as words.
 

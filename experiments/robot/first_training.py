@@ -14,7 +14,7 @@ from pandas import DataFrame, Series
 
 from experiments.record import Row
 from experiments.shapes import legend, panels, strips
-from experiments.tables import shown, span, table
+from experiments.tables import share_of, shown, span, table
 from experiments.trainings import TrainingExperiment
 from sarah.control.parameters import PAPER_STEPPING, STEPPING_PARAMETERS
 from sarah.episode.evaluation import evaluate
@@ -86,10 +86,10 @@ def answer(rows: DataFrame) -> str:
     """Whether the robot learns to step."""
     runs = learned(rows)
     never_falls = int((runs.survival == 1.0).sum())
+    which = share_of(never_falls, len(runs), f"trainings of {FULL.budget} episodes")
     return (
-        f"Of {len(runs)} trainings of {FULL.budget} episodes {never_falls} end with a robot that steps in place and "
-        f"never falls. Their median score is {shown(runs.score.median(), '.2f')}, and they step "
-        f"{span(runs.steps_per_second, '.1f')} times a second."
+        f"{which[0].upper()}{which[1:]} end with a robot that steps in place and never falls. Their median score is "
+        f"{shown(runs.score.median(), '.2f')}, and the robots step {span(runs.steps_per_second, '.1f')} times a second."
     )
 
 

@@ -125,8 +125,9 @@ def answer(rows: DataFrame) -> str:
         for name in ("balance", "stepping")
     )
     return (
-        f"In PyBullet the robot survives {soft} of pushes of 100 N from anywhere with the shipped parameters, and"
-        f" {hard} of pushes of 125 N. With locked hips it survives {locked_soft} and {locked_hard}."
+        f"With the shipped parameters the robot survives {soft} of pushes of 100 N in PyBullet, and {locked_soft} with "
+        f"locked hips. Of pushes of 125 N it survives {hard}, and {locked_hard} with locked hips. Pushes come from "
+        "anywhere."
     )
 
 

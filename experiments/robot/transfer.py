@@ -14,7 +14,7 @@ from experiments.experiment import product
 from experiments.record import Row
 from experiments.robot.engines import COLUMNS, in_both
 from experiments.shapes import groups
-from experiments.tables import shown, span, table
+from experiments.tables import share_of, shown, span, table
 from experiments.trainings import TrainingExperiment
 from sarah.reports.transfer import ENGINES
 from sarah.runs.config import TrainingConfig
@@ -66,7 +66,8 @@ def answer(rows: DataFrame) -> str:
     return (
         f"Yes, without retraining. In the other engine Second Trainings keep {span(kept['balance'], '.0%')} of their "
         f"score, and First Trainings {span(kept['stepping'], '.0%')}, {shown(kept['stepping'].median(), '.0%')} in the "
-        f"median. With the parameters of {survive} of {len(rows)} trainings the robot survives every episode in both."
+        f"median. With the parameters of {share_of(survive, len(rows), 'trainings')} the robot survives every episode "
+        "in both."
     )
 
 
