@@ -144,8 +144,8 @@ def answer(rows: DataFrame) -> str:
     return (
         f"On level ground the robot survives {survived(ours, NEWTONS)} of pushes of {NEWTONS:.0f} N with the shipped "
         f"V1 to V4, and {survived(locked, NEWTONS)} with its hips locked (V = 0). Of pushes of 125 N it survives "
-        f"{survived(ours, 125.0)} with the shipped V1 to V4, and {survived(locked, 125.0)} with locked hips. Ranges are "
-        f"those of the two engines.\n\n"
+        f"{survived(ours, 125.0)} with the shipped V1 to V4, and {survived(locked, 125.0)} with locked hips. Ranges "
+        "are those of the two engines.\n\n"
         f"On bumps of 10 mm it survives {survived(ours, NEWTONS, 'bumps of 10 mm')} of pushes of {NEWTONS:.0f} N. On a "
         f"slope of 8° it keeps {span(kept, '.0%')} of its score. With ice under one foot "
         f"{survived(ours, 0.0, 'ice under the left foot')} of the robots stay in place, even without a push."
