@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
+from laboratory import need
 from pandas import DataFrame
 
 from experiments import record
@@ -29,6 +30,7 @@ def test_a_page_reads_in_any_reader(page: Path) -> None:
 
 
 def test_pages_hold_what_their_functions_write(capsys: pytest.CaptureFixture[str]) -> None:
+    need("pybullet")  # without it the settings have another default engine
     code = write("--check")
     assert code == 0, f"run make results: {capsys.readouterr().out}"
 
