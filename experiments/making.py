@@ -116,7 +116,8 @@ def _begun(found: Found, folder: Path, command: str) -> Result:
     if not before.missing or before.command != command:
         return new
     commits = " ".join(dict.fromkeys([*before.commit.split(), commit]))
-    return dataclasses.replace(new, commit=commits, minutes=before.minutes, rows=before.rows)
+    of_rows = {key: getattr(before, key) for key in ("minutes", "tree", "remark", "rows")}  # true of those that stay
+    return dataclasses.replace(new, commit=commits, **of_rows)
 
 
 def _say_duration(found: Found, result: Result) -> None:

@@ -149,7 +149,7 @@ def commit() -> str:
 
 
 def changed_files() -> list[str]:
-    """Files with changes that no commit has, but for those that leave results as they are."""
+    """Files that are new or changed since the commit, but for those that leave results as they are."""
     excluded = [f":(exclude){folder}" for folder in MADE_HERE]
-    listed = git("status", "--porcelain", "--untracked-files=no", "--", ".", *excluded) or ""
+    listed = git("status", "--porcelain", "--", ".", *excluded) or ""
     return [line.split(maxsplit=1)[1] for line in listed.splitlines()]

@@ -1,6 +1,7 @@
 """Every experiment runs, in a size that takes seconds, and makes the columns that the pages expect."""
 
 import dataclasses
+import subprocess
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -121,6 +122,25 @@ def test_what_was_interrupted_goes_on(tmp_path: Path) -> None:
     make(squares(Squares()), "run squares", ["--out", str(tmp_path), "--workers", "0"])
     whole = record.read("squares", tmp_path)
     assert [row["square"] for row in whole.rows] == ["0", "-0", "1", "-7", "4", "-4"] and not whole.missing
+
+
+def test_rows_of_before_keep_what_their_head_says(tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        make(squares(Squares(fails_at=1)), "run squares", ["--out", str(tmp_path)])
+    begun = dataclasses.replace(record.read("squares", tmp_path), tree="dirty", remark="Squares were rounder.")
+    record.write(begun, tmp_path)
+    make(squares(Squares()), "run squares", ["--out", str(tmp_path)])
+    whole = record.read("squares", tmp_path)
+    assert (whole.tree, whole.remark, len(whole.rows)) == ("dirty", "Squares were rounder.", 6)
+
+
+def test_a_new_module_is_a_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    subprocess.run(["git", "init", "-q", str(tmp_path)], check=True)
+    monkeypatch.setattr(record, "ROOT", tmp_path)
+    for path in (tmp_path / "new.py", tmp_path / "results" / "some.csv"):
+        path.parent.mkdir(exist_ok=True)
+        path.touch()
+    assert record.changed_files() == ["new.py"]
 
 
 def test_another_command_begins_anew(tmp_path: Path) -> None:
