@@ -23,7 +23,7 @@ from sarah.reports.rankings import rankings
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
 
-TASKS = {"stepping": (60, 100, 5), "balance": (150, 300, 12)}
+TASKS = {"stepping": (60, 100, 5), "balance": (150, 500, 12)}
 """Number of episodes of a training, seed of the first one, and number of unseen episodes that judge a recommendation
 along the way, by task."""
 

@@ -127,7 +127,7 @@ class NAFSettings(LearnerSettings):
     temperature: Annotated[float, Within(0.0, 100.0)] = _by_preset()
     smoothed: bool = _by_preset()
     elite_share: Share = _by_preset()
-    elite_std: tuple[Deviation, Deviation] = (0.4, 0.15)
+    elite_std: tuple[Deviation, Deviation] = (0.9, 0.15)
     elite_draws: Annotated[int, Within(1, 10_000)] = 1
     v_layers: Layers = _by_preset()
     mu_layers: Layers = _by_preset()
