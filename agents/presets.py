@@ -19,7 +19,7 @@ PRESETS: dict[str, dict[str, Any]] = {
         gradient_steps=10,
         max_grad_norm=10.0,
         replay_buffer_class=SmoothedReplayBuffer,
-        replay_buffer_kwargs=dict(temperature=4.0),
+        replay_buffer_kwargs=dict(temperature=8.0),
         exploration_std=LinearSchedule(0.3, 0.05, end_fraction=0.8),
         elite_share=0.8,
         elite_std=LinearSchedule(0.9, 0.15, end_fraction=0.8),

@@ -52,7 +52,7 @@ class SecondTrainingExperiment(TrainingExperiment):
     """
 
     engines: tuple[Engine, ...] = ("mujoco", "pybullet")
-    first_seed: int = 400
+    first_seed: int = 420
     seeds: int = 20
     budget: int = 300
 

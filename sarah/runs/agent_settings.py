@@ -18,7 +18,7 @@ Activation = Literal["tanh", "relu", "sigmoid"]
 
 PRESETS: dict[str, dict[str, Any]] = {
     "one-step": dict(
-        temperature=4.0,
+        temperature=8.0,
         smoothed=True,
         elite_share=0.8,
         v_layers=(32, 32),
