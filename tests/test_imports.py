@@ -46,6 +46,20 @@ def test_a_robots_computer_needs_the_standard_library_alone() -> None:
     assert process.stdout.strip() == ""
 
 
+def test_a_command_imports_nothing_slow_that_its_episodes_do_not_need() -> None:
+    """Importing yourdfpy, which brings scipy, takes longer than the episode; the robot is the default one."""
+    program = (
+        "import sys\n"
+        "from sarah.cli.eval import main\n"
+        "sys.argv = ['sarah-eval', 'stepping', '--episodes', '1', '--episode.time-limit', '2']\n"
+        "main()\n"
+        "slow = {'yourdfpy', 'scipy', 'torch', 'stable_baselines3', 'matplotlib', 'pandas', 'sklearn', 'distributed'}\n"
+        "sys.exit(' '.join(slow & set(sys.modules)) or 0)"
+    )
+    process = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True)
+    assert process.returncode == 0, process.stderr
+
+
 @pytest.mark.parametrize("package", sorted(path.parent.name for path in (ROOT / "sarah").glob("*/__init__.py")))
 def test_every_package_says_what_it_is_for(package: str) -> None:
     text = (ROOT / "sarah" / package / "__init__.py").read_text(encoding="utf-8")

@@ -80,11 +80,11 @@ def episode_of(subject: str, which: str | None, task: Task[Any] | None) -> RunEp
     :param task: task, as there
     :raises ConfigurationError: if there is no such subject or episode
     """
-    from sarah.runs.run_episodes import learned_episode
-    from sarah.runs.run_folder import RunFolder
-    from sarah.runs.run_record import RunRecord
-
     if Path(subject).is_dir() and not SESSION.owns(Path(subject)) and which in (None, "learned"):
+        from sarah.runs.run_episodes import learned_episode
+        from sarah.runs.run_folder import RunFolder
+        from sarah.runs.run_record import RunRecord
+
         run = RunFolder.open(Path(subject), unfinished=True, task=task)
         if run.is_finished:
             return learned_episode(RunRecord(run))

@@ -7,8 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sarah.robot.description import RobotDescription
-from sarah.robot.standing import model_of
+from sarah.robot.description import RobotDescription, model_of
 
 
 class Shape(NamedTuple):

@@ -13,8 +13,7 @@ from matplotlib.patheffects import withStroke
 from sarah.pictures.colours import LEFT, RIGHT
 from sarah.pictures.link_shapes import shapes_of
 from sarah.pictures.style import COLUMN_WIDTH, own_style, save
-from sarah.robot.description import ANKLE_JOINTS, GROUPS, JOINT_AXES, JOINT_TYPES, RobotDescription
-from sarah.robot.standing import model_of
+from sarah.robot.description import ANKLE_JOINTS, GROUPS, JOINT_AXES, JOINT_TYPES, RobotDescription, model_of
 from sarah.scenery.camera import Camera, View
 from sarah.simulation.renderer import Renderer
 

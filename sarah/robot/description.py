@@ -1,7 +1,8 @@
 """The robot: from the xacro to a checked URDF text.
 
 PyBullet crashes on some malformed URDFs and silently accepts others. So every text is checked here before an engine
-sees it: yourdfpy checks the syntax, and this module's own rules check that the robot is SARAH.
+sees it: yourdfpy checks the syntax, and this module's own rules check that the robot is SARAH. The default robot is
+shown to yourdfpy by a test alone, because importing yourdfpy takes longer than many an episode.
 """
 
 from __future__ import annotations
@@ -16,8 +17,11 @@ from functools import lru_cache
 from importlib import resources
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from sarah.errors import DescriptionError
 from sarah.robot.dimensions import SCALED, XACRO, all_dimensions, check_dimensions, scale_of
+from sarah.robot.links_and_joints import inertia_of, links_and_joints, numbers_of, place_of
 from sarah.robot.reading import ACTUATED_JOINTS, Side
 from sarah.robot.scale import Scale
 
@@ -105,7 +109,8 @@ def _describe_cached(dimensions: tuple[tuple[str, float], ...]) -> RobotDescript
     given = dict(dimensions)
     if scale_of(given) != Scale():
         given = {name: value for name, value in all_dimensions(given).items() if name in given or name in SCALED}
-    return check_urdf(_expand_xacro(given))
+    urdf = _expand_xacro(given)
+    return check_urdf(urdf) if given else _check_robot(urdf)
 
 
 def _expand_xacro(dimensions: Mapping[str, float]) -> str:
@@ -132,10 +137,8 @@ def check_urdf(urdf: str) -> RobotDescription:
     except ElementTree.ParseError as error:
         raise DescriptionError(f"URDF is not well-formed XML: {error}") from error
     _check_tree(root)
-    import yourdfpy
-
     try:
-        model = yourdfpy.URDF.load(io.StringIO(urdf), load_meshes=False)
+        model = model_of(urdf)
         valid = model.validate()
     except Exception as error:  # yourdfpy lets through every exception of its XML parsing
         raise DescriptionError(f"yourdfpy cannot read the URDF: {error}") from error
@@ -143,9 +146,26 @@ def check_urdf(urdf: str) -> RobotDescription:
         raise DescriptionError(
             f"yourdfpy finds the URDF invalid: {'; '.join(str(problem) for problem in model.errors)}"
         )
-    _check_joints(model)
-    _check_inertials(model)
-    return _read_off(urdf, model)
+    return _check_robot(urdf)
+
+
+@lru_cache(maxsize=4)
+def model_of(urdf: str) -> Any:
+    """Robot as yourdfpy reads it, which must not be changed.
+
+    :param urdf: text of the robot's URDF
+    """
+    import yourdfpy
+
+    return yourdfpy.URDF.load(io.StringIO(urdf), load_meshes=False)
+
+
+def _check_robot(urdf: str) -> RobotDescription:
+    """Check that what a valid URDF describes is SARAH."""
+    links, joints = links_and_joints(urdf)
+    _check_joints(joints)
+    _check_inertials(links)
+    return _read_off(urdf, links, joints)
 
 
 def _check_tree(root: ElementTree.Element) -> None:
@@ -179,78 +199,82 @@ def _check_tree(root: ElementTree.Element) -> None:
             visited.add(link)
 
 
-def _check_joints(model: Any) -> None:
+def _check_joints(joints: Mapping[str, ElementTree.Element]) -> None:
     """Require the ten joints, of the right kinds, with limits around zero."""
-    joints = model.joint_map
     for name, kind in JOINT_TYPES.items():
         if name not in joints:
             raise DescriptionError(f"URDF has no joint {name!r}")
-        if joints[name].type != kind:
-            raise DescriptionError(f"URDF joint {name!r} must be {kind}, not {joints[name].type}")
-        if tuple(joints[name].axis) != JOINT_AXES[name]:
-            raise DescriptionError(f"URDF joint {name!r} must turn about {JOINT_AXES[name]}, not {joints[name].axis}")
-        limit = joints[name].limit
-        if limit is None or limit.lower is None or limit.upper is None or not limit.lower <= 0.0 <= limit.upper:
+        joint = joints[name]
+        if joint.get("type") != kind:
+            raise DescriptionError(f"URDF joint {name!r} must be {kind}, not {joint.get('type')}")
+        axis = numbers_of(joint, "axis", "xyz", "1 0 0")
+        if tuple(axis) != JOINT_AXES[name] or numbers_of(joint, "origin", "rpy", "0").any():
+            raise DescriptionError(f"URDF joint {name!r} must turn about {JOINT_AXES[name]}, not {axis}")
+        if not _limit_of(joint, "lower") <= 0.0 <= _limit_of(joint, "upper"):
             raise DescriptionError(f"URDF joint {name!r} must have limits with zero between them")
     for name in joints:
         if name not in JOINT_TYPES:
             raise DescriptionError(f"URDF joint {name!r} is not one of the robot's ten")
     for name in ACTUATED_JOINTS:
-        if not (joints[name].limit.effort or 0.0) > 0.0:
+        if not _limit_of(joints[name], "effort") > 0.0:
             raise DescriptionError(f"URDF joint {name!r} must have a positive effort limit")
 
 
-def _check_inertials(model: Any) -> None:
-    """Require positive masses and positive definite inertias."""
-    import numpy as np
+def _limit_of(joint: ElementTree.Element, name: str) -> float:
+    return float(numbers_of(joint, "limit", name, "nan")[0])
 
-    links = model.link_map
+
+def _mass_of(link: ElementTree.Element) -> float:
+    return float(numbers_of(link, "inertial/mass", "value", "nan")[0])
+
+
+def _check_inertials(links: Mapping[str, ElementTree.Element]) -> None:
+    """Require positive masses and positive definite inertias."""
     expected = {name for group in GROUPS.values() for name in group}
     if set(links) != expected:
         raise DescriptionError(f"URDF links differ from the robot's: {', '.join(sorted(set(links) ^ expected))}")
     for name, link in links.items():
-        if link.inertial is None or link.inertial.mass is None or link.inertial.inertia is None:
+        if link.find("inertial/mass") is None or link.find("inertial/inertia") is None:
             raise DescriptionError(f"URDF link {name!r} has no mass or inertia")
-        mass, inertia = link.inertial.mass, link.inertial.inertia
+        mass, inertia = _mass_of(link), inertia_of(link)
         if not (math.isfinite(mass) and mass > 0.0):
             raise DescriptionError(f"URDF link {name!r} must have a positive mass, not {mass}")
         if not np.isfinite(inertia).all() or not (np.linalg.eigvalsh(inertia) > 0.0).all():
             raise DescriptionError(f"URDF link {name!r} must have a positive definite inertia")
 
 
-def _read_off(urdf: str, model: Any) -> RobotDescription:
+def _read_off(
+    urdf: str, links: Mapping[str, ElementTree.Element], joints: Mapping[str, ElementTree.Element]
+) -> RobotDescription:
     soles: dict[str, tuple[tuple[float, float, float], ...]] = {}
     standing_soles: list[tuple[float, float, float]] = []
     undersides: list[Underside] = []
     radius = 0.0
     for plate in ANKLE_JOINTS:
-        spheres = [shape for shape in model.link_map[plate].collisions if shape.geometry.sphere is not None]
+        place, shapes = place_of(plate, joints), links[plate].findall("collision")
+        spheres = [shape for shape in shapes if shape.find("geometry/sphere") is not None]
         if not spheres:
             raise DescriptionError(f"URDF link {plate!r} has no sole contact (a collision sphere)")
-        radius = spheres[0].geometry.sphere.radius
-        soles[plate] = tuple((float(s.origin[0, 3]), float(s.origin[1, 3]), float(s.origin[2, 3])) for s in spheres)
-        to_torso = model.get_transform(plate, "torso")
-        for sole in soles[plate]:
-            x, y, z = map(float, (to_torso @ [*sole, 1.0])[:3])
-            standing_soles.append((x, y, z))
-        boxes = [shape for shape in model.link_map[plate].collisions if shape.geometry.box is not None]
-        for box in boxes:
-            (x, y, z), half = to_torso[:3, 3] + box.origin[:3, 3], box.geometry.box.size / 2
+        radius = float(numbers_of(spheres[0], "geometry/sphere", "radius", "nan")[0])
+        centres = [numbers_of(sphere, "origin", "xyz", "0 0 0") for sphere in spheres]
+        soles[plate] = tuple((float(x), float(y), float(z)) for x, y, z in centres)
+        standing_soles += [(float(x), float(y), float(z)) for x, y, z in place + centres]
+        for box in (shape for shape in shapes if shape.find("geometry/box") is not None):
+            half = numbers_of(box, "geometry/box", "size", "nan") / 2
+            x, y, z = place + numbers_of(box, "origin", "xyz", "0 0 0")
             sides = (x - half[0], x + half[0], y - half[1], y + half[1], z - half[2])
             undersides.append(Underside(*map(float, sides)))
     height = -min(z - radius for _, _, z in standing_soles)
-    masses = {name: float(link.inertial.mass) for name, link in model.link_map.items()}
-    limits = {name: (joint.limit.lower, joint.limit.upper) for name, joint in model.joint_map.items()}
-    efforts = {name: joint.limit.effort for name, joint in model.joint_map.items()}
+    masses = {name: _mass_of(link) for name, link in links.items()}
     return RobotDescription(
         urdf,
         height,
         masses,
-        limits,
-        efforts,
+        {name: (_limit_of(joint, "lower"), _limit_of(joint, "upper")) for name, joint in joints.items()},
+        {name: _limit_of(joint, "effort") for name, joint in joints.items()},
         soles,
         radius,
         tuple((x, y, z + height) for x, y, z in standing_soles),
         tuple(underside._replace(height=underside.height + height) for underside in undersides),
-        Scale.of(height, sum(masses.values()), float(model.joint_map["right_hip_abduction"].origin[0, 3])),
+        Scale.of(height, sum(masses.values()), float(place_of("right_hip", joints)[0])),
     )

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Iterable
-from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from sarah.robot.description import RobotDescription
+from sarah.robot.links_and_joints import inertia_of, links_and_joints, numbers_of, place_of
 
 
 class MassProperties(NamedTuple):
@@ -27,32 +26,18 @@ class MassProperties(NamedTuple):
     inertia: np.ndarray
 
 
-@lru_cache(maxsize=4)
-def model_of(urdf: str) -> Any:
-    """Robot as yourdfpy reads it, which must not be changed.
-
-    :param urdf: text of the robot's URDF
-    """
-    import yourdfpy
-
-    return yourdfpy.URDF.load(io.StringIO(urdf), load_meshes=False)
-
-
 def links_of(robot: RobotDescription) -> dict[str, MassProperties]:
     """Mass properties of each link of a standing robot, by the link's name.
 
     :param robot: robot
     """
-    model = model_of(robot.urdf)
-    links = {}
-    for name, link in model.link_map.items():
-        inertial, to_torso = link.inertial, model.get_transform(name, "torso")
-        place = to_torso if inertial.origin is None else to_torso @ inertial.origin
-        centre = place[:3, 3] + (0.0, 0.0, robot.standing_height)
-        links[name] = MassProperties(
-            float(inertial.mass), centre, place[:3, :3] @ np.array(inertial.inertia, float) @ place[:3, :3].T
-        )
-    return links
+    links, joints = links_and_joints(robot.urdf)
+    found = {}
+    for name, link in links.items():
+        centre = place_of(name, joints) + numbers_of(link, "inertial/origin", "xyz", "0 0 0")
+        centre += (0.0, 0.0, robot.standing_height)
+        found[name] = MassProperties(robot.masses[name], centre, inertia_of(link))
+    return found
 
 
 def together(bodies: Iterable[MassProperties]) -> MassProperties:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from sarah.episode.ending import ending_words
 from sarah.episode.result import EpisodeResult
@@ -13,8 +13,10 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task
 from sarah.errors import ConfigurationError, RunFolderError
 from sarah.number import number, whole_number
-from sarah.runs.run_folder import RunFolder
-from sarah.runs.run_record import RunRecord
+
+if TYPE_CHECKING:
+    from sarah.runs.run_folder import RunFolder
+    from sarah.runs.run_record import RunRecord
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,8 @@ def episodes_of_run(run: RunFolder) -> list[RunEpisode]:
     :param run: run folder of the training, which need not be finished
     :raises RunFolderError: if a row of ``episodes.csv`` cannot be read, or if there is no episode
     """
+    from sarah.runs.run_record import RunRecord  # numbers and names need no folder
+
     record = RunRecord(run)
     task = record.config.task
     shown = [learned_episode(record)] if run.is_finished else []

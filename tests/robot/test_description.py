@@ -6,8 +6,9 @@ from collections.abc import Callable
 import pytest
 
 from sarah.errors import DescriptionError
-from sarah.robot.description import ANKLE_JOINTS, GROUPS, check_urdf, describe_robot
+from sarah.robot.description import ANKLE_JOINTS, GROUPS, check_urdf, describe_robot, model_of
 from sarah.robot.dimensions import default_dimensions, known_dimensions
+from sarah.robot.links_and_joints import inertia_of, links_and_joints, place_of
 from sarah.robot.reading import ACTUATED_JOINTS
 from sarah.robot.scale import POWERS
 
@@ -34,6 +35,22 @@ def test_robot_has_six_actuated_and_four_passive_joints() -> None:
     assert len(ACTUATED_JOINTS) == 6 and len(ANKLE_JOINTS) == 4
     assert all(robot.efforts[joint] > 0 for joint in ACTUATED_JOINTS)
     assert all(robot.efforts[joint] == 0 for joint in ANKLE_JOINTS)
+
+
+def test_yourdfpy_finds_the_default_robot_valid(urdf: str) -> None:
+    assert check_urdf(urdf) == describe_robot()
+
+
+@pytest.mark.parametrize("dimensions", [{}, {"hip_drop": 0.163, "thigh_length": 0.327, "shank_length": 0.301}])
+def test_links_are_to_the_last_bit_where_yourdfpy_finds_them(dimensions: dict[str, float]) -> None:
+    robot = describe_robot(dimensions)
+    links, joints = links_and_joints(robot.urdf)
+    model = model_of(robot.urdf)
+    assert list(links) == list(model.link_map)
+    for name, link in model.link_map.items():
+        assert (place_of(name, joints) == model.get_transform(name, "torso")[:3, 3]).all(), name
+        assert robot.masses[name] == link.inertial.mass
+        assert (inertia_of(links[name]) == link.inertial.inertia).all(), name
 
 
 def test_robot_weighs_30_kg_in_three_groups_of_10(urdf: str) -> None:
@@ -151,6 +168,10 @@ def flipped_axis(root: ElementTree.Element) -> None:
     find(root, "joint", "left_leg_length").find("axis").set("xyz", "0 0 -1")  # type: ignore[union-attr]
 
 
+def turned_frame(root: ElementTree.Element) -> None:
+    find(root, "joint", "left_leg_length").find("origin").set("rpy", "0 0 1.5")  # type: ignore[union-attr]
+
+
 def powerless(root: ElementTree.Element) -> None:
     find(root, "joint", "left_leg_length").find("limit").set("effort", "0")  # type: ignore[union-attr]
 
@@ -171,6 +192,7 @@ def powerless(root: ElementTree.Element) -> None:
         (renamed_joint, "no joint 'left_leg_length'"),
         (no_limit, "yourdfpy finds the URDF invalid: .*limit"),
         (flipped_axis, "'left_leg_length' must turn about"),
+        (turned_frame, "'left_leg_length' must turn about"),
         (powerless, "'left_leg_length' must have a positive effort limit"),
     ],
 )
