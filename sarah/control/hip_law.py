@@ -229,5 +229,8 @@ class HipLaw:
         angle = clipped(angle, self._constants.largest_hip_angle)
         for joint in joints:
             low, high = self._limits[joint]
-            angle = max(low, min(high, angle))
+            if angle > high:
+                angle = high
+            if angle < low:
+                angle = low
         return angle

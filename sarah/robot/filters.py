@@ -42,7 +42,9 @@ def clipped(value: float, limit: float) -> float:
     :param value: value to clip
     :param limit: largest magnitude, not negative
     """
-    return max(-limit, min(limit, value))
+    if value < -limit:
+        return -limit
+    return value if value < limit else limit
 
 
 def ramped(now: float, goal: float, largest_change: float) -> float:

@@ -28,6 +28,10 @@ FREE = mujoco.mjtJoint.mjJNT_FREE
 """Type of the joint between the world and the torso."""
 STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS | mujoco.mjtState.mjSTATE_WARMSTART
 """State that a physics step begins with."""
+NEAR_LIMIT = 0.5
+"""Share of a servo's limit from which on the state before each physics step is saved, which may have to be repeated."""
+Shares = tuple[float, float, float, float, float, float]
+"""Efforts of the servos as shares of their limits, in the order of ``ACTUATED_JOINTS``."""
 
 
 class MujocoSimulator(HoldsWorld):
@@ -85,7 +89,7 @@ class MujocoSimulator(HoldsWorld):
         self._checks = 0
         self._settings: tuple[object, ...] = ()
         self._targets: tuple[float, ...] = (0.0,) * len(ACTUATED_JOINTS)
-        self._shares = list(self._targets)
+        self._shares: Shares = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         self.look()
         self._velocity_before = self._torso.velocity
 
@@ -155,15 +159,21 @@ class MujocoSimulator(HoldsWorld):
 
     def advance(self) -> None:
         """Simulate one control tick."""
-        model, data, before = self.model, self.data, self._before
+        model, data = self.model, self.data
         self._velocity_before = self._torso.velocity
+        unsaved, largest = 0, 0.0
         with WITHOUT_WARNINGS:
             for _ in range(self._substeps):
-                mujoco.mj_getState(model, data, before, STATE)
+                if unsaved == 0 or largest > NEAR_LIMIT:
+                    mujoco.mj_getState(model, data, self._before, STATE)
+                    unsaved = 0
                 mujoco.mj_step(model, data)
+                unsaved += 1
                 shares = self._effort_shares()
-                if max(shares) > 1.0 or min(shares) < -1.0:
-                    shares = self._step_again(shares)
+                largest = _largest(shares)
+                if largest > 1.0:
+                    shares = self._step_again(shares, unsaved)
+                    unsaved = 0
         self._shares = shares
         if self._is_pushed:  # MuJoCo keeps the force until it is reset
             self._pushed[:] = 0.0
@@ -171,34 +181,46 @@ class MujocoSimulator(HoldsWorld):
         self.time += self._dt
         self.look()
 
-    def _step_again(self, shares: list[float]) -> list[float]:
+    def _step_again(self, shares: Shares, unsaved: int) -> Shares:
         """Repeat a physics step, in which servos that exceeded their limits apply their largest effort.
 
         :param shares: efforts of the servos in the step, as shares of their limits
+        :param unsaved: number of steps since the state was saved, this one included
         :return: efforts in the repeated step, as shares of the limits
         """
+        model, data, before = self.model, self.data, self._before
+        if unsaved > 1:
+            mujoco.mj_setState(model, data, before, STATE)
+            mujoco.mj_step(model, data, unsaved - 1)
+            mujoco.mj_getState(model, data, before, STATE)
         limited: dict[int, float] = {}
-        while max(shares) > 1.0 or min(shares) < -1.0:
+        while _largest(shares) > 1.0:
             for actuator, share in enumerate(shares):
                 if abs(share) > 1.0:
                     limited[actuator] = math.copysign(1.0, share)
                     self._let_give(actuator, limited[actuator] * self._limits[actuator])
-            mujoco.mj_setState(self.model, self.data, self._before, STATE)
-            mujoco.mj_step(self.model, self.data)
-            shares = self._effort_shares()
-            for actuator, share in limited.items():
-                shares[actuator] = share
+            mujoco.mj_setState(model, data, before, STATE)
+            mujoco.mj_step(model, data)
+            found = self._effort_shares()
+            a, b, c, d, e, f = (limited.get(actuator, share) for actuator, share in enumerate(found))
+            shares = a, b, c, d, e, f
         for actuator in limited:
             self._let_follow(actuator)
         return shares
 
-    def _effort_shares(self) -> list[float]:
+    def _effort_shares(self) -> Shares:
         """Efforts of servos that follow their targets, after the last physics step, as shares of their limits."""
-        positions, speeds, rate = self._qpos.tolist(), self._qvel.tolist(), self._rate
-        return [
-            damping * (rate * (target - positions[position]) - speeds[speed])
-            for target, (damping, position, speed) in zip(self._targets, self._servos, strict=True)
-        ]
+        x, v, rate = self._qpos.tolist(), self._qvel.tolist(), self._rate
+        a, b, c, d, e, f = self._targets
+        (ga, xa, va), (gb, xb, vb), (gc, xc, vc), (gd, xd, vd), (ge, xe, ve), (gf, xf, vf) = self._servos
+        return (
+            ga * (rate * (a - x[xa]) - v[va]),
+            gb * (rate * (b - x[xb]) - v[vb]),
+            gc * (rate * (c - x[xc]) - v[vc]),
+            gd * (rate * (d - x[xd]) - v[vd]),
+            ge * (rate * (e - x[xe]) - v[ve]),
+            gf * (rate * (f - x[xf]) - v[vf]),
+        )
 
     def torso_state(self) -> TorsoState:
         """True state of the torso, which no sensor of the robot measures."""
@@ -264,3 +286,7 @@ class MujocoSimulator(HoldsWorld):
 
     def close(self) -> None:
         """Do nothing: MuJoCo's memory is freed with the object."""
+
+
+def _largest(shares: Shares) -> float:
+    return max(max(shares), -min(shares))

@@ -12,6 +12,9 @@ from sarah.robot.filters import low_pass_gain
 from sarah.robot.reading import SensorReading, Vector
 from sarah.simulation.randomisation import SensorConditions
 
+NOISES_AT_ONCE = 100
+"""Number of ticks whose noise is drawn at once."""
+
 
 class ImperfectSensors:
     """Model of real sensors. Signals are band-limited, delayed, get their constant errors, and then the noise.
@@ -31,6 +34,7 @@ class ImperfectSensors:
         )
         self._deviations = np.array(deviations)
         self._generator = np.random.default_rng(conditions.seed)
+        self._noise: list[list[float]] = []
         self._conditions = conditions
         self._rotation = _rotation(*conditions.imu_tilt)
         ticks = conditions.delay_seconds / dt
@@ -51,13 +55,22 @@ class ImperfectSensors:
             wx, wy, wz = _rotated(self._rotation, (wx, wy, wz))
         (bax, bay, baz), (bwx, bwy, bwz) = conditions.acceleration_bias, conditions.angular_rate_bias
         ga, gb, gc, gd = conditions.pad_gains
-        nax, nay, naz, nwx, nwy, nwz, na, nb, nc, nd = (self._generator.standard_normal(10) * self._deviations).tolist()
+        nax, nay, naz, nwx, nwy, nwz, na, nb, nc, nd = self._next_noise()
         return SensorReading(
             (ax + bax + nax, ay + bay + nay, az + baz + naz),
             (wx + bwx + nwx, wy + bwy + nwy, wz + bwz + nwz),
             (max(0.0, a * ga + na), max(0.0, b * gb + nb), max(0.0, c * gc + nc), max(0.0, d * gd + nd)),
             joints,
         )
+
+    def _next_noise(self) -> list[float]:
+        """Noise of the next ten signals; many at once take a fraction of the time, and are the same."""
+        if not self._noise:
+            drawn: list[list[float]] = (
+                self._generator.standard_normal((NOISES_AT_ONCE, 10)) * self._deviations
+            ).tolist()
+            self._noise = drawn[::-1]
+        return self._noise.pop()
 
     def _delayed(self) -> SensorReading:
         """Reading of the delay ago; between two ticks it lies on the line from one to the other."""
