@@ -29,14 +29,10 @@ TIME_OUTS = (ControllerConstants().time_out_seconds, 0.3)
 
 @dataclass(frozen=True)
 class Clock(Experiment):
-    """Random P1 to P5 and clocks with two time-outs.
+    """Random P1 to P5 and clocks with two time-outs."""
 
-    :param random_sets: number of random parameter sets
-    :param time_limit: time limit of an episode, in s
-    """
-
-    random_sets: int = 40
-    time_limit: float = 30.0
+    random_sets: int = 40  # number of random parameter sets
+    time_limit: float = 30.0  # time limit of an episode, in s
 
     def cases(self) -> list[Row]:
         """Both time-outs."""
