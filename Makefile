@@ -13,31 +13,38 @@ NAME ?=
 TIMINGS := throughput episodes updates decisions viewer
 ENDURANCE := kills killed_workers resume long_run protections
 
-.PHONY: help install train test test-slow lint format docs results bench endurance mutants clean
+.PHONY: help install train figures stepping-report balance-report test test-slow lint format docs results bench endurance mutants clean
 
 help:  ## show what can be made
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
 
 install: $(VENV)/installed  ## create the environment in .venv, with the tested versions; with PYTHON=python3.13, in .venv-python3.13
 
-$(VENV)/installed: setup.cfg pyproject.toml constraints.txt
+$(VENV)/installed: EXTRAS := dev
+$(VENV)/ready: EXTRAS := mujoco,video
+$(VENV)/installed $(VENV)/ready: setup.cfg pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; (3, 10) <= sys.version_info[:2] <= (3, 13) or sys.exit("sarah is tested with Python 3.10 to 3.13: make PYTHON=python3.11")'
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/pip install --quiet --upgrade pip -c constraints.txt
-	$(BIN)/pip install --quiet -c constraints.txt --editable '.[dev]'
+	$(BIN)/pip install --quiet -c constraints.txt --editable '.[$(EXTRAS)]'
 	@touch $@
 
 train: RUN := $(RUN)
-train: install  ## both trainings with NAF, figures, reports and robustness table: a robot that steps in place and comes back from pushes
+train: $(or $(wildcard $(VENV)/installed),$(VENV)/ready)  ## both trainings with NAF, figures, reports and robustness table: a robot that steps in place and comes back from pushes
 	$(BIN)/sarah-train --task stepping $(EPISODES:%=--episodes %) --seed $(SEED) \
 		--workers $(WORKERS) --out $(RUN)/stepping
 	$(BIN)/sarah-train --task balance --from $(RUN)/stepping $(BALANCE_EPISODES:%=--episodes %) --seed $(SEED) \
 		--workers $(WORKERS) --out $(RUN)/balance
-	$(BIN)/sarah-figures $(RUN)/stepping $(RUN)/balance --out $(RUN)/figures
-	$(BIN)/sarah-report $(RUN)/stepping --workers $(WORKERS)
-	$(BIN)/sarah-report $(RUN)/balance --workers $(WORKERS)
+	@$(MAKE) --no-print-directory --jobs=$(WORKERS) figures stepping-report balance-report RUN=$(RUN)
 	$(BIN)/sarah-eval $(RUN)/balance --robustness --out $(RUN)/figures --episodes $(PUSHES) --workers $(WORKERS)
 	@echo "all of it is in $(RUN): open $(RUN)/balance/report.html"
+
+# Each in one process, beside each other.
+figures:
+	$(BIN)/sarah-figures $(RUN)/stepping $(RUN)/balance --out $(RUN)/figures
+
+stepping-report balance-report:
+	$(BIN)/sarah-report $(RUN)/$(@:-report=)
 
 # One thread for each process: two of them share the machine, and threads that wait for each other cost more than they do.
 test: install  ## the tests

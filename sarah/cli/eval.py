@@ -55,7 +55,7 @@ class EvalOptions(UnseenOptions):
     :param forces: forces of the pushes of --robustness, in N; by default 25 to 150 N for the default robot, and in
         proportion to its weight for another
     :param terrain: whether to write a table and a picture of score, steps and survival on slopes, bumps and slippery
-        ground, for 10 s without a push, and with one of 75 N for 30 kg at 2 to 4 s
+        ground, for 10 s without a push, and with one of 75 N for 30 kg at 2 to 3 s
     :param out: folder for the table and the picture of --robustness or --terrain
     :param json: whether to print one JSON object
     """

@@ -38,7 +38,7 @@ class ReportOptions:
     task: Annotated[str | None, tyro.conf.arg(metavar="TASK")] = None
     out: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     episodes: int = 10
-    seconds: Annotated[tuple[float, float], tyro.conf.arg(metavar="BEGIN END")] = (1.0, 9.0)
+    seconds: Annotated[tuple[float, float], tyro.conf.arg(metavar="BEGIN END")] = (1.0, 5.0)
     workers: int = 0
 
     def __post_init__(self) -> None:

@@ -17,6 +17,7 @@ from sarah.episode.task_answers import controller_of
 from sarah.episode.tasks import Task
 from sarah.errors import ConfigurationError, SimulationError
 from sarah.pictures.gait_figure import draw_gait_cycle
+from sarah.pictures.style import only_png
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
 
 EPISODE_SECONDS = 10.0
@@ -45,7 +46,7 @@ def draw_gait(parameters: tuple[float, ...], task: Task[Any], config: EpisodeCon
     stepping, _ = controller_of(task, parameters, config)
     end = trace.time[-1]
     times = frame_times(max(trace.time[0], end - VIDEO_SECONDS), end, FRAMES_PER_SECOND[".gif"])
-    with tempfile.TemporaryDirectory() as name:
+    with tempfile.TemporaryDirectory() as name, only_png():
         folder = Path(name)
         write_video(frames(trace, spec.robot, times, ground=spec.ground), folder / "video.gif")
         video = _picture("recommendation/video", folder / "video.gif")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
@@ -39,15 +40,28 @@ def own_style(changes: Mapping[Any, Any] = {}) -> Iterator[None]:
         yield
 
 
+_suffixes: ContextVar[tuple[str, ...]] = ContextVar("suffixes", default=(".png", ".pdf"))
+
+
+@contextmanager
+def only_png() -> Iterator[None]:
+    """Leave out PDF files for a while: where nobody keeps them, they take half of the time."""
+    before = _suffixes.set((".png",))
+    try:
+        yield
+    finally:
+        _suffixes.reset(before)
+
+
 def save(figure: Figure, path: Path) -> list[Path]:
-    """Write a figure as PNG and PDF, and close it.
+    """Write a figure as PNG and PDF, or within :func:`only_png` as PNG, and close it.
 
     :param figure: figure to write
     :param path: path of the picture, without suffix
     :return: the files
     """
     check_name(path)
-    files = [path.with_suffix(suffix) for suffix in (".png", ".pdf")]
+    files = [path.with_suffix(suffix) for suffix in _suffixes.get()]
     for file in files:
         figure.savefig(file, dpi=200)
     plt.close(figure)

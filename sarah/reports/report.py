@@ -21,6 +21,7 @@ from sarah.episode.workers import Executor
 from sarah.errors import ConfigurationError
 from sarah.files import check_file, quoted, replace_text
 from sarah.pictures.colours import algorithm_label
+from sarah.pictures.style import only_png
 from sarah.pictures.video import FRAMES_PER_SECOND, frame_times, frames, write_video
 from sarah.reports.all_figures import draw_all_figures
 from sarah.reports.training_figures import figures_of
@@ -44,7 +45,7 @@ Row = tuple[str, str, str, str]
 
 
 def write_report(
-    run: RunRecord, path: Path, executor: Executor, episodes: int = 10, seconds: tuple[float, float] = (1.0, 9.0)
+    run: RunRecord, path: Path, executor: Executor, episodes: int = 10, seconds: tuple[float, float] = (1.0, 5.0)
 ) -> None:
     """Write the page.
 
@@ -61,9 +62,9 @@ def write_report(
     settings, versions = run.folder.config_text(), run.folder.versions()  # before the long simulation
     task = config.task
     of, shown = _evaluations(learned, episodes, executor)
-    with tempfile.TemporaryDirectory() as name:
+    with tempfile.TemporaryDirectory() as name, only_png():
         folder = Path(name)
-        drawn = {file.stem: file for file in draw_all_figures([run], folder, shown) if file.suffix == ".png"}
+        drawn = {file.stem: file for file in draw_all_figures([run], folder, shown)}
         figures = [
             (text, _address(drawn[stem].read_bytes(), "image/png"))
             for stem, text in _captions(task).items()

@@ -22,10 +22,10 @@ from sarah.robot.scale import Scale
 
 FORCES = (25.0, 50.0, 75.0, 100.0, 125.0, 150.0)
 """Forces of the pushes for the default robot, in N."""
-PUSHED_BETWEEN = (2.0, 4.0)
-"""Range of the simulated times at which the pushes begin, in s: 1 to 3 s after the pattern generator's start."""
-SECONDS_AFTER = 10.0
-"""Time after the latest push that the robot must stay up, in s."""
+PUSHED_BETWEEN = (2.0, 3.0)
+"""Range of the simulated times at which the pushes begin, in s: 1 to 2 s after the pattern generator's start."""
+SECONDS_AFTER = 6.85
+"""Time after the latest push that the robot must stay up, in s: episodes take 10 s with the default push of 0.15 s."""
 DIRECTIONS = ("all", "lateral", "sagittal")
 CONFIDENCE = 0.95
 

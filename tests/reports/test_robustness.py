@@ -35,9 +35,9 @@ def test_controllers_meet_the_same_pushes_and_can_be_repeated(monkeypatch: pytes
     assert [e.radians for e in still] == [e.radians for e in moving]
     assert still[0].radians == pytest.approx(still[2].radians) != still[1].radians
     assert [e.result for e in still] != [e.result for e in moving]
-    assert {e.result.duration for e in still} == {4.25}
+    assert {e.result.duration for e in still} == {3.25}
     push = dataclasses.replace(BalanceConfig().push, newtons=(40.0, 40.0), at_seconds=robustness.PUSHED_BETWEEN)
-    config = BalanceConfig(push=push, time_limit=4.25)
+    config = BalanceConfig(push=push, time_limit=3.25)
     assert simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.0), 1, "balance", config)) == moving[3].result
 
 
