@@ -23,13 +23,11 @@ from sarah.episode.push import Push
 from sarah.episode.robot_settings import conditions_of
 from sarah.episode.spec import FIRST_EVALUATION_SEED
 from sarah.episode.tasks import BALANCE, BalanceConfig
-from sarah.reports.robustness import PushedEpisode, robustness_table
+from sarah.reports.robustness import PUSHED_BETWEEN, PushedEpisode, robustness_table
 from sarah.simulation.engines import Engine
 from sarah.simulation.randomisation import SensorConditions
 from sarah.simulation.terrain import Terrain
 
-PUSHED_AT = (2.0, 3.0)
-"""Range of the simulated times at which pushes begin, in s."""
 TIME_LIMIT = 8.0
 """Time limit of the episodes, in s: a robot that reaches it has survived, at least 4.85 s after its push."""
 SHIPPED = PARAMETER_SETS["balance"].spec
@@ -48,7 +46,7 @@ FORCES = (50.0, 75.0, NEWTONS, 125.0, 150.0)
 
 def pushed(newtons: float, **changes: Any) -> BalanceConfig:
     """Settings of episodes with pushes of a force in N from anywhere, or without any, and other changes."""
-    push = Push((newtons, newtons), at_seconds=PUSHED_AT)
+    push = Push((newtons, newtons), at_seconds=PUSHED_BETWEEN)
     return BALANCE.config_of(SHIPPED.config, **{"time_limit": TIME_LIMIT, **changes}, push=push)
 
 
