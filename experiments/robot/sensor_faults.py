@@ -138,8 +138,8 @@ class _BehindFault:
                 moves = zip(self.targets, self._largest_moves, strict=True)
                 self.targets = tuple(ramped(target, 0.0, largest) for target, largest in moves)
             return None
-        change = self._generator.tick(heard, (1 + self.MISSED) * self._dt if self._fault.is_told else None)
-        self.MISSED, self.targets = 0, self._generator.targets
+        change = self._generator.tick(heard, (1 + self._missed) * self._dt if self._fault.is_told else None)
+        self._missed, self.targets = 0, self._generator.targets
         if since >= 0 and change is not None:
             self.changes.append(change)
         return change
