@@ -67,7 +67,7 @@ docs: install  ## the documentation, into build/docs
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -c docs . build/docs
 	@echo build/docs/index.html
 
-results: install  ## rewrite tables, figures and pictures of all pages; with NAME=clock, make that result first
+results: install  ## rewrite tables, figures and pictures of all pages; with NAME=landscape, make that result first
 	@for name in $(NAME); do $(BIN)/python -m experiments $$name || exit 1; done
 	$(BIN)/python -m experiments.pages
 

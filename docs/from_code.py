@@ -39,10 +39,7 @@ HELP_WIDTH = 86
 
 
 def from_code(name: str) -> None:
-    """Print a part.
-
-    :param name: its name
-    """
+    """Print a part."""
     print("\n" + "\n".join(PARTS[name]()).strip() + "\n")
 
 
@@ -87,25 +84,14 @@ def agent_sections() -> Iterator[str]:
 
 
 def groups(key: str, config: Any, leave_out: str = "") -> Iterator[str]:
-    """A table for each dataclass within a configuration.
-
-    :param key: beginning of the groups' names
-    :param config: configuration, a dataclass or a mapping
-    :param leave_out: name of a group that has a table already
-    """
+    """A table for each dataclass within a configuration."""
     for name, value in (config if isinstance(config, dict) else vars(config)).items():
         if dataclasses.is_dataclass(value) and name != leave_out:
             yield from section(f"`{key}{name}`", f"{key}{name}.", own_fields(type(value)), {"default": value})
 
 
 def section(title: str, key: str, names: Iterable[str], columns: Mapping[str, Any]) -> Iterator[str]:
-    """A heading and a table of settings; nothing if there are none.
-
-    :param title: heading
-    :param key: beginning of the settings' names
-    :param names: names of the fields
-    :param columns: dataclasses with defaults, by heading
-    """
+    """A heading and a table of settings; nothing if there are none."""
     kind = type(next(iter(columns.values())))
     meanings, ranges = meanings_of(kind), ranges_of(kind)
     rows = []
@@ -118,11 +104,7 @@ def section(title: str, key: str, names: Iterable[str], columns: Mapping[str, An
 
 
 def own_fields(config_type: Any, base: Any = None) -> list[str]:
-    """Names of a dataclass's plain fields that another one does not have.
-
-    :param config_type: the dataclass
-    :param base: the other one, if any
-    """
+    """Names of a dataclass's plain fields that another one does not have."""
     known = {field.name for field in dataclasses.fields(base)} if base else set()
     names = [field.name for field in dataclasses.fields(config_type) if field.name not in known]
     defaults = config_type()
@@ -209,29 +191,19 @@ def commands_part() -> Iterator[str]:
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:
-    """Lines of a table, with an empty one after it.
-
-    :param head: its head
-    :param rows: its cells
-    """
+    """Lines of a table, with an empty one after it."""
     yield from markdown_table(head, rows)
     yield ""
 
 
 def markdown(text: str) -> str:
-    """One line of Markdown from a docstring's reStructuredText.
-
-    :param text: text of the docstring
-    """
+    """One line of Markdown from a docstring's reStructuredText."""
     text = re.sub(r":\w+(?::\w+)?:`~?([^`]+)`", r"`\1`", " ".join(text.split()))
     return text.replace("``", "`").replace("|", r"\|")
 
 
 def shown(value: Any) -> str:
-    """A default as the YAML file would hold it.
-
-    :param value: the default
-    """
+    """A default as the YAML file would hold it."""
     if isinstance(value, Task):
         return f"`{value.reference}`"
     if value in ((), {}):

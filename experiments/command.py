@@ -5,8 +5,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from experiments.age import say_ages
-from experiments.found import Package, find, questions
+from experiments import record
+from experiments.found import Package, find, paths_of, questions
 from experiments.making import make
 from sarah.cli.options import as_command
 from sarah.errors import ConfigurationError
@@ -21,28 +21,37 @@ experiment that options change writes to build/experiments/ instead of results/.
 
 
 def main(package: Package, arguments: Sequence[str]) -> None:
-    """Do what the arguments of a command say.
-
-    :param package: experiments that the command has
-    :param arguments: arguments of the process
-    """
+    """Do what the arguments of a command say."""
     if not arguments or arguments[0] in ("-h", "--help"):
         print(HELP.format(command=package.command))
-        known = questions(package)
-        print("\n".join(f"{name:{max(map(len, known))}}  {question}" for name, question in known.items()))
+        _print_by_name(questions(package))
     elif arguments[0] == "age":
         if arguments[1:]:
             raise ConfigurationError(f"age takes no arguments, not {arguments[1]!r}")
-        say_ages(package)
+        results = [record.read(name) for name in paths_of(package) if name in record.names()]
+        _print_by_name({one.name: f"{one.made_at}: {age(one, find(one.name).FULL.depends_on)}" for one in results})
     else:
         name, *options = arguments
         print(make(find(name, package), f"{package.command} {name}", options))
 
 
-def run(package: Package) -> None:
-    """Run a command in this process.
+def _print_by_name(words: dict[str, str]) -> None:
+    width = max(map(len, words), default=0)
+    print("\n".join(f"{name:{width}}  {text}" for name, text in words.items()))
 
-    :param package: experiments that the command has
-    """
+
+def age(result: record.Result, folders: tuple[str, ...]) -> str:
+    """What has changed since a result was made in the folders that it depends on, in words."""
+    first = result.commit.split()[0]
+    if record.commit() == record.UNKNOWN or record.git("rev-parse", "--is-shallow-repository") == "true":
+        return "cannot tell without the whole history"
+    if record.git("merge-base", "--is-ancestor", first, "HEAD") is None:
+        return f"cannot tell, as {first} is no earlier commit of this one"
+    count = record.git("rev-list", "--count", f"{first}..HEAD", "--", *folders)
+    return f"{count} commits since have touched {', '.join(folders)}"
+
+
+def run(package: Package) -> None:
+    """Run a command in this process."""
     with as_command(package.command):
         main(package, sys.argv[1:])

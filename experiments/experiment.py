@@ -23,12 +23,9 @@ TRAINING = (*EPISODE, "agents", "sarah/envs", "sarah/recorded", "sarah/runs", "s
 
 @dataclass(frozen=True, kw_only=True)
 class Experiment(ABC):
-    """Options of an experiment.
+    """Options of an experiment."""
 
-    :param workers: number of worker processes on this machine; with 0, this process does the work. No row depends on it
-    """
-
-    workers: int = os.cpu_count() or 1
+    workers: int = os.cpu_count() or 1  # number of worker processes; with 0, this process does the work
     depends_on: ClassVar[tuple[str, ...]] = EPISODE
     """Folders of the project that decide the rows."""
 
@@ -37,18 +34,14 @@ class Experiment(ABC):
         """What tells the rows apart, in order: values of their first columns. A case may have several rows."""
 
     @abstractmethod
-    def rows(self, *values: Any, **case: Any) -> Iterable[Row]:
+    def rows(self, **case: Any) -> Iterable[Row]:
         """The other columns of a case's rows, computed in this process. They depend on no other case.
 
-        :param values: none; a subclass names the columns of its cases instead
-        :param case: values of the first columns
+        A subclass names the columns of its cases.
         """
 
     def outcomes(self, cases: Sequence[Row]) -> Iterator[tuple[list[Row], float]]:
-        """Rows of some cases and the time that they took, in s: in order, each as soon as it is known.
-
-        :param cases: the cases
-        """
+        """Rows of some cases and the time that they took, in s: in order, each as soon as it is known."""
         with Workers(self.workers) as workers:
             jobs = [workers.submit(_outcome, self, case) for case in cases]
             yield from (job.result() for job in jobs)
@@ -61,22 +54,12 @@ def _outcome(experiment: Experiment, case: Row) -> tuple[list[Row], float]:
 
 
 def product(**values: Iterable[Any]) -> list[Row]:
-    """Cases for all combinations of values, the last column changing first.
-
-    :param values: values by column
-    """
+    """Cases for all combinations of values by column, the last column changing first."""
     return [dict(zip(values, combination, strict=True)) for combination in itertools.product(*values.values())]
 
 
 def survival(found: Evaluation) -> Row:
-    """Columns of a survival with its 95 % interval (Wilson).
-
-    :param found: episodes
-    """
+    """Columns of the survival of some episodes with its 95 % interval (Wilson)."""
     low, high = wilson_interval(found.survivors, found.episodes)
-    return {
-        "episodes": found.episodes,
-        "survival": found.survival_rate,
-        "survival_low": low,
-        "survival_high": high,
-    }
+    columns = ("episodes", "survival", "survival_low", "survival_high")
+    return dict(zip(columns, (found.episodes, found.survival_rate, low, high), strict=True))

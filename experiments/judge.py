@@ -9,57 +9,39 @@ from pathlib import Path
 
 import numpy as np
 
+from experiments.experiment import EPISODE
 from experiments.trainings import identity
 from sarah.control.parameters import Parameters
 from sarah.episode.evaluation import evaluate
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.files import replace_text
 
-EPISODES_CODE = ("control", "episode", "robot", "scenery", "simulation", "urdf")
-"""Parts of sarah that an outcome depends on."""
 KEPT_TOGETHER = 20
 """Number of episodes after which their outcomes are kept: an interrupted judge goes on from there."""
 
 
 @dataclass(frozen=True)
 class Condition:
-    """Episodes that sets of V1 to V4 are judged by.
+    """Episodes that sets of V1 to V4 are judged by."""
 
-    :param name: name of the condition, for people
-    :param config: settings of the episodes
-    :param first_seed: seed of the first episode; the next ones follow
-    :param episodes: number of episodes
-    """
-
-    name: str
+    name: str  # for people
     config: BalanceConfig
-    first_seed: int
+    first_seed: int  # seed of the first episode; the next ones follow
     episodes: int
 
 
 @dataclass(frozen=True)
 class Judge:
-    """Outcomes of sets of V1 to V4. What the folder has is not simulated again.
+    """Outcomes of sets of V1 to V4. What the folder has is not simulated again."""
 
-    :param folder: folder with a file for each condition and set
-    """
-
-    folder: Path
+    folder: Path  # with a file for each condition and set
 
     def scores(self, parameters: Parameters, asked: Sequence[Condition]) -> np.ndarray:
-        """Scores of all episodes, one condition after the other.
-
-        :param parameters: values of V1 to V4
-        :param asked: conditions
-        """
+        """Scores of V1 to V4 in all episodes, one condition after the other."""
         return np.concatenate([self.outcomes(parameters, condition)["score"] for condition in asked])
 
     def outcomes(self, parameters: Parameters, condition: Condition) -> dict[str, list[float]]:
-        """Score of every episode, and 1 if the robot survived it; what is missing is simulated in this process.
-
-        :param parameters: values of V1 to V4
-        :param condition: condition that the set meets
-        """
+        """Score of every episode, and 1 if the robot survived it; what is missing is simulated in this process."""
         file = self._file(parameters, condition)
         known: dict[str, list[float]] = {"score": [], "survived": []}
         if file.exists():
@@ -75,6 +57,6 @@ class Judge:
 
     def _file(self, parameters: Parameters, condition: Condition) -> Path:
         """File of a set under a condition, in a folder whose name tells both the condition and the code."""
-        code = identity((condition.config, condition.first_seed), EPISODES_CODE)
+        code = identity((condition.config, condition.first_seed), EPISODE)
         folder = f"{condition.config.engine}, {condition.name}, {code}"
         return self.folder / folder / f"{', '.join(map(repr, parameters))}.json"

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import re
 import shlex
 import sys
 import time
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from types import ModuleType
 
 from tqdm import tqdm
 
 from experiments import record
 from experiments.experiment import Experiment
-from experiments.found import Found
+from experiments.found import first_line
 from experiments.record import Result, Row, cell
 from sarah.cli.options import parse_options
 from sarah.errors import ConfigurationError, unknown_name
@@ -32,10 +34,10 @@ SHARED_OPTIONS = """Every experiment has these options too:
 """
 
 
-def make(found: Found, command: str, arguments: Sequence[str]) -> Path:
+def make(module: ModuleType, command: str, arguments: Sequence[str]) -> Path:
     """Make a result, or go on with one that was interrupted.
 
-    :param found: the experiment
+    :param module: module of the experiment
     :param command: the command, which names the experiment last
     :param arguments: options
     :return: file of the result
@@ -43,20 +45,22 @@ def make(found: Found, command: str, arguments: Sequence[str]) -> Path:
     :raises ResultError: if a result of the project was to be made of code that no commit has
     """
     shared, own = _parse_shared(arguments)
-    default = found.quick if shared.quick else found.full
+    full = module.FULL
+    default = module.QUICK if shared.quick else full
     experiment = parse_options(type(default), command, own, default)
     _check_counts(experiment)
     cases = _chosen(experiment.cases(), shared.only)
-    is_whole = dataclasses.replace(experiment, workers=found.full.workers) == found.full and not shared.only
+    is_whole = dataclasses.replace(experiment, workers=full.workers) == full and not shared.only
     folder = shared.out or (record.RESULTS if is_whole else OTHER_RESULTS)
     if folder.resolve() == record.RESULTS and (changed := record.changed_files()):
         raise record.ResultError(f"commit first what a result is made of: {', '.join(changed[:3])} has changes")
     folder.mkdir(parents=True, exist_ok=True)
-    whole = shlex.join([*command.split(), *_without_workers(arguments)])
-    result = _begun(found, folder, whole)
-    _say_duration(found, result)
+    whole = re.sub(r" --workers[ =]\S+", "", shlex.join([*command.split(), *arguments]))  # no row depends on them
+    result = _begun(module, folder, whole)
+    if result.name in record.names() and (known := record.read(result.name).minutes):
+        print(f"the whole takes {tqdm.format_interval(60.0 * known)} of one core (h:mm:ss)", file=sys.stderr)
     _compute(experiment, cases, result, folder)
-    return folder / f"{found.name}.csv"
+    return folder / f"{result.name}.csv"
 
 
 def _parse_shared(arguments: Sequence[str]) -> tuple[argparse.Namespace, list[str]]:
@@ -73,19 +77,12 @@ def _parse_shared(arguments: Sequence[str]) -> tuple[argparse.Namespace, list[st
     return shared, own
 
 
-def _without_workers(arguments: Sequence[str]) -> list[str]:
-    """Arguments but for the number of workers, on which no row depends."""
-    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
-    parser.add_argument("--workers")
-    return parser.parse_known_args(arguments)[1]
-
-
 def _check_counts(experiment: Experiment) -> None:
     """Refuse whole numbers that are too low."""
     for option, value in vars(experiment).items():
         lowest = 0 if option in MAY_BE_0 else 1
         for number in value if isinstance(value, tuple) else (value,):
-            if isinstance(number, int) and not isinstance(number, bool) and number < lowest:
+            if type(number) is int and number < lowest:
                 raise ConfigurationError(f"--{option.replace('_', '-')} must be at least {lowest}, not {number}")
 
 
@@ -103,37 +100,23 @@ def _chosen(cases: Sequence[Row], only: Iterable[str]) -> list[Row]:
     return kept
 
 
-def _begun(found: Found, folder: Path, command: str) -> Result:
+def _begun(module: ModuleType, folder: Path, command: str) -> Result:
     """The result that this command has begun, or a new one."""
     commit = record.commit()
     if commit == record.UNKNOWN:
         print("without a git history the result cannot tell its commit", file=sys.stderr)
     used = ", ".join(f"{name} {version}" for name, version in versions().items())
-    new = Result(found.name, found.question, command, commit, time.strftime("%Y-%m-%d"), 0.0, versions=used)
-    if found.name not in record.names(folder):
+    name, question = module.__name__.rpartition(".")[2], first_line(module.__doc__)
+    new = Result(name, question, command, commit, time.strftime("%Y-%m-%d"), 0.0, versions=used)
+    if name not in record.names(folder):
         return new
-    before = record.read(found.name, folder)
+    before = record.read(name, folder)
     if not before.missing or before.command != command:
         return new
     commits = " ".join(dict.fromkeys([*before.commit.split(), commit]))
+    print(f"goes on after {len(before.rows)} rows", file=sys.stderr)
     of_rows = {key: getattr(before, key) for key in ("minutes", "tree", "remark", "rows")}  # true of those that stay
     return dataclasses.replace(new, commit=commits, **of_rows)
-
-
-def _say_duration(found: Found, result: Result) -> None:
-    """Say how long the whole experiment took when it was made last."""
-    known = record.read(found.name).minutes if found.name in record.names() else None
-    if result.rows:
-        print(f"goes on after {len(result.rows)} rows", file=sys.stderr)
-    if known:
-        print(f"the whole of {found.name} took {_duration(known)} of one core", file=sys.stderr)
-
-
-def _duration(minutes: float) -> str:
-    """A time for people."""
-    if minutes < 1.0:
-        return f"{60.0 * minutes:.0f} seconds"
-    return f"{minutes:.0f} minutes" if minutes < 100.0 else f"{minutes / 60.0:.1f} hours"
 
 
 def _compute(experiment: Experiment, cases: Sequence[Row], result: Result, folder: Path) -> None:

@@ -10,15 +10,14 @@ import re
 import shlex
 import sys
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from cogapp import Cog
 
 from experiments import record
-from experiments.age import made_at
-from experiments.found import PACKAGES, Found, Package, find, paths_of
-from experiments.record import ROOT, Result, cell
+from experiments.found import PACKAGES, find, first_line, paths_of
+from experiments.record import ROOT, Result, Row, cell
 from sarah.errors import ConfigurationError, unknown_name
 
 PICTURES = ROOT / "docs" / "results"
@@ -35,18 +34,18 @@ def show(part: str) -> None:
     :raises ConfigurationError: if there is no such experiment or function
     """
     name, _, function = part.partition(".")
-    found = find(name)
-    if function not in vars(found.module):
-        raise ConfigurationError(unknown_name(f"part of {name}", function, vars(found.module)))
+    module = find(name)
+    if function not in vars(module):
+        raise ConfigurationError(unknown_name(f"part of {name}", function, vars(module)))
     if name not in record.names():
-        text = f"*Still to be made: `{_package_of(name).command} {name}`.*"
+        text = f"*Still to be made: `{_command(name)}`.*"
     elif function.startswith("figure"):
-        text = f"![{found.question}]({_picture(name, function).name})"
+        text = f"![{first_line(module.__doc__)}]({_picture(name, function).name})"
     else:
         result = record.read(name)
-        text = _filled(getattr(found.module, function)(result.table))
+        text = _filled(getattr(module, function)(result.table))
         if "\n|" in text:
-            text = f"{text}\n\n{_source(found, result)}"
+            text = f"{text}\n\n{_source(module.FULL.cases(), result)}"
     print(f"\n{text}\n")
 
 
@@ -60,25 +59,24 @@ def _broken(paragraph: str) -> str:
     return textwrap.fill(whole, WIDTH, break_long_words=False, break_on_hyphens=False).replace("\0", " ")
 
 
-def _source(found: Found, result: Result) -> str:
+def _source(cases: Sequence[Row], result: Result) -> str:
     """The line below a table: how to make it or one of its rows again, where and when it was made, and its data."""
-    command = f"{_package_of(found.name).command} {found.name}"
-    cases = found.full.cases()
+    command = _command(result.name)
     varying = [key for key, value in cases[0].items() if any(case[key] != value for case in cases)]
     only = shlex.join(word for key in varying for word in ("--only", f"{key}={cell(cases[-1][key])}"))
     sentences = [
         result.remark,
         "Some cases are still to be made." if result.missing else "",
-        f"Made at {made_at(result)} by `{command}`.",
+        f"{result.made_at} by `{command}`.",
         f"One of its cases alone: `{command} {only}`." if only else "",
         f"[Data](../../results/{result.name}.csv)",
     ]
     return _filled(" ".join(filter(None, sentences)))
 
 
-def _package_of(name: str) -> Package:
-    """Package of an experiment."""
-    return next(package for package in PACKAGES if name in paths_of(package))
+def _command(name: str) -> str:
+    """Command that makes a result."""
+    return next(f"{package.command} {name}" for package in PACKAGES if name in paths_of(package))
 
 
 def _picture(name: str, function: str) -> Path:
@@ -95,7 +93,7 @@ def pictures() -> Iterator[Path]:
     for name in paths_of():
         if name not in record.names():
             continue
-        module, rows = find(name).module, record.read(name).table
+        module, rows = find(name), record.read(name).table
         for function in (one for one in vars(module) if one.startswith("figure")):
             path = _picture(name, function)
             with plt.rc_context({**STYLE, "svg.hashsalt": name}):

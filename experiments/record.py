@@ -34,32 +34,25 @@ class ResultError(SarahError):
 
 @dataclass(frozen=True)
 class Result:
-    """A result as it stands on the disk.
+    """A result as it stands on the disk."""
 
-    :param name: file name without suffix
-    :param question: sentence that the rows answer
-    :param command: command that made them
-    :param commit: commits of the project at that time, the oldest first; ``unknown`` where there was no history
-    :param date: day, as YYYY-MM-DD
-    :param minutes: time that they took, in minutes of one core; none if nobody took it
-    :param missing: number of cases that are still to be made
-    :param tree: ``dirty`` if the project had changes that no commit has
-    :param remark: sentence that a page has to say about the rows
-    :param versions: versions of Python, the project and the packages it computes with
-    :param rows: texts by column
-    """
+    name: str  # file name without suffix
+    question: str  # sentence that the rows answer
+    command: str  # command that made them
+    commit: str  # commits of the project at that time, the oldest first; ``unknown`` where there was no history
+    date: str  # day, as YYYY-MM-DD
+    minutes: float | None = None  # time that they took on one core; none if nobody took it
+    missing: int = 0  # number of cases that are still to be made
+    tree: str = ""  # ``dirty`` if the project had changes that no commit has
+    remark: str = ""  # sentence that a page has to say about the rows
+    versions: str = ""  # of Python, the project and the packages it computes with
+    rows: Sequence[Mapping[str, str]] = field(default=(), repr=False)  # texts by column
 
-    name: str
-    question: str
-    command: str
-    commit: str
-    date: str
-    minutes: float | None = None
-    missing: int = 0
-    tree: str = ""
-    remark: str = ""
-    versions: str = ""
-    rows: Sequence[Mapping[str, str]] = field(default=(), repr=False)
+    @property
+    def made_at(self) -> str:
+        """When the rows were made, and at which commit, in words."""
+        dirty = " with uncommitted changes" if self.tree else ""
+        return f"Made at {self.commit.split()[-1]}{dirty} on {self.date}"
 
     @property
     def table(self) -> DataFrame:
@@ -71,18 +64,13 @@ class Result:
 
 
 def names(folder: Path = RESULTS) -> list[str]:
-    """Names of all results.
-
-    :param folder: folder of the files
-    """
+    """Names of all results."""
     return sorted(path.stem for path in folder.glob("*.csv"))
 
 
 def read(name: str, folder: Path = RESULTS) -> Result:
     """Read a result.
 
-    :param name: its name
-    :param folder: folder of the files
     :raises ResultError: if there is none, or its head is incomplete
     """
     path = folder / f"{name}.csv"
@@ -100,11 +88,7 @@ def read(name: str, folder: Path = RESULTS) -> Result:
 
 
 def write(result: Result, folder: Path = RESULTS) -> None:
-    """Write a result in place of the one that was there.
-
-    :param result: the result
-    :param folder: folder of the file
-    """
+    """Write a result in place of the one that was there."""
     kept = {key: value for key, value in vars(result).items() if key not in ("name", "rows")}
     head = [f"# {key}: {cell(value)}" for key, value in kept.items() if value or key == "commit"]
     replace_text(folder / f"{result.name}.csv", "\n".join([*head, *_csv_lines(result.rows), ""]))
@@ -120,20 +104,14 @@ def _csv_lines(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def cell(value: Any) -> str:
-    """A value as it stands in the file.
-
-    :param value: number or text; None leaves the cell empty
-    """
+    """A number or text as it stands in the file; None leaves the cell empty."""
     if value is None:
         return ""
     return f"{value:.5g}" if isinstance(value, float) else str(value)
 
 
 def git(*arguments: str) -> str | None:
-    """What git prints of the project; none if there is no git, or no history.
-
-    :param arguments: arguments of the command
-    """
+    """What git prints of the project; none if there is no git, or no history."""
     try:
         done = subprocess.run(["git", "-C", str(ROOT), *arguments], capture_output=True, text=True)
     except OSError:

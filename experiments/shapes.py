@@ -21,22 +21,13 @@ LEGEND_CHARACTERS = 120
 
 
 def groups(rows: DataFrame, *columns: str) -> dict[Any, DataFrame]:
-    """Rows by the values of some columns, in the order in which these come first.
-
-    :param rows: of a result
-    :param columns: names of the columns
-    """
+    """Rows by the values of some columns, in the order in which these come first."""
     return dict(tuple(rows.groupby(columns[0] if len(columns) == 1 else list(columns), sort=False)))
 
 
 def lines(axis: Axes, rows: DataFrame, x: str, y: str, label: str, of_figure: DataFrame | None = None) -> None:
-    """A line for each group, with its interval if there is one.
+    """A line for each group that the column ``label`` names, with its interval if there is one.
 
-    :param axis: to draw on
-    :param rows: of a result
-    :param x: column
-    :param y: column
-    :param label: column that names the groups
     :param of_figure: rows of all panels, by which a group has the same colour in each; those of the panel by default
     """
     colours = dict(zip(unique(rows if of_figure is None else of_figure, [label]), COLOURS, strict=False))
@@ -51,11 +42,8 @@ def lines(axis: Axes, rows: DataFrame, x: str, y: str, label: str, of_figure: Da
 def line_panels(rows: DataFrame, panel: str, *columns: str, height: float = 0.35, **settings: Any) -> Figure:
     """Panels side by side with :func:`lines`, a colour for the same label in all.
 
-    :param rows: of a result
     :param panel: column that names the panels
     :param columns: columns x, y and label
-    :param height: height over width of the whole
-    :param settings: of :func:`panels`
     """
     parts = groups(rows, panel)
     figure, axes = panels(len(parts), height, **settings)
@@ -70,13 +58,7 @@ def line_panels(rows: DataFrame, panel: str, *columns: str, height: float = 0.35
 def strips(
     axis: Axes, columns: Mapping[str, Series[Any]], marks: Mapping[str, float] | None = None, mark: str = ""
 ) -> None:
-    """Every value as a dot, column beside column, and a value to compare with as a line.
-
-    :param axis: to draw on
-    :param columns: values by heading
-    :param marks: values to compare with, by heading
-    :param mark: what these are
-    """
+    """Every value as a dot, column beside column, and a mark to compare with as a line, by heading."""
     for index, (name, values) in enumerate(columns.items()):
         axis.plot([index] * len(values), values, "o", color=COLOURS[0], alpha=0.5, markersize=4, markeredgewidth=0)
         if marks and name in marks:
@@ -90,9 +72,8 @@ def strips(
 def panels(count: int, height: float = 0.45, **settings: Any) -> tuple[Figure, list[Axes]]:
     """Axes side by side, as wide as a page.
 
-    :param count: how many
     :param height: height over width of the whole
-    :param settings: of :func:`matplotlib.pyplot.subplots`
+    :param settings: arguments of :func:`matplotlib.pyplot.subplots`
     """
     size = (WIDTH, height * WIDTH)
     figure, axes = plt.subplots(1, count, squeeze=False, figsize=size, layout="constrained", **settings)
@@ -100,11 +81,7 @@ def panels(count: int, height: float = 0.45, **settings: Any) -> tuple[Figure, l
 
 
 def legend(figure: Figure, axis: Axes) -> None:
-    """One legend above everything.
-
-    :param figure: of the axis
-    :param axis: whose lines are named
-    """
+    """One legend above everything."""
     handles, labels = axis.get_legend_handles_labels()
     columns = LEGEND_CHARACTERS // (max(map(len, labels)) + 6)
     figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), columns))

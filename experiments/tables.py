@@ -9,26 +9,13 @@ from typing import Any
 from pandas import DataFrame, Series
 
 UNITS = {
-    "mm": "mm",
-    "cm": "cm",
-    "s": "s",
-    "n": "N",
-    "kg": "kg",
-    "hz": "Hz",
-    "kb": "kB",
-    "mib": "MiB",
+    **{unit.lower(): unit for unit in ("mm", "cm", "s", "N", "kg", "Hz", "kB", "MiB")},
     "m2_s4": "m²/s⁴",
 }
 """Unit by the end of a column's name."""
 WORDS = {
-    "low": "from",
-    "high": "to",
-    "error": "±",
-    "naf": "NAF",
-    "td3": "TD3",
-    "pybullet": "PyBullet",
-    "mujoco": "MuJoCo",
-    "v": "V",
+    **{word.lower(): word for word in ("NAF", "TD3", "PyBullet", "MuJoCo", "V")},
+    **{"low": "from", "high": "to", "error": "±"},
 }
 """Words of column names that are written otherwise."""
 FORMATS = {
@@ -47,9 +34,6 @@ NOTHING = "\N{EN DASH}"
 def table(rows: DataFrame, columns: Sequence[str], caption: str, **formats: str) -> str:
     """A table with a caption; each cell has one number or one text.
 
-    :param rows: of a result
-    :param columns: names of the columns, in order
-    :param caption: sentence above the table
     :param formats: formats by the end of a column's name, beside those of :data:`FORMATS`
     """
     specs = {column: format_of(column, formats) for column in columns}
@@ -63,11 +47,9 @@ def turned_table(
 ) -> str:
     """A table of one column, whose values stand side by side.
 
-    :param rows: of a result
     :param kept: columns that stay, which name the rows of the table
     :param across: columns whose values name the columns of the table
     :param column: column whose values are shown
-    :param caption: sentence above the table
     :param spec: format of the values; by default that of the column
     """
     names = [across] if isinstance(across, str) else list(across)
@@ -79,40 +61,25 @@ def turned_table(
 
 
 def format_of(column: str, formats: Mapping[str, str] = FORMATS) -> str:
-    """Format of a column's numbers; none if they are shown as they stand.
-
-    :param column: name of the column
-    :param formats: formats by the end of the name, which go before those of :data:`FORMATS`
-    """
+    """Format of a column's numbers; none if they are shown as they stand."""
     name = re.sub("_(low|high|error)$", "", column)
     known = [*formats.items(), *FORMATS.items()]
     return next((spec for end, spec in known if column.endswith(end) or name.endswith(end)), "")
 
 
 def unique(rows: DataFrame, columns: Sequence[str]) -> list[Any]:
-    """Values of some columns, or of one, as they come first in the rows.
-
-    :param rows: of a result
-    :param columns: names of the columns
-    """
+    """Values of some columns, or of one, as they come first in the rows."""
     found = list(dict.fromkeys(rows[list(columns)].itertuples(index=False, name=None)))
     return found if len(columns) > 1 else [value for (value,) in found]
 
 
 def markdown_table(head: Sequence[str], cells: Iterable[Sequence[str]]) -> list[str]:
-    """Lines of a table.
-
-    :param head: its head
-    :param cells: its cells, row by row
-    """
+    """Lines of a table."""
     return [f"| {' | '.join(cell or NOTHING for cell in line)} |" for line in (head, ["---"] * len(head), *cells)]
 
 
 def heading(column: str) -> str:
-    """What stands over a column: its name in words, with the unit.
-
-    :param column: name of the column
-    """
+    """What stands over a column: its name in words, with the unit."""
     unit = next((unit for unit in UNITS if column.endswith(f"_{unit}")), "")
     words = column.removesuffix(f"_{unit}").split("_")
     if words[-1] in ("low", "high", "error"):
@@ -122,11 +89,7 @@ def heading(column: str) -> str:
 
 
 def shown(value: Any, spec: str = "") -> str:
-    """A value for people: with a minus sign, and a space before the percent sign.
-
-    :param value: number or text; no number is shown by a dash
-    :param spec: format of a number
-    """
+    """A value for people: with a minus sign, and a space before the percent sign."""
     if value is None or value != value:  # only what is no number differs from itself
         return NOTHING
     if value == float("inf"):
@@ -137,20 +100,11 @@ def shown(value: Any, spec: str = "") -> str:
 
 
 def share_of(count: int, total: int, what: str) -> str:
-    """How many of some things, in words: ``all 10 trainings``, or ``8 of 10 trainings``.
-
-    :param count: how many
-    :param total: number of all
-    :param what: name of the things
-    """
+    """How many of some things, in words: ``all 10 trainings``, or ``8 of 10 trainings``."""
     return f"all {total} {what}" if count == total else f"{count} of {total} {what}"
 
 
 def span(values: Series[Any], spec: str) -> str:
-    """The lowest and the highest of some values, as words.
-
-    :param values: of a column
-    :param spec: format of a number
-    """
+    """The lowest and the highest of some values, as words."""
     low, high = shown(values.min(), spec), shown(values.max(), spec)
     return high if low == high else f"{low.removesuffix(chr(0xA0) + '%')} to {high}"

@@ -11,19 +11,59 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import gymnasium as gym
+import numpy as np
 import torch as th
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 from pandas import DataFrame
+from stable_baselines3 import DDPG, SAC, TD3
+from stable_baselines3.common.evaluation import evaluate_policy
+from stable_baselines3.common.monitor import Monitor
+from stable_baselines3.common.noise import NormalActionNoise
+from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
 from experiments.experiment import Experiment
-from experiments.naf.algorithms import OTHERS, agent, mean_return
 from experiments.record import Row
 from experiments.shapes import line_panels
 from experiments.tables import shown, table
+from sarah.agents import NAF
 
 RECENT = 3
 """Number of evaluations that are the end of a training: one alone says little, as returns swing."""
+EVALUATION_SEED = 10_000
+EXPLORATION_STD = {"NAF": 0.3, "NAF, noise of 0.5": 0.5, "NAF, noise of 0.9": 0.9}
+"""Standard deviation of the exploration noise of NAF; 0.3 is its default."""
+OTHERS: dict[str, type[OffPolicyAlgorithm]] = {"DDPG": DDPG, "TD3": TD3, "SAC": SAC}
+DOCUMENTED_STD = 0.1
+"""That of the noise in the documentation of TD3 and DDPG, whose classes have none by default."""
+
+
+class Watched(NAF):
+    """NAF that remembers how near its V came to the bound."""
+
+    highest_ratio = 0.0
+
+    def _check_values(self, *values: float) -> None:
+        super()._check_values(*values)
+        self.highest_ratio = max(self.highest_ratio, self.logger.name_to_value["train/value_over_bound"])
+
+
+def agent(algorithm: str, env: gym.Env, seed: int) -> OffPolicyAlgorithm:
+    """An agent that has learned nothing yet, with the defaults of its class."""
+    settings: dict[str, Any] = {"seed": seed, "device": "cpu"}
+    if algorithm in EXPLORATION_STD:
+        return Watched("MlpPolicy", env, exploration_std=EXPLORATION_STD[algorithm], **settings)
+    if algorithm != "SAC":
+        zeros = np.zeros(env.action_space.shape)
+        settings["action_noise"] = NormalActionNoise(zeros, np.full_like(zeros, DOCUMENTED_STD))
+    return OTHERS[algorithm]("MlpPolicy", env, **settings)
+
+
+def mean_return(model: OffPolicyAlgorithm, env: gym.Env, episodes: int) -> float:
+    """Mean return of evaluation episodes, the same for every agent."""
+    judged = Monitor(env)
+    judged.reset(seed=EVALUATION_SEED)
+    return float(evaluate_policy(model, judged, episodes)[0])
 
 
 class Trainings(NamedTuple):
@@ -35,9 +75,8 @@ class Trainings(NamedTuple):
     algorithms: tuple[str, ...]
 
 
-PENDULUM = ("NAF", "NAF, noise of 0.5", "NAF, no pull to the centre", "NAF, no dropout", "DDPG", "TD3", "SAC")
 TASKS = {
-    "Pendulum-v1": Trainings(10_000, 10, 20, PENDULUM),
+    "Pendulum-v1": Trainings(10_000, 10, 20, ("NAF", "NAF, noise of 0.5", "DDPG", "TD3", "SAC")),
     "InvertedPendulum-v5": Trainings(5_000, 5, 20, ("NAF", "DDPG", "TD3", "SAC")),
     "HalfCheetah-v5": Trainings(100_000, 5, 5, ("NAF", "DDPG")),
     "Hopper-v5": Trainings(100_000, 5, 5, ("NAF", "NAF, noise of 0.9", "DDPG")),
@@ -50,19 +89,13 @@ TASKS = {
 
 @dataclass(frozen=True)
 class StandardTasks(Experiment):
-    """Trainings of algorithms on tasks of gymnasium.
-
-    :param steps: number of steps of a training; by default that of its task
-    :param seeds: number of trainings of each algorithm; by default that of the task
-    :param episodes: number of episodes of an evaluation; by default that of the task
-    :param evaluations: number of evaluations along a training, the last at its end
-    """
+    """Trainings of algorithms on tasks of gymnasium."""
 
     depends_on: ClassVar[tuple[str, ...]] = ("agents",)
-    steps: int | None = None
-    seeds: int | None = None
-    episodes: int | None = None
-    evaluations: int = 10
+    steps: int | None = None  # of a training; by default those of its task
+    seeds: int | None = None  # number of trainings of each algorithm; by default that of the task
+    episodes: int | None = None  # of an evaluation; by default those of the task
+    evaluations: int = 10  # along a training, the last at its end
 
     def cases(self) -> list[Row]:
         """Each training, the first seed of all tasks first."""

@@ -8,6 +8,7 @@ sets: those that judge have chosen nothing.
 from __future__ import annotations
 
 import dataclasses
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -18,13 +19,13 @@ from experiments import record
 from experiments.experiment import product
 from experiments.judge import Condition, Judge
 from experiments.record import Row, cell
-from experiments.shapes import groups
 from experiments.tables import table
-from experiments.trainings import TrainingExperiment, kept
+from experiments.trainings import TrainingExperiment
 from sarah.control.parameters import BALANCE_PARAMETERS, Parameters
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import NO_PUSH, Push
 from sarah.episode.tasks import BalanceConfig
+from sarah.files import replace_text
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import Engine
@@ -43,18 +44,12 @@ JUDGING_SEED, CHOOSING_SEED, OTHER_SEED, TESTING_SEED = 20_000, 30_000, 40_000, 
 
 @dataclass(frozen=True)
 class SecondTrainingExperiment(TrainingExperiment):
-    """Options of an experiment that takes what Second Trainings by NAF have learned.
-
-    :param engines: physics engines
-    :param first_seed: seed of the first training; no setting was chosen on these
-    :param seeds: number of trainings in each engine
-    :param budget: number of episodes of a training
-    """
+    """Options of an experiment that takes what Second Trainings by NAF have learned."""
 
     engines: tuple[Engine, ...] = ("mujoco", "pybullet")
-    first_seed: int = 420
-    seeds: int = 20
-    budget: int = 300
+    first_seed: int = 420  # seed of the first training; no setting was chosen on these
+    seeds: int = 20  # number of trainings in each engine
+    budget: int = 300  # number of episodes of a training
 
     @property
     def training_seeds(self) -> range:
@@ -69,26 +64,13 @@ class SecondTrainingExperiment(TrainingExperiment):
     def condition(
         self, name: str, engine: Engine, first_seed: int, episodes: int, push: Push = NO_PUSH, **changes: Any
     ) -> Condition:
-        """Episodes like those of the trainings, with changes.
-
-        :param name: name of the condition
-        :param engine: physics engine
-        :param first_seed: seed of the first episode
-        :param episodes: number of episodes
-        :param push: push in each of them
-        :param changes: other settings, by name
-        """
+        """Episodes like those of the trainings, with a push and other changes of the settings."""
         config = dataclasses.replace(self.episode("balance", engine), push=push, **changes)
         assert isinstance(config, BalanceConfig)
         return Condition(name, config, first_seed, episodes)
 
     def pushes(self, engine: Engine, first_seed: int, episodes: int) -> list[Condition]:
-        """Hard pushes: two thirds by 125 N from everywhere, the others by 115 N, within 30 degrees of front or back.
-
-        :param engine: physics engine
-        :param first_seed: seed of the first push
-        :param episodes: number of pushes
-        """
+        """Hard pushes: two thirds by 125 N from everywhere, the others by 115 N, within 30 degrees of front or back."""
         anywhere = 2 * episodes // 3
         return [
             self.condition("125 N", engine, first_seed, anywhere, PUSH_125),
@@ -99,8 +81,6 @@ class SecondTrainingExperiment(TrainingExperiment):
         """V1 to V4 that each training of an engine recommends, and those that its network says, by its name.
 
         Trainings that the result ``balance_trainings`` lacks are run in this process.
-
-        :param engine: physics engine
         """
         in_full = (self.budget, self.time_limit) == (SecondTrainingExperiment.budget, None)
         is_known = in_full and "balance_trainings" in record.names()
@@ -114,24 +94,24 @@ class SecondTrainingExperiment(TrainingExperiment):
         return found
 
     def learned(self, engine: Engine, seed: int) -> dict[str, str]:
-        """Columns of what a training learns, which is run or resumed in this process unless it is there.
-
-        :param engine: physics engine
-        :param seed: seed of the training
-        """
+        """Columns of what a training learns, which is run or resumed in this process unless it is there."""
         episode = self.episode("balance", engine)
         run = self.trained(TrainingConfig("balance", episodes=self.budget, seed=seed, slots=1, episode=episode))
-        values = [*run.parameters(), *kept(run.path / "mu.json", _network_says, run)]
+        values = [*run.parameters(), *_network_says(run)]
         return {name: cell(float(value)) for name, value in zip([*NAMES, *MU_NAMES], values, strict=True)}
 
 
 def _network_says(run: RunFolder) -> Parameters:
     """V1 to V4 that the network of a finished training says for the robot as designed, without exploration."""
-    from sarah.training.learners import AGENTS, chosen_parameters, nominal_observation
+    file = run.path / "mu.json"
+    if not file.exists():
+        from sarah.training.learners import AGENTS, chosen_parameters, nominal_observation
 
-    config = run.config()
-    algorithm, _ = AGENTS[type(config.agent)]  # type: ignore[index]  # NAF's settings are a learner's
-    return chosen_parameters(algorithm.load(run.model_path), nominal_observation(config), config.task)
+        config = run.config()
+        algorithm, _ = AGENTS[type(config.agent)]  # type: ignore[index]  # NAF's settings are a learner's
+        mu = chosen_parameters(algorithm.load(run.model_path), nominal_observation(config), config.task)
+        replace_text(file, json.dumps(mu))
+    return tuple(json.loads(file.read_text(encoding="utf-8")))
 
 
 @dataclass(frozen=True)
@@ -153,17 +133,9 @@ QUICK = BalanceTrainings(time_limit=2.0, budget=5, engines=("mujoco",), seeds=1)
 
 def settled(rows: DataFrame) -> str:
     """Where V1 to V4 settle."""
-    found = DataFrame(
-        {
-            "engine": engine,
-            "parameter": name,
-            "lowest": group[name].min(),
-            "median": group[name].median(),
-            "highest": group[name].max(),
-            "median_of_mu": group[f"mu_{name}"].median(),
-        }
-        for engine, group in groups(rows, "engine").items()
-        for name in NAMES
-    )
+    of_engines, names = rows.groupby("engine", sort=False), {"min": "lowest", "max": "highest"}
+    found = of_engines[NAMES].agg(["min", "median", "max"]).stack(0, future_stack=True).rename(columns=names)
+    found["median_of_mu"] = of_engines[MU_NAMES].median().to_numpy().ravel()
+    found = found.rename_axis(["engine", "parameter"]).reset_index()
     caption = f"What {FULL.seeds} trainings in each engine recommend, and what their networks say (mu)."
     return table(found, list(found), caption, **dict.fromkeys(found.columns[2:], ".2f"))

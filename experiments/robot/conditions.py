@@ -6,27 +6,37 @@ The shipped V1 to V4 beside locked hips (V = 0), in both engines at their standa
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple, get_args
+from typing import Any, NamedTuple, get_args
 
 from matplotlib.figure import Figure
 from pandas import DataFrame
 
 from experiments.experiment import Experiment, product, survival
-from experiments.pushes import CONTROLLERS, SETTINGS, TIME_LIMIT, pushed
 from experiments.record import Row
 from experiments.shapes import line_panels
 from experiments.tables import span, table, turned_table
 from sarah.episode.episode import Episode
+from sarah.episode.parameter_sets import PARAMETER_SETS
+from sarah.episode.push import Push
 from sarah.episode.robot_settings import conditions_of
 from sarah.episode.spec import FIRST_EVALUATION_SEED
 from sarah.episode.tasks import BALANCE, BalanceConfig
-from sarah.reports.robustness import PushedEpisode, robustness_table
+from sarah.reports.robustness import PUSHED_BETWEEN, PushedEpisode, robustness_table
 from sarah.simulation.engines import Engine
 from sarah.simulation.randomisation import SensorConditions
 from sarah.simulation.terrain import Terrain
 
+TIME_LIMIT = 8.0
+"""Time limit of the episodes, in s: a robot that reaches it has survived, at least 4.85 s after its push."""
+SHIPPED = PARAMETER_SETS["balance"].spec
+CONTROLLERS: Mapping[str, tuple[float, ...]] = {"shipped V": SHIPPED.parameters, "V = 0": (0.0,) * 4}
+"""Values of V1 to V4 by name. P1 to P5 are the shipped ones in either case."""
+SETTINGS = (
+    "P1 to P5 are the shipped ones, pushes of 0.15 s begin at 2 to 3 s, and a robot that reaches 8 s has survived"
+)
+"""What the caption of a table with pushes says."""
 LEVEL = "level"
 NEWTONS = 100.0
 """Force of the pushes that come in every situation, in N."""
@@ -34,21 +44,21 @@ FORCES = (50.0, 75.0, NEWTONS, 125.0, 150.0)
 """Forces of the pushes on level ground, in N."""
 
 
-def askew(drawn: SensorConditions) -> SensorConditions:
-    """Sensors whose inertial measurement unit is mounted 2° askew, about the axis that the seed draws.
+def pushed(newtons: float, **changes: Any) -> BalanceConfig:
+    """Settings of episodes with pushes of a force in N from anywhere, or without any, and other changes."""
+    push = Push((newtons, newtons), at_seconds=PUSHED_BETWEEN)
+    return BALANCE.config_of(SHIPPED.config, **{"time_limit": TIME_LIMIT, **changes}, push=push)
 
-    :param drawn: the seed's own sensors
-    """
+
+def askew(drawn: SensorConditions) -> SensorConditions:
+    """Sensors whose inertial measurement unit is mounted 2° askew, about the axis that the seed draws."""
     x, y = drawn.imu_tilt
     factor = math.radians(2.0) / math.hypot(x, y)
     return replace(drawn, imu_tilt=(factor * x, factor * y))
 
 
 def biased(drawn: SensorConditions) -> SensorConditions:
-    """Sensors whose gyroscope is 0.05 rad/s off about each axis, with the signs that the seed draws.
-
-    :param drawn: the seed's own sensors
-    """
+    """Sensors whose gyroscope is 0.05 rad/s off about each axis, with the signs that the seed draws."""
     x, y, z = (math.copysign(0.05, error) for error in drawn.angular_rate_bias)
     return replace(drawn, angular_rate_bias=(x, y, z))
 
@@ -58,14 +68,10 @@ def _friction(left: float, right: float) -> Terrain:
 
 
 class Situation(NamedTuple):
-    """What a robot meets.
+    """What a robot meets."""
 
-    :param terrain: the ground
-    :param sensors: function that makes the sensors of those that the seed draws
-    """
-
-    terrain: Terrain = Terrain()
-    sensors: Callable[[SensorConditions], SensorConditions] = lambda drawn: drawn
+    terrain: Terrain = Terrain()  # the ground
+    sensors: Callable[[SensorConditions], SensorConditions] = lambda drawn: drawn  # of those that the seed draws
 
 
 SITUATIONS = {
@@ -94,14 +100,10 @@ def _simulated(situation: Situation, config: BalanceConfig, v: tuple[float, ...]
 
 @dataclass(frozen=True)
 class Conditions(Experiment):
-    """The shipped parameters and V = 0 in each situation, without a push and with one from anywhere.
+    """The shipped parameters and V = 0 in each situation, without a push and with one from anywhere."""
 
-    :param episodes: number of episodes of a case
-    :param time_limit: time limit of an episode, in s
-    """
-
-    episodes: int = 100
-    time_limit: float = TIME_LIMIT
+    episodes: int = 100  # number of episodes of a case
+    time_limit: float = TIME_LIMIT  # time limit of an episode, in s
 
     def cases(self) -> list[Row]:
         """Each engine, situation, push and V: every force on level ground, and one elsewhere."""

@@ -1,6 +1,7 @@
-"""How far do the two physics engines agree?
+"""How far do the two physics engines agree, and does what is learned in one work in the other?
 
-Good parameters and poor ones, and V1 to V4 under pushes of 100 N, on the same seeds.
+Good parameters and poor ones, V1 to V4 under pushes of 100 N, and trainings by NAF, all judged in both engines on the
+same seeds and with the same pushes.
 """
 
 from __future__ import annotations
@@ -12,10 +13,11 @@ from typing import Any
 
 from pandas import DataFrame
 
-from experiments.experiment import Experiment
+from experiments.experiment import product
 from experiments.record import Row
 from experiments.shapes import groups
-from experiments.tables import span, table
+from experiments.tables import share_of, shown, span, table
+from experiments.trainings import TrainingExperiment
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.evaluation import evaluate
 from sarah.episode.push import Push
@@ -23,6 +25,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.reports.transfer import ENGINES
+from sarah.runs.config import TrainingConfig
 from sarah.simulation.engines import Engine
 
 SETS = {
@@ -36,10 +39,16 @@ SETS = {
     ),
     "balance": ((0.0, 0.0, 0.0, 0.0), (1.06, -0.24, 0.21, -0.15), (1.8, 0.0, 1.0, 0.0)),
 }
+"""Sets that no training here has learned, by task."""
 NEWTONS = 100.0
 GOOD = 0.7
 """Score of a set that is worth using."""
-COLUMNS = [f"{engine}_{column}" for column in ("score", "steps_per_second", "survival") for engine in ENGINES]
+BUDGETS = {"stepping": 100, "balance": 300}
+"""Number of a training's episodes by task."""
+EPISODES = {"stepping": 5, "balance": 20}
+"""Number of the episodes that judge a training in each engine, by task."""
+GAIT = [f"{engine}_{column}" for column in ("score", "steps_per_second") for engine in ENGINES]
+SURVIVAL = [f"{engine}_survival" for engine in ENGINES]
 
 
 def settings(task: str, engine: Engine, time_limit: float) -> EpisodeConfig:
@@ -48,50 +57,56 @@ def settings(task: str, engine: Engine, time_limit: float) -> EpisodeConfig:
     return dataclasses.replace(TASKS[task].episode, engine=engine, time_limit=time_limit, **push)
 
 
-def in_both(task: str, parameters: tuple[float, ...], episodes: int, time_limit: float) -> Row:
-    """Means of the same episodes of a task in each engine."""
-    found = {e: evaluate(task, parameters, settings(task, e, time_limit), range(episodes)) for e in ENGINES}
-    return {
-        **{f"{engine}_score": one.mean("score") for engine, one in found.items()},
-        **{f"{engine}_steps_per_second": one.mean("steps_per_second") for engine, one in found.items()},
-        **{f"{engine}_survival": one.survival_rate for engine, one in found.items()},
-    }
-
-
 @dataclass(frozen=True)
-class Engines(Experiment):
-    """Parameter sets in both physics engines, on the same seeds and with the same pushes.
+class Engines(TrainingExperiment):
+    """Parameter sets and trainings by NAF in each engine, judged in both."""
 
-    :param episodes: number of episodes of each set in each engine
-    :param time_limit: time limit of an episode, in s
-    """
-
-    episodes: int = 20
-    time_limit: float = 30.0
+    episodes: int = 20  # number of episodes of each set in each engine
+    seeds: int = 10  # number of trainings of each task in each engine
+    budget: int | None = None  # number of a training's episodes; by default 100, and 300 with pushes
 
     def cases(self) -> list[Row]:
-        """Each parameter set."""
-        pairs = [(task, values) for task, sets in SETS.items() for values in sets]
-        return [{"task": task, "parameters": ", ".join(f"{value:g}" for value in values)} for task, values in pairs]
+        """Each set, and each training."""
+        sets = [
+            {"task": task, "learned_in": None, "run": ", ".join(f"{value:g}" for value in values)}
+            for task, of_task in SETS.items()
+            for values in of_task
+        ]
+        return sets + product(task=BUDGETS, learned_in=ENGINES, run=[f"naf seed {seed}" for seed in range(self.seeds)])
 
-    def rows(self, task: str, parameters: str) -> Iterator[Row]:
-        """What a set does in both engines."""
-        values = tuple(float(value) for value in parameters.split(", "))
-        yield in_both(task, values, self.episodes, self.time_limit)
+    def rows(self, task: str, learned_in: Engine | None, run: str) -> Iterator[Row]:
+        """What parameters do in both engines."""
+        if learned_in is None:
+            parameters = tuple(map(float, run.split(", ")))
+            episodes, limit = self.episodes, self.time_limit or 30.0
+        else:
+            config, seed = self.episode(task, learned_in), int(run.split()[-1])
+            training = TrainingConfig(task, episodes=self.budget or BUDGETS[task], seed=seed, episode=config)
+            parameters = self.trained(training).parameters()
+            episodes, limit = EPISODES[task], config.time_limit
+        found = [evaluate(task, parameters, settings(task, one, limit), range(episodes)) for one in ENGINES]
+        gait = [one.mean(metric) for metric in ("score", "steps_per_second") for one in found]
+        yield dict(zip(GAIT + SURVIVAL, gait + [one.survival_rate for one in found], strict=True))
 
 
 FULL = Engines()
-QUICK = Engines(episodes=1, time_limit=2.0)
+QUICK = Engines(time_limit=1.1, episodes=1, seeds=1, budget=2)
 
 
-def compared(rows: DataFrame) -> DataFrame:
-    """Rows with the difference of the scores: MuJoCo's over PyBullet's, minus 1."""
-    return rows.assign(difference=rows.mujoco_score / rows.pybullet_score - 1.0)
+def of_sets(rows: DataFrame) -> dict[str, DataFrame]:
+    """Rows of the sets by task, with the difference of the scores: MuJoCo's over PyBullet's, minus 1."""
+    return groups(rows[rows.learned_in.isna()].assign(difference=rows.mujoco_score / rows.pybullet_score - 1.0), "task")
+
+
+def of_trainings(rows: DataFrame) -> DataFrame:
+    """Rows of the trainings with what is kept: the score in the other engine over that in the training's."""
+    ratio = rows.mujoco_score / rows.pybullet_score
+    return rows.assign(kept=ratio.where(rows.learned_in == "pybullet", 1.0 / ratio)).dropna(subset="learned_in")
 
 
 def answer(rows: DataFrame) -> str:
     """How far the engines agree."""
-    told = groups(compared(rows), "task")
+    told = of_sets(rows)
     good = told["stepping"][told["stepping"].pybullet_score >= GOOD]
     return (
         f"Well, where the robot steps well: for the {len(good)} of {len(told['stepping'])} sets of P1 to P5 that score "
@@ -101,12 +116,37 @@ def answer(rows: DataFrame) -> str:
 
 
 def sets(rows: DataFrame) -> str:
-    """Scores, steps and survival in both engines."""
+    """Scores, steps and survival of the sets in both engines."""
     captions = {
         "stepping": f"P1 to P5 in both engines, without a push: means of the same {FULL.episodes} episodes of 30 s.",
         "balance": f"V1 to V4 with the shipped P1 to P5, and as many pushes of {NEWTONS:.0f} N at 1 to 4 s.",
     }
-    told = groups(compared(rows), "task").items()
-    return "\n\n".join(
-        table(group, ["parameters", *COLUMNS, "difference"], captions[str(task)]) for task, group in told
+    columns = ["parameters", *GAIT, *SURVIVAL, "difference"]
+    told = {task: group.rename(columns={"run": "parameters"}) for task, group in of_sets(rows).items()}
+    return "\n\n".join(table(group, columns, captions[task]) for task, group in told.items())
+
+
+def transfer(rows: DataFrame) -> str:
+    """How much of what is learned in one engine is kept in the other."""
+    found = of_trainings(rows)
+    kept = {task: group.kept for task, group in groups(found, "task").items()}
+    survive = (found[SURVIVAL] == 1.0).all(axis=1).sum()
+    return (
+        f"Yes, without retraining. In the other engine Second Trainings keep {span(kept['balance'], '.0%')} of their "
+        f"score, and First Trainings {span(kept['stepping'], '.0%')}, {shown(kept['stepping'].median(), '.0%')} in the "
+        f"median. With the parameters of {share_of(survive, len(found), 'trainings')} the robot survives every episode "
+        "in both."
     )
+
+
+def trainings(rows: DataFrame) -> str:
+    """Scores, steps and what is kept of trainings."""
+    found = of_trainings(rows).groupby(["task", "learned_in"], sort=False)
+    kept = {"kept": found.kept.median(), "kept_low": found.kept.min(), "kept_high": found.kept.max()}
+    caption = (
+        f"Medians of {FULL.seeds} trainings by NAF, each judged in both engines on the same episodes: "
+        f"{EPISODES['stepping']} of 30 s after a First Training, and {EPISODES['balance']} pushes of 100 N at 1 to 4 s "
+        "after a Second; what is kept with its range."
+    )
+    medians = found[GAIT].median().assign(**kept).reset_index()
+    return table(medians, list(medians), caption)

@@ -31,18 +31,12 @@ NEAR = 0.1
 
 @dataclass(frozen=True)
 class FirstTraining(TrainingExperiment):
-    """First Trainings by NAF, judged beside the paper's P1 to P5.
+    """First Trainings by NAF, judged beside the paper's P1 to P5."""
 
-    :param seeds: number of trainings
-    :param budget: number of episodes of a training
-    :param episodes: number of unseen seeds at the standard physics
-    :param reference_episodes: number of unseen seeds at the reference physics
-    """
-
-    seeds: int = 10
-    budget: int = 100
-    episodes: int = 12
-    reference_episodes: int = 4
+    seeds: int = 10  # number of trainings
+    budget: int = 100  # number of episodes of a training
+    episodes: int = 12  # number of unseen seeds at the standard physics
+    reference_episodes: int = 4  # number of unseen seeds at the reference physics
 
     def cases(self) -> list[Row]:
         """The paper's parameters, and each training."""
@@ -148,11 +142,7 @@ def claims(rows: DataFrame) -> str:
 
 
 def settling(values: Series[float], claimed: float) -> tuple[str, str, str]:
-    """Cells about the claim that a parameter settles at a value: in all trainings, in part in at least half, or not.
-
-    :param values: what each training recommends
-    :param claimed: value of the paper
-    """
+    """Cells about the claim that a parameter settles at a value: in all trainings, in part in at least half, or not."""
     near = (values - claimed).abs() <= NEAR
     verdict = "yes" if near.all() else "in part" if near.mean() >= 0.5 else "no"
     found = f"{near.sum()} of {len(near)} trainings end within {NEAR} of it; all end from {span(values, '.2f')}"

@@ -10,8 +10,8 @@ from typing import get_args
 from pandas import DataFrame
 
 from experiments.experiment import Experiment, product, survival
-from experiments.pushes import CONTROLLERS, SETTINGS, TIME_LIMIT, pushed
 from experiments.record import Row
+from experiments.robot.conditions import CONTROLLERS, SETTINGS, TIME_LIMIT, pushed
 from experiments.shapes import groups
 from experiments.tables import shown, table
 from sarah.episode.evaluation import evaluate
@@ -26,14 +26,10 @@ SURVIVED, LOST = "s", "l"
 
 @dataclass(frozen=True)
 class HardPushes(Experiment):
-    """The same pushes from anywhere in both engines, each at the standard and at the reference physics.
+    """The same pushes from anywhere in both engines, each at the standard and at the reference physics."""
 
-    :param pushes: number of pushes of a case
-    :param time_limit: time limit of an episode, in s
-    """
-
-    pushes: int = 200
-    time_limit: float = TIME_LIMIT
+    pushes: int = 200  # number of pushes of a case
+    time_limit: float = TIME_LIMIT  # time limit of an episode, in s
 
     def cases(self) -> list[Row]:
         """Each force, V, engine and physics."""
@@ -58,9 +54,6 @@ def difference(ones: str, others: str) -> Row:
 
     Pushes with the same outcome in both say nothing about it. Half a push is added to each of the four pairs of
     outcomes, so that the interval is never empty (Agresti and Min 2005).
-
-    :param ones: outcomes of the first
-    :param others: outcomes of the same pushes, whose survival is subtracted
     """
     pairs = list(zip(ones, others, strict=True))
     gained, lost, count = pairs.count((SURVIVED, LOST)), pairs.count((LOST, SURVIVED)), len(pairs)

@@ -37,14 +37,10 @@ SECONDS = {"stepping": 12.0, "balance": 8.0}
 
 @dataclass(frozen=True)
 class Landscape(Experiment):
-    """One parameter at a time, in both engines.
+    """One parameter at a time, in both engines."""
 
-    :param points: number of values of each parameter
-    :param time_limit: time limit of an episode, in s; by default 12 s, and 8 s with pushes
-    """
-
-    points: int = 10
-    time_limit: float | None = None
+    points: int = 10  # number of values of each parameter
+    time_limit: float | None = None  # time limit of an episode, in s; by default 12 s, and 8 s with pushes
 
     def cases(self) -> list[Row]:
         """Each parameter in each engine."""

@@ -47,21 +47,14 @@ FORMATS = {"gain": ".3f", "_min": ".3f", "parameters": ".3f", "falls_per_session
 
 @dataclass(frozen=True)
 class Operation(Experiment):
-    """Sessions of every learner, beside frozen parameters on the same robots.
-
-    :param sessions: number of sessions of the careful learner, and of frozen parameters
-    :param other_sessions: number of sessions of the other learners
-    :param minutes: duration of a session, in min
-    :param search_sessions: number of sessions on other seeds that look for the best known parameters of a robot
-    :param search_minutes: duration of these, in min
-    """
+    """Sessions of every learner, beside frozen parameters on the same robots."""
 
     depends_on = (*TRAINING, "sarah/operation")
-    sessions: int = 20
-    other_sessions: int = 10
-    minutes: float = 10.0
-    search_sessions: int = 4
-    search_minutes: float = 30.0
+    sessions: int = 20  # number of sessions of the careful learner, and of frozen parameters
+    other_sessions: int = 10  # number of sessions of the other learners
+    minutes: float = 10.0  # duration of a session, in min
+    search_sessions: int = 4  # number of sessions on other seeds that look for the best known parameters of a robot
+    search_minutes: float = 30.0  # duration of these, in min
 
     def cases(self) -> list[Row]:
         """Every robot with every learner."""

@@ -36,16 +36,11 @@ LEGS = sum(dimensions_alike(1.0, 1.0)[name] for name in ("thigh_length", "shank_
 
 @dataclass(frozen=True)
 class OtherSizes(TrainingExperiment):
-    """First and Second Trainings by NAF, judged without pushes and with some by a third of the weight.
+    """First and Second Trainings by NAF, judged without pushes and with some by a third of the weight."""
 
-    :param seeds: number of trainings of each robot in each engine
-    :param budgets: number of episodes of a First and of a Second Training
-    :param episodes: number of episodes of each kind that judge
-    """
-
-    seeds: int = 2
-    budgets: tuple[int, int] = (100, 300)
-    episodes: int = 20
+    seeds: int = 2  # number of trainings of each robot in each engine
+    budgets: tuple[int, int] = (100, 300)  # number of episodes of a First and of a Second Training
+    episodes: int = 20  # number of episodes of each kind that judge
 
     def cases(self) -> list[Row]:
         """Each seed, engine and robot."""

@@ -1,12 +1,11 @@
 """How fine must the physics be?
 
-Scores at several settings of the physics, each on the same seeds: of good parameters with noise and delay and without,
-and of P1 to P5 from anywhere in their box. Differences are from the finest setting.
+Scores of good parameters at several settings of the physics, each on the same seeds, with noise and delay and without.
+Differences are from the finest setting.
 """
 
 from __future__ import annotations
 
-import random
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from statistics import mean, stdev
@@ -50,9 +49,6 @@ GOOD = {
     "low P1, V1 = V3 = 1": (LOW_P1, MOVING),
 }
 """P1 to P5 and V1 to V4 that score well, by name."""
-GENERATOR = random.Random(7)
-ANYWHERE = {f"random {n}": (tuple(GENERATOR.uniform(0.0, 2.0) for _ in range(5)), LOCKED) for n in range(40)}
-"""P1 to P5 from anywhere in their box, with locked hips."""
 CONDITION = ["parameters", "control_rate_hz", "sensors"]
 CLOSE, FAR = 0.03, 0.05
 """Differences up to which a score counts as close, and from which it counts as far off."""
@@ -60,28 +56,19 @@ CLOSE, FAR = 0.03, 0.05
 
 @dataclass(frozen=True)
 class Physics(Experiment):
-    """Parameter sets at each setting of the physics, without a push.
+    """Parameter sets at each setting of the physics, without a push."""
 
-    :param seeds: number of episodes of each set at each setting, at least 2
-    :param sets: largest number of the good sets, and of those from anywhere
-    :param time_limit: time limit of an episode, in s
-    """
-
-    seeds: int = 8
-    sets: int = 40
-    time_limit: float = 10.0
+    seeds: int = 8  # number of episodes of each set at each setting, at least 2
+    sets: int = len(GOOD)
+    time_limit: float = 10.0  # time limit of an episode, in s
 
     def cases(self) -> list[Row]:
-        """Each good set in each condition, and the random sets in one."""
-        good, anywhere = list(GOOD)[: self.sets], list(ANYWHERE)[: self.sets]
-        return [
-            *product(parameters=good, control_rate_hz=(100, 200), sensors=SENSORS),
-            *product(parameters=anywhere, control_rate_hz=(100,), sensors=("10 ms",)),
-        ]
+        """Each set in each condition."""
+        return product(parameters=list(GOOD)[: self.sets], control_rate_hz=(100, 200), sensors=SENSORS)
 
     def rows(self, parameters: str, control_rate_hz: int, sensors: str) -> Iterator[Row]:
         """A row for each setting of the physics, the finest first."""
-        stepping, balance = (GOOD | ANYWHERE)[parameters]
+        stepping, balance = GOOD[parameters]
         finest: list[float] = []
         for setting, (engine, physics) in SETTINGS.items():
             config = BalanceConfig(
@@ -111,12 +98,8 @@ FULL = Physics()
 QUICK = Physics(seeds=2, sets=1, time_limit=1.2)
 
 
-def good_sets(rows: DataFrame) -> DataFrame:
-    """Rows of the good sets at the coarser settings, with the finest setting's score and steps beside them.
-
-    :param rows: of the result
-    """
-    rows = rows[rows.parameters.isin(GOOD)]
+def beside_finest(rows: DataFrame) -> DataFrame:
+    """Rows of the coarser settings, with the finest setting's score and steps beside them."""
     finest = rows[rows.setting == FINEST].rename(columns=lambda name: name if name in CONDITION else f"finest_{name}")
     both = rows[rows.setting != FINEST].merge(finest, on=CONDITION)
     return both.assign(difference=both.score / both.finest_score - 1.0)
@@ -124,7 +107,7 @@ def good_sets(rows: DataFrame) -> DataFrame:
 
 def answer(rows: DataFrame) -> str:
     """How close the standard physics is, and MuJoCo."""
-    off = good_sets(rows).pivot(index=CONDITION, columns="setting", values="difference").abs()
+    off = beside_finest(rows).pivot(index=CONDITION, columns="setting", values="difference").abs()
     close, worst = (off < CLOSE).sum(), off.max().map(lambda value: shown(value, ".0%"))
     return (
         f"The standard physics is fine enough, with exceptions: with good parameters its scores are within "
@@ -136,7 +119,7 @@ def answer(rows: DataFrame) -> str:
 
 def differences(rows: DataFrame) -> str:
     """How far each coarser setting is from the finest."""
-    both = good_sets(rows)
+    both = beside_finest(rows)
     both = both.assign(finest=both.finest_score.map("{:.3f}".format))
     caption = (
         f"Mean score at the finest setting, and relative differences at the others: {FULL.seeds} episodes of "
@@ -148,7 +131,7 @@ def differences(rows: DataFrame) -> str:
 
 def far_off(rows: DataFrame) -> str:
     """The conditions with large differences, and how the robot steps there."""
-    both = good_sets(rows)
+    both = beside_finest(rows)
     columns = ["difference", "difference_error", "finest_steps_per_second", "steps_per_second", "shifts_timed_out"]
     caption = (
         f"Differences from the finest setting's score beyond {shown(FAR, '.0%')} with their standard errors, and how "
@@ -158,22 +141,3 @@ def far_off(rows: DataFrame) -> str:
     far = both[both.difference.abs() > FAR]
     formats = {"difference_error": ".1%", "timed_out": ".0%"}
     return table(far, [*CONDITION, "setting", *columns], caption, **formats)
-
-
-def anywhere(rows: DataFrame) -> str:
-    """How far each setting is from the finest on sets from anywhere in the box."""
-    drawn = rows[rows.parameters.isin(ANYWHERE)]
-    scores = drawn.pivot(index="parameters", columns="setting", values="score").reindex(columns=list(SETTINGS))
-    distances = scores.sub(scores[FINEST], axis=0).abs()
-    summary = DataFrame({
-        "setting": list(SETTINGS),
-        "mean_score": scores.mean().tolist(),
-        "rms_distance": (distances**2).mean().pow(0.5).tolist(),
-        "largest_distance": distances.max().tolist(),
-        "share_within_0.02": (distances < 0.02).mean().tolist(),
-    })  # fmt: skip
-    caption = (
-        f"Scores of {len(ANYWHERE)} sets drawn from the box of P1 to P5, at 100 Hz with a delay of 10 ms, and their "
-        f"distance from the scores at the finest setting: {FULL.seeds} episodes of each without a push."
-    )
-    return table(summary, list(summary), caption, distance=".3f", **{"share_within_0.02": ".0%"})

@@ -30,16 +30,11 @@ along the way, by task."""
 
 @dataclass(frozen=True)
 class Race(TrainingExperiment):
-    """Trainings by every algorithm.
+    """Trainings by every algorithm."""
 
-    :param seeds: number of trainings of each algorithm
-    :param budget: number of episodes of a training; by default 60 of the First, and 150 of the Second
-    :param evaluations: number of unseen episodes that judge a recommendation; by default those of sarah-compare
-    """
-
-    seeds: int = 20
-    budget: int | None = None
-    evaluations: int | None = None
+    seeds: int = 20  # number of trainings of each algorithm
+    budget: int | None = None  # number of episodes of a training; by default 60 of the First, and 150 of the Second
+    evaluations: int | None = None  # that judge a recommendation; by default as many as for sarah-compare
 
     def cases(self) -> list[Row]:
         """Each training."""

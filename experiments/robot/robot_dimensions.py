@@ -46,18 +46,12 @@ ROBOTS: dict[str, dict[str, Any]] = {
 
 @dataclass(frozen=True)
 class RobotDimensions(Experiment):
-    """Stepping without a push, and survival of 100 N, with one dimension away from the defaults.
+    """Stepping without a push, and survival of 100 N, with one dimension away from the defaults."""
 
-    :param pushes: number of pushes in each pair of directions
-    :param unpushed: number of episodes without a push
-    :param time_limit: time limit of these, in s
-    :param pushed_seconds: time limit with a push, in s, which comes at 2 to 3 s
-    """
-
-    pushes: int = 20
-    unpushed: int = 2
-    time_limit: float = 15.0
-    pushed_seconds: float = 5.65
+    pushes: int = 20  # number of pushes in each pair of directions
+    unpushed: int = 2  # number of episodes without a push
+    time_limit: float = 15.0  # time limit of these, in s
+    pushed_seconds: float = 5.65  # time limit with a push, in s, which comes at 2 to 3 s
 
     def cases(self) -> list[Row]:
         """Each robot with locked hips and with hips that move."""

@@ -6,7 +6,7 @@ pushes of other seeds than those that judge it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,10 +22,9 @@ from experiments.robot.balance_trainings import (
     SHIPPED,
     SecondTrainingExperiment,
 )
-from experiments.search import around, successive_halving
 from experiments.shapes import groups, legend, panels, strips
-from experiments.tables import shown, table
-from sarah.control.parameters import Parameters
+from experiments.tables import WORDS, shown, table
+from sarah.control.parameters import BALANCE_PARAMETERS, Parameters
 from sarah.episode.tasks import BALANCE
 from sarah.reports.uncertainty import standard_error
 from sarah.simulation.engines import Engine
@@ -35,23 +34,19 @@ KNOWN = (NEUTRAL, "shipped", "best training", "search winner", BEST)
 """Sets that the trainings are compared with."""
 ROUNDS = ((1, 9), (4, 24), (16, 87), (32, 300))
 """Divisor of the number of candidates that each round of the search leaves, and number of pushes met by its end."""
+DEVIATION = (0.3, 0.8, 0.3, 0.8)
+"""Standard deviation of candidates around a known set; what V2 and V4 do shows over longer distances."""
 ENOUGH = 0.95
 """Share of the best known score from which a training counts as close to it."""
-ENGINE_NAMES = {"mujoco": "MuJoCo", "pybullet": "PyBullet"}
 
 
 @dataclass(frozen=True)
 class SecondTraining(SecondTrainingExperiment):
-    """Second Trainings by NAF: what each recommends, and how this and the network's own V1 to V4 do.
+    """Second Trainings by NAF: what each recommends, and how this and the network's own V1 to V4 do."""
 
-    :param judging: number of pushes that judge a set, and of those that choose the best one
-    :param candidates: number of sets that the search for the best known set begins with
-    :param surviving: number of pushes of 100 N by which survival is judged
-    """
-
-    judging: int = 300
-    candidates: int = 256
-    surviving: int = 100
+    judging: int = 300  # number of pushes that judge a set, and of those that choose the best one
+    candidates: int = 256  # number of sets that the search for the best known set begins with
+    surviving: int = 100  # number of pushes of 100 N by which survival is judged
 
     def cases(self) -> list[Row]:
         """The known sets, each training, and the mean of all trainings; engines in turn, which share no search."""
@@ -108,10 +103,38 @@ FULL = SecondTraining()
 QUICK = SecondTraining(time_limit=2.0, budget=5, engines=("mujoco",), seeds=1, judging=3, candidates=4, surviving=1)
 
 
+def successive_halving(
+    candidates: Sequence[Parameters],
+    rounds: Sequence[tuple[int, int]],
+    scores: Callable[[Sequence[Parameters], int], Sequence[float]],
+) -> list[Parameters]:
+    """Candidates, the best first.
+
+    :param rounds: number of the best that take part in each round, and number of episodes that they have met by its end
+    :param scores: function that returns the scores of some sets after so many episodes
+    """
+    ranked = list(candidates)
+    for count, episodes in rounds:
+        part = ranked[:count]
+        found = dict(zip(part, scores(part, episodes), strict=True))
+        ranked[:count] = sorted(part, key=found.__getitem__, reverse=True)
+    return ranked
+
+
+def around(centres: Sequence[Parameters], count: int) -> list[Parameters]:
+    """Sets drawn around known ones, within the box."""
+    generator = np.random.default_rng(0)
+    low, high = ([getattr(parameter, end) for parameter in BALANCE_PARAMETERS] for end in ("low", "high"))
+    drawn = []
+    for _ in range(count):
+        centre = centres[int(generator.integers(len(centres)))]
+        drawn.append(tuple(map(float, generator.normal(centre, DEVIATION).clip(low, high))))
+    return drawn
+
+
 def ratio(name: str, values: np.ndarray, others: np.ndarray) -> Row:
     """Columns of the ratio of two means and of its standard error, which is small where values go with the others.
 
-    :param name: name of the column
     :param values: values of the numerator, of shape (sets, episodes)
     :param others: values of the denominator in the same episodes
     """
@@ -136,7 +159,7 @@ def answer(rows: DataFrame) -> str:
         mean, neutral, runs = _of_run(group, MEAN), _of_run(group, NEUTRAL), _learned(group)
         survival = [shown(share, ".0%") for share in (mean.survival_100, runs.survival_100.min(), neutral.survival_100)]
         sentences.append(
-            f"In {ENGINE_NAMES[engine]} the robot survives {survival[0]} of pushes of 100 N after a training,"
+            f"In {WORDS[engine]} the robot survives {survival[0]} of pushes of 100 N after a training,"
             f" {survival[1]} after the worst one, and {survival[2]} without the hip law. Under harder pushes the"
             f" {len(runs)} trainings reach {shown(mean.of_best, '.1%')} of the best known score on average, and"
             f" {(runs.of_best >= ENOUGH).sum()} of them come within 5 % of it."
@@ -147,7 +170,7 @@ def answer(rows: DataFrame) -> str:
 def headroom(rows: DataFrame) -> str:
     """How much better than the shipped V1 to V4 could be."""
     reached = [
-        f"{shown(_of_run(group, 'shipped').of_best, '.1%')} of the best known score in {ENGINE_NAMES[engine]}"
+        f"{shown(_of_run(group, 'shipped').of_best, '.1%')} of the best known score in {WORDS[engine]}"
         for engine, group in groups(rows, "engine").items()
     ]
     return f"The shipped V1 to V4 reach {' and '.join(reached)}."
@@ -161,9 +184,9 @@ def figure(rows: DataFrame) -> Figure:
     for axis, (engine, group) in zip(settled, engines.items(), strict=True):
         best = _of_run(group, BEST)
         strips(axis, {name: _learned(group)[name] for name in NAMES}, {name: best[name] for name in NAMES}, BEST)
-        axis.set_title(ENGINE_NAMES[engine], fontsize="small")
-        columns[f"{ENGINE_NAMES[engine]}\nlearned"] = _learned(group).of_best
-        columns[f"{ENGINE_NAMES[engine]}\nmu"] = _learned(group).mu_of_best
+        axis.set_title(WORDS[engine], fontsize="small")
+        columns[f"{WORDS[engine]}\nlearned"] = _learned(group).of_best
+        columns[f"{WORDS[engine]}\nmu"] = _learned(group).mu_of_best
     strips(shares, columns, dict.fromkeys(columns, 1.0))
     shares.set_ylabel("score over the best known one")
     shares.tick_params(axis="x", labelsize="x-small")

@@ -51,49 +51,37 @@ def _signal(field: str, elements: tuple[int, ...], value: float | None = None, a
     return change
 
 
-def _repeated(reading: SensorReading, before: SensorReading) -> Heard:
-    return before
+def _constant(heard: Heard) -> Change:
+    return lambda reading, before: heard
 
 
-def _lost(reading: SensorReading, before: SensorReading) -> Heard:
-    return NOTHING
-
-
-def _missed(reading: SensorReading, before: SensorReading) -> Heard:
-    return None
+LOST, MISSED = _constant(NOTHING), _constant(None)
 
 
 class Fault(NamedTuple):
-    """A fault.
+    """A fault."""
 
-    :param change: what it does to readings
-    :param when: whether it is there, by the ticks since it began
-    :param delay_seconds: delay of all readings, in s
-    :param to_zero: whether targets go to zero, at the speeds of the controller, while its ticks do not take place
-    :param is_told: whether the controller is told how much time has passed since its last tick
-    """
-
-    change: Change = lambda reading, before: reading
-    when: Callable[[int], bool] = lambda ticks: True
-    delay_seconds: float = 0.01
-    to_zero: bool = False
-    is_told: bool = False
+    change: Change = lambda reading, before: reading  # what it does to readings
+    when: Callable[[int], bool] = lambda ticks: True  # whether it is there, by the ticks since it began
+    delay_seconds: float = 0.01  # delay of all readings, in s
+    to_zero: bool = False  # whether targets go to zero, as fast as the controller moves them, while it misses ticks
+    is_told: bool = False  # whether the controller is told how much time has passed since its last tick
 
 
 FAULTS = {
     "none": Fault(),
-    "one reading in ten is not finite": Fault(_lost, lambda ticks: ticks % 10 == 0),
-    "every second reading is not finite": Fault(_lost, lambda ticks: ticks % 2 == 0),
-    "no reading is finite for 0.5 s": Fault(_lost, lambda ticks: ticks < 50),
-    "no reading is finite any more": Fault(_lost),
+    "one reading in ten is not finite": Fault(LOST, lambda ticks: ticks % 10 == 0),
+    "every second reading is not finite": Fault(LOST, lambda ticks: ticks % 2 == 0),
+    "no reading is finite for 0.5 s": Fault(LOST, lambda ticks: ticks < 50),
+    "no reading is finite any more": Fault(LOST),
     "lateral acceleration: not finite any more": Fault(_signal("acceleration", (0,), math.nan)),
     "rate about y: not finite any more": Fault(_signal("angular_rate", (1,), math.nan)),
     "one pad: not finite any more": Fault(_signal("pressures", (0,), math.nan)),
     "left flexion joint: not finite any more": Fault(_signal("joints", (2,), math.nan)),
     "all joints: not finite any more": Fault(_signal("joints", (0, 1, 2, 3, 4, 5), math.nan)),
-    "the same reading comes for 0.1 s": Fault(_repeated, lambda ticks: ticks < 10),
-    "the same reading comes for 0.5 s": Fault(_repeated, lambda ticks: ticks < 50),
-    "the same reading comes for ever": Fault(_repeated),
+    "the same reading comes for 0.1 s": Fault(lambda reading, before: before, lambda ticks: ticks < 10),
+    "the same reading comes for 0.5 s": Fault(lambda reading, before: before, lambda ticks: ticks < 50),
+    "the same reading comes for ever": Fault(lambda reading, before: before),
     "lateral acceleration: 0": Fault(_signal("acceleration", (0,), 0.0)),
     "lateral acceleration: 0.2 m/s² too high": Fault(_signal("acceleration", (0,), added=0.2)),
     "lateral acceleration: 0.5 m/s² too high": Fault(_signal("acceleration", (0,), added=0.5)),
@@ -108,13 +96,13 @@ FAULTS = {
     "one pad: stuck at 300 N": Fault(_signal("pressures", (0,), 300.0)),
     "right abduction joint: stuck at 0.3 rad": Fault(_signal("joints", (1,), 0.3)),
     "right abduction joint: 0.1 rad off": Fault(_signal("joints", (1,), added=0.1)),
-    "one tick in ten is missed": Fault(_missed, lambda ticks: ticks % 10 == 0),
-    "every second tick is missed": Fault(_missed, lambda ticks: ticks % 2 == 0),
-    "every second tick is missed, and time is told": Fault(_missed, lambda ticks: ticks % 2 == 0, is_told=True),
-    "ten ticks are missed, once": Fault(_missed, lambda ticks: ticks < 10),
-    "ten ticks are missed, once, and time is told": Fault(_missed, lambda ticks: ticks < 10, is_told=True),
-    "no tick any more, targets stay": Fault(_missed),
-    "no tick any more, targets go to zero": Fault(_missed, to_zero=True),
+    "one tick in ten is missed": Fault(MISSED, lambda ticks: ticks % 10 == 0),
+    "every second tick is missed": Fault(MISSED, lambda ticks: ticks % 2 == 0),
+    "every second tick is missed, and time is told": Fault(MISSED, lambda ticks: ticks % 2 == 0, is_told=True),
+    "ten ticks are missed, once": Fault(MISSED, lambda ticks: ticks < 10),
+    "ten ticks are missed, once, and time is told": Fault(MISSED, lambda ticks: ticks < 10, is_told=True),
+    "no tick any more, targets stay": Fault(MISSED),
+    "no tick any more, targets go to zero": Fault(MISSED, to_zero=True),
     "delay of 20 ms": Fault(delay_seconds=0.02),
     "delay of 30 ms": Fault(delay_seconds=0.03),
     "delay of 50 ms": Fault(delay_seconds=0.05),
@@ -159,14 +147,10 @@ class _BehindFault:
 
 @dataclass(frozen=True)
 class SensorFaults(Experiment):
-    """Faults of sensors and of the control loop, with locked hips and with the hip law, without a push.
+    """Faults of sensors and of the control loop, with locked hips and with the hip law, without a push."""
 
-    :param seeds: number of episodes
-    :param time_limit: time limit of an episode, in s
-    """
-
-    seeds: int = 20
-    time_limit: float = 15.0
+    seeds: int = 20  # number of episodes
+    time_limit: float = 15.0  # time limit of an episode, in s
 
     def cases(self) -> list[Row]:
         """Each fault and hips."""

@@ -48,12 +48,9 @@ STEPPING_NAMES = [parameter.name for parameter in STEPPING_PARAMETERS]
 
 @dataclass(frozen=True)
 class ShippedParameters(Experiment):
-    """The shipped P1 to P5 with locked hips and with the V1 to V4 that the rule chooses.
+    """The shipped P1 to P5 with locked hips and with the V1 to V4 that the rule chooses."""
 
-    :param episodes: number of unseen seeds of each set, engine and condition
-    """
-
-    episodes: int = 100
+    episodes: int = 100  # number of unseen seeds of each set, engine and condition
 
     def cases(self) -> list[Row]:
         """Set, engine and condition."""
@@ -93,11 +90,7 @@ QUICK = ShippedParameters(episodes=1)
 
 
 def ship(result: record.Result, path: Path = FILE) -> None:
-    """Write the package's file of learned parameters.
-
-    :param result: the result ``shipped_parameters``
-    :param path: the file
-    """
+    """Write the package's file of learned parameters from the result ``shipped_parameters``."""
     text = json.dumps(_sets_of(result), indent=2, ensure_ascii=False)
     replace_text(path, re.sub(r"\[[^\[\]]*\]", lambda numbers: " ".join(numbers[0].split()), text) + "\n")
 

@@ -69,15 +69,10 @@ SIGNIFICANT = 1.645
 
 
 class Round(NamedTuple):
-    """A round of the choice.
+    """A round of the choice. A direction of a slope has as many episodes as level ground."""
 
-    :param candidates: number of the best candidates that take part, beside the shipped set; all of them if it is None
-    :param episodes: number of episodes by condition, those of the rounds before included; a direction of a slope has as
-        many as level ground
-    """
-
-    candidates: int | None
-    episodes: Mapping[str, int]
+    candidates: int | None  # number of the best that take part, beside the shipped set; None for all
+    episodes: Mapping[str, int]  # by condition, those of the rounds before included
 
 
 ROUNDS = (
@@ -92,20 +87,13 @@ Scores = dict[tuple[Engine, str], np.ndarray]
 
 @dataclass(frozen=True)
 class Candidate:
-    """What is known about a candidate after its last round.
+    """What is known about a candidate after its last round."""
 
-    :param run: name of the training that recommends it
-    :param parameters: values of V1 to V4
-    :param round: number of its last round, from 1
-    :param scores: its scores
-    :param shipped: scores of the shipped set in the same episodes
-    """
-
-    run: str
+    run: str  # name of the training that recommends it
     parameters: Parameters
-    round: int
+    round: int  # number of its last round, from 1
     scores: Scores
-    shipped: Scores
+    shipped: Scores  # scores of the shipped set in the same episodes
 
     @property
     def relative(self) -> dict[tuple[Engine, str], float]:
@@ -136,12 +124,9 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Shipping(SecondTrainingExperiment):
-    """The choice of the shipped V1 to V4.
+    """The choice of the shipped V1 to V4."""
 
-    :param rounds: sizes of the rounds
-    """
-
-    rounds: tyro.conf.Suppress[tuple[Round, ...]] = ROUNDS
+    rounds: tyro.conf.Suppress[tuple[Round, ...]] = ROUNDS  # sizes of the rounds
 
     def cases(self) -> list[Row]:
         """The engines, all of which the rule looks at in each case."""
@@ -164,19 +149,13 @@ class Shipping(SecondTrainingExperiment):
                     yield {**shared, "condition": condition, "episodes": episodes, "relative": relative}
 
     def choice(self, candidates: Sequence[Candidate]) -> Candidate:
-        """The candidate that the package ships.
-
-        :param candidates: all candidates
-        """
+        """The candidate that the package ships."""
         passing = [candidate for candidate in candidates if self.verdict(candidate) == "passes"]
         shipped = next(candidate for candidate in candidates if candidate.parameters == SHIPPED)
         return max(passing, key=lambda candidate: candidate.overall, default=shipped)
 
     def verdict(self, candidate: Candidate) -> str:
-        """Why a candidate is not chosen, or that it passes.
-
-        :param candidate: the candidate
-        """
+        """Why a candidate is not chosen, or that it passes."""
         if candidate.lost_on:
             return f"loses on a {candidate.lost_on}"
         if candidate.round < len(self.rounds):
@@ -205,12 +184,7 @@ class Shipping(SecondTrainingExperiment):
         return [known[one] for one in ranked]
 
     def scores(self, parameters: Parameters, engine: Engine, episodes: Mapping[str, int]) -> Scores:
-        """Scores of a candidate in an engine; of a slope those in the worst direction.
-
-        :param parameters: values of V1 to V4
-        :param engine: physics engine
-        :param episodes: number of episodes by condition
-        """
+        """Scores of a candidate in an engine; of a slope those in the worst direction."""
         found = {}
         for name, asked in self.conditions(engine, episodes).items():
             parts = [[one] for one in asked] if name in SLOPES else [asked]
@@ -218,11 +192,7 @@ class Shipping(SecondTrainingExperiment):
         return found
 
     def conditions(self, engine: Engine, episodes: Mapping[str, int]) -> dict[str, list[Condition]]:
-        """Conditions that a candidate meets in an engine; of a slope those of each direction.
-
-        :param engine: physics engine
-        :param episodes: number of episodes by condition
-        """
+        """Conditions that a candidate meets in an engine, with their episodes; of a slope those of each direction."""
         counts = Counter(episodes)
 
         def slope(name: str, degrees: float) -> list[Condition]:
@@ -247,10 +217,7 @@ class Shipping(SecondTrainingExperiment):
 
 
 def rounded(parameters: Parameters) -> Parameters:
-    """Values as they are shipped.
-
-    :param parameters: values that a training learned
-    """
+    """Values as they are shipped."""
     return tuple(round(value, DIGITS) + 0.0 for value in parameters)  # no negative zero
 
 

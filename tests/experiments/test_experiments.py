@@ -5,17 +5,16 @@ import subprocess
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from types import ModuleType, SimpleNamespace
-from typing import cast
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from laboratory import need
 
 from experiments import record
-from experiments.age import age
-from experiments.command import main
+from experiments.command import age, main
 from experiments.experiment import Experiment, product
-from experiments.found import BENCHMARKS, EXPERIMENTS, Found, find, paths_of, questions
+from experiments.found import BENCHMARKS, EXPERIMENTS, find, paths_of, questions
 from experiments.making import make
 from experiments.record import Result, Row
 from sarah.errors import ConfigurationError, SarahError
@@ -23,15 +22,11 @@ from sarah.errors import ConfigurationError, SarahError
 
 @dataclass(frozen=True)
 class Squares(Experiment):
-    """Squares of some numbers.
-
-    :param count: how many
-    :param fails_at: number at which the power fails
-    """
+    """Squares of some numbers."""
 
     workers: int = 0
     count: int = 3
-    fails_at: int | None = None
+    fails_at: int | None = None  # number at which the power fails
 
     def cases(self) -> list[Row]:
         """The numbers."""
@@ -45,9 +40,9 @@ class Squares(Experiment):
         yield {"sign": -1, "square": -float(number**2)}
 
 
-def squares(full: Squares) -> Found:
-    module = SimpleNamespace(__doc__="How large are squares?\n\nLarge.", FULL=full, QUICK=Squares(count=1))
-    return Found("squares", cast(ModuleType, module))
+def squares(full: Squares) -> Any:
+    doc = "How large are squares?\n\nLarge."
+    return SimpleNamespace(__name__="some.squares", __doc__=doc, FULL=full, QUICK=Squares(count=1))
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,7 @@
 from pandas import DataFrame
 from pytest import approx
 
-from experiments.robot import landscape, physics, transfer
+from experiments.robot import engines, landscape, physics
 
 
 def test_a_value_is_good_if_it_is_near_the_best_in_both_engines() -> None:
@@ -18,31 +18,15 @@ def test_a_value_is_good_if_it_is_near_the_best_in_both_engines() -> None:
 
 
 def test_what_is_kept_is_the_score_in_the_other_engine() -> None:
-    rows = DataFrame({"learned_in": ["pybullet", "mujoco"], "pybullet_score": [0.8, 0.6], "mujoco_score": [0.4, 0.8]})
-    assert list(transfer.compared(rows).kept) == approx([0.5, 0.75])
-
-
-def physics_rows() -> DataFrame:
-    scores = {"shipped": (0.8, 0.6), "random 0": (0.5, 0.4), "random 1": (0.2, 0.21)}
-    return DataFrame(
-        {
-            "parameters": name,
-            "control_rate_hz": 100,
-            "sensors": "10 ms",
-            "setting": setting,
-            "score": score,
-            "steps_per_second": 3.0,
-        }
-        for name, values in scores.items()
-        for setting, score in zip(("reference", "standard"), values, strict=True)
-    )
+    where = {"task": "balance", "learned_in": [None, "pybullet", "mujoco"]}
+    rows = DataFrame({**where, "pybullet_score": [0.5, 0.8, 0.6], "mujoco_score": [0.6, 0.4, 0.8]})
+    assert list(engines.of_trainings(rows).kept) == approx([0.5, 0.75])
+    assert list(engines.of_sets(rows)["balance"].difference) == approx([0.2])
 
 
 def test_a_difference_is_a_share_of_the_score_at_the_finest_setting() -> None:
-    (row,) = physics.good_sets(physics_rows()).itertuples()
+    condition = {"parameters": "shipped", "control_rate_hz": 100, "sensors": "10 ms"}
+    (row,) = physics.beside_finest(
+        DataFrame({**condition, "setting": ["reference", "standard"], "score": [0.8, 0.6]})
+    ).itertuples()
     assert (row.setting, row.finest_score, row.difference) == ("standard", 0.8, approx(-0.25))
-
-
-def test_distances_anywhere_are_of_the_random_sets() -> None:
-    (line,) = (line for line in physics.anywhere(physics_rows()).splitlines() if line.startswith("| standard"))
-    assert [cell.strip() for cell in line.split("|")[2:-1]] == ["0.305", "0.071", "0.100", "50\N{NO-BREAK SPACE}%"]
