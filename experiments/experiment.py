@@ -34,7 +34,7 @@ class Experiment(ABC):
         """What tells the rows apart, in order: values of their first columns. A case may have several rows."""
 
     @abstractmethod
-    def rows(self, **case: Any) -> Iterable[Row]:
+    def rows(self, *values: Any, **case: Any) -> Iterable[Row]:
         """The other columns of a case's rows, computed in this process. They depend on no other case.
 
         A subclass names the columns of its cases.
