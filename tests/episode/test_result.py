@@ -10,7 +10,6 @@ from sarah.episode.evaluation import STATISTICS, Evaluation
 from sarah.episode.gait import GaitMetrics
 from sarah.episode.motion import MotionMetrics
 from sarah.episode.result import METRICS, EpisodeResult
-from sarah.errors import ConfigurationError
 
 OTHER = dataclasses.replace(RESULT, score=0.4, vibration=3.0, final_position=(0.0, 0.0, 0.8), termination="fell")
 
@@ -49,13 +48,6 @@ def test_an_evaluation_holds_every_statistic_that_the_table_names() -> None:
     assert summary["score_mean"] == pytest.approx(0.6) and summary["score_median"] == pytest.approx(0.6)
     assert summary["score_std"] == pytest.approx(0.2) and summary["score_min"] == 0.4
     assert summary["drift_max"] == pytest.approx(0.05) and summary["vibration_median"] == 6.0
-
-
-def test_an_unknown_metric_is_named_with_the_nearest() -> None:
-    evaluation = Evaluation((RESULT,))
-    assert evaluation.mean("score") == evaluation.median("score") == evaluation.statistic("score", "max") == 0.8
-    with pytest.raises(ConfigurationError, match=r"unknown metric 'scor', did you mean 'score'\?"):
-        evaluation.mean("scor")
 
 
 @pytest.mark.parametrize(

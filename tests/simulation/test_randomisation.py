@@ -27,7 +27,6 @@ def test_changing_one_range_leaves_the_other_draws_alone() -> None:
 
 
 def test_constant_errors_of_sensors_fill_their_ranges_to_both_sides() -> None:
-    """Of 400 draws the largest comes within 5 % of the end; a tilt points in all directions."""
     drawn = [draw_conditions(Randomisation(), seed).sensors for seed in range(400)]
     for errors, largest in (
         ([error for sensors in drawn for error in sensors.acceleration_bias], 0.1),
