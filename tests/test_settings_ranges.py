@@ -50,7 +50,6 @@ def parts(kind: Any) -> Iterator[Any]:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_numbers_out_of_range_are_refused_by_name(kind: Any) -> None:
-    """Above, below, no number; of several numbers, one of them is enough."""
     numbers = {name for name, type_ in types_of(kind).items() if {int, float} & set(parts(type_))}
     assert numbers - OTHERS <= set(ranges_of(kind)) <= numbers
     for name, within in ranges_of(kind).items():

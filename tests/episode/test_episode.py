@@ -49,7 +49,7 @@ def test_the_noise_of_the_pads_makes_no_steps_at_a_high_control_rate() -> None:
     """A single sample at 1 kHz has three times the noise of one at 100 Hz."""
     results = []
     for rate in (100, 1000):
-        config = EpisodeConfig(physics=PHYSICS["standard"].at_control_rate(rate), time_limit=4.0)
+        config = EpisodeConfig(physics=PHYSICS["standard"].at_control_rate(rate), time_limit=5.0)
         results.append(simulate(EpisodeSpec(PAPER_STEPPING, 0, config=config), record_trace=True))
         trace = results[-1].trace
         assert trace is not None and np.allclose(np.diff(trace.time), 1.0 / rate)

@@ -1,10 +1,11 @@
 """The paper's figures from run folders."""
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from io import BytesIO
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from laboratory import RESULT
@@ -38,7 +39,7 @@ def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
 
 
 @pytest.fixture
-def drawn(monkeypatch: pytest.MonkeyPatch) -> dict[str, Figure]:
+def drawn(monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[str, Figure]]:
     """Figures by name, which are drawn and not saved."""
     figures: dict[str, Figure] = {}
 
@@ -47,7 +48,8 @@ def drawn(monkeypatch: pytest.MonkeyPatch) -> dict[str, Figure]:
         return []
 
     monkeypatch.setattr(training_figures, "save", keep)
-    return figures
+    yield figures
+    plt.close("all")
 
 
 def words_of(figure: Figure) -> list[str]:

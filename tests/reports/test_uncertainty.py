@@ -116,13 +116,6 @@ def test_the_interval_of_a_count_knows_the_luck_of_the_judge() -> None:
     assert number_at(scores, np.array([True, True]), 0.95, best=0.5) == (2, 2, 2)
 
 
-def test_more_episodes_make_the_interval_narrower(noise: np.random.Generator) -> None:
-    truth = np.linspace(0.6, 0.8, 41).tolist()
-    few, many = (number_at(drawn(noise, truth, episodes), np.full(41, True), 0.9) for episodes in (12, 2000))
-    assert many[2] - many[1] < (few[2] - few[1]) / 2
-    assert many[1] <= 17 <= many[2]  # 0.72 and more are within 10 % of 0.8
-
-
 def test_luck_that_all_trainings_share_does_not_widen_a_count(noise: np.random.Generator) -> None:
     """Every episode is drawn for all trainings at once: what lifts one lifts the best as well."""
     luck = 0.3 * noise.normal(size=40)
