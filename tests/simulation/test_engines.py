@@ -118,12 +118,17 @@ PYBULLET = "the package pybullet: pip install pybullet ("
         ("compare", ["--out", "race", "--engine", "mujoco"], "mujoco", MUJOCO),
         pytest.param("transfer", ["run"], "mujoco", MUJOCO, marks=NEEDS_PYBULLET),
         ("train", ["--engine", "pybullet"], "pybullet", f"engine 'pybullet' needs {PYBULLET}"),
-        ("train", ["--pictures", "1"], "pybullet", f"pictures of the robot need {PYBULLET}"),
-        ("video", ["0.4,1.3,0.1,1,1", "--out", "a.gif"], "pybullet", f"pictures of the robot need {PYBULLET}"),
+        ("train", ["--pictures", "1", "--engine", "mujoco"], "pybullet", f"pictures of the robot need {PYBULLET}"),
+        (
+            "video",
+            ["0.4,1.3,0.1,1,1", "--engine", "mujoco", "--out", "a.gif"],
+            "pybullet",
+            f"pictures of the robot need {PYBULLET}",
+        ),
         ("transfer", ["run"], "pybullet", f"engine 'pybullet' needs {PYBULLET}"),
     ],
 )
-def test_what_needs_a_missing_engine_says_how_to_get_it_in_one_line(
+def test_what_needs_a_missing_engine_says_how_to_get_it(
     command: str,
     arguments: list[str],
     missing: str,

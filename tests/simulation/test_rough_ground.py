@@ -10,14 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from laboratory import BuildSimulation, Laboratory, laboratory, need
 
-from sarah.episode.episode import Episode
-from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
-from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.errors import ConfigurationError
 from sarah.robot.description import describe_robot
 from sarah.robot.dimensions import dimensions_alike
-from sarah.robot.reading import Side, Vector
+from sarah.robot.reading import Side
 from sarah.scenery.ground import LEVEL, Ground
 from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import PHYSICS
@@ -52,7 +49,8 @@ def test_distance_is_along_the_normal_of_the_triangle() -> None:
     """Right of the hilltop the surface falls by 1 in 10."""
     assert HILL.distance((0.05, 0.01, 0.105)) == pytest.approx((0.1 + 0.001) / math.sqrt(1.02), rel=1e-3)
     assert HILL.distance((0.05, 0.0, 0.004)) < 0.0
-    assert LEVEL.distance((3.0, -2.0, 0.25)) == 0.25
+    assert LEVEL.distance((3.0, -2.0, 0.25)) == HILL.distance((3.0, -2.0, 0.25)) == 0.25
+    assert LEVEL.reach == math.inf
 
 
 @settings(max_examples=30)
@@ -146,7 +144,7 @@ def test_a_ball_lies_at_the_same_height_in_both_engines(cell: float) -> None:
     for engine in ("pybullet", "mujoco"):
         need(engine)
     ground = draw_ground(Terrain(roughness=(0.015, 0.015), cell=(cell, cell)), 1)
-    places = np.random.default_rng(0).uniform(-0.65, 0.65, (30, 2)).tolist()
+    places = np.random.default_rng(0).uniform(-0.65, 0.65, (12, 2)).tolist()
     heights = {engine: [ball_height(engine, ground, x, y) for x, y in places] for engine in ("pybullet", "mujoco")}
     assert heights["mujoco"] == pytest.approx(heights["pybullet"], abs=1e-5)
     put_down = [ground.ball_height(x, y, RADIUS) for x, y in places]
@@ -165,33 +163,16 @@ def ball_height(engine: str, ground: Ground, x: float, y: float) -> float:
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_the_robot_begins_on_the_ground_and_nowhere_inside_it(build: BuildSimulation, seed: int) -> None:
-    simulation = build(Conditions(ground=draw_ground(ROUGH, seed)))
-    lowest = min(simulation.sole_height(side) for side in Side)
-    assert -1e-4 < lowest < 0.001
-    assert not any(simulation.read().pressures)
-    simulation.advance()
-    assert abs(simulation.torso_state().velocity[2]) < 0.15  # of a free fall, and not thrown up
-
-
-@pytest.mark.parametrize("seed", range(2))
 def test_soles_of_a_standing_robot_rest_on_the_bumps(build: BuildSimulation, seed: int) -> None:
     simulation = build(Conditions(ground=draw_ground(ROUGH, seed)))
+    lowest = min(simulation.sole_height(side) for side in Side)
+    assert -1e-4 < lowest < 0.001 and not any(simulation.read().pressures)
+    simulation.advance()
+    assert abs(simulation.torso_state().velocity[2]) < 0.15  # of a free fall, and not thrown up
     advance(simulation, 1.5)
     for side in Side:
         assert -0.001 < simulation.sole_height(side) < 0.0005
     assert simulation.torso_state().axis[2] > math.cos(math.radians(8.0))
-
-
-def test_feet_of_a_robot_that_is_pushed_stay_on_the_bumps(lab: Laboratory) -> None:
-    push = Push((75.0, 75.0), at_seconds=(1.5, 2.0))
-    config = BalanceConfig(engine=lab.engine, time_limit=3.0, terrain=ROUGH, push=push)
-    with Episode(config, 0, BALANCE) as episode:
-        episode.stand()
-        episode.start((0.7, 0.4, 0.7, -0.4))
-        while episode.termination is None:
-            episode.tick()
-            assert min(episode.robot.simulation.sole_height(side) for side in Side) > -RADIUS
 
 
 def test_clearance_of_a_foot_is_that_over_its_own_ground(lab: Laboratory, build: BuildSimulation) -> None:
@@ -205,7 +186,7 @@ def test_clearance_of_a_foot_is_that_over_its_own_ground(lab: Laboratory, build:
 def test_bumps_of_no_height_are_a_plane(build: BuildSimulation) -> None:
     plane, field = build(), build(Conditions(ground=draw_ground(Terrain(roughness=(1e-9, 1e-9)), 0)))
     for simulation in (plane, field):
-        advance(simulation, 2.0)
+        advance(simulation, 1.0)
     assert field.torso_state().position == pytest.approx(plane.torso_state().position, abs=3e-4)
 
 
@@ -228,21 +209,6 @@ def test_a_robot_on_ice_slides_alike_in_all_directions(build: BuildSimulation, u
     x, y, _ = simulation.torso_state().position
     assert math.hypot(x, y) == pytest.approx(expected, rel=0.08)
     assert math.cos(math.atan2(y, x) - math.radians(uphill)) < -0.99  # downhill
-
-
-def test_a_foot_on_ice_slides_ahead_and_turns_the_robot_alike_in_both_engines() -> None:
-    turns = {}
-    for engine in ("pybullet", "mujoco"):
-        need(engine)
-        terrain = Terrain((10.0, 10.0), (90.0, 90.0), friction_left=(0.05, 0.05), friction_right=(0.15, 0.15))
-        conditions = Conditions(ground=draw_ground(terrain, 0))
-        simulation = simulator_of(engine)(describe_robot(), PHYSICS["standard"], conditions)
-        advance(simulation, 0.8)
-        x, y, z, w = simulation.torso_state().orientation
-        turns[engine] = math.degrees(math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)))
-        simulation.close()
-    assert turns["pybullet"] == pytest.approx(turns["mujoco"], abs=6.0)
-    assert 5.0 < turns["mujoco"] < 60.0
 
 
 def test_plates_rest_on_high_bumps_in_both_engines() -> None:
@@ -278,6 +244,8 @@ def test_frictions_are_drawn_for_each_foot() -> None:
     ("setting", "message"),
     [
         ({"roughness": (0.01, 0.005)}, r"terrain\.roughness .* in rising order"),
+        ({"slope_degrees": 46}, r"terrain\.slope_degrees must be between 0 and 45 degrees"),
+        ({"direction_degrees": (0, 721)}, r"terrain\.direction_degrees must be between 0 and 720 degrees"),
         ({"cell": 0.001}, r"terrain\.cell must be between 0\.002 and 1 m"),
         ({"cell": 0.01}, "terrain.reach must be between 1 and 50 times terrain.cell, here 0.01 and 0.5 m, not 0.7"),
         ({"cell": 1.0}, "here 1 and 50 m, not 0.7"),
@@ -286,9 +254,3 @@ def test_frictions_are_drawn_for_each_foot() -> None:
 def test_impossible_ground_is_refused(setting: dict[str, Any], message: str) -> None:
     with pytest.raises(ConfigurationError, match=message):
         Terrain(**setting)
-
-
-def test_a_place_far_away_has_no_bumps() -> None:
-    ground = draw_ground(ROUGH, 0)
-    far: Vector = (5.0, 5.0, 0.3)
-    assert ground.distance(far) == 0.3 and LEVEL.reach == math.inf

@@ -7,8 +7,6 @@ import numpy as np
 import pytest
 from laboratory import laboratory
 
-from sarah.control.parameters import PAPER_STEPPING
-from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
 from sarah.robot.description import describe_robot
 from sarah.robot.filters import LowPass
 from sarah.robot.reading import GRAVITY, SensorReading
@@ -72,7 +70,7 @@ def test_the_delay_is_the_same_time_at_every_control_rate(control_rate: int) -> 
     assert (control_rate - 1) / control_rate - seen.joints[0] == pytest.approx(0.0175)
 
 
-@pytest.mark.parametrize("control_rate", [50, 400])
+@pytest.mark.parametrize("control_rate", [50, 200])
 def test_noise_behind_a_slow_filter_is_the_same_at_every_control_rate(control_rate: int) -> None:
     """White noise of density d behind a low-pass of time constant T has the variance d^2 / (4 T)."""
     noisy = ImperfectSensors(SensorConditions(acceleration_noise_density=0.03), 1.0 / control_rate)
@@ -108,15 +106,6 @@ def test_inertial_signals_follow_a_step_at_their_bandwidth(bandwidth: float) -> 
         assert seen.acceleration == pytest.approx(acceleration, rel=1e-9)
         assert seen.angular_rate == pytest.approx([share * rate for rate in TRUTH.angular_rate], rel=1e-9)
         assert (seen.pressures, seen.joints) == (TRUTH.pressures, TRUTH.joints)
-
-
-def test_a_robot_with_the_slowest_sensors_stands_and_has_not_fallen() -> None:
-    slow = sensors(imu_bandwidth=0.1)
-    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT)
-    level = STILL._replace(acceleration=(0.0, 0.0, GRAVITY))
-    for _ in range(200):
-        generator.tick(slow(level))
-    assert not generator.has_fallen
 
 
 def test_noise_is_white_and_has_its_standard_deviation() -> None:
@@ -161,7 +150,7 @@ def test_accelerometer_reads_the_speed_gained_and_gravity(axis: int) -> None:
 
 
 @pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
-@pytest.mark.parametrize("force", [(90.0, 0.0, 0.0), (0.0, -90.0, 60.0)])
+@pytest.mark.parametrize("force", [(90.0, -50.0, 60.0)])
 def test_accelerometer_reads_a_push_on_every_axis(engine: str, force: tuple[float, float, float]) -> None:
     lab, physics = laboratory(engine), PHYSICS["standard"]
     simulation = simulator_of(engine)(describe_robot(), physics, NOMINAL)

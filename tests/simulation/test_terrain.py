@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from laboratory import BuildSimulation, Laboratory
 
-from sarah.errors import ConfigurationError
 from sarah.robot.reading import GRAVITY
 from sarah.scenery.ground import LEVEL
 from sarah.simulation.physics import PHYSICS, Physics
@@ -100,17 +99,3 @@ def test_seed_draws_the_same_direction_on_any_slope() -> None:
 def test_level_ground_is_exactly_level() -> None:
     flat = Terrain(), Terrain(direction_degrees=(200.0, 210.0)), Terrain(cell=(0.03, 0.03))
     assert all(draw_ground(terrain, seed) == LEVEL for terrain in flat for seed in range(2))
-
-
-@pytest.mark.parametrize(
-    ("settings", "message"),
-    [
-        ({"slope_degrees": 46}, r"terrain\.slope_degrees must be between 0 and 45 degrees"),
-        ({"slope_degrees": (5, 2)}, r"terrain\.slope_degrees .* in rising order, not \(5, 2\)"),
-        ({"direction_degrees": (0, 721)}, r"terrain\.direction_degrees must be between 0 and 720 degrees"),
-    ],
-)
-def test_what_is_no_slope_is_refused_in_one_line(settings: dict, message: str) -> None:
-    with pytest.raises(ConfigurationError, match=message) as error:
-        Terrain(**settings)
-    assert "\n" not in str(error.value)

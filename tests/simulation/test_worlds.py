@@ -4,7 +4,6 @@ import ctypes
 import gc
 import locale
 import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -220,12 +219,6 @@ def test_what_others_do_to_a_mujoco_world_raises(disturbance: Callable[[Any, Any
 
     with pytest.raises(SimulationError, match="other code in this process has changed the robot's model in MuJoCo"):
         simulate(replace(spec("mujoco"), task=replace(STEPPING, reward=disturbing)))
-
-
-def test_importing_the_simulator_leaves_mujocos_warnings_alone() -> None:
-    pytest.importorskip("mujoco")
-    look = "import mujoco, sarah.simulation.mujoco_simulator; assert mujoco.get_mju_user_warning() is None"
-    subprocess.run([sys.executable, "-c", look], check=True)
 
 
 def test_mujocos_warnings_of_other_models_still_come() -> None:
