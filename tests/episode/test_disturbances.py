@@ -11,12 +11,10 @@ from laboratory import COARSE_PHYSICS
 import sarah
 from sarah.episode.robot_settings import conditions_of
 from sarah.episode.task_answers import disturbances_of
-from sarah.episode.tasks import TASKS
 from sarah.episode.trial import try_task
 from sarah.errors import SarahError, TaskError
 from sarah.robot.description import GROUPS
 from sarah.robot.reading import GRAVITY, Side
-from sarah.simulation.randomisation import Randomisation
 
 UNEVEN = sarah.Terrain(slope_degrees=(2.0, 6.0), roughness=0.01, friction_left=(0.5, 0.6), friction_right=(0.2, 0.3))
 SHORT = sarah.EpisodeConfig(time_limit=3.0, physics=COARSE_PHYSICS)
@@ -46,14 +44,6 @@ def test_they_are_what_the_episode_draws(settings: dict[str, Any]) -> None:
         sum(conditions.mass_factors[link] * subject.robot.masses[link] for link in links) for links in GROUPS.values()
     ]
     assert masses_and_offset == pytest.approx([*(mass / 10.0 for mass in masses), *conditions.mass_offset])
-
-
-@pytest.mark.parametrize("task", TASKS)
-def test_there_are_as_many_for_every_episode_whatever_its_parameters(task: str) -> None:
-    subjects = [spec(0, task), spec(1, task), spec(2, task, randomisation=Randomisation(enabled=False))]
-    assert {len(disturbances_of(subject) or ()) for subject in subjects} == {14}
-    low = tuple(parameter.low for parameter in subjects[0].task.parameters)
-    assert disturbances_of(dataclasses.replace(subjects[0], parameters=low)) == disturbances_of(subjects[0])
 
 
 @pytest.mark.parametrize("task", ["stepping", dataclasses.replace(sarah.BALANCE, draw_push=lambda config, seed: None)])

@@ -5,11 +5,8 @@ import dataclasses
 import pytest
 from laboratory import RESULT
 
-from sarah.episode.ending import TERMINATIONS
 from sarah.episode.evaluation import STATISTICS, Evaluation
-from sarah.episode.gait import GaitMetrics
-from sarah.episode.motion import MotionMetrics
-from sarah.episode.result import METRICS, EpisodeResult
+from sarah.episode.result import METRICS
 
 OTHER = dataclasses.replace(RESULT, score=0.4, vibration=3.0, final_position=(0.0, 0.0, 0.8), termination="fell")
 
@@ -20,11 +17,6 @@ def test_every_number_of_a_result_is_a_metric_with_a_meaning() -> None:
     for name, metric in METRICS.items():
         assert metric.meaning and metric.label and isinstance(getattr(RESULT, name), (int, float))
         assert set(metric.statistics) <= set(STATISTICS)
-
-
-def test_metrics_of_gait_and_motion_are_columns_and_metrics() -> None:
-    own = [item.name for measured in (GaitMetrics, MotionMetrics) for item in dataclasses.fields(measured)]
-    assert [name for name in METRICS if name in own] == [name for name in RESULT.columns() if name in own] == own
 
 
 def test_a_value_is_shown_in_its_unit_for_people() -> None:
@@ -57,10 +49,3 @@ def test_an_evaluation_holds_every_statistic_that_the_table_names() -> None:
 )
 def test_a_gait_is_one_by_sensors_that_lifts_its_feet(changes: dict[str, float], is_gait: bool) -> None:
     assert Evaluation((dataclasses.replace(RESULT, **changes),)).is_gait == is_gait  # type: ignore[arg-type]
-
-
-def test_survival_is_to_the_time_limit_and_every_ending_has_words() -> None:
-    for ending, words in TERMINATIONS.items():
-        result = dataclasses.replace(RESULT, termination=ending)
-        assert words and result.survived == (ending == "time_limit")
-    assert isinstance(RESULT, EpisodeResult) and RESULT.drift == pytest.approx(0.05)

@@ -52,14 +52,6 @@ def test_slope_is_no_matter_of_randomisation() -> None:
     assert conditions_of(config, 1).ground != conditions_of(config, 2).ground
 
 
-@pytest.mark.parametrize(("degrees", "ending"), [(24.0, "no_oscillation"), (26.0, "fell"), (-64.0, "no_oscillation")])
-def test_fall_is_judged_by_gravity(degrees: float, ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Leaning, "degrees", degrees)
-    episode = Episode(EpisodeConfig(terrain=UPHILL_IN_FRONT), 0, build=Leaning)
-    episode.stand()
-    assert episode.run(TRAINED_STEPPING).termination == ending
-
-
 @pytest.mark.parametrize("strength", [1.0, 0.165])
 def test_tilt_of_a_tick_is_from_gravitys_vertical(strength: float) -> None:
     tilts = []

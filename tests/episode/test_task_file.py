@@ -105,27 +105,20 @@ def test_mistakes_of_a_file_are_one_line(tmp_path: Path, text: str, words: str) 
 
 
 @pytest.mark.parametrize(
-    ("body", "words"),
-    [
-        ("return tick.powr", r"my_task.py, line 3: AttributeError: 'Tick' object has no attribute 'powr'"),
-        ("return float('nan')", "my_task.py:JUMP: its reward must be a finite number, not nan"),
-        ("return [1.0]", r"its reward must be a finite number, not \[1.0\]"),
-        ("raise ValueError('one\\ntwo')", "^my_task.py, line 3: ValueError: one two$"),
-        ("raise SystemExit(0)", "my_task.py, line 3: SystemExit: 0"),
-        ("raise type('Odd', (Exception,), {'__str__': lambda e: 1 / 0})", "an exception without a message"),
-    ],
-)
-def test_mistakes_of_a_reward_name_the_file(tmp_path: Path, body: str, words: str) -> None:
-    text = f"import dataclasses, sarah\ndef reward(tick, config):\n    {body}\n"
-    text += "JUMP = dataclasses.replace(sarah.STEPPING, name='jump', reward=reward)\n"
-    task = sarah.load_task(f"{written(tmp_path, text)}:JUMP")
-    with pytest.raises(SarahError, match=words):
-        sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT))
-
-
-@pytest.mark.parametrize(
     ("function", "words"),
     [
+        (
+            "reward=lambda tick, config: tick.powr",
+            r"my_task.py, line 2: AttributeError: 'Tick' object has no attribute",
+        ),
+        ("reward=lambda tick, config: float('nan')", "my_task.py:JUMP: its reward must be a finite number, not nan"),
+        ("reward=lambda tick, config: [1.0]", r"its reward must be a finite number, not \[1.0\]"),
+        ("reward=lambda tick, config: throw(ValueError('one\\ntwo'))", "^my_task.py, line 1: ValueError: one two$"),
+        ("reward=lambda tick, config: throw(SystemExit(0))", "my_task.py, line 1: SystemExit: 0"),
+        (
+            "reward=lambda *_: throw(type('Odd', (Exception,), {'__str__': lambda e: 1 / 0}))",
+            "an exception without a message",
+        ),
         ("ending=lambda tick, config: 'it fell'", "a short name of its own such as 'jumped', not 'it fell'"),
         ("ending=lambda tick, config: 'time_limit'", "a short name of its own such as 'jumped', not 'time_limit'"),
         ("draw_push=lambda config, seed: 5", "draw_push must return a DrawnPush or None, not 5"),
@@ -139,8 +132,9 @@ def test_mistakes_of_a_reward_name_the_file(tmp_path: Path, body: str, words: st
         ),
     ],
 )
-def test_mistakes_of_the_other_functions_are_named(tmp_path: Path, function: str, words: str) -> None:
-    text = f"import dataclasses, sarah\nJUMP = dataclasses.replace(sarah.STEPPING, name='jump', {function})\n"
+def test_mistakes_of_functions_are_named(tmp_path: Path, function: str, words: str) -> None:
+    text = "import dataclasses, sarah; throw = lambda error: (_ for _ in ()).throw(error)\n"
+    text += f"JUMP = dataclasses.replace(sarah.STEPPING, name='jump', {function})\n"
     task = sarah.load_task(f"{written(tmp_path, text)}:JUMP")
     with pytest.raises(SarahError, match=words):
         sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT))

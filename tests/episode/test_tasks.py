@@ -20,13 +20,6 @@ OTHERS = {"stepping": BalanceConfig(), "balance": EpisodeConfig()}
 """Settings that are not the task's."""
 
 
-@pytest.mark.parametrize("task", TASKS.values(), ids=TASKS)
-def test_settings_are_the_tasks_own_unless_given(task: Task) -> None:
-    spec = EpisodeSpec(task.baseline, 0, task.name)
-    assert spec.config == task.episode and type(spec.config) is type(task.episode)
-    assert EpisodeSpec(task.baseline, 0, task.name, task.episode) == spec
-
-
 @pytest.mark.parametrize("task", OTHERS)
 def test_another_tasks_settings_are_refused_in_one_line(task: str) -> None:
     own, other = type(TASKS[task].episode).__name__, type(OTHERS[task]).__name__
@@ -48,13 +41,6 @@ def test_settings_go_from_one_task_to_another_with_all_that_they_share() -> None
     assert STEPPING.config_of(config) == EpisodeConfig(time_limit=7.0)
     again = BALANCE.config_of(EpisodeConfig(time_limit=7.0), stepping=(0.1,) * 5)
     assert again == config
-
-
-@pytest.mark.parametrize("task", TASKS.values(), ids=TASKS)
-def test_every_parameter_has_a_box_around_its_baseline(task: Task) -> None:
-    for parameter, baseline in zip(task.parameters, task.baseline, strict=True):
-        assert parameter.low <= baseline <= parameter.high
-        assert parameter.meaning and parameter.paper
 
 
 @dataclasses.dataclass(frozen=True)

@@ -54,14 +54,6 @@ def test_trace_shows_the_push() -> None:
     assert trace.push[trace.tick_at(2.1)] == pytest.approx([0.0, 60.0, 0.0])
 
 
-def test_steps_of_the_trace_alternate_between_the_feet(paper_episode: EpisodeResult) -> None:
-    trace = paper_episode.trace
-    assert trace is not None
-    swaps = np.flatnonzero(np.diff(trace.stance))
-    assert len(swaps) >= paper_episode.steps
-    assert np.median(np.diff(swaps)) * CONTROL_DT == pytest.approx(1 / paper_episode.steps_per_second, rel=0.1)
-
-
 def test_every_push_is_shown_while_it_acts_and_a_moment(paper_episode: EpisodeResult) -> None:
     trace = paper_episode.trace
     assert trace is not None

@@ -80,32 +80,27 @@ def stood(monkeypatch: pytest.MonkeyPatch) -> Stood:
     return seen
 
 
-@pytest.fixture(scope="module")
-def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
-    return learned_bytes(train_in(tmp_path_factory.mktemp("alone"), None))
-
-
-def test_training_survives_the_death_of_workers(workers: Workers, alone: dict[str, bytes], tmp_path: Path) -> None:
+def test_training_survives_the_death_of_workers(workers: Workers, tmp_path: Path) -> None:
     killed: list[int] = []
+    run = tmp_path / "survives"
 
-    def kill_when_rows(workers: Workers, counts: list[int]) -> None:
+    def kill_when_rows(counts: list[int]) -> None:
         for count in counts:
-            while not (tmp_path / "episodes.csv").exists() or len(list(RunFolder(tmp_path).episodes())) < count:
+            while not (run / "episodes.csv").exists() or len(list(RunFolder(run).episodes())) < count:
                 time.sleep(0.01)
             assert workers.client is not None
             pids: list[int] = []
             while not pids:  # while they all restart
                 pids = list(workers.client.run(os.getpid, on_error="ignore").values())
-            pid = pids[0]
-            os.kill(pid, signal.SIGKILL)
-            killed.append(pid)
+            os.kill(pids[0], signal.SIGKILL)
+            killed.append(pids[0])
 
-    killer = threading.Thread(target=kill_when_rows, args=(workers, [2, 10]), daemon=True)
+    killer = threading.Thread(target=kill_when_rows, args=([2, 10],), daemon=True)
     killer.start()
-    survived = learned_bytes(train_in(tmp_path, workers))
+    survived = learned_bytes(train_in(run, workers))
     killer.join(timeout=30.0)
     assert len(set(killed)) == 2
-    assert survived == alone
+    assert survived == learned_bytes(train_in(tmp_path / "alone", None))
 
 
 class Cluster:
@@ -127,6 +122,9 @@ class Cluster:
     def begin_worker(self, path: str = "") -> None:
         """Start a worker in place of the last one, which finds modules in a folder first."""
         self._kill(self._worker)
+        with distributed.Client(self.address) as client:
+            while client.nthreads():  # the scheduler has not noticed yet
+                time.sleep(0.1)
         self._worker = self._begin("worker", "--nthreads", "1", "--death-timeout", "60", PYTHONPATH=path)
 
     def _begin(self, *arguments: str, **environment: str) -> subprocess.Popen[bytes]:
@@ -193,22 +191,16 @@ def test_a_worker_without_this_package_is_refused(cluster: Cluster, tmp_path: Pa
 
 
 def test_an_episode_continues_where_it_stands_or_begins_anew(stood: Stood) -> None:
+    following = EpisodeSpec(SPEC.parameters, 2, config=SPEC.config)
     expected = simulate(SPEC)
     begin_episode(SPEC)
     assert len(stood.open) == 1
     assert finish_episode(SPEC).result == expected
     assert len(stood.all) == 1 and not stood.open
-    assert finish_episode(SPEC).result == expected  # that stands nowhere
-    assert len(stood.all) == 2 and not stood.open
-
-
-def test_who_ran_an_episode_lets_the_following_one_stand(stood: Stood) -> None:
-    following = EpisodeSpec(SPEC.parameters, 2, config=SPEC.config)
-    outcome = finish_episode(SPEC, following)
-    assert outcome.result == simulate(SPEC)
-    assert len(stood.open) == 1
+    outcome = finish_episode(SPEC, following)  # it stands nowhere, and lets the following one stand
+    assert outcome.result == expected and len(stood.all) == 3 and len(stood.open) == 1
     assert finish_episode(following).result == simulate(following)
-    assert len(stood.all) == 2 and not stood.open
+    assert len(stood.all) == 3 and not stood.open
     assert outcome.following == begin_episode(following)
 
 

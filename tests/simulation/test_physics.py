@@ -4,7 +4,6 @@ import dataclasses
 
 import pytest
 
-from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError
 from sarah.robot.scale import Scale
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics, physics_for
@@ -35,13 +34,6 @@ def test_settings_without_a_name_get_the_standard_inertia_in_pybullet() -> None:
     own = PyBulletPhysics(400, 7, 200, added_plate_inertia=0.001)
     assert physics_for("pybullet", own, Scale()) is own
     assert physics_for("mujoco", own, Scale()) == Physics(400, 7, 200)
-
-
-def test_episodes_take_settings_as_their_engine_can() -> None:
-    in_mujoco = EpisodeConfig(engine="mujoco", physics=PHYSICS["reference"])
-    assert in_mujoco.physics == Physics(1000, 100) and type(in_mujoco.physics) is Physics
-    assert dataclasses.replace(in_mujoco, engine="pybullet").physics == PHYSICS["reference"]
-    assert EpisodeConfig(engine="pybullet", physics=Physics()).physics == PHYSICS["standard"]
 
 
 @pytest.mark.parametrize("inertia", [-0.001, 101.0])

@@ -183,13 +183,6 @@ def test_clearance_of_a_foot_is_that_over_its_own_ground(lab: Laboratory, build:
     assert simulation.sole_height(Side.RIGHT) == pytest.approx(0.05, abs=1e-6)
 
 
-def test_bumps_of_no_height_are_a_plane(build: BuildSimulation) -> None:
-    plane, field = build(), build(Conditions(ground=draw_ground(Terrain(roughness=(1e-9, 1e-9)), 0)))
-    for simulation in (plane, field):
-        advance(simulation, 1.0)
-    assert field.torso_state().position == pytest.approx(plane.torso_state().position, abs=3e-4)
-
-
 @pytest.mark.parametrize("slippery", list(Side))
 def test_each_foot_has_the_friction_of_its_ground(lab: Laboratory, build: BuildSimulation, slippery: Side) -> None:
     terrain = Terrain(**{f"friction_{slippery}": (0.02, 0.02)})  # type: ignore[arg-type]
@@ -209,18 +202,6 @@ def test_a_robot_on_ice_slides_alike_in_all_directions(build: BuildSimulation, u
     x, y, _ = simulation.torso_state().position
     assert math.hypot(x, y) == pytest.approx(expected, rel=0.08)
     assert math.cos(math.atan2(y, x) - math.radians(uphill)) < -0.99  # downhill
-
-
-def test_plates_rest_on_high_bumps_in_both_engines() -> None:
-    heights = {}
-    for engine in ("pybullet", "mujoco"):
-        need(engine)
-        conditions = Conditions(ground=draw_ground(Terrain(roughness=(0.03, 0.03), cell=(0.04, 0.04)), 0))
-        simulation = simulator_of(engine)(describe_robot(), PHYSICS["standard"], conditions)
-        advance(simulation, 0.6)
-        heights[engine] = simulation.torso_state().position[2]
-        simulation.close()
-    assert heights["pybullet"] == pytest.approx(heights["mujoco"], abs=0.002)
 
 
 def advance(simulation: Simulator, seconds: float) -> None:
