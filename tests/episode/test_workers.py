@@ -119,18 +119,17 @@ class Cluster:
             time.sleep(0.1)
         self.address = json.loads(self._file.read_text())["address"]
 
-    def begin_worker(self, path: str = "") -> None:
-        """Start a worker in place of the last one, which finds modules in a folder first."""
+    def begin_worker(self, **path: str) -> None:
+        """Start a worker in place of the last one, perhaps with a ``PYTHONPATH`` of its own."""
         self._kill(self._worker)
         with distributed.Client(self.address) as client:
             while client.nthreads():  # the scheduler has not noticed yet
                 time.sleep(0.1)
-        self._worker = self._begin("worker", "--nthreads", "1", "--death-timeout", "60", PYTHONPATH=path)
+        self._worker = self._begin("worker", "--nthreads", "1", "--death-timeout", "60", **path)
 
     def _begin(self, *arguments: str, **environment: str) -> subprocess.Popen[bytes]:
         command = [sys.executable, "-m", "dask", *arguments, "--no-dashboard", "--scheduler-file", str(self._file)]
-        environment = {name: value for name, value in {**os.environ, **environment}.items() if value}
-        return subprocess.Popen(command, stderr=subprocess.DEVNULL, cwd=self.folder, env=environment)
+        return subprocess.Popen(command, stderr=subprocess.DEVNULL, cwd=self.folder, env={**os.environ, **environment})
 
     def stop(self) -> None:
         """Kill both: dask takes eight seconds to leave politely."""
@@ -168,7 +167,7 @@ def test_a_worker_with_other_code_is_refused_whenever_it_comes(cluster: Cluster,
         reward.write("# another state\n")
     refused = rf"worker tcp://127.0.0.1:\d+ is refused, .*: sarah-sources is {source_hash()} here, and \w{{12}} there"
     with Workers(scheduler=cluster.address) as workers:
-        cluster.begin_worker(str(copied.parent))
+        cluster.begin_worker(PYTHONPATH=str(copied.parent))
         with pytest.raises(WorkersError, match=refused):
             next(workers.simulate_all([SPEC]))
         with pytest.raises(WorkersError, match=refused):
@@ -180,7 +179,7 @@ def test_a_worker_with_other_code_is_refused_whenever_it_comes(cluster: Cluster,
 
 def test_a_worker_without_this_package_is_refused(cluster: Cluster, tmp_path: Path) -> None:
     (tmp_path / "sarah.py").write_text("raise ModuleNotFoundError(\"No module named 'sarah'\")\n")
-    cluster.begin_worker(str(tmp_path))
+    cluster.begin_worker(PYTHONPATH=str(tmp_path))
     with distributed.Client(cluster.address) as client:
         client.wait_for_workers(1, timeout=30)
     with (
