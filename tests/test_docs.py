@@ -183,7 +183,7 @@ def test_the_loop_for_a_real_robot_drives_as_an_episode_does(task: str) -> None:
     assert np.array_equal(sent[-len(trace) :], trace.targets) and not np.any(sent[: -len(trace)])
 
 
-def test_the_loop_says_when_a_reading_was_late_and_ends_at_a_fall() -> None:
+def test_the_loop_says_when_a_reading_is_late_and_ends_at_a_fall() -> None:
     names, told = loop_of_the_page(), []
     clock = names["time"]
 
@@ -251,7 +251,7 @@ def test_a_robot_needs_the_standard_library_alone(tmp_path: Path) -> None:
     assert process.returncode == 0, process.stderr
 
 
-def test_the_optimiser_of_the_page_keeps_to_the_protocol_and_climbs(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_optimiser_of_the_page_keeps_the_protocol_and_climbs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sarah.training.optimisers.OPTIMISERS", {})
     monkeypatch.setattr("sarah.runs.agent_settings.AGENT_SETTINGS", dict(AGENT_SETTINGS))
     names: dict[str, Any] = {}
@@ -284,7 +284,7 @@ def texts_of_the_code() -> Iterator[str]:
     yield (ROOT / "Makefile").read_text(encoding="utf-8")
 
 
-def test_the_messages_on_the_page_of_trouble_are_the_programs_own() -> None:
+def test_messages_on_the_page_of_trouble_are_the_programs_own() -> None:
     rows = re.findall(r"^\| (.+?) \|", (ROOT / "docs/how_to/trouble.md").read_text(encoding="utf-8"), re.MULTILINE)
     shown = [text for row in rows for text in re.findall(r"`([^`]+)`", row) if " " in text and "--pictures" not in text]
     known = list(texts_of_the_code())

@@ -11,7 +11,7 @@ import sarah
 ROOT = Path(__file__).parent.parent
 
 
-def test_importing_sarah_registers_the_environments_and_patches_nothing() -> None:
+def test_importing_registers_environments_and_patches_nothing() -> None:
     program = (
         "import sys\n"
         "before = list(sys.meta_path), list(sys.path_hooks), sys.excepthook, __import__\n"

@@ -36,7 +36,7 @@ RANGE = st.tuples(st.floats(-0.5, 0.0), st.floats(0.0, 0.5))
     ticks=st.lists(st.tuples(READING, SECONDS, CHANGE, st.integers(1, 120)), max_size=12),
     constants=st.sampled_from([CONSTANTS, NEVER_FALLEN]),
 )
-def test_targets_are_finite_slow_and_within_limits_whatever_comes(
+def test_targets_are_slow_and_within_limits_whatever_comes(
     limits: tuple[tuple[float, float], ...],
     ticks: list[tuple[SensorReading, float | None, SteppingParameters | BalanceParameters | None, int]],
     constants: ControllerConstants,

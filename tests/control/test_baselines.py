@@ -53,7 +53,7 @@ def test_other_signals_pass_unchanged() -> None:
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_outliers_count_as_20_metres_per_second_squared_and_10_radians_per_second(sign: float) -> None:
+def test_outliers_count_as_the_largest_signals(sign: float) -> None:
     baselines = Baselines(DT)
     baselines.corrected(reading(), True)
     share = math.exp(-DT / 8.0)

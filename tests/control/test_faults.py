@@ -16,7 +16,7 @@ from sarah.robot.reading import SensorReading
 NARROW = ((-0.01, 0.3), (-0.02, 0.3), (-0.005, 0.005), (-0.8, 0.8), (-0.004, 0.02), (-0.05, 0.12))
 
 
-def test_targets_stay_within_the_limits_and_the_joints_that_they_limit_are_named() -> None:
+def test_targets_stay_within_limits_whose_joints_are_named() -> None:
     """The robot is pushed to the right, so abduction is negative; V4 flexes by 0.02 rad, and the left leg swings."""
     v = BalanceParameters(2.0, 0.0, 0.0, 1.0)
     given = [*NARROW]
@@ -61,7 +61,7 @@ def test_periods_that_no_control_loop_has_are_refused(dt: Any) -> None:
 
 
 @pytest.mark.parametrize("dt", [0.0, math.inf])
-def test_filters_refuse_periods_that_are_not_finite_and_above_zero(dt: float) -> None:
+def test_filters_refuse_periods_that_are_not_above_zero(dt: float) -> None:
     for make in (lambda: HipLaw(BALANCE, dt), lambda: Baselines(dt)):
         with pytest.raises(ConfigurationError, match=f"dt must be finite and above zero, not {dt}"):
             make()
@@ -100,7 +100,7 @@ def lying(x: float = 0.0, y: float = 0.0, z: float = 0.0) -> SensorReading:
 
 
 @pytest.mark.parametrize("fallen", [lying(x=9.81), lying(z=-9.81), lying(y=9.0, z=4.0)])
-def test_a_robot_that_lies_has_fallen_within_a_second_and_is_still(fallen: SensorReading) -> None:
+def test_who_lies_has_fallen_within_a_second_and_is_still(fallen: SensorReading) -> None:
     generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
     for tick in range(100):
         generator.tick(rocking(tick))

@@ -52,16 +52,14 @@ def test_abduction_settles_where_the_law_says() -> None:
     ("limits", "largest", "expected"),
     [(0.05, 0.3, -0.05), (0.5, 0.04, -0.04), (0.5, 0.3, -0.1)],
 )
-def test_a_constant_abduction_is_no_sway_however_far_the_limits_let_it(
-    limits: float, largest: float, expected: float
-) -> None:
+def test_a_constant_abduction_is_no_sway_whatever_limits_it(limits: float, largest: float, expected: float) -> None:
     constants = ControllerConstants(largest_hip_angle=largest)
     constant = HipLaw(BalanceParameters(0.0, 2.0, 0.0, 0.0), DT, constants, [(-limits, limits)] * 6)
     after(constant, reading(), ticks=50)
     assert constant.abduction == pytest.approx(expected) and constant.sway == pytest.approx(0.0)
 
 
-def test_pitch_of_a_steady_rate_is_the_rate_times_its_time_constant() -> None:
+def test_pitch_is_a_steady_rate_times_its_time_constant() -> None:
     locked = BalanceParameters(0.0, 0.0, 0.0, 0.0)
     for leaky, seconds in ((law(), 1.0), (HipLaw(locked, DT, ControllerConstants(lean_time_constant=0.5)), 0.5)):
         assert after(leaky, reading(rate_x=0.4), ticks=2000).pitch == pytest.approx(0.4 * seconds)
@@ -101,7 +99,7 @@ LEANS, DEAD_BAND = 0.1, 0.03
 
 
 @pytest.mark.parametrize(("carrying", "free"), [(Side.RIGHT, Side.LEFT), (Side.LEFT, Side.RIGHT)])
-def test_fall_is_the_lean_of_the_leg_that_carries_beyond_the_dead_band(carrying: Side, free: Side) -> None:
+def test_fall_is_the_carrying_legs_lean_beyond_the_dead_band(carrying: Side, free: Side) -> None:
     loads = {carrying: 250.0, free: 40.0}
     angles = {carrying: LEANS, free: -0.2}
     lean = reading(left=loads[Side.LEFT], right=loads[Side.RIGHT], flexion=(angles[Side.LEFT], angles[Side.RIGHT]))

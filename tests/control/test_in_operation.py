@@ -85,7 +85,7 @@ def test_who_is_told_of_missed_ticks_steps_as_at_half_the_rate() -> None:
 
 
 @pytest.mark.parametrize("seconds", [0.02, math.inf])
-def test_it_stands_for_a_second_of_readings_however_far_apart_they_are(seconds: float) -> None:
+def test_it_stands_for_a_second_of_readings_however_far_apart(seconds: float) -> None:
     generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT)
     generator.tick(reading(), DT)
     for _ in range(100):
@@ -94,7 +94,7 @@ def test_it_stands_for_a_second_of_readings_however_far_apart_they_are(seconds: 
     assert generator.phase is Phase.SHIFT
 
 
-def test_a_reading_after_a_long_gap_weighs_no_more_in_a_mean_than_another() -> None:
+def test_a_reading_after_a_long_gap_weighs_no_more_in_a_mean() -> None:
     generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT)
     generator.tick(reading())
     generator.tick(reading(lateral=1.0), 1.0)
@@ -128,7 +128,7 @@ def test_late_and_early_ticks_count_by_their_times() -> None:
     ("seconds", "ticks"),
     [(None, 1), (0.03, 3), (60.0, 100), (math.nan, 1), (-5, 1)],
 )
-def test_a_gap_counts_up_to_a_second_and_what_is_no_time_as_a_tick(seconds: float | None, ticks: int) -> None:
+def test_a_gap_counts_up_to_a_second_and_no_time_as_a_tick(seconds: float | None, ticks: int) -> None:
     late, punctual = started(), started()
     late.tick(OVER_RIGHT, seconds)
     for _ in range(ticks):

@@ -28,7 +28,7 @@ ENGINES = pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
 
 @ENGINES
 @pytest.mark.parametrize("degrees", [0.0, 90.0])
-def test_who_is_pushed_over_is_noticed_by_half_a_second_past_60_degrees(engine: str, degrees: float) -> None:
+def test_who_is_pushed_over_is_noticed_half_a_second_later(engine: str, degrees: float) -> None:
     need(engine)
     robot, direction = describe_robot(), math.radians(degrees)
     limits = [robot.limits[joint] for joint in ACTUATED_JOINTS]
@@ -123,7 +123,7 @@ def test_zeros_of_the_joints_may_be_as_far_off_as_the_page_says(offsets: tuple[f
         assert episode.run(spec.parameters).termination == termination
 
 
-def test_time_outs_that_are_short_end_the_phases_before_the_sensors_can() -> None:
+def test_short_time_outs_end_phases_before_the_sensors_can() -> None:
     def stepping(**constants: float) -> Any:
         config = EpisodeConfig(time_limit=3.0, controller=ControllerConstants(**constants))
         return simulate(EpisodeSpec(PAPER_STEPPING, 0, config=config))

@@ -99,7 +99,7 @@ def test_a_tick_is_10_ms_and_over_30_newtons_load_a_foot(load: float, changes: l
     assert STAND_SECONDS == 1.0
 
 
-def test_it_stands_for_a_second_and_no_foot_is_loaded_before_a_reading() -> None:
+def test_it_stands_for_a_second_and_no_foot_is_loaded_at_first() -> None:
     constants = ControllerConstants(time_out_seconds=0.1, pad_threshold=0.0)
     generator = PatternGenerator(SteppingParameters(0.0, 0.0, 0.0, 0.0, 0.0), constants=constants)
     nothing = SensorReading((math.nan,) * 3, (math.nan,) * 3, (math.nan,) * 4, (math.nan,) * 6)

@@ -112,7 +112,7 @@ def test_an_error_on_a_worker_is_raised_here(workers: Workers) -> None:
         workers.submit(describe_robot, {"legs": 3.0}).result()
 
 
-def test_workers_are_left_alone_by_an_interrupt_and_answer_in_order(workers: Workers) -> None:
+def test_workers_ignore_an_interrupt_and_answer_in_order(workers: Workers) -> None:
     assert workers.client is not None
     pids = workers.client.run(os.getpid)
     for pid in pids.values():

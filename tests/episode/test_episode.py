@@ -45,7 +45,7 @@ def test_stepping_by_the_fastest_time_outs_does_not_pay(
     assert result.score < 0.5 * paper_episode.score
 
 
-def test_the_noise_of_the_pads_makes_no_steps_at_a_high_control_rate() -> None:
+def test_noise_of_the_pads_makes_no_steps_at_a_high_control_rate() -> None:
     """A single sample at 1 kHz has three times the noise of one at 100 Hz."""
     results = []
     for rate in (100, 1000):
@@ -69,7 +69,7 @@ def test_episode_runs_on_any_simulator() -> None:
     assert result.final_position == (0.0, 0.0, 0.84)
 
 
-def test_an_episode_takes_given_conditions_in_place_of_those_drawn() -> None:
+def test_an_episode_takes_given_conditions_not_those_drawn() -> None:
     drawn = conditions_of(SHORT, 0)
     biased = replace(drawn, sensors=replace(drawn.sensors, angular_rate_bias=(5.0, 0.0, 0.0)))
     episodes = {bias: Episode(SHORT, 0, build=NoPhysics, conditions=given) for bias, given in ((0, None), (5, biased))}

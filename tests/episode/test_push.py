@@ -95,7 +95,7 @@ def test_push_lasts_as_long_as_it_says() -> None:
     assert Pushed.forces == [(80.0, 0.0, 0.0)] * 15
 
 
-def test_balance_without_v_and_push_steps_as_in_the_first_training() -> None:
+def test_balance_without_v_and_push_steps_as_the_first_training() -> None:
     config = BalanceConfig(push=NO_PUSH, time_limit=2.5, stepping=PAPER_STEPPING)
     balance = simulate(EpisodeSpec((0.0,) * 4, 1, "balance", config))
     assert balance == simulate(EpisodeSpec(PAPER_STEPPING, 1, config=EpisodeConfig(time_limit=2.5)))

@@ -19,7 +19,7 @@ SHORT = EpisodeConfig(time_limit=3.0)
 SPEC = EpisodeSpec(PAPER_STEPPING, 4, config=SHORT)
 
 
-def test_what_a_process_simulated_before_or_meanwhile_changes_nothing() -> None:
+def test_what_was_simulated_before_or_meanwhile_changes_nothing() -> None:
     expected = simulate(SPEC)
     longer = BalanceConfig(physics=Physics(1000, 10), dimensions={"thigh_length": 0.4}, time_limit=2.0)
     simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.0), seed=5, task="balance", config=longer))

@@ -32,7 +32,7 @@ def test_the_row_of_a_table_holds_every_number_once() -> None:
     assert all(columns[name] == getattr(RESULT, name) for name in METRICS if name in columns)
 
 
-def test_an_evaluation_holds_every_statistic_that_the_table_names() -> None:
+def test_an_evaluation_holds_every_statistic_of_the_table() -> None:
     summary = Evaluation((RESULT, OTHER)).summary()
     named = {f"{name}_{statistic}" for name, metric in METRICS.items() for statistic in metric.statistics}
     assert set(summary) == named | {"episodes", "survival_rate", "diverged"}

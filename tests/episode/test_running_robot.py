@@ -50,7 +50,7 @@ def test_an_observer_sees_a_tick_before_anything_moves() -> None:
     assert robot.simulation.time == pytest.approx(0.02) and len(diary.entries) == 4
 
 
-def test_a_with_block_closes_the_world_of_an_episode_after_an_error_too() -> None:
+def test_a_with_block_closes_the_world_after_an_error_too() -> None:
     with pytest.raises(ZeroDivisionError), Episode(EpisodeConfig(), 0, build=NoPhysics) as episode:
         raise ZeroDivisionError
     assert isinstance(episode.robot.simulation, NoPhysics) and episode.robot.simulation.closed

@@ -63,7 +63,7 @@ def test_same_bytes_in_another_process(tmp_path: Path, workers: Workers) -> None
         list(workers.simulate_all([sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT)]))
 
 
-def test_a_task_of_this_package_is_the_same_object_after_a_journey() -> None:
+def test_a_task_of_this_package_is_the_same_after_a_journey() -> None:
     assert pickle.loads(pickle.dumps(sarah.BALANCE)) is sarah.BALANCE
     assert sarah.load_task("balance") is sarah.BALANCE
 

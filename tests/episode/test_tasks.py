@@ -36,7 +36,7 @@ def test_only_the_balance_task_has_a_push_and_given_legs() -> None:
     assert not hasattr(STEPPING.episode, "push") and not hasattr(STEPPING.episode, "stepping")
 
 
-def test_settings_go_from_one_task_to_another_with_all_that_they_share() -> None:
+def test_settings_go_to_another_task_with_all_that_they_share() -> None:
     config = BalanceConfig(time_limit=7.0, stepping=(0.1,) * 5)
     assert STEPPING.config_of(config) == EpisodeConfig(time_limit=7.0)
     again = BALANCE.config_of(EpisodeConfig(time_limit=7.0), stepping=(0.1,) * 5)

@@ -57,7 +57,7 @@ def words_of(figure: Figure) -> list[str]:
     return sorted(text.get_text() for text in legend.get_texts())
 
 
-def test_first_training_makes_figures_4_and_5_and_the_second_6_and_7(tmp_path: Path) -> None:
+def test_the_two_trainings_make_figures_4_to_7(tmp_path: Path) -> None:
     runs = [run_with_episodes(tmp_path / task, task, 10) for task in ("stepping", "balance")]
     files = draw_figures(runs, tmp_path / "out")
     assert sorted(file.name for file in files) == sorted(path.name for path in (tmp_path / "out").iterdir())
@@ -109,7 +109,7 @@ def test_axes_and_lines_have_their_names(tmp_path: Path, drawn: dict[str, Figure
 
 
 @pytest.mark.parametrize(("algo", "warm_up"), [("naf", 8), ("gp", 8), ("cma-es", 0)])
-def test_the_random_warm_up_is_shaded_and_no_line_goes_through_it(
+def test_the_warm_up_is_shaded_and_no_line_goes_through_it(
     algo: str, warm_up: int, tmp_path: Path, drawn: dict[str, Figure]
 ) -> None:
     draw_figures([run_with_episodes(tmp_path / "run", "stepping", 40, algo)], tmp_path / "out")

@@ -57,7 +57,7 @@ def test_urdf_is_mirrored_between_the_legs(urdf: str) -> None:
     assert x_left == -x_right < 0
 
 
-def test_every_dimension_has_a_unit_and_a_meaning_and_a_range_around_its_default() -> None:
+def test_every_dimension_has_unit_meaning_and_range() -> None:
     for name, known in known_dimensions().items():
         assert known.unit in POWERS and len(known.meaning) > 10, name
         assert known.low < known.default < known.high, name

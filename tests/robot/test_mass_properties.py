@@ -16,7 +16,7 @@ def test_two_points_have_the_inertia_of_a_dumbbell() -> None:
     assert np.diag(pair.inertia) == pytest.approx((0.0, 2.0, 2.0))
 
 
-def test_the_default_robot_weighs_what_its_links_do_and_stands_over_its_feet() -> None:
+def test_the_default_robot_stands_over_its_feet() -> None:
     robot = describe_robot()
     links = links_of(robot)
     whole = together(links.values())

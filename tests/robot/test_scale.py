@@ -78,7 +78,7 @@ def test_what_was_set_by_hand_stays_for_another_robot() -> None:
     assert by_hand.for_robot({"thigh_length": 0.3}, usual).for_robot({}, usual) == by_hand
 
 
-def test_a_dimension_that_changes_in_operation_leaves_the_controller() -> None:
+def test_a_dimension_changed_in_operation_leaves_the_controller() -> None:
     config = OperationConfig(changes=(Change(0.1, {"dimensions": {"torso_mass": 16.0}}),))
     assert config.robot_after(1) == dataclasses.replace(config.robot, dimensions={"torso_mass": 16.0})
 
@@ -90,7 +90,7 @@ def test_another_engine_gets_the_inertia_of_the_robots_size() -> None:
         assert there.physics.added_plate_inertia == pytest.approx(0.003 * 0.00625)  # type: ignore[attr-defined]
 
 
-def test_a_robot_whose_own_step_frequency_is_not_rewarded_is_told() -> None:
+def test_a_robot_is_told_if_its_step_frequency_is_not_rewarded() -> None:
     small = EpisodeConfig(dimensions=dimensions_alike(0.25, 0.1))
     assert natural_step_frequency(EpisodeConfig()) == 3.0 and frequency_hint(EpisodeConfig()) is None
     assert natural_step_frequency(small) == pytest.approx(6.0)

@@ -49,7 +49,7 @@ def test_robot_steps_as_well_in_mujoco_as_in_pybullet(mujoco_engine: None) -> No
     assert mujoco.mean("score") == pytest.approx(pybullet.mean("score"), rel=0.03)
 
 
-def test_a_fresh_process_gives_the_same_result_whatever_it_simulated(mujoco_engine: None) -> None:
+def test_a_fresh_process_repeats_whatever_it_simulated(mujoco_engine: None) -> None:
     parameters = (1.0, 0.1, 0.5, -0.2)
     program = (
         "import dataclasses, json, sarah\n"
@@ -86,7 +86,7 @@ def test_soles_sink_a_few_micrometres_into_mujocos_floor(mujoco_engine: None) ->
     assert all(low < -simulation.sole_height(side) < high for side in Side)
 
 
-def test_episodes_that_stand_side_by_side_do_not_touch_each_other(mujoco_engine: None) -> None:
+def test_episodes_side_by_side_do_not_touch_each_other(mujoco_engine: None) -> None:
     expected = [simulate(EpisodeSpec(PAPER_STEPPING, seed, config=SHORT)) for seed in (1, 2)]
     assert expected[0] != expected[1]
     episodes = [Episode(SHORT, seed) for seed in (1, 2)]
@@ -95,7 +95,7 @@ def test_episodes_that_stand_side_by_side_do_not_touch_each_other(mujoco_engine:
     assert [episode.run(PAPER_STEPPING) for episode in reversed(episodes)] == expected[::-1]
 
 
-def test_physics_that_diverges_ends_the_episode_and_writes_no_file(
+def test_diverging_physics_ends_the_episode_and_writes_no_file(
     mujoco_engine: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -166,7 +166,7 @@ def test_without_the_extra_pybullet_works() -> None:
     assert process.stdout == "time_limit\n"
 
 
-def test_without_pybullet_mujoco_is_the_default_and_a_training_says_so(mujoco_engine: None, tmp_path: Path) -> None:
+def test_without_pybullet_a_training_says_that_mujoco_simulates(mujoco_engine: None, tmp_path: Path) -> None:
     arguments = ["--algo", "random", "--episodes", "2", "--episode.time-limit", "1.5", "--out", "run"]
     program = (
         "import sys\nsys.modules['pybullet'] = None\n"

@@ -28,7 +28,7 @@ def test_named_settings_come_back_at_any_control_rate() -> None:
     assert physics_for("pybullet", physics_for("mujoco", reference, Scale()), Scale()) == reference
 
 
-def test_settings_without_a_name_get_the_standard_inertia_in_pybullet() -> None:
+def test_nameless_settings_get_the_standard_inertia_in_pybullet() -> None:
     taken = physics_for("pybullet", Physics(rate=400, solver_iterations=7, control_rate=200), Scale())
     assert taken == PyBulletPhysics(400, 7, 200, added_plate_inertia=PHYSICS["standard"].added_plate_inertia)
     own = PyBulletPhysics(400, 7, 200, added_plate_inertia=0.001)

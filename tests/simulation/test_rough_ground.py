@@ -117,7 +117,7 @@ def test_bumps_are_alike_for_robots_alike(length: float) -> None:
     cell=st.floats(0.02, 0.1),
     seed=st.integers(0, 2**32),
 )
-def test_bumps_stay_within_their_height_and_reach_as_far_as_promised(roughness: float, cell: float, seed: int) -> None:
+def test_bumps_stay_within_their_height_and_reach_far_enough(roughness: float, cell: float, seed: int) -> None:
     ground = draw_ground(Terrain(roughness=(roughness, roughness), cell=(cell, cell)), seed)
     heights = np.array(ground.heights)
     assert heights.shape[0] == heights.shape[1] and heights.shape[0] % 2 == 1
@@ -125,7 +125,7 @@ def test_bumps_stay_within_their_height_and_reach_as_far_as_promised(roughness: 
     assert ground.cell == cell and 0.7 - cell / 2 <= ground.reach <= 0.7 + cell / 2
 
 
-def test_a_seed_draws_the_same_bumps_at_any_height_and_nothing_else_changes() -> None:
+def test_a_seed_draws_the_same_bumps_at_any_height() -> None:
     low, high = (
         draw_ground(Terrain(slope_degrees=(0.0, 9.0), roughness=(height, height), friction_left=(0.2, 0.4)), 7)
         for height in (0.01, 0.02)

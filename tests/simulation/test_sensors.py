@@ -71,7 +71,7 @@ def test_the_delay_is_the_same_time_at_every_control_rate(control_rate: int) -> 
 
 
 @pytest.mark.parametrize("control_rate", [50, 200])
-def test_noise_behind_a_slow_filter_is_the_same_at_every_control_rate(control_rate: int) -> None:
+def test_noise_behind_a_filter_is_the_same_at_every_control_rate(control_rate: int) -> None:
     """White noise of density d behind a low-pass of time constant T has the variance d^2 / (4 T)."""
     noisy = ImperfectSensors(SensorConditions(acceleration_noise_density=0.03), 1.0 / control_rate)
     filters = [LowPass(0.2, 1.0 / control_rate) for _ in range(3)]
@@ -81,7 +81,7 @@ def test_noise_behind_a_slow_filter_is_the_same_at_every_control_rate(control_ra
     assert np.std(values) == pytest.approx(0.03 / math.sqrt(4 * 0.2), rel=0.08)
 
 
-def test_constant_errors_are_added_to_what_a_sensor_mounted_askew_reads() -> None:
+def test_constant_errors_are_added_to_what_an_askew_sensor_reads() -> None:
     askew = sensors(imu_tilt=(0.1, 0.0), acceleration_bias=(0.5, 0.0, 0.0), pad_gains=(0.8, 1.0, 1.0, 1.2))
     level = STILL._replace(acceleration=(0.0, 0.0, GRAVITY), angular_rate=(0.0, 0.0, 2.0))
     seen = askew(level)

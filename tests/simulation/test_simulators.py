@@ -101,7 +101,7 @@ def test_ankles_are_damped_alike(lab: Laboratory, build: BuildSimulation) -> Non
     assert simulation.joint_positions(("left_hindfoot",))[0] == pytest.approx(-0.085, abs=0.0005)
 
 
-def test_leaning_right_reads_negative_x_and_leaning_back_positive_y(lab: Laboratory, build: BuildSimulation) -> None:
+def test_leaning_right_reads_negative_x_and_back_positive_y(lab: Laboratory, build: BuildSimulation) -> None:
     """A torso at rest, turned by a positive angle about y (to the right) or about x (backward)."""
     simulation, angle = build(), 0.1
     lab.place(simulation, roll=angle)
@@ -169,7 +169,7 @@ def test_mirrored_push_gives_mirrored_motion(build: BuildSimulation) -> None:
 
 
 @NEEDS_PYBULLET
-def test_plates_have_the_added_inertia_while_they_press_on_their_pads() -> None:
+def test_plates_have_added_inertia_while_they_press_on_pads() -> None:
     """About the hinge only, and on the masses of this episode; whatever the targets of the legs are."""
     conditions = Conditions(mass_factors=dict.fromkeys(LINKS, 1.05))
     plain, simulation = (

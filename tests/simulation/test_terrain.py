@@ -50,7 +50,7 @@ def test_standing_robot_feels_gravity_as_if_it_leaned_downhill(
     assert np.mean(readings, axis=0) == pytest.approx((x * g_sin, y * g_sin, g_cos), abs=0.01)
 
 
-def test_falling_robot_accelerates_with_gravity_and_feels_nothing(lab: Laboratory, build_on: BuildSimulation) -> None:
+def test_a_falling_robot_has_gravitys_pull_and_feels_nothing(lab: Laboratory, build_on: BuildSimulation) -> None:
     terrain = slope(10.0, 30.0)
     simulation = build_on(terrain)
     lab.place(simulation)
