@@ -85,10 +85,6 @@ class BulletLaboratory:
         """Of a link."""
         return float(self._dynamics(simulation, link)[0])
 
-    def frictions(self, simulation: Any) -> set[float]:
-        """Of all soles."""
-        return {self._dynamics(simulation, f"{side}_{plate}")[1] for side, plate in product(Side, PLATES)}
-
     def friction_under(self, simulation: Any, side: Side) -> set[float]:
         """Of a foot's soles."""
         return {self._dynamics(simulation, f"{side}_{plate}")[1] for plate in PLATES}
@@ -133,18 +129,16 @@ class BulletLaboratory:
 
 
 class MujocoLaboratory:
-    """MuJoCo's."""
+    """MuJoCo's, with the same methods."""
 
     engine = "mujoco"
 
     def place(self, simulation: Any, height: float = 30.0, roll: float = 0.0, pitch: float = 0.0) -> None:
-        """Put the robot in the air, turned by ``roll`` about y or ``pitch`` about x."""
         x, y, z, w = turned(roll, pitch)
         simulation.data.qpos[:7] = (0.0, 0.0, height, w, x, y, z)
         simulation.look()
 
     def turn(self, simulation: Any, rate: Sequence[float]) -> None:
-        """Let the torso turn, with a rate in the world's frame."""
         import mujoco
 
         in_torso = np.zeros(3)
@@ -154,33 +148,23 @@ class MujocoLaboratory:
         simulation.look()
 
     def move_joint(self, simulation: Any, name: str, position: float, speed: float) -> None:
-        """Put a joint somewhere, in motion."""
         joint = simulation.data.joint(name)
         joint.qpos[0], joint.qvel[0] = position, speed
 
     def remove_pads(self, simulation: Any) -> None:
-        """Let the plates pass where the pads were."""
         for side, plate in product(Side, PLATES):
             simulation.model.geom(f"{side}_{plate}_pad").pos[2] += 1.0
 
     def mass(self, simulation: Any, link: str) -> float:
-        """Of a link."""
         return float(simulation.model.body(link).mass[0])
 
-    def frictions(self, simulation: Any) -> set[float]:
-        """Of all soles."""
-        model = simulation.model
-        return {float(friction) for friction in model.pair_friction[model.pair_dim == 3, :2].ravel()}
-
     def friction_under(self, simulation: Any, side: Side) -> set[float]:
-        """Of a foot's soles."""
         model = simulation.model
         soles = [index for index in range(model.ngeom) if model.geom(index).name.startswith(f"{side}_")]
         pairs = (model.pair_dim == 3) & np.isin(model.pair_geom2, soles)
         return {float(friction) for friction in model.pair_friction[pairs, :2].ravel()}
 
     def touches_ground(self, simulation: Any, position: Sequence[float]) -> bool:
-        """Whether a sole's contact would touch the ground somewhere else."""
         import mujoco
 
         model, data = simulation.model, simulation.data
@@ -191,14 +175,12 @@ class MujocoLaboratory:
         return any({*contact.geom} == {floor, sole} and contact.dist <= 0.0 for contact in data.contact)
 
     def link_position(self, simulation: Any, link: str) -> np.ndarray:
-        """Of a link's frame, in the world's."""
         import mujoco
 
         mujoco.mj_kinematics(simulation.model, simulation.data)
         return np.array(simulation.data.body(link).xpos)
 
     def link_velocity(self, simulation: Any, link: str) -> np.ndarray:
-        """Of a link's centre of mass, in the world's frame."""
         import mujoco
 
         model, data = simulation.model, simulation.data

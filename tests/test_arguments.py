@@ -18,19 +18,15 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Workers
 from sarah.errors import ConfigurationError
 from sarah.operation.settings import OperationConfig
-from sarah.simulation.physics import Physics
 
 STEPPING = SteppingParameters(0.4, 1.3, 0.1, 1.0, 1.0)
 MISTAKES: dict[str, Callable[[], Any]] = {
     r"payload must be between 0 and 100 kg, not \(1, 2\)": lambda: EpisodeConfig(payload=(1, 2)),  # type: ignore
     r"operation.minutes must be between .*, not \(1, 2\)": lambda: OperationConfig(minutes=(1, 2)),  # type: ignore
     r"a change must be a Change, not 'a'": lambda: OperationConfig(changes=("a",)),  # type: ignore
-    r"workers must be between 0 and 256, not \(0, 1\)": lambda: Workers((0, 1)),  # type: ignore
     r"scheduler must be an address, such as .*, not ''": lambda: Workers(scheduler=""),
-    r"dt must be between 0.0001 and 0.1 s": lambda: PatternGenerator(STEPPING, dt=(0.01, 0.01)),  # type: ignore
     r"constants must be a ControllerConstants": lambda: PatternGenerator(STEPPING, dt=0.01, constants="x"),  # type: ignore
     r"operated must be a robot in operation": lambda: SarahOperationEnv(operated="x"),  # type: ignore
-    r"physics.rate must be a whole number, not 400.5": lambda: Physics(rate=400.5),  # type: ignore
     r"parameters must be 5 numbers .*, not \{": lambda: EpisodeSpec({0.4, 1.3, 0.1, 1.0, 2.0}, 0),  # type: ignore
     r"spec must be a EpisodeSpec, not 5": lambda: sarah.simulate(5),  # type: ignore
     r"spec must be a SessionSpec, not 5": lambda: sarah.run_session(5),  # type: ignore

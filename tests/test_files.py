@@ -53,9 +53,7 @@ def test_two_writers_at_once_leave_one_whole_file(tmp_path: Path) -> None:
     assert path.read_text() == "first" and [found.name for found in tmp_path.iterdir()] == ["file"]
 
 
-@pytest.mark.parametrize(
-    "name", ["a:b", "-x", "[x]*?", "%d $HOME 'a' \"b\"", "é👩\u200d🚀e\u0301", "<b>|#&", "a" * 255]
-)
+@pytest.mark.parametrize("name", ["-x", "[x]*?", "%d $HOME 'a' \"b\"", "é👩\u200d🚀e\u0301", "a" * 255])
 def test_any_name_of_a_file_works_that_is_a_line_of_text(name: str, tmp_path: Path) -> None:
     check_file(tmp_path / name)
     replace_text(tmp_path / name, "text")
@@ -64,7 +62,7 @@ def test_any_name_of_a_file_works_that_is_a_line_of_text(name: str, tmp_path: Pa
     assert shlex.split(quoted(name)) == [f"./{name}" if name == "-x" else name]
 
 
-@pytest.mark.parametrize("name", [os.fsdecode(b"caf\xe9"), "a\nb", "a\x1b[2J", "a\u2028b", "a\0"])
+@pytest.mark.parametrize("name", [os.fsdecode(b"caf\xe9"), "a\nb", "a\u2028b", "a\0"])
 def test_other_names_are_refused_before_anything_is_made(name: str, tmp_path: Path) -> None:
     path = tmp_path / name
     making: list[Callable[[], object]] = [
@@ -84,20 +82,11 @@ def test_other_names_are_refused_before_anything_is_made(name: str, tmp_path: Pa
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        ("folder", "it is a folder"),
-        ("a/b", "does not exist"),
-        ("folder/file/b", "does not exist"),
-        ("a" * 256, "too long"),
-    ],
-)
-def test_a_report_that_cannot_be_written_is_refused_first(name: str, words: str, tmp_path: Path) -> None:
-    (tmp_path / "folder").mkdir()
-    (tmp_path / "folder" / "file").touch()
-    with pytest.raises(ConfigurationError, match=f"cannot write .*: .*{words}"):
-        write_report(RunRecord(RunFolder(tmp_path)), tmp_path / name, Workers())
+def test_a_report_that_cannot_be_written_is_refused_first(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    for name, words in ((".", "it is a folder"), ("file/b", "does not exist"), ("a" * 256, "too long")):
+        with pytest.raises(ConfigurationError, match=f"cannot write .*: .*{words}"):
+            write_report(RunRecord(RunFolder(tmp_path)), tmp_path / name, Workers())
 
 
 def test_the_command_of_any_program_is_recorded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -107,7 +96,6 @@ def test_the_command_of_any_program_is_recorded(tmp_path: Path, monkeypatch: pyt
 
 
 def test_memory_and_open_files_stay_flat() -> None:
-    """A leaked world, 200 times, would be some 100 MB; `make endurance` goes on for longer."""
     config = EpisodeConfig(time_limit=1.02, physics=Physics(rate=50, solver_iterations=5, control_rate=50))
 
     def usage_after(episodes: int) -> tuple[int, int]:

@@ -77,7 +77,7 @@ def test_wheel_works_from_another_folder(built: tuple[Path, Path], tmp_path: Pat
     assert process.stdout.startswith(str(site))
     assert source_hash() in process.stdout  # workers may have the wheel, and the learner a checkout
     assert "0.84" in process.stdout and "one-step" in process.stdout
-    arguments = ["0.4,1.3,0.1,1,1", "--episodes", "1", "--json"]
+    arguments = ["0.4,1.3,0.1,1,1", "--episodes", "1", "--episode.time-limit", "2", "--json"]
     evaluated = subprocess.run(
         [site / "bin" / "sarah-eval", *arguments], cwd=elsewhere, env=environment, capture_output=True, check=True
     )

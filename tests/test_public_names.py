@@ -37,24 +37,3 @@ def private_names(source: str) -> Iterator[tuple[int, str]]:
 @pytest.mark.parametrize("path", sorted(TESTS.rglob("*.py")), ids=lambda path: str(path.relative_to(TESTS)))
 def test_tests_use_public_names(path: Path) -> None:
     assert list(private_names(path.read_text(encoding="utf-8"))) == []
-
-
-@pytest.mark.parametrize(
-    ("source", "name"),
-    [
-        ("episode._gait", "_gait"),
-        ("from sarah.cli.eval import _changed", "_changed"),
-        ("monkeypatch.setattr(workers, '_waiting', {})", "_waiting"),
-        ("monkeypatch.setattr('sarah.cli.eval._changed', None)", "_changed"),
-        ("getattr(model, '_n_updates')", "_n_updates"),
-    ],
-)
-def test_private_names_are_found(source: str, name: str) -> None:
-    assert list(private_names(source)) == [(1, name)]
-
-
-@pytest.mark.parametrize(
-    "source", ["self._seen = 1", "state._replace(x=1)", "os._exit(1)", "model.__dict__", "def _row(page): return page"]
-)
-def test_public_and_own_names_are_let_pass(source: str) -> None:
-    assert list(private_names(source)) == []

@@ -50,7 +50,6 @@ def parts(kind: Any) -> Iterator[Any]:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_numbers_out_of_range_are_refused_by_name(kind: Any) -> None:
-    """Above, below, no number; of several numbers, one of them is enough."""
     numbers = {name for name, type_ in types_of(kind).items() if {int, float} & set(parts(type_))}
     assert numbers - OTHERS <= set(ranges_of(kind)) <= numbers
     for name, within in ranges_of(kind).items():
@@ -73,13 +72,13 @@ def test_numbers_out_of_range_are_refused_by_name(kind: Any) -> None:
         ({"push": 100}, "push must be a Push, not 100"),
     ],
 )
-def test_names_switches_and_settings_within_settings_are_refused_by_name(wrong: Any, message: str) -> None:
+def test_names_switches_and_inner_settings_are_refused_by_name(wrong: Any, message: str) -> None:
     with pytest.raises(ConfigurationError) as refused:
         HighConfig(**wrong)
     assert str(refused.value) == message
 
 
-def test_a_setting_that_goes_with_the_robots_size_does_so_unless_it_is_given() -> None:
+def test_settings_go_with_the_robots_size_unless_given() -> None:
     half = HighConfig(dimensions=dimensions_alike(0.5, 0.1))
     assert half.reach == pytest.approx(1.0) and half.push.newtons[1] < 100.0 == HighConfig().push.newtons[1]
     assert HighConfig(dimensions=half.dimensions, reach=2.0).reach == HighConfig().reach == 2.0

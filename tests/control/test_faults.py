@@ -16,56 +16,36 @@ from sarah.robot.reading import SensorReading
 NARROW = ((-0.01, 0.3), (-0.02, 0.3), (-0.005, 0.005), (-0.8, 0.8), (-0.004, 0.02), (-0.05, 0.12))
 
 
-def test_targets_stay_within_the_limits_and_the_joints_that_they_limit_are_named() -> None:
+def test_targets_stay_within_limits_whose_joints_are_named() -> None:
     """The robot is pushed to the right, so abduction is negative; V4 flexes by 0.02 rad, and the left leg swings."""
     v = BalanceParameters(2.0, 0.0, 0.0, 1.0)
-    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), v, DT, limits=NARROW))
+    given = [*NARROW]
+    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), v, DT, limits=given))
+    given.clear()
+    free = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), v, DT))
     assert generator.limited_joints == ("left_hip_flexion", "left_leg_length")
     named = set()
     for _ in range(400):
         generator.tick(reading(lateral=3.0))
+        free.tick(reading(lateral=3.0))
         named |= set(generator.limited_joints)
+        assert free.limited_joints == ()
         for target, (low, high) in zip(generator.targets, NARROW, strict=True):
             assert low <= target <= high
     assert named == {"left_hip_abduction", "right_hip_abduction", "left_hip_flexion", "left_leg_length"}
     assert generator.targets[:2] == (-0.01, -0.01)  # one abduction for both
 
 
-def test_without_limits_no_joint_is_limited() -> None:
-    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
-    for tick in range(300):
-        generator.tick(rocking(tick))
-        assert generator.limited_joints == ()
-
-
 @pytest.mark.parametrize(
     "limits",
-    [
-        NARROW[:5],
-        ((0.1, 0.3), *NARROW[1:]),
-        ((-0.1, math.nan), *NARROW[1:]),
-        ((0.1, -0.1), *NARROW[1:]),
-        (0.5,) * 6,
-        None,
-        ("ab",) * 6,
-    ],
+    [NARROW[:5], ((0.1, 0.3), *NARROW[1:]), ((-0.3, -0.1), *NARROW[1:]), ((-0.1, math.nan), *NARROW[1:]), None],
 )
 def test_limits_that_are_not_six_ranges_around_zero_are_refused(limits: Any) -> None:
     with pytest.raises(ConfigurationError, match="limits must be 6 ranges around zero, not"):
         PatternGenerator(SteppingParameters(*PAPER_STEPPING), limits=limits)
 
 
-def test_limits_stay_as_they_were_given() -> None:
-    limits = [(-0.01, 0.01)] * 6
-    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT, limits))
-    limits.clear()
-    for _ in range(100):
-        generator.tick(reading(lateral=3.0))
-        assert max(map(abs, generator.targets)) <= 0.01
-
-
 def test_flexion_that_a_limit_keeps_from_v4_is_no_fall() -> None:
-    """The leg is where the limit lets it be: it does not lean."""
     limits = ((-1.0, 1.0), (-1.0, 1.0), (-0.005, 0.005), (-0.005, 0.005), (-1.0, 1.0), (-1.0, 1.0))
     v = BalanceParameters(0.0, 0.0, 1.0, 2.0)
     generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), v, DT, limits)
@@ -74,14 +54,14 @@ def test_flexion_that_a_limit_keeps_from_v4_is_no_fall() -> None:
     assert generator.targets[2:4] == (0.005, 0.005) and abs(generator.hips.fall) < 1e-9
 
 
-@pytest.mark.parametrize("dt", [0.0, -0.01, math.nan, math.inf, 10, 100, True, "0.01", None])
+@pytest.mark.parametrize("dt", [0.0, 0.11, math.nan, None])
 def test_periods_that_no_control_loop_has_are_refused(dt: Any) -> None:
     with pytest.raises(ConfigurationError, match=f"dt must be between 0.0001 and 0.1 s, not {dt!r}"):
         PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=dt)
 
 
-@pytest.mark.parametrize("dt", [0.0, -0.01, math.nan, math.inf])
-def test_filters_refuse_periods_that_are_not_finite_and_above_zero(dt: float) -> None:
+@pytest.mark.parametrize("dt", [0.0, math.inf])
+def test_filters_refuse_periods_that_are_not_above_zero(dt: float) -> None:
     for make in (lambda: HipLaw(BALANCE, dt), lambda: Baselines(dt)):
         with pytest.raises(ConfigurationError, match=f"dt must be finite and above zero, not {dt}"):
             make()
@@ -95,9 +75,7 @@ SIGNALS = [
 
 
 @pytest.mark.parametrize(("field", "index"), SIGNALS)
-def test_a_signal_that_is_not_finite_keeps_its_last_value_and_the_others_live(field: str, index: int) -> None:
-    """The same as if that one signal were stuck."""
-
+def test_a_signal_that_is_lost_counts_as_stuck(field: str, index: int) -> None:
     def with_signal(whole: SensorReading, value: float) -> SensorReading:
         values = list(getattr(whole, field))
         values[index] = value
@@ -108,7 +86,7 @@ def test_a_signal_that_is_not_finite_keeps_its_last_value_and_the_others_live(fi
         generator.tick(rocking(5))
     last = getattr(rocking(5), field)[index]
     moved = set()
-    for tick in range(6, 300):
+    for tick in range(6, 100):
         bad = (math.nan, math.inf, -math.inf, 1e300)[tick % 4]
         assert lost.tick(with_signal(rocking(tick), bad)) == stuck.tick(with_signal(rocking(tick), last))
         assert lost.targets == stuck.targets and lost.tilt == stuck.tilt and lost.rate == stuck.rate
@@ -121,12 +99,8 @@ def lying(x: float = 0.0, y: float = 0.0, z: float = 0.0) -> SensorReading:
     return reading(left=UNLOADED, right=UNLOADED)._replace(acceleration=(x, y, z))
 
 
-@pytest.mark.parametrize(
-    "fallen", [lying(x=9.81), lying(x=-9.81), lying(y=9.81), lying(y=-9.81), lying(z=-9.81), lying(y=9.0, z=4.0)]
-)
-def test_a_robot_that_lies_on_any_side_or_at_66_degrees_has_fallen_within_a_second_and_holds_still(
-    fallen: SensorReading,
-) -> None:
+@pytest.mark.parametrize("fallen", [lying(x=9.81), lying(z=-9.81), lying(y=9.0, z=4.0)])
+def test_who_lies_has_fallen_within_a_second_and_is_still(fallen: SensorReading) -> None:
     generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
     for tick in range(100):
         generator.tick(rocking(tick))
@@ -142,7 +116,6 @@ def test_a_robot_that_lies_on_any_side_or_at_66_degrees_has_fallen_within_a_seco
 
 
 def test_a_blow_or_a_long_gap_before_it_is_no_fall() -> None:
-    """0.1 s of free fall, and a single reading of -20 m/s^2 after a second without readings."""
     generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
     for _ in range(10):
         generator.tick(lying())
@@ -153,10 +126,9 @@ def test_a_blow_or_a_long_gap_before_it_is_no_fall() -> None:
     assert not generator.has_fallen
 
 
-@pytest.mark.parametrize("dt", [0.001, 0.01, 0.02])
-@pytest.mark.parametrize("up", [0.0, -9.81, 40.0, -40.0, -1e5])
+@pytest.mark.parametrize("dt", [0.001, 0.02])
+@pytest.mark.parametrize("up", [0.0, 40.0, -1e5])
 def test_a_single_reading_after_a_second_without_any_is_no_fall(up: float, dt: float) -> None:
-    """Nor does the low-pass remember it for long: a second one, a second later, is no fall either."""
     generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, dt))
     for _ in range(2):
         generator.tick(lying(z=up), 1.0)
@@ -165,7 +137,7 @@ def test_a_single_reading_after_a_second_without_any_is_no_fall(up: float, dt: f
     assert not generator.has_fallen
 
 
-@pytest.mark.parametrize(("every", "longest"), [(1, 0.4), (2, 0.4), (3, 0.4), (10, 1.3)])
+@pytest.mark.parametrize(("every", "longest"), [(1, 0.4), (3, 0.4), (10, 1.3)])
 def test_who_lies_is_recognised_though_most_ticks_are_missed(every: int, longest: float) -> None:
     generator, elapsed = started(), 0.0
     while not generator.has_fallen:

@@ -48,38 +48,22 @@ def test_while_the_robot_stands_new_parameters_hold_at_once() -> None:
         assert generator.tick(rocking(tick)) == given.tick(rocking(tick)) and generator.targets == given.targets
 
 
-@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 10**400])
-def test_parameters_that_are_not_finite_are_refused_and_none_changes(bad: float) -> None:
-    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
-    others = SteppingParameters(1.0, 1.0, 1.0, 1.0, 1.0), BalanceParameters(0.0, 0.0, 0.0, 0.0)
-    for refused in (
-        (SteppingParameters(0.4, bad, 0.1, 1.0, 1.0), others[1]),
-        (others[0], BalanceParameters(1.0, 0.0, bad, 0.0)),
-    ):
-        with pytest.raises(ConfigurationError, match="parameters must be finite numbers, not"):
-            generator.set_parameters(*refused)
-        with pytest.raises(ConfigurationError, match="parameters must be finite numbers, not"):
-            PatternGenerator(*refused)
-    for _ in range(30):
-        generator.tick(reading())
-    assert generator.parameters == SteppingParameters(*PAPER_STEPPING) and generator.hips.parameters == BALANCE
-
-
-def test_values_of_the_other_task_are_refused_and_none_changes() -> None:
-    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
-    with pytest.raises(ConfigurationError, match="parameters must be SteppingParameters, not BalanceParameters"):
-        generator.set_parameters(BALANCE)  # type: ignore[arg-type]
-    with pytest.raises(ConfigurationError, match="parameters must be BalanceParameters, not"):
-        generator.set_parameters(SteppingParameters(1, 1, 1, 1, 1), (0.0,) * 4)  # type: ignore[arg-type]
-    assert generator.parameters == SteppingParameters(*PAPER_STEPPING)
-
-
 @pytest.mark.parametrize(
-    "missing", [(None, BALANCE), (SteppingParameters(*PAPER_STEPPING), None), (PAPER_STEPPING, BALANCE)]
+    ("refused", "words"),
+    [
+        ((SteppingParameters(0.4, math.nan, 0.1, 1.0, 1.0), BALANCE), "finite numbers"),
+        ((SteppingParameters(1.0, 1.0, 1.0, 1.0, 1.0), BalanceParameters(1.0, 0.0, 10**400, 0.0)), "finite numbers"),
+        ((BALANCE, BALANCE), "SteppingParameters"),
+        ((SteppingParameters(1.0, 1.0, 1.0, 1.0, 1.0), (0.0,) * 4), "BalanceParameters"),
+    ],
 )
-def test_a_new_generator_needs_both(missing: Any) -> None:
-    with pytest.raises(ConfigurationError, match=r"parameters must be \w+, not"):
-        PatternGenerator(*missing)
+def test_parameters_that_cannot_be_are_refused_and_none_changes(refused: Any, words: str) -> None:
+    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
+    for take in (generator.set_parameters, PatternGenerator):
+        with pytest.raises(ConfigurationError, match=f"parameters must be {words}, not"):
+            take(*refused)
+    generator.tick(reading())
+    assert generator.parameters == SteppingParameters(*PAPER_STEPPING) and generator.hips.parameters == BALANCE
 
 
 def phase_ends(dt: float, every: int, told: bool) -> list[tuple[float, PhaseChange]]:
@@ -92,8 +76,7 @@ def phase_ends(dt: float, every: int, told: bool) -> list[tuple[float, PhaseChan
     return ends
 
 
-def test_who_is_told_that_every_second_tick_is_missed_steps_as_at_half_the_control_rate() -> None:
-    """Phases end at the same times, and for the same reasons. Who is not told times out after twice the seconds."""
+def test_who_is_told_of_missed_ticks_steps_as_at_half_the_rate() -> None:
     missed, slow = phase_ends(DT, 2, told=True), phase_ends(2 * DT, 1, told=False)
     assert [change for _, change in missed] == [change for _, change in slow]
     assert [seconds for seconds, _ in missed] == pytest.approx([seconds for seconds, _ in slow])
@@ -101,8 +84,8 @@ def test_who_is_told_that_every_second_tick_is_missed_steps_as_at_half_the_contr
     assert phase_ends(DT, 2, told=False) != missed
 
 
-@pytest.mark.parametrize("seconds", [0.02, 0.1, 1.0, math.inf])
-def test_it_stands_for_a_second_of_readings_however_far_apart_they_are(seconds: float) -> None:
+@pytest.mark.parametrize("seconds", [0.02, math.inf])
+def test_it_stands_for_a_second_of_readings_however_far_apart(seconds: float) -> None:
     generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT)
     generator.tick(reading(), DT)
     for _ in range(100):
@@ -111,8 +94,7 @@ def test_it_stands_for_a_second_of_readings_however_far_apart_they_are(seconds: 
     assert generator.phase is Phase.SHIFT
 
 
-def test_a_reading_after_a_long_gap_weighs_no_more_in_a_mean_than_another() -> None:
-    """Of 0 and 1 the mean is 0.5, which leaves 0.5 for the low-pass."""
+def test_a_reading_after_a_long_gap_weighs_no_more_in_a_mean() -> None:
     generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT)
     generator.tick(reading())
     generator.tick(reading(lateral=1.0), 1.0)
@@ -120,7 +102,7 @@ def test_a_reading_after_a_long_gap_weighs_no_more_in_a_mean_than_another() -> N
 
 
 @pytest.mark.parametrize("field", ["acceleration", "angular_rate"])
-def test_signals_that_come_late_while_it_stands_have_the_baselines_of_what_came(field: str) -> None:
+def test_signals_that_come_late_have_the_baselines_of_what_came(field: str) -> None:
     """The first half of the readings is lost, and the other half is constant: the hips find no push in it."""
     v = BalanceParameters(1.0, 0.0, 1.0, 0.0)
     generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), v, DT)
@@ -133,7 +115,6 @@ def test_signals_that_come_late_while_it_stands_have_the_baselines_of_what_came(
 
 
 def test_late_and_early_ticks_count_by_their_times() -> None:
-    """A SHIFT that times out lasts a second in loops of 14 ms, of 1 ms, and of 16 and 4 ms in turn."""
     for times in ((0.014,), (0.001,), (0.016, 0.004)):
         generator, elapsed = started(), 0.0
         while generator.phase is Phase.SHIFT:
@@ -143,17 +124,11 @@ def test_late_and_early_ticks_count_by_their_times() -> None:
         assert elapsed == pytest.approx(1.0, abs=0.016)
 
 
-def test_an_early_tick_does_nothing() -> None:
-    early, other = started(), started()
-    assert early.tick(OVER_RIGHT, 0.004) is None
-    assert early.tilt == other.tilt and early.targets == other.targets
-
-
 @pytest.mark.parametrize(
     ("seconds", "ticks"),
-    [(None, 1), (DT, 1), (0.03, 3), (1.0, 100), (60.0, 100), (math.inf, 100), (math.nan, 1), (-5, 1)],
+    [(None, 1), (0.03, 3), (60.0, 100), (math.nan, 1), (-5, 1)],
 )
-def test_a_gap_counts_up_to_a_second_and_what_is_no_time_as_a_tick(seconds: float | None, ticks: int) -> None:
+def test_a_gap_counts_up_to_a_second_and_no_time_as_a_tick(seconds: float | None, ticks: int) -> None:
     late, punctual = started(), started()
     late.tick(OVER_RIGHT, seconds)
     for _ in range(ticks):

@@ -1,39 +1,38 @@
 """The controller by itself on the simulated robot: it steps, takes new parameters, and notices when it falls."""
 
 import math
-from collections.abc import Callable
+from typing import Any
 
 import pytest
 from laboratory import need
 
 from sarah.control.constants import ControllerConstants
 from sarah.control.hip_law import BalanceParameters
+from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.parameter_sets import PARAMETER_SETS
-from sarah.episode.push import Push
+from sarah.episode.push import NO_PUSH, Push
+from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.robot.description import ACTUATED_JOINTS, describe_robot
-from sarah.robot.reading import SensorReading
 from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import NOMINAL
 
 STEPPING = (0.41, 0.52, 0.62, 1.17, 1.37)
-V = BalanceParameters(1.0, 0.0, 1.0, 0.0)
+V = (1.0, 0.0, 1.0, 0.0)
+ENGINES = pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
 
 
-@pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
-@pytest.mark.parametrize("degrees", [0.0, 90.0, 180.0, 270.0, 45.0])
-def test_a_robot_that_is_pushed_over_is_noticed_within_half_a_second_of_60_degrees_and_targets_stay(
-    engine: str, degrees: float
-) -> None:
-    """Measured from eight directions with 150 to 600 N: 0.06 to 0.2 s."""
+@ENGINES
+@pytest.mark.parametrize("degrees", [0.0, 90.0])
+def test_who_is_pushed_over_is_noticed_half_a_second_later(engine: str, degrees: float) -> None:
     need(engine)
     robot, direction = describe_robot(), math.radians(degrees)
     limits = [robot.limits[joint] for joint in ACTUATED_JOINTS]
-    generator = PatternGenerator(SteppingParameters(*STEPPING), V, limits=limits)
+    generator = PatternGenerator(SteppingParameters(*STEPPING), BalanceParameters(*V), limits=limits)
     simulation = simulator_of(engine)(robot, PHYSICS["standard"], NOMINAL)
     tilts, targets, fallen = [], [], []
     for tick in range(500):
@@ -52,34 +51,30 @@ def test_a_robot_that_is_pushed_over_is_noticed_within_half_a_second_of_60_degre
     assert len(set(targets[:noticed])) > 50 and len(set(targets[noticed:])) == 1
 
 
-@pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
+@ENGINES
 def test_no_push_that_the_robot_survives_is_taken_for_a_fall(engine: str) -> None:
-    """Measured in 388 episodes that robots survived, 237 of them with pushes of 50 to 125 N and 246 with random P or V:
-    the low-passed vertical acceleration stays above 8.1 m/s^2, and a fall is recognised below 5.
-    """
     need(engine)
     survived = 0
-    for seed in range(8):
-        config = BalanceConfig(engine=engine, push=Push((100.0, 125.0)), time_limit=6.0, stepping=STEPPING)
+    for seed in range(3):
+        config = BalanceConfig(engine=engine, push=Push((100.0, 125.0)), time_limit=5.0, stepping=STEPPING)
         with Episode(config, seed, BALANCE) as episode:
             episode.stand()
-            episode.run((V.V1, V.V2, V.V3, V.V4))
+            episode.run(V)
         survived += episode.termination == "time_limit"
         assert not episode.robot.generator.has_fallen or episode.termination != "time_limit"
-    assert survived >= 5
+    assert survived >= 2
 
 
-@pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
+@ENGINES
 @pytest.mark.parametrize("v2", [1.0, -1.0])
 def test_a_jump_of_v2_while_the_robot_steps_is_no_push(engine: str, v2: float) -> None:
-    """At eight moments of the gait, with noise and constant errors; the robot steps on by its sensors."""
     need(engine)
-    config = BalanceConfig(engine=engine, push=Push((0.0, 0.0)), time_limit=7.0, stepping=STEPPING)
-    for seed in range(8):
+    config = BalanceConfig(engine=engine, push=NO_PUSH, time_limit=5.0, stepping=STEPPING)
+    for seed in (2, 5):  # two moments of the gait
         with Episode(config, seed, BALANCE) as episode:
             episode.stand()
-            episode.start((1.0, 0.0, 1.0, 0.0))
-            for _ in range(200 + 7 * seed):
+            episode.start(V)
+            for _ in range(100 + 7 * seed):
                 episode.tick()
             episode.robot.generator.set_parameters(balance=BalanceParameters(1.0, v2, 1.0, 0.0))
             while episode.termination is None:
@@ -89,38 +84,50 @@ def test_a_jump_of_v2_while_the_robot_steps_is_no_push(engine: str, v2: float) -
         assert result.steps_per_second > 2.0 and result.shifts_by_sensors > 0.8
 
 
-def test_legs_that_spread_save_robots_that_a_push_to_the_side_tips_over() -> None:
-    """Measured on these 24 pushes: 18 survivors, and 11 without the spread."""
+def test_legs_that_spread_save_robots_that_tip_over_to_the_side() -> None:
     need("mujoco")
 
     def survivors(spread_gain: float) -> int:
         survived = 0
-        for seed in range(24):
+        for seed in range(12):
             push = Push(125.0, (180.0 * (seed % 2),) * 2, (2.0, 3.0))
             constants = ControllerConstants(spread_gain=spread_gain)
-            config = BalanceConfig(engine="mujoco", controller=constants, push=push, time_limit=5.0, stepping=STEPPING)
+            config = BalanceConfig(engine="mujoco", controller=constants, push=push, time_limit=4.0, stepping=STEPPING)
             survived += simulate(EpisodeSpec((1.0, 0.0, 0.7, 0.0), seed, BALANCE, config)).survived
         return survived
 
-    assert survivors(ControllerConstants().spread_gain) > survivors(0.0) + 3
+    assert survivors(ControllerConstants().spread_gain) > survivors(0.0) + 1
 
 
-@pytest.mark.parametrize("offsets", [(0.0, 0.0, 0.02, 0.02), (0.0, 0.0, -0.02, 0.02), (0.05, -0.05, 0.0, 0.0)])
-def test_zeros_of_the_joints_may_be_as_far_off_as_the_page_says(offsets: tuple[float, ...]) -> None:
-    """Flexion that reads 0.05 rad too much walks the robot out of its place within 12 s."""
+@pytest.mark.parametrize(
+    ("offsets", "termination"),
+    [
+        ((0.0, 0.0, -0.02, 0.02), "time_limit"),
+        ((0.05, -0.05, 0.0, 0.0), "time_limit"),
+        ((0.0, 0.0, 0.05, 0.05), "left_box"),  # walks out of its place within 12 s
+    ],
+)
+def test_zeros_of_the_joints_may_be_as_far_off_as_the_page_says(offsets: tuple[float, ...], termination: str) -> None:
     spec = PARAMETER_SETS["balance"].spec
-    config = BALANCE.config_of(spec.config, engine="mujoco", push=Push((0.0, 0.0)), time_limit=13.0)
-    terminations = {}
-    for added in (offsets, (0.0, 0.0, 0.05, 0.05)):
-        with Episode(config, 1000, BALANCE) as episode:
-            read = episode.robot.simulation.read
+    config = BALANCE.config_of(spec.config, engine="mujoco", push=NO_PUSH, time_limit=13.0)
+    with Episode(config, 1000, BALANCE) as episode:
+        read = episode.robot.simulation.read
 
-            def askew(read: Callable[[], SensorReading] = read, added: tuple[float, ...] = added) -> SensorReading:
-                seen = read()
-                shifted = [joint + offset for joint, offset in zip(seen.joints, (*added, 0.0, 0.0), strict=True)]
-                return seen._replace(joints=tuple(shifted))  # type: ignore[arg-type]  # there are six
+        def askew() -> Any:
+            seen = read()
+            shifted = [joint + offset for joint, offset in zip(seen.joints, (*offsets, 0.0, 0.0), strict=True)]
+            return seen._replace(joints=tuple(shifted))
 
-            episode.robot.simulation.read = askew  # type: ignore[method-assign]
-            episode.stand()
-            terminations[added] = episode.run(spec.parameters).termination
-    assert list(terminations.values()) == ["time_limit", "left_box"]
+        episode.robot.simulation.read = askew  # type: ignore[method-assign]
+        episode.stand()
+        assert episode.run(spec.parameters).termination == termination
+
+
+def test_short_time_outs_end_phases_before_the_sensors_can() -> None:
+    def stepping(**constants: float) -> Any:
+        config = EpisodeConfig(time_limit=3.0, controller=ControllerConstants(**constants))
+        return simulate(EpisodeSpec(PAPER_STEPPING, 0, config=config))
+
+    standard, hurried = stepping(), stepping(time_out_seconds=0.03)  # in 0.05 s MuJoCo's legs end most shifts
+    assert standard.shifts_by_sensors > 0.9 and standard.lifts_by_sensors > 0.9
+    assert hurried.shifts_by_sensors < 0.1 and hurried.score < standard.score

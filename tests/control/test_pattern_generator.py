@@ -2,21 +2,18 @@
 
 import copy
 import math
-from collections.abc import Callable
 
 import pytest
 from hand_made import DT, LOADED, OVER_RIGHT, ROCKING_BACK, UNLOADED, reading, rocking, started, stood
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sarah.control.constants import STANDARD_CONSTANTS as CONSTANTS
 from sarah.control.constants import ControllerConstants
 from sarah.control.hip_law import BalanceParameters
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, Phase, PhaseChange, SteppingParameters
 from sarah.episode.tasks import STEPPING
 from sarah.errors import ConfigurationError
-from sarah.robot.filters import LowPass
 from sarah.robot.reading import SensorReading, Side
 
 
@@ -28,27 +25,7 @@ def tick_until_change(generator: PatternGenerator, steady: SensorReading, limit:
     raise AssertionError(f"no phase change in {limit} ticks")
 
 
-def test_right_leg_is_the_first_stance_leg() -> None:
-    generator = started()
-    assert generator.stance is Side.RIGHT and generator.swing is Side.LEFT
-
-
-def test_low_pass_follows_a_step_with_its_time_constant() -> None:
-    low_pass = LowPass(CONSTANTS.tilt_time_constant, DT)
-    for _ in range(10):  # one time constant
-        low_pass(1.0)
-    assert low_pass.value == pytest.approx(1.0 - math.exp(-1.0))
-
-
-def test_tilt_and_rate_are_positive_towards_the_stance_leg() -> None:
-    generator = started()
-    generator.tick(OVER_RIGHT)
-    assert generator.tilt > 0 and generator.rate > 0
-    generator.stance = Side.LEFT
-    assert generator.tilt < 0 and generator.rate < 0
-
-
-@pytest.mark.parametrize("lateral", [15.0, 1000.0, -1000.0])
+@pytest.mark.parametrize("lateral", [15.0, -1000.0])
 def test_lateral_acceleration_counts_up_to_20(lateral: float) -> None:
     """One tick of a low-pass of 0.1 s covers 1 - exp(-0.1) of the way; the baseline of 8 s takes its share before."""
     generator = started()
@@ -81,7 +58,6 @@ def test_shift_ends_when_the_robot_leans_over_the_stance_leg() -> None:
     ],
 )
 def test_shift_waits_for_tilt_rate_and_load(steady: SensorReading) -> None:
-    """Until its time-out of 0.5 (1 + P5) = 1 s."""
     change, ticks = tick_until_change(started(), steady)
     assert change == PhaseChange(Phase.SHIFT, by_sensors=False)
     assert ticks == 100
@@ -107,28 +83,7 @@ def test_each_condition_holds_just_beyond_its_threshold() -> None:
         assert by_sensors == [generator is beyond] * 3
 
 
-@pytest.mark.parametrize(
-    "at_rest",
-    [
-        reading(rate=0.3),  # no tilt
-        reading(lateral=-3.0),  # no rate
-    ],
-)
-def test_zeros_as_thresholds_still_ask_for_some_tilt_and_rate(at_rest: SensorReading) -> None:
-    """So a robot at rest steps by time-outs, of 0.5 s here."""
-    generator = started((0.0, 0.0, 0.0, 0.0, 0.0))
-    assert tick_until_change(generator, at_rest) == (PhaseChange(Phase.SHIFT, by_sensors=False), 50)
-    generator = PatternGenerator(SteppingParameters(0.0, 0.0, 0.0, 0.0, 0.0))
-    changes = [change for _ in range(202) if (change := generator.tick(reading()))]
-    assert [(change.ended, change.by_sensors) for change in changes] == [
-        (Phase.STAND, False),
-        (Phase.SHIFT, False),
-        (Phase.LIFT, False),
-    ]
-
-
 def test_phases_last_their_time_to_the_nearest_tick() -> None:
-    """Half a tick is rounded down. Periods that are powers of two make the times exact."""
     tick = 1 / 64
     for ticks, expected in ((2.4, 2), (2.5, 2), (2.6, 3)):
         constants = ControllerConstants(minimum_phase_seconds=ticks * tick, time_out_seconds=ticks * tick)
@@ -138,15 +93,13 @@ def test_phases_last_their_time_to_the_nearest_tick() -> None:
 
 
 @pytest.mark.parametrize(("load", "changes"), [(30.0, [100, 200, 300, 400]), (30.5, [100, 200, 300, 304])])
-def test_by_default_a_tick_lasts_10_ms_and_more_than_30_newtons_load_a_foot(load: float, changes: list[int]) -> None:
-    """At rest, with time-outs of 1 s: only the foot that has to land decides. LAND lasts at least 0.04 s."""
+def test_a_tick_is_10_ms_and_over_30_newtons_load_a_foot(load: float, changes: list[int]) -> None:
     generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING))
     assert [tick for tick in range(401) if generator.tick(reading(left=load))] == changes
     assert STAND_SECONDS == 1.0
 
 
-def test_it_stands_for_a_second_and_no_foot_is_loaded_before_a_reading() -> None:
-    """A sensor that drops out before it has read anything leaves the time-outs: 0.1 s each."""
+def test_it_stands_for_a_second_and_no_foot_is_loaded_at_first() -> None:
     constants = ControllerConstants(time_out_seconds=0.1, pad_threshold=0.0)
     generator = PatternGenerator(SteppingParameters(0.0, 0.0, 0.0, 0.0, 0.0), constants=constants)
     nothing = SensorReading((math.nan,) * 3, (math.nan,) * 3, (math.nan,) * 4, (math.nan,) * 6)
@@ -164,54 +117,7 @@ def lifted(parameters: tuple[float, ...] = PAPER_STEPPING) -> PatternGenerator:
     return generator
 
 
-def test_lift_ends_when_the_robot_rocks_back_faster_than_p1() -> None:
-    generator = lifted()
-    for _ in range(10):
-        assert generator.tick(reading(rate=-0.39, left=UNLOADED)) is None
-    change, _ = tick_until_change(generator, ROCKING_BACK)
-    assert change == PhaseChange(Phase.LIFT, by_sensors=True)
-
-
-def test_lift_times_out_after_p4() -> None:
-    parameters = (0.4, 1.3, 0.1, 0.5, 1.0)
-    change, ticks = tick_until_change(lifted(parameters), reading(left=UNLOADED))
-    assert change == PhaseChange(Phase.LIFT, by_sensors=False)
-    assert ticks == 75  # 0.5 (1 + 0.5) s
-
-
-def landing(parameters: tuple[float, ...] = PAPER_STEPPING) -> PatternGenerator:
-    generator = lifted(parameters)
-    tick_until_change(generator, ROCKING_BACK)
-    assert generator.phase is Phase.LAND
-    return generator
-
-
-def test_landing_is_a_step_and_swaps_the_legs() -> None:
-    generator = landing()
-    for _ in range(10):
-        assert generator.tick(reading(left=29.0)) is None
-    change, _ = tick_until_change(generator, reading())
-    assert change == PhaseChange(Phase.LAND, by_sensors=True, is_step=True)
-    assert generator.phase is Phase.SHIFT and generator.stance is Side.LEFT
-
-
-def test_land_times_out_after_p5_without_a_step() -> None:
-    generator = landing((0.4, 1.3, 0.1, 1.0, 0.5))
-    change, ticks = tick_until_change(generator, reading(left=UNLOADED))
-    assert change == PhaseChange(Phase.LAND, by_sensors=False, is_step=False)
-    assert ticks == 75
-
-
-def test_a_foot_that_never_left_the_floor_makes_no_step() -> None:
-    generator = started()
-    both_loaded = reading(lateral=-3.0, rate=0.3)
-    tick_until_change(generator, both_loaded)
-    tick_until_change(generator, reading(rate=-0.6))
-    change, _ = tick_until_change(generator, reading())
-    assert change.ended is Phase.LAND and not change.is_step
-
-
-def test_only_a_foot_that_is_off_the_floor_in_lift_or_land_makes_a_step() -> None:
+def test_only_a_foot_off_the_floor_in_lift_or_land_makes_a_step() -> None:
     """Neither one that left it in SHIFT, nor one that did so a step ago."""
     over_left = reading(lateral=3.0, rate=-0.3, left=2 * LOADED, right=UNLOADED)
     back_from_left = reading(rate=0.6)
@@ -229,6 +135,14 @@ def test_only_a_foot_that_is_off_the_floor_in_lift_or_land_makes_a_step() -> Non
     assert all(change.by_sensors for change in changes[:-1]) and not changes[-1].by_sensors
 
 
+def test_lift_and_land_time_out_after_p4_and_p5() -> None:
+    generator = lifted((0.4, 1.3, 0.1, 0.5, 0.2))
+    lift = tick_until_change(generator, reading(left=UNLOADED))
+    assert lift == (PhaseChange(Phase.LIFT, by_sensors=False), 75)  # 0.5 (1 + 0.5) s
+    land = tick_until_change(generator, reading(left=UNLOADED))
+    assert land == (PhaseChange(Phase.LAND, by_sensors=False, is_step=False), 60)
+
+
 def test_phases_last_at_least_their_minimum() -> None:
     generator = lifted((0.0, 0.0, 0.0, 0.0, 0.0))
     _, ticks = tick_until_change(generator, ROCKING_BACK)
@@ -238,8 +152,8 @@ def test_phases_last_at_least_their_minimum() -> None:
 
 
 def test_legs_push_lift_and_straighten_at_the_leg_speed() -> None:
-    """They push by 8 mm and lift by 30 mm, at 1 m/s."""
     generator = started()
+    assert generator.stance is Side.RIGHT and generator.swing is Side.LEFT
     assert generator.targets == (0.0, 0.0, 0.0, 0.0, pytest.approx(-0.008), 0.0)
     tick_until_change(generator, OVER_RIGHT)
     lengths = [generator.targets[4]]
@@ -255,9 +169,8 @@ def test_legs_push_lift_and_straighten_at_the_leg_speed() -> None:
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ((0.4, 1.3, 0.1, 1.0), "must be 5 numbers"),
+        ((0.4, 1.3, 0.1, 1.0), r"parameters must be 5 numbers \(P1 to P5\), not 4"),
         ((0.4, 1.3, 0.1, 1.0, math.nan), "P5 must be between 0 and 2, not nan"),
-        ((0.4, 1.3, 0.1, math.inf, 1.0), "P4 must be between 0 and 2, not inf"),
         ((-0.1, 1.3, 0.1, 1.0, 1.0), "P1 must be between 0 and 2, not -0.1"),
         ((0.4, 2.1, 0.1, 1.0, 1.0), "P2 must be between 0 and 2, not 2.1"),
     ],
@@ -267,28 +180,7 @@ def test_parameters_out_of_their_box_are_refused(values: tuple[float, ...], mess
         STEPPING.box.checked(values)
 
 
-@given(
-    parameters=st.tuples(*[st.floats(0.0, 2.0)] * 5),
-    signals=st.lists(
-        st.tuples(st.floats(-1e6, 1e6), st.floats(-100, 100), st.floats(0, 4000), st.floats(0, 4000)), max_size=300
-    ),
-)
-def test_any_readings_keep_targets_bounded_and_slow(
-    parameters: tuple[float, ...], signals: list[tuple[float, float, float, float]]
-) -> None:
-    generator = PatternGenerator(SteppingParameters(*parameters), dt=DT)
-    before = generator.targets
-    longest, shortest = -CONSTANTS.shift_extension, CONSTANTS.lift_retraction  # positive lengths retract
-    for signal in signals:
-        generator.tick(reading(*signal))
-        targets = generator.targets
-        assert targets[:4] == (0.0, 0.0, 0.0, 0.0)
-        assert all(longest - 1e-12 <= length <= shortest + 1e-12 for length in targets[4:])
-        assert all(abs(a - b) <= CONSTANTS.leg_speed * DT + 1e-12 for a, b in zip(targets, before, strict=True))
-        assert abs(generator.stable_x) <= 2 * 20.0  # limit of the signal, and of its baseline
-        before = targets
-
-
+@settings(max_examples=20)
 @given(parameters=st.tuples(*[st.floats(0.0, 2.0)] * 5), steady=st.tuples(st.floats(-20, 20), st.floats(-5, 5)))
 def test_no_phase_outlasts_its_time_out(parameters: tuple[float, ...], steady: tuple[float, float]) -> None:
     generator = started(parameters)
@@ -298,7 +190,7 @@ def test_no_phase_outlasts_its_time_out(parameters: tuple[float, ...], steady: t
         assert ticks * DT <= generator.time_out(phase) + DT
 
 
-def test_abduction_by_the_hip_law_counts_as_tilt_and_rate_to_its_side() -> None:
+def test_abduction_counts_as_tilt_and_rate_to_its_side() -> None:
     generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BalanceParameters(1.0, 0.0, 0.0, 0.0), DT))
     hips = generator.hips
     for _ in range(10):
@@ -312,17 +204,8 @@ def test_abduction_by_the_hip_law_counts_as_tilt_and_rate_to_its_side() -> None:
     assert generator.tilt == pytest.approx(-tilt) and generator.rate == pytest.approx(-rate)
 
 
-def test_constant_abduction_is_no_tilt() -> None:
-    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BalanceParameters(0.0, -2.0, 0.0, 0.0), DT))
-    hips = generator.hips
-    for _ in range(20):
-        generator.tick(reading())
-    assert hips.abduction == pytest.approx(0.1) and generator.tilt == pytest.approx(0.0)
-
-
-@pytest.mark.parametrize("offset", [0.7, -1.2])
+@pytest.mark.parametrize("offset", [-1.2])
 def test_offsets_that_were_there_while_standing_change_no_step(offset: float) -> None:
-    """An askew accelerometer and a gyroscope's bias: the same signals, each with its constant."""
     level, askew = (PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT) for _ in range(2))
     for generator, constant in ((level, 0.0), (askew, offset)):
         stood(generator, reading(lateral=constant, rate=constant / 10))
@@ -335,10 +218,9 @@ def test_offsets_that_were_there_while_standing_change_no_step(offset: float) ->
         assert askew.tilt == pytest.approx(level.tilt) and askew.rate == pytest.approx(level.rate)
 
 
-@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
-def test_a_copied_generator_has_filters_of_its_own(copied: Callable[[PatternGenerator], PatternGenerator]) -> None:
+def test_a_copied_generator_has_filters_of_its_own() -> None:
     generator, alone = started(), started()
-    other = copied(generator)
+    other = copy.copy(generator)
     for tick in range(100):
         other.tick(rocking(7 * tick))
     assert [(generator.tick(rocking(tick)), generator.targets) for tick in range(100)] == [

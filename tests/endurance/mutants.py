@@ -42,7 +42,7 @@ class Subject(NamedTuple):
     definitions: str = ".*"
 
 
-CONTROL = "tests/control --ignore tests/control/test_any_readings.py -k 'not episode and not papers and not short'"
+CONTROL = "tests/control -k 'not simulated_robot'"
 EPISODE = "tests/episode/test_gait_and_reward.py"
 ENDING = "tests/episode/test_ending.py -k criteria"
 SENSORS = "tests/simulation/test_sensors.py -k 'not push'"

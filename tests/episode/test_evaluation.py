@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 import pytest
-from laboratory import CONTROL_DT
+from laboratory import CONTROL_DT, RESULT
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import Episode
@@ -11,7 +11,7 @@ from sarah.episode.evaluation import Evaluation, evaluate
 from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError
 
-SHORT = EpisodeConfig(time_limit=6.0)
+SHORT = EpisodeConfig(time_limit=4.0)
 
 
 def shaken_by(amplitude: float) -> Evaluation:
@@ -36,13 +36,13 @@ def test_chattering_hips_show_as_vibration() -> None:
     assert chattering.statistic("peak_hip_rate", "max") > 10 * calm.statistic("peak_hip_rate", "max")
 
 
-def test_an_evaluation_needs_an_episode() -> None:
-    with pytest.raises(ConfigurationError, match="seeds must not be empty"):
-        evaluate("stepping", PAPER_STEPPING, SHORT, [])
-
-
 def test_arguments_of_another_kind_are_named() -> None:
+    one = Evaluation((RESULT,))
     calls: dict[str, Callable[[], object]] = {
+        "seeds must not be empty: an evaluation needs an episode": lambda: evaluate(
+            "stepping", PAPER_STEPPING, SHORT, []
+        ),
+        r"unknown metric 'scor', did you mean 'score'\? .*": lambda: one.mean("scor"),
         r"seeds must be several whole numbers, such as range\(10\), not 3": lambda: evaluate(
             "stepping",
             PAPER_STEPPING,
@@ -56,7 +56,7 @@ def test_arguments_of_another_kind_are_named() -> None:
             [1],
             4,  # type: ignore[arg-type]
         ),
-        r"unknown statistic 'medain', did you mean 'median'\? .*": lambda: shaken_by(0.0).statistic("score", "medain"),
+        r"unknown statistic 'medain', did you mean 'median'\? .*": lambda: one.statistic("score", "medain"),
     }
     for words, call in calls.items():
         with pytest.raises(ConfigurationError, match=f"^{words}$"):

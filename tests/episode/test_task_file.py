@@ -5,6 +5,7 @@ import pickle
 from pathlib import Path
 
 import pytest
+from laboratory import COARSE_PHYSICS
 
 import sarah
 from sarah.episode.trial import try_task
@@ -25,7 +26,7 @@ THRIFTY = dataclasses.replace(sarah.STEPPING, name="thrifty", reward=reward)
 NARROW = dataclasses.replace(sarah.STEPPING, name="narrow", ending=ending)
 """
 PARAMETERS = (0.41, 0.52, 0.62, 1.17, 1.37)
-SHORT = sarah.EpisodeConfig(time_limit=3.0)
+SHORT = sarah.EpisodeConfig(time_limit=3.0, physics=COARSE_PHYSICS)
 
 
 def written(folder: Path, text: str = THRIFTY) -> str:
@@ -36,11 +37,11 @@ def written(folder: Path, text: str = THRIFTY) -> str:
 
 def test_reward_is_that_of_the_file(tmp_path: Path) -> None:
     task = sarah.load_task(f"{written(tmp_path)}:THRIFTY")
-    config = dataclasses.replace(SHORT, time_limit=13.0)
+    config = dataclasses.replace(SHORT, time_limit=6.0)
     own = sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task, config))
     paper = sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, config=config))
     # The mean power over the ticks is the metric's, but for one tick at either end.
-    assert own.episode_return == pytest.approx(paper.episode_return - 0.01 * paper.actuator_power * 12.0, rel=0.02)
+    assert own.episode_return == pytest.approx(paper.episode_return - 0.01 * paper.actuator_power * 5.0, rel=0.02)
     assert own.steps == paper.steps
 
 
@@ -51,22 +52,18 @@ def test_ending_is_that_of_the_file(tmp_path: Path) -> None:
     assert 0.02 < abs(result.final_position[0]) < 0.03
 
 
-def test_same_bytes_in_another_process(tmp_path: Path) -> None:
+def test_same_bytes_in_another_process(tmp_path: Path, workers: Workers) -> None:
     task = sarah.load_task(f"{written(tmp_path)}:THRIFTY")
     specs = [sarah.EpisodeSpec(PARAMETERS, seed, task, SHORT) for seed in range(2)]
     here = [sarah.simulate(spec) for spec in specs]
     Path(tmp_path, "my_task.py").unlink()  # workers have the text, and need no file
-    with Workers(1) as workers:
-        assert list(workers.simulate_all(specs)) == here
-
-
-def test_workers_refuse_the_task_of_a_script() -> None:
+    assert list(workers.simulate_all(specs)) == here
     task = dataclasses.replace(sarah.STEPPING, name="mine", reward=lambda tick, config: 1.0)
-    with Workers(1) as workers, pytest.raises(ConfigurationError, match="load_task"):
+    with pytest.raises(ConfigurationError, match="load_task"):
         list(workers.simulate_all([sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT)]))
 
 
-def test_a_task_of_this_package_is_the_same_object_after_a_journey() -> None:
+def test_a_task_of_this_package_is_the_same_after_a_journey() -> None:
     assert pickle.loads(pickle.dumps(sarah.BALANCE)) is sarah.BALANCE
     assert sarah.load_task("balance") is sarah.BALANCE
 
@@ -108,35 +105,23 @@ def test_mistakes_of_a_file_are_one_line(tmp_path: Path, text: str, words: str) 
 
 
 @pytest.mark.parametrize(
-    ("body", "words"),
-    [
-        ("return tick.powr", r"my_task.py, line 3: AttributeError: 'Tick' object has no attribute 'powr'"),
-        ("return float('nan')", "my_task.py:JUMP: its reward must be a finite number, not nan"),
-        ("return None", "my_task.py:JUMP: its reward must be a finite number, not None"),
-        ("return [1.0]", r"its reward must be a finite number, not \[1.0\]"),
-        ("return 10**400", "its reward must be a finite number, not 1000000"),
-        ("return 1 / 0", "my_task.py, line 3: ZeroDivisionError"),
-        ("raise ValueError('one\\ntwo')", "^my_task.py, line 3: ValueError: one two$"),
-        ("raise SystemExit(0)", "my_task.py, line 3: SystemExit: 0"),
-        ("raise type('Odd', (Exception,), {'__str__': lambda e: 1 / 0})", "an exception without a message"),
-    ],
-)
-def test_mistakes_of_a_reward_name_the_file(tmp_path: Path, body: str, words: str) -> None:
-    text = f"import dataclasses, sarah\ndef reward(tick, config):\n    {body}\n"
-    text += "JUMP = dataclasses.replace(sarah.STEPPING, name='jump', reward=reward)\n"
-    task = sarah.load_task(f"{written(tmp_path, text)}:JUMP")
-    with pytest.raises(SarahError, match=words):
-        sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT))
-
-
-@pytest.mark.parametrize(
     ("function", "words"),
     [
+        (
+            "reward=lambda tick, config: tick.powr",
+            r"my_task.py, line 2: AttributeError: 'Tick' object has no attribute",
+        ),
+        ("reward=lambda tick, config: float('nan')", "my_task.py:JUMP: its reward must be a finite number, not nan"),
+        ("reward=lambda tick, config: [1.0]", r"its reward must be a finite number, not \[1.0\]"),
+        ("reward=lambda tick, config: throw(ValueError('one\\ntwo'))", "^my_task.py, line 1: ValueError: one two$"),
+        ("reward=lambda tick, config: throw(SystemExit(0))", "my_task.py, line 1: SystemExit: 0"),
+        (
+            "reward=lambda *_: throw(type('Odd', (Exception,), {'__str__': lambda e: 1 / 0}))",
+            "an exception without a message",
+        ),
         ("ending=lambda tick, config: 'it fell'", "a short name of its own such as 'jumped', not 'it fell'"),
         ("ending=lambda tick, config: 'time_limit'", "a short name of its own such as 'jumped', not 'time_limit'"),
         ("draw_push=lambda config, seed: 5", "draw_push must return a DrawnPush or None, not 5"),
-        ("draw_push=lambda config, seed: 1 / 0", "my_task.py, line 2: ZeroDivisionError"),
-        ("draw_push=lambda c, s: sarah.DrawnPush((float('nan'), 0.0, 0.0), 1.0, 1.0)", "a push must consist of finite"),
         (
             "controller_parameters=lambda chosen, config: 5",
             "controller_parameters must return finite SteppingParameters",
@@ -147,19 +132,12 @@ def test_mistakes_of_a_reward_name_the_file(tmp_path: Path, body: str, words: st
         ),
     ],
 )
-def test_mistakes_of_the_other_functions_are_named(tmp_path: Path, function: str, words: str) -> None:
-    text = f"import dataclasses, sarah\nJUMP = dataclasses.replace(sarah.STEPPING, name='jump', {function})\n"
+def test_mistakes_of_functions_are_named(tmp_path: Path, function: str, words: str) -> None:
+    text = "import dataclasses, sarah; throw = lambda error: (_ for _ in ()).throw(error)\n"
+    text += f"JUMP = dataclasses.replace(sarah.STEPPING, name='jump', {function})\n"
     task = sarah.load_task(f"{written(tmp_path, text)}:JUMP")
     with pytest.raises(SarahError, match=words):
         sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT))
-
-
-def test_numbers_of_numpy_are_numbers(tmp_path: Path) -> None:
-    text = "import dataclasses, sarah\nimport numpy as np\n"
-    text += "JUMP = dataclasses.replace(sarah.STEPPING, name='j', reward=lambda tick, config: np.float32(0.5))\n"
-    task = sarah.load_task(f"{written(tmp_path, text)}:JUMP")
-    result = sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT))
-    assert type(result.episode_return) is float and result.episode_return == pytest.approx(1.0)
 
 
 def test_a_trial_finds_a_function_that_remembers(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Who simulates changes nothing: the same training in this process, on workers that die, and on a cluster."""
+"""Who simulates changes nothing: the same in this process, on workers that die, and on a cluster."""
 
 import contextlib
 import json
@@ -36,7 +36,7 @@ from sarah.versions import source_hash
 # Longer than the 8 simulations of warm-up; a quarter of the episodes end early, as robots fall.
 COARSE = EpisodeConfig(time_limit=3.0, physics=COARSE_PHYSICS)
 TRAINING = TrainingConfig(episodes=20, slots=4, seed=5, episode=COARSE)
-SPEC = EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), seed=1, config=EpisodeConfig(time_limit=2.0))
+SPEC = EpisodeSpec(PAPER_STEPPING, seed=1, config=EpisodeConfig(time_limit=1.5, physics=COARSE_PHYSICS))
 
 
 def train_in(folder: Path, workers: Workers | None) -> RunFolder:
@@ -80,43 +80,31 @@ def stood(monkeypatch: pytest.MonkeyPatch) -> Stood:
     return seen
 
 
-@pytest.fixture(scope="module")
-def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
-    return learned_bytes(train_in(tmp_path_factory.mktemp("alone"), None))
-
-
-@pytest.mark.parametrize("count", [1, 3])
-def test_training_does_not_depend_on_the_number_of_workers(count: int, alone: dict[str, bytes], tmp_path: Path) -> None:
-    with Workers(count) as workers:
-        assert learned_bytes(train_in(tmp_path, workers)) == alone
-
-
-def test_training_survives_the_death_of_workers(alone: dict[str, bytes], tmp_path: Path) -> None:
+def test_training_survives_the_death_of_workers(workers: Workers, tmp_path: Path) -> None:
     killed: list[int] = []
+    run = tmp_path / "survives"
 
-    def kill_when_rows(workers: Workers, counts: list[int]) -> None:
+    def kill_when_rows(counts: list[int]) -> None:
         for count in counts:
-            while not (tmp_path / "episodes.csv").exists() or len(list(RunFolder(tmp_path).episodes())) < count:
+            while not (run / "episodes.csv").exists() or len(list(RunFolder(run).episodes())) < count:
                 time.sleep(0.01)
             assert workers.client is not None
             pids: list[int] = []
             while not pids:  # while they all restart
                 pids = list(workers.client.run(os.getpid, on_error="ignore").values())
-            pid = pids[0]
-            os.kill(pid, signal.SIGKILL)
-            killed.append(pid)
+            os.kill(pids[0], signal.SIGKILL)
+            killed.append(pids[0])
 
-    with Workers(2) as workers:
-        killer = threading.Thread(target=kill_when_rows, args=(workers, [2, 10]), daemon=True)
-        killer.start()
-        survived = learned_bytes(train_in(tmp_path, workers))
-        killer.join(timeout=30.0)
+    killer = threading.Thread(target=kill_when_rows, args=([2, 10],), daemon=True)
+    killer.start()
+    survived = learned_bytes(train_in(run, workers))
+    killer.join(timeout=30.0)
     assert len(set(killed)) == 2
-    assert survived == alone
+    assert survived == learned_bytes(train_in(tmp_path / "alone", None))
 
 
 class Cluster:
-    """A scheduler and its workers, started as on a cluster.
+    """A scheduler and a worker, started as on a cluster.
 
     :param folder: folder that they run in
     """
@@ -124,61 +112,62 @@ class Cluster:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self._file = folder / "scheduler.json"
-        self._processes = [self._begin("scheduler", "--host", "127.0.0.1", "--port", "0")]
+        self._worker: subprocess.Popen[bytes] | None = None
+        self._scheduler = self._begin("scheduler", "--host", "127.0.0.1", "--port", "0")
         while not self._file.exists():
-            assert self._processes[0].poll() is None
+            assert self._scheduler.poll() is None
             time.sleep(0.1)
         self.address = json.loads(self._file.read_text())["address"]
 
-    def add_worker(self, path: str = "") -> None:
-        """Start a worker, which finds modules in a folder first."""
-        self._processes.append(self._begin("worker", "--nthreads", "1", "--death-timeout", "60", PYTHONPATH=path))
+    def begin_worker(self, **path: str) -> None:
+        """Start a worker in place of the last one, perhaps with a ``PYTHONPATH`` of its own."""
+        self._kill(self._worker)
+        with distributed.Client(self.address) as client:
+            while client.nthreads():  # the scheduler has not noticed yet
+                time.sleep(0.1)
+        self._worker = self._begin("worker", "--nthreads", "1", "--death-timeout", "60", **path)
 
     def _begin(self, *arguments: str, **environment: str) -> subprocess.Popen[bytes]:
         command = [sys.executable, "-m", "dask", *arguments, "--no-dashboard", "--scheduler-file", str(self._file)]
-        environment = {name: value for name, value in {**os.environ, **environment}.items() if value}
-        return subprocess.Popen(command, stderr=subprocess.DEVNULL, cwd=self.folder, env=environment)
+        return subprocess.Popen(command, stderr=subprocess.DEVNULL, cwd=self.folder, env={**os.environ, **environment})
 
     def stop(self) -> None:
-        """Kill all: dask takes eight seconds to leave politely."""
-        for process in self._processes:
-            with contextlib.suppress(psutil.NoSuchProcess):  # it has ended by itself
-                for child in psutil.Process(process.pid).children(recursive=True):
-                    child.kill()
-            process.kill()
-            process.wait(timeout=30)
+        """Kill both: dask takes eight seconds to leave politely."""
+        self._kill(self._worker)
+        self._kill(self._scheduler)
+
+    @staticmethod
+    def _kill(process: subprocess.Popen[bytes] | None) -> None:
+        if process is None:
+            return
+        with contextlib.suppress(psutil.NoSuchProcess):  # it has ended by itself
+            for child in psutil.Process(process.pid).children(recursive=True):
+                child.kill()
+        process.kill()
+        process.wait(timeout=30)
 
 
-@pytest.fixture
-def cluster(tmp_path: Path) -> Iterator[Cluster]:
-    made = Cluster(tmp_path)
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    made = Cluster(tmp_path_factory.mktemp("cluster"))
     yield made
     made.stop()
 
 
-def test_training_on_a_cluster_is_the_same(cluster: Cluster, alone: dict[str, bytes], tmp_path: Path) -> None:
-    cluster.add_worker()
-    cluster.add_worker()
+def test_a_cluster_gives_the_same(cluster: Cluster) -> None:
+    cluster.begin_worker()
     with Workers(scheduler=cluster.address) as workers:
-        assert learned_bytes(train_in(tmp_path / "run", workers)) == alone
+        assert list(workers.simulate_all([SPEC])) == [simulate(SPEC)]
 
 
-@pytest.fixture
-def other_code(tmp_path: Path) -> str:
-    """A folder with this package in another state of its code, whose version number is the same."""
+def test_a_worker_with_other_code_is_refused_whenever_it_comes(cluster: Cluster, tmp_path: Path) -> None:
     package = Path(cluster_module.__file__).parents[1]
     copied = shutil.copytree(package, tmp_path / "other" / "sarah", ignore=shutil.ignore_patterns("__pycache__"))
-    reward = copied / "episode" / "reward.py"
-    reward.write_text(reward.read_text() + "# another state\n")
-    return str(copied.parent)
-
-
-def test_a_worker_with_other_code_is_refused_whenever_it_comes(
-    cluster: Cluster, other_code: str, tmp_path: Path
-) -> None:
+    with (copied / "episode" / "reward.py").open("a") as reward:
+        reward.write("# another state\n")
     refused = rf"worker tcp://127.0.0.1:\d+ is refused, .*: sarah-sources is {source_hash()} here, and \w{{12}} there"
     with Workers(scheduler=cluster.address) as workers:
-        cluster.add_worker(other_code)
+        cluster.begin_worker(PYTHONPATH=str(copied.parent))
         with pytest.raises(WorkersError, match=refused):
             next(workers.simulate_all([SPEC]))
         with pytest.raises(WorkersError, match=refused):
@@ -189,9 +178,8 @@ def test_a_worker_with_other_code_is_refused_whenever_it_comes(
 
 
 def test_a_worker_without_this_package_is_refused(cluster: Cluster, tmp_path: Path) -> None:
-    (tmp_path / "none").mkdir()
-    (tmp_path / "none" / "sarah.py").write_text("raise ModuleNotFoundError(\"No module named 'sarah'\")\n")
-    cluster.add_worker(str(tmp_path / "none"))
+    (tmp_path / "sarah.py").write_text("raise ModuleNotFoundError(\"No module named 'sarah'\")\n")
+    cluster.begin_worker(PYTHONPATH=str(tmp_path))
     with distributed.Client(cluster.address) as client:
         client.wait_for_workers(1, timeout=30)
     with (
@@ -201,29 +189,17 @@ def test_a_worker_without_this_package_is_refused(cluster: Cluster, tmp_path: Pa
         pass
 
 
-def test_results_come_in_the_order_of_the_specifications() -> None:
-    specs = [EpisodeSpec(SPEC.parameters, seed, config=SPEC.config) for seed in range(6)]
-    with Workers(2) as workers:
-        assert list(workers.simulate_all(specs)) == [simulate(spec) for spec in specs]
-
-
 def test_an_episode_continues_where_it_stands_or_begins_anew(stood: Stood) -> None:
+    following = EpisodeSpec(SPEC.parameters, 2, config=SPEC.config)
     expected = simulate(SPEC)
     begin_episode(SPEC)
     assert len(stood.open) == 1
     assert finish_episode(SPEC).result == expected
     assert len(stood.all) == 1 and not stood.open
-    assert finish_episode(SPEC).result == expected  # that stands nowhere
-    assert len(stood.all) == 2 and not stood.open
-
-
-def test_who_ran_an_episode_lets_the_following_one_stand(stood: Stood) -> None:
-    following = EpisodeSpec(SPEC.parameters, 2, config=SPEC.config)
-    outcome = finish_episode(SPEC, following)
-    assert outcome.result == simulate(SPEC)
-    assert len(stood.open) == 1
+    outcome = finish_episode(SPEC, following)  # it stands nowhere, and lets the following one stand
+    assert outcome.result == expected and len(stood.all) == 3 and len(stood.open) == 1
     assert finish_episode(following).result == simulate(following)
-    assert len(stood.all) == 2 and not stood.open
+    assert len(stood.all) == 3 and not stood.open
     assert outcome.following == begin_episode(following)
 
 
@@ -248,18 +224,6 @@ def test_waiting_episodes_are_bounded_and_forgotten(stood: Stood, monkeypatch: p
             begin_episode(EpisodeSpec(SPEC.parameters, seed, config=SPEC.config))
         assert len(stood.open) == 2
     assert not stood.open
-
-
-def test_workers_listen_to_this_machine_only() -> None:
-    with Workers(1):
-        here = psutil.Process()
-        listening = [
-            connection.laddr.ip
-            for process in (here, *here.children(recursive=True))
-            for connection in process.net_connections()
-            if connection.status == psutil.CONN_LISTEN
-        ]
-    assert listening and set(listening) == {"127.0.0.1"}
 
 
 def test_bad_workers_are_refused() -> None:

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import terminal
 from laboratory import NEEDS_PYBULLET, RESULT
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 from tensorboard.plugins.hparams.plugin_data_pb2 import HParamsPluginData
@@ -20,7 +19,8 @@ from sarah.cli import report as report_command
 from sarah.episode.episode import Episode
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import TASKS
+from sarah.episode.tasks import STEPPING, TASKS
+from sarah.errors import ConfigurationError
 from sarah.reports import all_figures, report, training_figures
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
@@ -33,29 +33,30 @@ PHYSICS = Physics(rate=100, solver_iterations=10, control_rate=100)
 
 
 @pytest.fixture(scope="module")
-def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, RunFolder]:
-    """A training of each task; that of stepping draws pictures."""
-    folder = tmp_path_factory.mktemp("runs")
-    made = {}
+def run(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
+    """A training that draws pictures."""
+    episode = EpisodeConfig(time_limit=1.5, physics=PHYSICS)
+    pictures = 5 if is_installed("pybullet") else 0
+    config = TrainingConfig(episodes=10, seed=3, slots=1, episode=episode, pictures=pictures)
+    made = RunFolder.create(tmp_path_factory.mktemp("runs") / "run", config)
     with pytest.MonkeyPatch.context() as monkeypatch:
         monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
-        for name, task in TASKS.items():
-            episode = dataclasses.replace(task.episode, time_limit=1.5, physics=PHYSICS)
-            pictures = 5 if name == "stepping" and is_installed("pybullet") else 0
-            config = TrainingConfig(name, episodes=10, seed=3, slots=1, episode=episode, pictures=pictures)
-            made[name] = RunFolder.create(folder / name, config)
-            train(config, made[name])
+        train(config, made)
     return made
 
 
+def call(monkeypatch: pytest.MonkeyPatch, command: Any, *arguments: object) -> None:
+    monkeypatch.setattr("sys.argv", ["sarah-report", *map(str, arguments)])
+    command.main()
+
+
 @NEEDS_PYBULLET
-@pytest.mark.parametrize("task", TASKS)
-def test_report_is_a_page_that_needs_nothing_else(task: str, runs: dict[str, RunFolder], tmp_path: Path) -> None:
-    run, page = runs[task], tmp_path / "page.html"
-    arguments = (str(run.path), "--out", str(page), "--episodes", "2", "--seconds", "1", "1.2")
-    process = terminal.run("sarah-report", *arguments, cwd=tmp_path)
-    assert process.returncode == 0, process.stderr
-    assert process.stdout == f"{page}\n" and [path.name for path in tmp_path.iterdir()] == ["page.html"]
+def test_report_is_a_page_that_needs_nothing_else(
+    run: RunFolder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = tmp_path / "page.html"
+    call(monkeypatch, report_command, run.path, "--out", page, "--episodes", 2, "--seconds", 1, 1.2)
+    assert capsys.readouterr().out == f"{page}\n" and [path.name for path in tmp_path.iterdir()] == ["page.html"]
     text = page.read_text(encoding="utf-8")
     addresses = re.findall(r'(?:src|href)="([^"]{0,40})', text)
     assert addresses and all(address.startswith("data:") for address in addresses) and "url(" not in text
@@ -66,11 +67,11 @@ def test_report_is_a_page_that_needs_nothing_else(task: str, runs: dict[str, Run
     assert len(base64.b64decode(film)) > 1000
     (settings,) = re.findall(r'data:text/yaml;base64,([^"]+)', text)
     assert base64.b64decode(settings).decode() == run.config_text()
-    for name, value in zip(TASKS[task].parameter_names, run.parameters(), strict=True):
+    for name, value in zip(STEPPING.parameter_names, run.parameters(), strict=True):
         assert re.search(rf"<td>{name}[^<]*</td><td>{value:.2f}</td>", text)
     noted = json.loads((run.path / "parameters.json").read_text())["evaluation"]  # of the same seeds
     assert f"<td>{noted['score_median']:.3f}</td>" in text and f"<td>{noted['vibration_median']:.1f} m²/s⁴</td>" in text
-    assert ("about 0.4" in text) == ("P1" in TASKS[task].parameter_names)
+    assert "about 0.4" in text  # the paper's P1
     assert re.search(r"from 1\.0 to 1\.2 s of [\d.]+ s: .*time_limit 1\.5\.</figcaption>", text)  # what is not as usual
 
 
@@ -116,22 +117,38 @@ def test_a_run_is_read_once_and_no_episode_is_simulated_twice(
     run, learned = RunFolder.create(tmp_path / "run", config), (0.5,) * len(TASKS[task].parameters)
     run.append_episode(0, EpisodeSpec(learned, 2**31, task, episode), RESULT)
     run.write_parameters({"parameters": dict(zip(TASKS[task].parameter_names, learned, strict=True))})
-    for command, options in ((report_command, ["--episodes", "2"]), (figures_command, [])):
+    page = tmp_path / "page.html"
+    for command, out, options in ((report_command, page, ("--episodes", 2)), (figures_command, tmp_path / "out", ())):
         counts.clear()
-        monkeypatch.setattr("sys.argv", ["sarah", str(run.path), "--out", str(tmp_path / command.__name__), *options])
-        command.main()
+        call(monkeypatch, command, run.path, "--out", out, *options)
         assert counts[f"{learned} with seed 0"] == counts["episodes"] == counts["config"] == 1
         assert set(counts.values()) == {1}, counts
+    assert ("about 0.4" in page.read_text()) == (task == "stepping")
 
 
-def test_report_says_what_it_cannot_do(tmp_path: Path) -> None:
-    for arguments, message in (
-        ([], "give a run folder"),
-        (["nowhere"], "run folder nowhere does not exist"),
-        (["nowhere", "--seconds", "3", "2"], "seconds must be in rising order"),
-    ):
-        process = terminal.run("sarah-report", *arguments, cwd=tmp_path)
-        assert process.returncode == 2 and message in process.stderr and process.stderr.count("\n") == 1
+def test_without_the_renderer_the_page_has_no_film(
+    run: RunFolder, tmp_path: Path, counts: Counter[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse() -> None:
+        raise ConfigurationError("pictures need a package")
+
+    monkeypatch.setattr(report, "check_renderer", refuse)
+    call(monkeypatch, report_command, run.path, "--out", tmp_path / "page.html", "--episodes", 1)
+    page = (tmp_path / "page.html").read_text()
+    assert "No video: pictures need a package." in page and "<video" not in page
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [([], "give a run folder"), (["nowhere", "--seconds", "3", "2"], "seconds must be in rising order")],
+)
+def test_report_says_what_it_cannot_do(
+    arguments: list[str], message: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        call(monkeypatch, report_command, *arguments)
+    said = capsys.readouterr().err
+    assert message in said and said.count("\n") == 1
 
 
 def events(run: RunFolder) -> EventAccumulator:
@@ -142,30 +159,23 @@ def events(run: RunFolder) -> EventAccumulator:
 
 
 @NEEDS_PYBULLET
-def test_tensorboard_shows_curves_in_groups_and_pictures_at_intervals(runs: dict[str, RunFolder]) -> None:
-    shown = events(runs["stepping"])
+def test_tensorboard_shows_curves_in_groups_and_pictures(run: RunFolder) -> None:
+    shown = events(run)
     groups = {tag.split("/")[0] for tag in shown.Tags()["scalars"]}
     assert groups == {"episode", "parameters", "recommendation", "robot", "train", "unseen"}
-    rows = [(int(row["episodes"]), float(row["P1"])) for row in runs["stepping"].recommendations()]
+    rows = [(int(row["episodes"]), float(row["P1"])) for row in run.recommendations()]
     assert [(event.step, pytest.approx(event.value)) for event in shown.Scalars("recommendation/P1")] == rows
     films = shown.Images("recommendation/video")
     assert [film.step for film in films] == [episodes for episodes, _ in rows]
     assert all(film.encoded_image_string.startswith(b"GIF89a") and film.width == 640 for film in films)
-
-
-def test_tensorboard_has_a_line_of_hyper_parameters_for_each_run(runs: dict[str, RunFolder]) -> None:
-    for task, run in runs.items():
-        content = events(run).SummaryMetadata("_hparams_/session_start_info").plugin_data.content
-        known = HParamsPluginData.FromString(content).session_start_info.hparams
-        assert known["task"].string_value == task and known["seed"].number_value == 3
+    content = shown.SummaryMetadata("_hparams_/session_start_info").plugin_data.content
+    known = HParamsPluginData.FromString(content).session_start_info.hparams
+    assert known["task"].string_value == "stepping" and known["seed"].number_value == 3
 
 
 @NEEDS_PYBULLET
-def test_pictures_change_nothing_of_a_training(
-    runs: dict[str, RunFolder], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_pictures_change_nothing_of_a_training(run: RunFolder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
-    run = runs["stepping"]
     config = dataclasses.replace(run.config(), pictures=0)
     without = RunFolder.create(tmp_path / "without", config)
     train(config, without)

@@ -24,7 +24,7 @@ from sarah.runs.run_folder import RunFolder
 from sarah.simulation.terrain import Terrain
 
 
-def test_situations_are_slopes_in_all_directions_bumps_and_friction_each_without_a_push_and_with_one() -> None:
+def test_situations_are_grounds_each_without_a_push_and_with_one() -> None:
     found = list(situations(Scale()))
     assert len(found) == 2 * (1 + 4 * 4 + 4 + 5) == len(set(found))
     without, pushed = (({one.terrain for one in found if one.newtons == newtons}) for newtons in (0.0, 75.0))
@@ -54,12 +54,12 @@ def test_bumps_of_the_table_lie_closer_for_a_small_robot() -> None:
 
 
 def test_every_situation_meets_the_same_seeds(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(terrain, "TIME_LIMIT", 1.3)
+    monkeypatch.setattr(terrain, "TIME_LIMIT", 1.1)
     tried = [Situation("slope", 0.0, "", 0.0), Situation("slope", 20.0, "right", 0.0)]
-    found = try_terrain(STEPPING, (1.0, 1.0, 1.0, 1.0, 1.0), EpisodeConfig(), [3, 4], Workers(), tried)
+    found = try_terrain(STEPPING, (1.0, 1.0, 1.0, 1.0, 1.0), EpisodeConfig(), [3], Workers(), tried)
     assert list(found) == tried
     level, steep = found.values()
-    assert level.episodes == steep.episodes == 2
+    assert level.episodes == steep.episodes == 1
     assert level != steep
 
 
@@ -94,16 +94,7 @@ def test_command_writes_table_and_picture(
     config = TrainingConfig(episode=EpisodeConfig(terrain=Terrain(roughness=(0.0, 0.01))))
     run = RunFolder.create(tmp_path / "run", config)  # trained on ground of its own
     run.write_parameters({"parameters": dict(zip(STEPPING.parameter_names, STEPPING.baseline, strict=True))})
-    arguments = [
-        str(run.path),
-        "--terrain",
-        "--out",
-        str(tmp_path / "out"),
-        "--episodes",
-        "3",
-        "--episode.payload",
-        "20",
-    ]
+    arguments = f"{run.path} --terrain --out {tmp_path / 'out'} --episodes 3 --episode.payload 20".split()
     monkeypatch.setattr(sys, "argv", ["sarah-eval", *arguments])
     main()
     printed = capsys.readouterr().out
@@ -115,7 +106,6 @@ def test_command_writes_table_and_picture(
 
 
 def test_the_picture_shows_every_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Also a column of the picture whose values are higher than those of the first."""
     drawn: list[Figure] = []
     monkeypatch.setattr(terrain_figure, "save", lambda figure, path: drawn.append(figure))
     slow, fast = (dataclasses.replace(RESULT, steps_per_second=steps) for steps in (2.0, 4.0))

@@ -1,4 +1,4 @@
-"""How far scores of a race can be trusted: by hand, and in races that are drawn, whose truth is known."""
+"""How far scores of a race can be trusted."""
 
 import math
 
@@ -6,17 +6,6 @@ import numpy as np
 import pytest
 
 from sarah.reports.uncertainty import best_known, difference, number_at, share_of, standard_error
-
-
-@pytest.fixture
-def noise() -> np.random.Generator:
-    return np.random.default_rng(0)
-
-
-def drawn(noise: np.random.Generator, truth: list[float], episodes: int) -> np.ndarray:
-    """Scores of trainings in episodes that are lucky for all of them, and a little luckier for some."""
-    shared = 0.3 * noise.normal(size=episodes)
-    return np.array(truth)[:, np.newaxis] + shared + 0.2 * noise.normal(size=(len(truth), episodes))
 
 
 def test_the_error_of_one_training_is_that_over_its_episodes() -> None:
@@ -46,15 +35,6 @@ def test_where_all_means_are_alike_the_rest_is_the_error() -> None:
     assert standard_error(np.array([[0.0, 1.0], [1.0, 0.0]])) == pytest.approx(math.sqrt(4 * 0.25 / 4))
 
 
-def test_the_error_is_the_spread_of_means_over_races(noise: np.random.Generator) -> None:
-    means, variances = [], []
-    for _ in range(400):
-        scores = drawn(noise, (0.7 + 0.1 * noise.normal(size=8)).tolist(), 30)
-        means.append(scores.mean())
-        variances.append(standard_error(scores) ** 2)
-    assert math.sqrt(np.mean(variances)) == pytest.approx(np.std(means), rel=0.15)
-
-
 def test_luck_that_two_algorithms_share_is_no_difference() -> None:
     luck = np.array([0.0, 0.3, 0.6])
     ours, theirs = np.array([luck + 0.3, luck + 0.1]), np.array([luck, luck])
@@ -67,15 +47,6 @@ def test_luck_that_two_algorithms_share_is_no_difference() -> None:
 def test_one_training_of_each_says_nothing_of_other_seeds() -> None:
     found, *ends = difference(np.array([[0.5, 0.7]]), np.array([[0.4, 0.4]]))
     assert found == pytest.approx(0.2) and all(map(math.isnan, ends))
-
-
-def test_an_interval_covers_the_truth_19_times_of_20(noise: np.random.Generator) -> None:
-    covered = 0
-    for _ in range(300):
-        scores = drawn(noise, (0.7 + 0.1 * noise.normal(size=16)).tolist(), 40)
-        _, low, high = difference(scores[:8], scores[8:])
-        covered += low <= 0.0 <= high
-    assert 0.9 <= covered / 300 <= 0.99
 
 
 def test_one_half_of_the_episodes_chooses_and_the_other_scores() -> None:
@@ -94,15 +65,6 @@ def test_a_single_episode_chooses_and_judges() -> None:
     assert best_known(np.array([[0.4], [0.6]])) == pytest.approx(0.6)
 
 
-def test_the_best_of_equal_trainings_is_not_better_than_they_are(noise: np.random.Generator) -> None:
-    found, highest = [], []
-    for _ in range(100):
-        scores = drawn(noise, [0.7] * 50, 40)
-        found.append(best_known(scores) - scores.mean())
-        highest.append(scores.mean(axis=1).max() - scores.mean())
-    assert abs(np.mean(found)) < 0.01 and np.mean(highest) > 0.05
-
-
 def test_a_share_of_a_reward_below_zero_is_further_below() -> None:
     assert share_of(0.8, 0.95) == pytest.approx(0.76)
     assert share_of(-1.0, 0.95) == pytest.approx(-1.05)
@@ -116,15 +78,8 @@ def test_the_interval_of_a_count_knows_the_luck_of_the_judge() -> None:
     assert number_at(scores, np.array([True, True]), 0.95, best=0.5) == (2, 2, 2)
 
 
-def test_more_episodes_make_the_interval_narrower(noise: np.random.Generator) -> None:
-    truth = np.linspace(0.6, 0.8, 41).tolist()
-    few, many = (number_at(drawn(noise, truth, episodes), np.full(41, True), 0.9) for episodes in (12, 2000))
-    assert many[2] - many[1] < (few[2] - few[1]) / 2
-    assert many[1] <= 17 <= many[2]  # 0.72 and more are within 10 % of 0.8
-
-
-def test_luck_that_all_trainings_share_does_not_widen_a_count(noise: np.random.Generator) -> None:
+def test_luck_that_all_trainings_share_does_not_widen_a_count() -> None:
     """Every episode is drawn for all trainings at once: what lifts one lifts the best as well."""
-    luck = 0.3 * noise.normal(size=40)
+    luck = 0.3 * np.random.default_rng(0).normal(size=40)
     scores = np.array([0.8 + luck, 0.79 + luck, 0.4 + luck])
     assert number_at(scores, np.full(3, True), 0.95) == (2, 2, 2)

@@ -22,7 +22,7 @@ def test_scale_is_that_of_height_mass_and_width() -> None:
     assert scale_of({"hip_offset": 0.26}) == Scale(width=2.0)
 
 
-@pytest.mark.parametrize(("length", "mass"), [(1.0, 1.0), (0.3125, 0.1333), (1.7, 4.1)])
+@pytest.mark.parametrize(("length", "mass"), [(1.0, 1.0), (1.7, 4.1)])
 def test_the_urdf_has_the_scale_of_its_dimensions(length: float, mass: float) -> None:
     dimensions = dimensions_alike(length, mass)
     assert describe_robot(dimensions).scale == pytest.approx(scale_of(dimensions))
@@ -38,7 +38,6 @@ def test_quantities_go_by_their_units() -> None:
 
 
 def test_what_goes_with_the_size_does() -> None:
-    """A quarter of the length halves all times, and doubles all rates."""
     config = PushedConfig(dimensions=dimensions_alike(0.25, 0.1))
     controller, drawn = config.controller, config.randomisation
     lengths = (controller.shift_extension, controller.lift_retraction, drawn.mass_offset, config.least_clearance)
@@ -72,7 +71,6 @@ def test_settings_go_with_the_ratio_of_both_robots() -> None:
 
 
 def test_what_was_set_by_hand_stays_for_another_robot() -> None:
-    """It differs from the usual settings, and no chain of robots changes the rest."""
     usual = PushedConfig()
     by_hand = dataclasses.replace(usual, controller=dataclasses.replace(STANDARD_CONSTANTS, pad_threshold=5.0))
     small = by_hand.for_robot(dimensions_alike(0.25, 0.1), usual)
@@ -80,7 +78,7 @@ def test_what_was_set_by_hand_stays_for_another_robot() -> None:
     assert by_hand.for_robot({"thigh_length": 0.3}, usual).for_robot({}, usual) == by_hand
 
 
-def test_a_dimension_that_changes_in_operation_leaves_the_controller() -> None:
+def test_a_dimension_changed_in_operation_leaves_the_controller() -> None:
     config = OperationConfig(changes=(Change(0.1, {"dimensions": {"torso_mass": 16.0}}),))
     assert config.robot_after(1) == dataclasses.replace(config.robot, dimensions={"torso_mass": 16.0})
 
@@ -92,7 +90,7 @@ def test_another_engine_gets_the_inertia_of_the_robots_size() -> None:
         assert there.physics.added_plate_inertia == pytest.approx(0.003 * 0.00625)  # type: ignore[attr-defined]
 
 
-def test_a_robot_whose_own_step_frequency_is_not_rewarded_is_told() -> None:
+def test_a_robot_is_told_if_its_step_frequency_is_not_rewarded() -> None:
     small = EpisodeConfig(dimensions=dimensions_alike(0.25, 0.1))
     assert natural_step_frequency(EpisodeConfig()) == 3.0 and frequency_hint(EpisodeConfig()) is None
     assert natural_step_frequency(small) == pytest.approx(6.0)

@@ -16,7 +16,6 @@ SECOND = PHYSICS["standard"].control_rate
 
 
 def test_servos_follow_their_targets_at_their_bandwidth(lab: Laboratory, build: BuildSimulation) -> None:
-    """A first-order lag: after 1 / bandwidth, 63 % of the way. So short that no effort reaches its limit."""
     simulation = build()
     lab.place(simulation)
     simulation.set_targets((0.0, 0.0, 0.0, 0.0, 0.005, 0.0))
@@ -42,7 +41,7 @@ def test_retracting_a_leg_lifts_its_sole(lab: Laboratory, build: BuildSimulation
     ("joints", "axis", "direction"),
     [(("left_hip_abduction", "right_hip_abduction"), 0, -1), (("left_hip_flexion",), 1, 1)],
 )
-def test_positive_abduction_turns_feet_left_and_positive_flexion_forward(
+def test_abduction_turns_feet_left_and_flexion_forward(
     lab: Laboratory, build: BuildSimulation, joints: tuple[str, ...], axis: int, direction: int
 ) -> None:
     simulation = build()
@@ -62,20 +61,18 @@ def test_positive_abduction_turns_feet_left_and_positive_flexion_forward(
     assert all(direction * (now - then) > 0.03 for now, then in zip(positions(), before, strict=True))
 
 
-@pytest.mark.parametrize("rate", [1000, 2000])
-def test_standing_legs_push_with_the_weight_that_they_carry(build: BuildSimulation, rate: int) -> None:
-    """Each leg's actuator carries half of torso, hips and thighs, 20 kg, whatever the substeps: measured 96 of 98 N."""
-    simulation = build(physics=PyBulletPhysics(rate=rate, solver_iterations=50))
-    for _ in range(2 * SECOND):
+def test_standing_legs_push_with_the_weight_that_they_carry(build: BuildSimulation) -> None:
+    """Each leg's actuator carries half of torso, hips and thighs, 20 kg."""
+    simulation = build(physics=PyBulletPhysics(rate=1000, solver_iterations=50))
+    for _ in range(3 * SECOND // 2):
         simulation.advance()
     speeds, efforts = simulation.actuator_motion()
     assert [-effort for effort in efforts[4:]] == pytest.approx([10.0 * GRAVITY] * 2, rel=0.05)
     assert max(map(abs, speeds)) < 0.01
 
 
-@pytest.mark.parametrize("rate", [100, 300, 1000])
+@pytest.mark.parametrize("rate", [100, 1000])
 def test_actuators_push_no_harder_than_they_can(lab: Laboratory, rate: int) -> None:
-    """Legs of 100 N, which hardly carry the torso, stretch with all their force, whatever the substeps."""
     weak = describe_robot({"leg_effort": 100.0})
     simulation = simulator_of(lab.engine)(weak, PyBulletPhysics(rate=rate, solver_iterations=50), NOMINAL)
     simulation.set_targets((0.0, 0.0, 0.0, 0.0, -0.05, -0.05))

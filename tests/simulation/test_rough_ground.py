@@ -10,14 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from laboratory import BuildSimulation, Laboratory, laboratory, need
 
-from sarah.episode.episode import Episode
-from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
-from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.errors import ConfigurationError
 from sarah.robot.description import describe_robot
 from sarah.robot.dimensions import dimensions_alike
-from sarah.robot.reading import Side, Vector
+from sarah.robot.reading import Side
 from sarah.scenery.ground import LEVEL, Ground
 from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import PHYSICS
@@ -52,7 +49,8 @@ def test_distance_is_along_the_normal_of_the_triangle() -> None:
     """Right of the hilltop the surface falls by 1 in 10."""
     assert HILL.distance((0.05, 0.01, 0.105)) == pytest.approx((0.1 + 0.001) / math.sqrt(1.02), rel=1e-3)
     assert HILL.distance((0.05, 0.0, 0.004)) < 0.0
-    assert LEVEL.distance((3.0, -2.0, 0.25)) == 0.25
+    assert LEVEL.distance((3.0, -2.0, 0.25)) == HILL.distance((3.0, -2.0, 0.25)) == 0.25
+    assert LEVEL.reach == math.inf
 
 
 @settings(max_examples=30)
@@ -87,10 +85,8 @@ def test_the_highest_place_of_a_rectangle_is_found(rectangle: tuple[float, ...],
     assert HILL.highest(*rectangle) == pytest.approx(highest)
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_plates_begin_above_high_bumps(seed: int) -> None:
-    """Where bumps reach higher than the soles are thick, also between what a coarse grid would sample."""
-    robot, ground = describe_robot(), draw_ground(Terrain(roughness=(0.05, 0.05)), seed)
+def test_plates_begin_above_high_bumps() -> None:
+    robot, ground = describe_robot(), draw_ground(Terrain(roughness=(0.05, 0.05)), 0)
     lift = ground.lift(robot)
     for left, right, back, front, height in robot.undersides:
         places = [(x, y) for x in np.linspace(left, right, 60) for y in np.linspace(back, front, 60)]
@@ -104,9 +100,8 @@ def test_a_robot_too_wide_for_the_bumps_is_refused() -> None:
         draw_ground(ROUGH, 0).lift(wide)
 
 
-@pytest.mark.parametrize("length", [0.3, 1.0, 4.0])
+@pytest.mark.parametrize("length", [0.3, 4.0])
 def test_bumps_are_alike_for_robots_alike(length: float) -> None:
-    """Robots that reach the edge of their box are still on them."""
     config = EpisodeConfig(dimensions=dimensions_alike(length, 1.0))
     terrain = dataclasses.replace(config.terrain, roughness=(0.01 * length,) * 2)
     ground, default = draw_ground(terrain, 2), draw_ground(ROUGH, 2)
@@ -122,7 +117,7 @@ def test_bumps_are_alike_for_robots_alike(length: float) -> None:
     cell=st.floats(0.02, 0.1),
     seed=st.integers(0, 2**32),
 )
-def test_bumps_stay_within_their_height_and_reach_as_far_as_promised(roughness: float, cell: float, seed: int) -> None:
+def test_bumps_stay_within_their_height_and_reach_far_enough(roughness: float, cell: float, seed: int) -> None:
     ground = draw_ground(Terrain(roughness=(roughness, roughness), cell=(cell, cell)), seed)
     heights = np.array(ground.heights)
     assert heights.shape[0] == heights.shape[1] and heights.shape[0] % 2 == 1
@@ -130,7 +125,7 @@ def test_bumps_stay_within_their_height_and_reach_as_far_as_promised(roughness: 
     assert ground.cell == cell and 0.7 - cell / 2 <= ground.reach <= 0.7 + cell / 2
 
 
-def test_a_seed_draws_the_same_bumps_at_any_height_and_nothing_else_changes() -> None:
+def test_a_seed_draws_the_same_bumps_at_any_height() -> None:
     low, high = (
         draw_ground(Terrain(slope_degrees=(0.0, 9.0), roughness=(height, height), friction_left=(0.2, 0.4)), 7)
         for height in (0.01, 0.02)
@@ -143,13 +138,13 @@ def test_a_seed_draws_the_same_bumps_at_any_height_and_nothing_else_changes() ->
     )
 
 
-@pytest.mark.parametrize("cell", [0.02, 0.05, 0.1])
+@pytest.mark.parametrize("cell", [0.02, 0.1])
 def test_a_ball_lies_at_the_same_height_in_both_engines(cell: float) -> None:
-    """At 100 places, found by halving: within 10 um, and near where the robot would be put down."""
+    """Found by halving: within 10 um, and near where the robot would be put down."""
     for engine in ("pybullet", "mujoco"):
         need(engine)
     ground = draw_ground(Terrain(roughness=(0.015, 0.015), cell=(cell, cell)), 1)
-    places = np.random.default_rng(0).uniform(-0.65, 0.65, (100, 2)).tolist()
+    places = np.random.default_rng(0).uniform(-0.65, 0.65, (12, 2)).tolist()
     heights = {engine: [ball_height(engine, ground, x, y) for x, y in places] for engine in ("pybullet", "mujoco")}
     assert heights["mujoco"] == pytest.approx(heights["pybullet"], abs=1e-5)
     put_down = [ground.ball_height(x, y, RADIUS) for x, y in places]
@@ -167,53 +162,25 @@ def ball_height(engine: str, ground: Ground, x: float, y: float) -> float:
     return high
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_the_robot_begins_on_the_ground_and_nowhere_inside_it(build: BuildSimulation, seed: int) -> None:
+@pytest.mark.parametrize("seed", range(2))
+def test_soles_of_a_standing_robot_rest_on_the_bumps(build: BuildSimulation, seed: int) -> None:
     simulation = build(Conditions(ground=draw_ground(ROUGH, seed)))
     lowest = min(simulation.sole_height(side) for side in Side)
-    assert -1e-4 < lowest < 0.001
-    assert not any(simulation.read().pressures)
+    assert -1e-4 < lowest < 0.001 and not any(simulation.read().pressures)
     simulation.advance()
     assert abs(simulation.torso_state().velocity[2]) < 0.15  # of a free fall, and not thrown up
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_soles_of_a_standing_robot_rest_on_the_bumps(build: BuildSimulation, seed: int) -> None:
-    """Each foot's lowest contact is on the surface, a few tenths of a millimetre inside it at most."""
-    simulation = build(Conditions(ground=draw_ground(ROUGH, seed)))
     advance(simulation, 1.5)
     for side in Side:
         assert -0.001 < simulation.sole_height(side) < 0.0005
     assert simulation.torso_state().axis[2] > math.cos(math.radians(8.0))
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_feet_of_a_robot_that_is_pushed_stay_on_the_bumps(lab: Laboratory, seed: int) -> None:
-    """At the standard physics; what is less than a sole's thickness is the tilt of a sole between bumps."""
-    push = Push((75.0, 75.0), at_seconds=(1.5, 2.0))
-    config = BalanceConfig(engine=lab.engine, time_limit=4.0, terrain=ROUGH, push=push)
-    with Episode(config, seed, BALANCE) as episode:
-        episode.stand()
-        episode.start((0.7, 0.4, 0.7, -0.4))
-        while episode.termination is None:
-            episode.tick()
-            assert min(episode.robot.simulation.sole_height(side) for side in Side) > -RADIUS
-
-
 def test_clearance_of_a_foot_is_that_over_its_own_ground(lab: Laboratory, build: BuildSimulation) -> None:
-    """A robot 5 cm up in the air; under its left foot the ground is 2 cm higher."""
     step = tuple(0.02 if column < 35 else 0.0 for column in range(71))
     simulation = build(Conditions(ground=Ground(heights=(step,) * 71, cell=0.02)))
     lab.place(simulation, simulation.robot.standing_height + 0.05)
     assert simulation.sole_height(Side.LEFT) == pytest.approx(0.03, abs=1e-6)
     assert simulation.sole_height(Side.RIGHT) == pytest.approx(0.05, abs=1e-6)
-
-
-def test_bumps_of_no_height_are_a_plane(build: BuildSimulation) -> None:
-    plane, field = build(), build(Conditions(ground=draw_ground(Terrain(roughness=(1e-9, 1e-9)), 0)))
-    for simulation in (plane, field):
-        advance(simulation, 2.0)
-    assert field.torso_state().position == pytest.approx(plane.torso_state().position, abs=3e-4)
 
 
 @pytest.mark.parametrize("slippery", list(Side))
@@ -224,10 +191,8 @@ def test_each_foot_has_the_friction_of_its_ground(lab: Laboratory, build: BuildS
     assert lab.friction_under(simulation, slippery.other) == {0.9}
 
 
-@pytest.mark.parametrize("uphill", [0.0, 22.5, 45.0, 90.0])
-@pytest.mark.parametrize("friction", [0.0, 0.05, 0.15])
+@pytest.mark.parametrize(("uphill", "friction"), [(0.0, 0.0), (22.5, 0.05), (270.0, 0.15)])
 def test_a_robot_on_ice_slides_alike_in_all_directions(build: BuildSimulation, uphill: float, friction: float) -> None:
-    """On 12 degrees, by half of g (sin - friction cos) t^2."""
     ice = (friction, friction)
     terrain = Terrain((12.0, 12.0), (uphill, uphill), friction_left=ice, friction_right=ice)
     simulation = build(Conditions(ground=draw_ground(terrain, 0)))
@@ -237,36 +202,6 @@ def test_a_robot_on_ice_slides_alike_in_all_directions(build: BuildSimulation, u
     x, y, _ = simulation.torso_state().position
     assert math.hypot(x, y) == pytest.approx(expected, rel=0.08)
     assert math.cos(math.atan2(y, x) - math.radians(uphill)) < -0.99  # downhill
-
-
-def test_a_foot_on_ice_slides_ahead_and_turns_the_robot_alike_in_both_engines() -> None:
-    """Uphill in front, 0.05 under the left foot and 0.15 under the right one: the robot turns to the left."""
-    turns = {}
-    for engine in ("pybullet", "mujoco"):
-        need(engine)
-        terrain = Terrain((10.0, 10.0), (90.0, 90.0), friction_left=(0.05, 0.05), friction_right=(0.15, 0.15))
-        conditions = Conditions(ground=draw_ground(terrain, 0))
-        simulation = simulator_of(engine)(describe_robot(), PHYSICS["standard"], conditions)
-        advance(simulation, 0.8)
-        x, y, z, w = simulation.torso_state().orientation
-        turns[engine] = math.degrees(math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)))
-        simulation.close()
-    assert turns["pybullet"] == pytest.approx(turns["mujoco"], abs=6.0)
-    assert 5.0 < turns["mujoco"] < 60.0
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_plates_rest_on_high_bumps_in_both_engines(seed: int) -> None:
-    """Where soles fall between bumps of 30 mm; a robot that stood on soles alone would stand 7 mm lower or more."""
-    heights = {}
-    for engine in ("pybullet", "mujoco"):
-        need(engine)
-        conditions = Conditions(ground=draw_ground(Terrain(roughness=(0.03, 0.03), cell=(0.04, 0.04)), seed))
-        simulation = simulator_of(engine)(describe_robot(), PHYSICS["standard"], conditions)
-        advance(simulation, 0.6)
-        heights[engine] = simulation.torso_state().position[2]
-        simulation.close()
-    assert heights["pybullet"] == pytest.approx(heights["mujoco"], abs=0.002)
 
 
 def advance(simulation: Simulator, seconds: float) -> None:
@@ -289,22 +224,14 @@ def test_frictions_are_drawn_for_each_foot() -> None:
 @pytest.mark.parametrize(
     ("setting", "message"),
     [
-        ({"roughness": 0.06}, r"terrain\.roughness must be between 0 and 0\.05 m"),
         ({"roughness": (0.01, 0.005)}, r"terrain\.roughness .* in rising order"),
-        ({"slope_degrees": 10**400}, r"terrain\.slope_degrees must be between 0 and 45 degrees"),
+        ({"slope_degrees": 46}, r"terrain\.slope_degrees must be between 0 and 45 degrees"),
+        ({"direction_degrees": (0, 721)}, r"terrain\.direction_degrees must be between 0 and 720 degrees"),
         ({"cell": 0.001}, r"terrain\.cell must be between 0\.002 and 1 m"),
         ({"cell": 0.01}, "terrain.reach must be between 1 and 50 times terrain.cell, here 0.01 and 0.5 m, not 0.7"),
         ({"cell": 1.0}, "here 1 and 50 m, not 0.7"),
-        ({"friction_left": -0.1}, r"terrain\.friction_left must be between 0 and 5"),
-        ({"friction_right": "ice"}, r"terrain\.friction_right must be between 0 and 5"),
     ],
 )
 def test_impossible_ground_is_refused(setting: dict[str, Any], message: str) -> None:
     with pytest.raises(ConfigurationError, match=message):
         Terrain(**setting)
-
-
-def test_a_place_far_away_has_no_bumps() -> None:
-    ground = draw_ground(ROUGH, 0)
-    far: Vector = (5.0, 5.0, 0.3)
-    assert ground.distance(far) == 0.3 and LEVEL.reach == math.inf

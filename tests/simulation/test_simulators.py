@@ -12,7 +12,6 @@ from sarah.simulation.physics import PHYSICS, PyBulletPhysics
 from sarah.simulation.pybullet_simulator import PyBulletSimulator
 from sarah.simulation.pybullet_world import pybullet
 from sarah.simulation.randomisation import LINKS, NOMINAL, Conditions
-from sarah.simulation.renderer import Renderer
 from sarah.simulation.simulator import Simulator, rotate_to_body
 
 SECOND = PHYSICS["standard"].control_rate
@@ -28,13 +27,12 @@ def test_engine_weighs_the_robot_as_it_is_described(lab: Laboratory, build: Buil
     for simulation, factor in ((nominal, dict.fromkeys(LINKS, 1.0)), (changed, factors)):
         for links in GROUPS.values():
             assert sum(lab.mass(simulation, link) / factor[link] for link in links) == pytest.approx(10.0)
-    assert lab.frictions(changed) == {0.8}
+    assert all(lab.friction_under(changed, side) == {0.8} for side in Side)
 
 
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-@pytest.mark.parametrize(("axis", "heavier"), [(0, (2, 3)), (1, (0, 2))])
+@pytest.mark.parametrize(("axis", "heavier", "sign"), [(0, (2, 3), 1.0), (1, (0, 2), -1.0)])
 def test_pads_carry_more_where_the_torsos_mass_is_offset_to(
-    lab: Laboratory, build: BuildSimulation, axis: int, heavier: tuple[int, int], sign: float
+    build: BuildSimulation, axis: int, heavier: tuple[int, int], sign: float
 ) -> None:
     """20 mm of 8 kg are a moment of 1.57 Nm.
 
@@ -45,7 +43,7 @@ def test_pads_carry_more_where_the_torsos_mass_is_offset_to(
     for metres in (0.0, sign * 0.02):
         simulation = build(Conditions(mass_offset=(metres, 0.0, 0.0) if axis == 0 else (0.0, metres, 0.0)))
         loads = []
-        for tick in range(4 * SECOND):
+        for tick in range(3 * SECOND):
             simulation.advance()
             if tick >= SECOND:
                 loads.append(simulation.read().pressures)
@@ -60,7 +58,6 @@ def test_pads_carry_more_where_the_torsos_mass_is_offset_to(
 
 
 def test_state_is_that_of_the_torsos_frame_wherever_its_mass_is(lab: Laboratory, build: BuildSimulation) -> None:
-    """In the air, turning at 3 rad/s: velocity is that of the position, and the hips stay where they are built."""
     offset = (0.02, -0.03, 0.01)
     for conditions in (NOMINAL, Conditions(mass_offset=offset)):
         simulation = build(conditions, PyBulletPhysics(rate=2000))
@@ -81,11 +78,9 @@ def test_state_is_that_of_the_torsos_frame_wherever_its_mass_is(lab: Laboratory,
 
 
 def test_pads_stop_the_plates(lab: Laboratory, build: BuildSimulation) -> None:
-    """With the pads the ankles stay below 0.02 rad (measured: 0.001), without them the plates fold up (0.22)."""
-
     def largest_ankle_angle(simulation: Simulator) -> float:
         largest = 0.0
-        for _ in range(3 * SECOND):
+        for _ in range(SECOND):
             simulation.advance()
             largest = max(largest, *simulation.joint_positions(ANKLE_JOINTS))
         return largest
@@ -94,15 +89,6 @@ def test_pads_stop_the_plates(lab: Laboratory, build: BuildSimulation) -> None:
     lab.remove_pads(without_pads)
     assert largest_ankle_angle(build()) < 0.02
     assert largest_ankle_angle(without_pads) > 0.1
-
-
-def test_ankles_are_free(lab: Laboratory, build: BuildSimulation) -> None:
-    """In the air nothing holds a plate that moves, but its damping."""
-    simulation = build()
-    lab.place(simulation)
-    lab.move_joint(simulation, "left_forefoot", 0.2, 1.0)
-    simulation.advance()
-    assert simulation.joint_positions(("left_forefoot",))[0] > 0.2
 
 
 def test_ankles_are_damped_alike(lab: Laboratory, build: BuildSimulation) -> None:
@@ -115,24 +101,9 @@ def test_ankles_are_damped_alike(lab: Laboratory, build: BuildSimulation) -> Non
     assert simulation.joint_positions(("left_hindfoot",))[0] == pytest.approx(-0.085, abs=0.0005)
 
 
-def test_accelerometer_reads_gravity_standing_and_nothing_falling(lab: Laboratory, build: BuildSimulation) -> None:
-    standing, falling = build(), build()
-    lab.place(falling)
-    for _ in range(SECOND):
-        standing.advance()
-    for _ in range(SECOND // 5):
-        falling.advance()
-    assert standing.read().acceleration == pytest.approx((0.0, 0.0, GRAVITY), abs=0.05)
-    assert falling.read().acceleration == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)
-    assert falling.read().pressures == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=1e-6)
-
-
-@pytest.mark.parametrize("angle", [0.1, -0.2])
-def test_leaning_right_reads_negative_x_and_leaning_back_positive_y(
-    lab: Laboratory, build: BuildSimulation, angle: float
-) -> None:
+def test_leaning_right_reads_negative_x_and_back_positive_y(lab: Laboratory, build: BuildSimulation) -> None:
     """A torso at rest, turned by a positive angle about y (to the right) or about x (backward)."""
-    simulation = build()
+    simulation, angle = build(), 0.1
     lab.place(simulation, roll=angle)
     leaning_right = simulation.read().acceleration
     lab.place(simulation, pitch=angle)
@@ -142,37 +113,18 @@ def test_leaning_right_reads_negative_x_and_leaning_back_positive_y(
     assert leaning_back == pytest.approx((0.0, g_sin, g_cos), abs=1e-6)
 
 
-@pytest.mark.parametrize("axis", [0, 1, 2])
-def test_gyroscope_reads_the_rate_in_the_torsos_frame(lab: Laboratory, build: BuildSimulation, axis: int) -> None:
+def test_gyroscope_reads_the_rate_in_the_torsos_frame(lab: Laboratory, build: BuildSimulation) -> None:
     simulation = build()
     lab.place(simulation, roll=math.pi / 2)
-    rate = [0.0, 0.0, 0.0]
-    rate[axis] = 0.7
-    lab.turn(simulation, rate)
+    lab.turn(simulation, (0.7, 0.4, -0.2))
     # Turned by 90 degrees about y, the torso's x axis points down and its z axis to the right.
-    x, y, z = rate
-    assert simulation.read().angular_rate == pytest.approx((-z, y, x), abs=1e-9)
+    assert simulation.read().angular_rate == pytest.approx((0.2, 0.4, 0.7), abs=1e-9)
 
 
-@NEEDS_PYBULLET
-def test_rotation_keeps_length_and_undoes_itself() -> None:
-    orientation = pybullet.getQuaternionFromEuler((0.3, -0.5, 0.9))
-    vector = (0.2, -1.0, 3.0)
-    body = rotate_to_body(orientation, vector)
-    expected = np.array(pybullet.getMatrixFromQuaternion(orientation)).reshape(3, 3).T @ vector
-    assert body == pytest.approx(tuple(expected))
-
-
-@pytest.mark.parametrize("physics", ["standard", "reference"])
-@pytest.mark.parametrize("force", [(100.0, 0.0, 0.0), (0.0, -50.0, 0.0), (30.0, 40.0, 10.0)])
+@pytest.mark.parametrize(("physics", "force"), [("standard", (0.0, -50.0, 0.0)), ("reference", (30.0, 40.0, 10.0))])
 def test_push_delivers_force_times_duration(
     lab: Laboratory, build: BuildSimulation, physics: str, force: tuple[float, float, float]
 ) -> None:
-    """In the air, so that the floor takes none of it.
-
-    Along the push within 0.2 % of F T. Across it, what integrating a robot that the push turns gets wrong, which falls
-    with the physics step: together 1.2 % at 200 Hz, 0.23 % at 1 kHz.
-    """
     simulation = build(physics=PHYSICS[physics])
     lab.place(simulation)
     ticks = 15
@@ -198,20 +150,12 @@ def test_push_lasts_one_tick(lab: Laboratory, build: BuildSimulation) -> None:
     assert momentum(lab, simulation)[0] == pytest.approx(after_push, rel=1e-4)
 
 
-@pytest.mark.parametrize(("height", "accuracy"), [(30.0, 1e-5), (0.0, 0.1)])
-def test_mirrored_push_gives_mirrored_motion(
-    lab: Laboratory, build: BuildSimulation, height: float, accuracy: float
-) -> None:
-    """Within a millionth in the air. On the floor the solver treats the contacts in turn: measured within 7 % of the
-    motion, 0.3 mm of 4.4 mm, with steps and iterations as fine as here.
-    """
+def test_mirrored_push_gives_mirrored_motion(build: BuildSimulation) -> None:
+    """The solver treats the contacts in turn: measured within 7 % of the motion, with steps as fine as here."""
     physics = PyBulletPhysics(rate=2000, solver_iterations=200)
     right, left = build(physics=physics), build(physics=physics)
     deviation, largest = 0.0, 0.0
-    for simulation in (right, left):
-        if height:
-            lab.place(simulation, height)
-    for tick in range(SECOND // 2):
+    for tick in range(SECOND // 3):
         if tick < 10:
             right.push((200.0, 0.0, 0.0))
             left.push((-200.0, 0.0, 0.0))
@@ -221,11 +165,11 @@ def test_mirrored_push_gives_mirrored_motion(
         largest = max(largest, x_right)
         deviation = max(deviation, abs(x_right + x_left), *np.abs(np.subtract(others_right, others_left)))
     assert largest > 0.003
-    assert deviation < accuracy * largest
+    assert deviation < 0.1 * largest
 
 
 @NEEDS_PYBULLET
-def test_plates_have_the_added_inertia_while_they_press_on_their_pads() -> None:
+def test_plates_have_added_inertia_while_they_press_on_pads() -> None:
     """About the hinge only, and on the masses of this episode; whatever the targets of the legs are."""
     conditions = Conditions(mass_factors=dict.fromkeys(LINKS, 1.05))
     plain, simulation = (
@@ -238,7 +182,7 @@ def test_plates_have_the_added_inertia_while_they_press_on_their_pads() -> None:
         return np.array([pybullet.getDynamicsInfo(simulation.body, link, simulation.client)[2] for link in links])
 
     own, carried = inertias(plain), set()
-    for tick in range(2 * SECOND):
+    for tick in range(3 * SECOND // 2):
         lifted = 0.03 if tick > SECOND else 0.0
         simulation.set_targets((0.0, 0.0, 0.0, 0.0, lifted, 0.0))
         simulation.advance()
@@ -249,23 +193,3 @@ def test_plates_have_the_added_inertia_while_they_press_on_their_pads() -> None:
     assert (True,) * 4 in carried and any(not left_fore for left_fore, *_ in carried)
     plain.close()
     simulation.close()
-
-
-def test_two_simulations_repeat_bit_for_bit(build: BuildSimulation) -> None:
-    states = []
-    for _ in range(2):
-        simulation = build(Conditions(mass_offset=(0.01, -0.02, 0.005), friction=0.8))
-        for _ in range(SECOND):
-            simulation.advance()
-        states.append((simulation.torso_state(), simulation.read()))
-    assert states[0] == states[1]
-
-
-@NEEDS_PYBULLET
-def test_picture_shows_the_robot(build: BuildSimulation) -> None:
-    simulation = build()
-    picture = Renderer(simulation.robot).draw_simulator(simulation)
-    assert picture.shape == (480, 640, 3) and picture.dtype == np.uint8
-    red, _, blue = picture.reshape(-1, 3).astype(int).T
-    right_leg, left_leg = (red > blue + 60).sum(), (blue > red + 60).sum()
-    assert right_leg > 100 and left_leg > 100

@@ -16,28 +16,16 @@ from sarah.simulation.terrain import Terrain, draw_ground
 SECOND = PHYSICS["standard"].control_rate
 
 
-@pytest.mark.parametrize("physics", ["standard", pytest.param("reference", marks=pytest.mark.slow)])
-def test_standing_30_seconds_neither_drifts_nor_tilts(build: BuildSimulation, physics: str) -> None:
-    """Measured at the standard physics: 0.1 mm, 0.01 degrees and 0.3 mm of height."""
-    simulation = build(physics=PHYSICS[physics])
-    height = simulation.torso_state().position[2]
-    for _ in range(30 * SECOND):
+def test_a_standing_robot_keeps_its_place_and_loads_its_pads(build: BuildSimulation) -> None:
+    """The pads carry most of the weight, but not all: sole friction holds the rest. Measured: 86 % of it together."""
+    simulation = build()
+    height, loads = simulation.torso_state().position[2], []
+    for tick in range(10 * SECOND):
         simulation.advance()
         torso = simulation.torso_state()
         assert math.hypot(*torso.position[:2]) < 0.001
         assert torso.axis[2] > math.cos(math.radians(0.1))
         assert abs(torso.position[2] - height) < 0.0005
-
-
-def test_standing_pads_carry_a_steady_and_symmetric_load(build: BuildSimulation) -> None:
-    """The pads carry most of the weight, but not all: sole friction holds the rest.
-
-    Measured: 86 % of it together (79 % at the reference), at least 21 % each, and 1 % between left and right.
-    """
-    simulation = build()
-    loads = []
-    for tick in range(10 * SECOND):
-        simulation.advance()
         if tick >= SECOND:
             loads.append(simulation.read().pressures)
     pads = np.array(loads)
@@ -61,15 +49,13 @@ def drift(simulation: Simulator, seconds: int) -> float:
     return math.hypot(after[0] - before[0], after[1] - before[1])
 
 
-@pytest.mark.parametrize("seed", [0, 2, 5])
-def test_a_robot_of_other_masses_and_friction_does_not_creep(build: BuildSimulation, seed: int) -> None:
-    """Measured: 0.1 mm in 14 s."""
-    assert drift(build(draw_conditions(Randomisation(), seed)), 10) < 0.0005
+def test_a_robot_of_other_masses_and_friction_does_not_creep(build: BuildSimulation) -> None:
+    assert drift(build(draw_conditions(Randomisation(), 5)), 5) < 0.0003
 
 
-@pytest.mark.parametrize("degrees", [0.0, 45.0, 135.0, 270.0])
+@pytest.mark.parametrize("degrees", [45.0, 270.0])
 def test_a_robot_that_stands_on_a_slope_hardly_creeps(build: BuildSimulation, degrees: float) -> None:
     """Measured in PyBullet: up to 5 mm in 14 s on 8 degrees; MuJoCo 0.5 mm."""
     drawn = draw_conditions(Randomisation(), 2)
     ground = draw_ground(Terrain((8.0, 8.0), (degrees, degrees)), 0)
-    assert drift(build(replace(drawn, ground=ground)), 6) < 0.004
+    assert drift(build(replace(drawn, ground=ground)), 4) < 0.003

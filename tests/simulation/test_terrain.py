@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from laboratory import BuildSimulation, Laboratory
 
-from sarah.errors import ConfigurationError
 from sarah.robot.reading import GRAVITY
 from sarah.scenery.ground import LEVEL
-from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics
+from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.randomisation import Conditions
 from sarah.simulation.simulator import Simulator
 from sarah.simulation.terrain import Terrain, draw_ground
@@ -37,13 +36,10 @@ def build_on(build: BuildSimulation) -> BuildSimulation:
     return build_one
 
 
-@pytest.mark.parametrize(
-    ("uphill", "x", "y"), [(RIGHT, 1.0, 0.0), (FORWARD, 0.0, 1.0), (LEFT, -1.0, 0.0), (BACKWARD, 0.0, -1.0)]
-)
+@pytest.mark.parametrize(("uphill", "x", "y"), [(RIGHT, 1.0, 0.0), (FORWARD, 0.0, 1.0)])
 def test_standing_robot_feels_gravity_as_if_it_leaned_downhill(
     build_on: BuildSimulation, uphill: float, x: float, y: float
 ) -> None:
-    """Mean of a second: in PyBullet a standing robot trembles by 0.01 m/s^2."""
     angle = math.radians(5.0)
     simulation = build_on(slope(5.0, uphill), seconds=1.0)
     readings = []
@@ -54,31 +50,7 @@ def test_standing_robot_feels_gravity_as_if_it_leaned_downhill(
     assert np.mean(readings, axis=0) == pytest.approx((x * g_sin, y * g_sin, g_cos), abs=0.01)
 
 
-@pytest.mark.parametrize(("uphill", "lower"), [(FORWARD, (1, 3)), (BACKWARD, (0, 2))])
-def test_pads_carry_more_downhill(build_on: BuildSimulation, uphill: float, lower: tuple[int, int]) -> None:
-    """On 5 degrees the lower ends of the feet carry 1.8 times as much as the upper ones or more, in both engines."""
-    pads = build_on(slope(5.0, uphill), seconds=2.0).read().pressures
-    below = sum(pads[index] for index in lower)
-    assert below > 1.5 * (sum(pads) - below) > 0.0
-
-
-@pytest.mark.parametrize(("uphill", "axis", "sign"), [(RIGHT, 0, -1), (LEFT, 0, 1), (FORWARD, 1, -1), (BACKWARD, 1, 1)])
-def test_robot_on_ice_slides_downhill_by_g_sin_minus_mu_g_cos(
-    build_on: BuildSimulation, uphill: float, axis: int, sign: int
-) -> None:
-    angle, friction = math.radians(15.0), 0.1
-    place = build_on(slope(15.0, uphill), friction=friction, seconds=1.0).torso_state().position
-    acceleration = GRAVITY * (math.sin(angle) - friction * math.cos(angle))
-    assert sign * place[axis] == pytest.approx(0.5 * acceleration, rel=0.02)
-    assert abs(place[1 - axis]) < 0.001
-
-
-def test_robot_with_friction_to_spare_stays_where_it_is(build_on: BuildSimulation) -> None:
-    simulation = build_on(slope(5.0, FORWARD), seconds=5.0)
-    assert math.hypot(*simulation.torso_state().position[:2]) < 0.01
-
-
-def test_falling_robot_accelerates_with_gravity_and_feels_nothing(lab: Laboratory, build_on: BuildSimulation) -> None:
+def test_a_falling_robot_has_gravitys_pull_and_feels_nothing(lab: Laboratory, build_on: BuildSimulation) -> None:
     terrain = slope(10.0, 30.0)
     simulation = build_on(terrain)
     lab.place(simulation)
@@ -89,18 +61,7 @@ def test_falling_robot_accelerates_with_gravity_and_feels_nothing(lab: Laborator
     assert simulation.read().acceleration == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)
 
 
-def test_robots_that_slide_to_both_sides_are_mirror_images(build_on: BuildSimulation) -> None:
-    physics = PyBulletPhysics(rate=2000, solver_iterations=200)
-    (x_left, *others_left), (x_right, *others_right) = (
-        build_on(slope(15.0, uphill), 0.1, physics, seconds=0.5).torso_state().position for uphill in (RIGHT, LEFT)
-    )
-    assert x_left < -0.1
-    assert x_right == pytest.approx(-x_left, rel=0.002)
-    assert others_right == pytest.approx(others_left, abs=0.0005)
-
-
 def test_one_simulation_leaves_the_next_on_its_own_slope(build_on: BuildSimulation) -> None:
-    """The engines keep worlds and models from one simulation to the next."""
     before = build_on(Terrain(), seconds=0.2).read()
     build_on(slope(20.0, RIGHT), seconds=0.2).close()
     assert build_on(Terrain(), seconds=0.2).read() == before
@@ -130,21 +91,5 @@ def test_seed_draws_the_same_direction_on_any_slope() -> None:
 
 
 def test_level_ground_is_exactly_level() -> None:
-    assert all(draw_ground(Terrain(), seed) == LEVEL for seed in range(5))
-
-
-@pytest.mark.parametrize(
-    ("settings", "message"),
-    [
-        ({"slope_degrees": 46}, r"terrain\.slope_degrees must be between 0 and 45 degrees"),
-        ({"slope_degrees": (-1, 5)}, r"terrain\.slope_degrees must be between 0 and 45 degrees and in rising order"),
-        ({"slope_degrees": (5, 2)}, r"terrain\.slope_degrees .* in rising order, not \(5, 2\)"),
-        ({"slope_degrees": "steep"}, r"terrain\.slope_degrees must be between 0 and 45 degrees, not 'steep'"),
-        ({"direction_degrees": (0, 721)}, r"terrain\.direction_degrees must be between 0 and 720 degrees"),
-        ({"direction_degrees": math.nan}, r"terrain\.direction_degrees must be between 0 and 720 degrees"),
-    ],
-)
-def test_what_is_no_slope_is_refused_in_one_line(settings: dict, message: str) -> None:
-    with pytest.raises(ConfigurationError, match=message) as error:
-        Terrain(**settings)
-    assert "\n" not in str(error.value)
+    flat = Terrain(), Terrain(direction_degrees=(200.0, 210.0)), Terrain(cell=(0.03, 0.03))
+    assert all(draw_ground(terrain, seed) == LEVEL for terrain in flat for seed in range(2))

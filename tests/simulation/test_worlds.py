@@ -4,7 +4,6 @@ import ctypes
 import gc
 import locale
 import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -64,15 +63,12 @@ def occupy(client: int) -> None:
 
 DISTURBANCES: dict[str, Callable[[int], object]] = {
     "add a box": add_a_box,
-    "remove the floor": lambda client: pybullet.removeBody(0, physicsClientId=client),
-    "reset": lambda client: pybullet.resetSimulation(physicsClientId=client),
     "disconnect": pybullet.disconnect if pybullet else print,
     "occupy": occupy,
     "hold the robot": lambda client: pybullet.createConstraint(
         1, -1, -1, -1, pybullet.JOINT_FIXED, (0, 0, 0), (0, 0, 0), (0, 0, 1), physicsClientId=client
     ),
     "advance": lambda client: pybullet.stepSimulation(physicsClientId=client),
-    "let it float": lambda client: pybullet.setGravity(0, 0, 0, physicsClientId=client),
     "weigh it down": lambda client: pybullet.changeDynamics(1, -1, mass=50, physicsClientId=client),
 }
 
@@ -90,7 +86,7 @@ def test_what_others_do_to_a_pybullet_world_raises(disturbance: str) -> None:
 
 
 @NEEDS_PYBULLET
-@pytest.mark.parametrize("disturbance", ["add a box", "disconnect", "occupy"])
+@pytest.mark.parametrize("disturbance", ["add a box", "occupy"])
 def test_episodes_repeat_whatever_others_did_to_a_kept_client(disturbance: str) -> None:
     with Episode(short("pybullet"), 3) as episode:
         client = episode.robot.simulation.client  # type: ignore[attr-defined]
@@ -116,7 +112,6 @@ def test_no_robot_is_where_code_works_that_names_no_client() -> None:
 
 @NEEDS_PYBULLET
 def test_bullets_contact_margin_is_its_own_in_other_worlds() -> None:
-    """All worlds of a process share it."""
     other = pybullet.connect(pybullet.DIRECT)
 
     def disturbing(tick: Any, config: EpisodeConfig) -> float:
@@ -206,25 +201,15 @@ def test_others_callbacks_of_mujoco_are_refused(when: str) -> None:
         mujoco.set_mjcb_passive(None)
 
 
-def reset(model: Any, data: Any) -> None:
-    import mujoco
-
-    mujoco.mj_resetData(model, data)
+def weigh_down(model: Any, data: Any) -> None:
+    model.body_mass[1] = 50.0
 
 
 def move(model: Any, data: Any) -> None:
     data.qpos[0] += 0.1
 
 
-def let_float(model: Any, data: Any) -> None:
-    model.opt.gravity[:] = 0.0
-
-
-def weigh_down(model: Any, data: Any) -> None:
-    model.body_mass[1] = 50.0
-
-
-@pytest.mark.parametrize("disturbance", [reset, move, let_float, weigh_down])
+@pytest.mark.parametrize("disturbance", [move, weigh_down])
 def test_what_others_do_to_a_mujoco_world_raises(disturbance: Callable[[Any, Any], None]) -> None:
     pytest.importorskip("mujoco")
 
@@ -234,12 +219,6 @@ def test_what_others_do_to_a_mujoco_world_raises(disturbance: Callable[[Any, Any
 
     with pytest.raises(SimulationError, match="other code in this process has changed the robot's model in MuJoCo"):
         simulate(replace(spec("mujoco"), task=replace(STEPPING, reward=disturbing)))
-
-
-def test_importing_the_simulator_leaves_mujocos_warnings_alone() -> None:
-    pytest.importorskip("mujoco")
-    look = "import mujoco, sarah.simulation.mujoco_simulator; assert mujoco.get_mju_user_warning() is None"
-    subprocess.run([sys.executable, "-c", look], check=True)
 
 
 def test_mujocos_warnings_of_other_models_still_come() -> None:
@@ -259,11 +238,11 @@ def test_mujocos_warnings_of_other_models_still_come() -> None:
     assert heard
 
 
-@pytest.mark.parametrize("way", WAYS)
-def test_what_holds_a_world_cannot_be_copied(engine: str, way: str) -> None:
+def test_what_holds_a_world_cannot_be_copied(engine: str) -> None:
     episode = Episode(short(engine), 0)
     renderer = [Renderer(describe_robot())] if engine == "pybullet" else []
     for holder in (episode, episode.robot, episode.robot.simulation, *renderer):
-        with pytest.raises(SimulationError, match=f"^{type(holder).__name__} holds simulated worlds"):
-            WAYS[way](holder)
+        for way in WAYS.values():
+            with pytest.raises(SimulationError, match=f"^{type(holder).__name__} holds simulated worlds"):
+                way(holder)
         holder.close()  # type: ignore[attr-defined]
