@@ -37,6 +37,16 @@ def test_killed_in_the_middle_it_goes_on_to_the_same_bytes(tmp_path: Path) -> No
         assert (journal.parent / name).read_bytes() == (tmp_path / "whole" / name).read_bytes(), name
 
 
+@pytest.mark.parametrize("line", [b"\n", b"rubbish\n", b"0000000 {}\n", b"\xff\x00\n", b"ffffffff []\n"])
+def test_rubbish_in_a_journal_does_no_harm(line: bytes, tmp_path: Path) -> None:
+    path = begun(tmp_path / "game")
+    best = play(path, GAME)
+    first, *rows = (path / "journal.jsonl").read_bytes().splitlines(keepends=True)
+    (path / "journal.jsonl").write_bytes(b"".join([first, line, *rows]))
+    assert play(path, GAME, seconds=10.0) == best
+    assert (path / "journal.jsonl").read_bytes().count(b"\n") == 42  # nothing was added
+
+
 def test_what_is_known_is_not_asked_again(tmp_path: Path) -> None:
     path = begun(tmp_path / "game")
     best = play(path, GAME)
