@@ -83,9 +83,7 @@ def test_settings_are_keywords() -> None:
     [
         ({"engin": "mujoco"}, "unknown key 'engin', did you mean 'engine'?"),
         ({"time_limit": "10"}, "time_limit must be a number, not '10'"),
-        ({"time_limit": 0.5}, "time_limit must be between 1 and 3600 s, not 0.5"),
         ({"push": {"newton": 1}}, "unknown key 'push.newton', did you mean 'push.newtons'?"),
-        ({"physics": {"rate": 0}}, "physics.rate must be"),
     ],
 )
 def test_mistakes_in_keywords_are_one_line(keywords: dict[str, Any], words: str) -> None:
@@ -129,16 +127,14 @@ def test_observation_is_of_order_one_and_upright() -> None:
     env.close()
 
 
-def test_same_seed_gives_the_same_series_of_episodes() -> None:
-    series = []
-    for _ in range(2):
-        env = SarahEnv(config=SHORT)
-        first, info = env.reset(seed=5)
-        second, next_info = env.reset()
-        series.append((first.tolist(), second.tolist(), info["seed"], next_info["seed"]))
-        env.close()
-    assert series[0] == series[1]
-    assert series[0][2] != series[0][3]
+def test_a_seed_gives_a_series_of_different_episodes() -> None:
+    env, other = SarahEnv(config=SHORT), SarahEnv(config=SHORT)
+    series, again = ([one.reset(seed=5), one.reset()] for one in (env, other))
+    assert [observation.tolist() for observation, _ in series] == [observation.tolist() for observation, _ in again]
+    seeds = [info["seed"] for _, info in (*series, *again)]
+    assert seeds[:2] == seeds[2:] and seeds[0] != seeds[1]
+    env.close()
+    other.close()
 
 
 def test_balance_episode_repeats_with_its_push() -> None:
@@ -161,22 +157,11 @@ def test_step_tells_the_disturbances_of_the_episode_unless_the_task_names_none()
         env.close()
 
 
-def test_unknown_task_is_refused() -> None:
+def test_unknown_names_are_refused() -> None:
     with pytest.raises(ConfigurationError, match="unknown task 'balanse', did you mean 'balance'"):
         SarahEnv("balanse")
-
-
-def test_unknown_render_mode_is_refused() -> None:
     with pytest.raises(ConfigurationError, match=r"^unknown render_mode 'rgb', did you mean 'rgb_array'\?"):
         SarahEnv(render_mode="rgb")
-
-
-def test_action_is_the_scaled_box() -> None:
-    assert parameters_from(np.zeros(4), BALANCE) == (0.0,) * 4
-    assert parameters_from(np.ones(4), BALANCE) == (2.0,) * 4
-    assert parameters_from(np.zeros(5), STEPPING) == (1.0,) * 5
-    assert parameters_from(-np.ones(5), STEPPING) == (0.0,) * 5
-    assert parameters_from(np.ones(5), STEPPING) == (2.0,) * 5
 
 
 def test_actions_that_rounding_puts_outside_are_the_ends() -> None:
@@ -250,22 +235,13 @@ def test_an_episode_has_one_step() -> None:
 
 
 @NEEDS_PYBULLET
-def test_render_gives_a_picture() -> None:
-    env = SarahEnv(config=SHORT, render_mode="rgb_array")
-    env.reset(seed=0)
-    picture = env.render()
-    assert picture is not None and picture.shape == (480, 640, 3) and picture.std() > 10
-    env.close()
-
-
-@NEEDS_PYBULLET
 @pytest.mark.parametrize("terrain", [Terrain(slope_degrees=9.0), Terrain(roughness=0.02)], ids=["slope", "bumps"])
 def test_render_shows_the_ground_of_the_episode(terrain: Terrain) -> None:
     env = SarahEnv(config=SHORT, terrain=terrain, render_mode="rgb_array")
     _, info = env.reset(seed=3)
     picture = env.render()
     env.close()
-    assert picture is not None
+    assert picture is not None and picture.shape == (480, 640, 3) and picture.std() > 10
     camera = STANDARD_CAMERA._replace(ground=draw_ground(terrain, info["seed"]))
     beside = (slice(380, 480), slice(0, 150))  # no robot and no shadow
     assert (picture[beside] == floor(640, 480, camera)[beside]).all()

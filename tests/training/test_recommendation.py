@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from laboratory import RESULT
 
@@ -113,6 +113,7 @@ def test_distances_are_shares_of_the_box() -> None:
     assert after(wider, task).best(around(*CHOICE, offset=1.0)) == pytest.approx([2.0 * value for value in best])
 
 
+@settings(max_examples=20)
 @given(st.lists(st.tuples(st.tuples(*[st.floats(0, 2)] * 5), st.floats(0, 1)), max_size=20))
 def test_whatever_was_tried_what_is_best_can_be_simulated(tried: Tries) -> None:
     assert STEPPING.box.checked(after(tried).best(CHOICE)) == after(tried).best(CHOICE)
@@ -124,9 +125,9 @@ def random_episodes(count: int) -> Tries:
 
 
 def test_a_crest_is_found_though_single_episodes_say_little() -> None:
-    """Merit falls with the distance from a place, and noise as large as the differences hides it: ten trainings."""
+    """Merit falls with the distance from a place, and noise as large as the differences hides it: five trainings."""
     crest, found = np.full(3, 1.2), []
-    for seed in range(10):
+    for seed in range(5):
         generator = np.random.default_rng(seed)
         places = generator.uniform(0.4, 2.0, (200, 5))
         merits = 0.8 - 0.5 * np.linalg.norm(places[:, :3] - crest, axis=1) + generator.normal(scale=0.2, size=200)
