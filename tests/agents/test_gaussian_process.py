@@ -38,7 +38,7 @@ def test_bounds_are_those_of_the_definition() -> None:
     assert process.upper_bounds(places, 2.0) == pytest.approx(process.expected(places) + 2.0 * np.sqrt(unknown))
 
 
-def test_an_optimist_leaves_a_good_place_for_one_that_may_be_better() -> None:
+def test_an_optimist_leaves_a_good_place_for_a_possible_one() -> None:
     """Thirty fair trials on one side, one on the other that was as good."""
     actions = np.array([[-0.6, -0.6]] * 30 + [[0.6, 0.6]])
     rewards = np.array([0.5, 0.7] * 15 + [0.65])
@@ -69,7 +69,7 @@ def test_a_fine_landscape_is_recognised() -> None:
     assert GaussianProcess(actions, np.sin(2 * actions[:, 0])).kernel[0] == LENGTHS[0]
 
 
-def test_a_few_episodes_choose_no_kernel_and_none_the_first_candidate() -> None:
+def test_a_few_episodes_choose_no_kernel() -> None:
     actions = np.linspace(-1, 1, 9)[:, None]
     assert GaussianProcess(actions, np.sin(9 * actions[:, 0])).kernel == (LENGTHS[0], NOISES[0])
     nothing = GaussianProcess(np.empty((0, 2)), np.empty(0))
@@ -77,7 +77,7 @@ def test_a_few_episodes_choose_no_kernel_and_none_the_first_candidate() -> None:
 
 
 @pytest.mark.parametrize("top", [(0.3, -0.2), (1.0, 0.4)])
-def test_the_best_is_the_highest_in_the_box_whether_it_was_tried_or_not(top: tuple[float, float]) -> None:
+def test_the_best_is_the_highest_in_the_box_tried_or_not(top: tuple[float, float]) -> None:
     rng = np.random.default_rng(3)
     actions = rng.uniform(-1, 1, (60, 2))
     process = GaussianProcess(actions, -((actions - top) ** 2).sum(axis=1))

@@ -64,7 +64,7 @@ UNKNOWN = [
 
 
 @pytest.mark.parametrize(("algorithm", "arguments", "of", "said"), UNKNOWN)
-def test_an_unknown_argument_gets_the_nearest_or_where_it_belongs(algorithm, arguments, of, said):
+def test_an_unknown_argument_gets_the_nearest_or_its_place(algorithm, arguments, of, said):
     with pytest.raises(TypeError, match=rf"^{of}\.__init__\(\) got an unexpected keyword argument '{said}$"):
         algorithm("MlpPolicy", "Pendulum-v1", **arguments)
 
@@ -128,7 +128,7 @@ class Ranges(gym.ActionWrapper):
         return action[:1]
 
 
-def test_actions_without_a_range_or_with_an_endless_one_are_refused():
+def test_actions_without_a_finite_range_are_refused():
     said = r"^every action must have a range, but the lowest are \[-2.0, 1.0\], the highest \[2.0, 1.0\]$"
     with pytest.raises(ValueError, match=said):
         NAF("MlpPolicy", Ranges([-2, 1], [2, 1]))

@@ -84,7 +84,7 @@ def test_the_diagonal_is_bounded_whatever_the_weights():
     assert {round(value, 3) for value in diagonal.log().unique().tolist()} == {-5.0, 5.0}
 
 
-def test_an_untrained_policy_proposes_the_centre_as_its_output_layer_is_zero():
+def test_an_untrained_policy_proposes_the_centre():
     """The layers before it are not: there the gradient would be zero for good."""
     th.manual_seed(0)
     space = spaces.Box(np.array([0.0, -4.0], np.float32), np.array([2.0, 2.0], np.float32))
@@ -96,7 +96,7 @@ def test_an_untrained_policy_proposes_the_centre_as_its_output_layer_is_zero():
     assert len(hidden) == 2 and all(layer.weight.all() for layer in hidden)
 
 
-def test_a_critic_by_itself_is_the_publications_with_mu_in_the_action_space():
+def test_a_critic_by_itself_is_the_publications():
     """Images in [0, 1], mu behind a tanh, and no curvature but that of L. Its weights are the networks' only."""
     th.manual_seed(0)
     image = spaces.Box(0, 255, (3, 4, 4), np.uint8)

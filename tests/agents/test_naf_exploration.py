@@ -102,7 +102,7 @@ def elite_actions(steps: int, environment: type[Recorder] = Target, **kwargs) ->
 
 
 @pytest.mark.parametrize("on_request", [False, True])
-def test_only_the_first_environment_begins_at_the_centre_on_request(on_request: bool):
+def test_only_the_first_environment_begins_at_the_centre(on_request: bool):
     kwargs = dict(learning_starts=30, elite_share=0.0, first_action_centre=on_request)
     actions = explore(4, n_envs=2, algorithm=LocalNAF, **kwargs)
     assert (actions[0, 0] == 0.0).all() == on_request

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from stable_baselines3 import HerReplayBuffer
 from stable_baselines3.common.env_util import make_vec_env
-from stable_baselines3.common.envs import BitFlippingEnv, FakeImageEnv, IdentityEnvBox, SimpleMultiObsEnv
+from stable_baselines3.common.envs import BitFlippingEnv, FakeImageEnv, SimpleMultiObsEnv
 from stable_baselines3.common.utils import ConstantSchedule
 from stable_baselines3.common.vec_env import DummyVecEnv, VecNormalize
 
@@ -122,16 +122,7 @@ def test_normalised_environments():
     assert np.abs(model.replay_buffer.rewards).max() > 1.5 * model.replay_buffer.sample(200, env).rewards.abs().max()
 
 
-def test_tensorboard(tmp_path):
-    from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
-
-    NAF("MlpPolicy", IdentityEnvBox(ep_length=10), tensorboard_log=str(tmp_path), **SMALL).learn(50)
-    events = EventAccumulator(str(tmp_path / "NAF_1")).Reload()
-    wanted = {"train/loss", "train/q", "train/learning_rate", "train/exploration_std", "rollout/ep_rew_mean"}
-    assert wanted <= set(events.Tags()["scalars"])
-
-
-def test_discrete_actions_and_the_wrong_policy_for_dicts_are_refused():
+def test_discrete_actions_and_the_wrong_policy_are_refused():
     with pytest.raises(AssertionError, match=r"only supports .*Box.* as action spaces but Discrete"):
         NAF("MlpPolicy", "CartPole-v1")
     with pytest.raises(ValueError, match="MultiInputPolicy"):

@@ -93,7 +93,7 @@ def test_targets(net_arch, n_steps, timeout):
     assert logged == pytest.approx(np.mean((q_values - targets) ** 2), rel=1e-5)
 
 
-def test_without_a_future_the_reward_is_the_target_whatever_the_target_network_says():
+def test_without_a_future_the_reward_is_the_target():
     model = make_model(Corridor(), gamma=0.0).learn(30)
     for parameter in model.q_net_target.parameters():
         nn.init.constant_(parameter, np.inf)

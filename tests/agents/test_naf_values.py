@@ -66,7 +66,7 @@ def trained(steps, **kwargs):
     return Recorder("MlpPolicy", Drift(), **arguments).learn(steps)
 
 
-def test_v_stays_within_the_bound_where_the_published_targets_let_it_run_away():
+def test_v_stays_within_the_bound_where_the_published_runs_away():
     fast = dict(learning_starts=300, tau=0.1, batch_size=64)  # a target that follows faster shows it sooner
     held = trained(1600, **fast)
     with pytest.warns(UserWarning, match="it runs away"):
@@ -151,7 +151,7 @@ def test_w_has_a_mean_where_all_actions_are_mu_itself():
 
 
 @pytest.mark.parametrize(("transitions", "weight"), [(1, 0.1), (300, 0.1), (600, 0.05), (30_000, 0.001)])
-def test_the_pull_of_mu_to_the_centre_has_the_units_of_the_loss_and_fades_with_data(transitions, weight):
+def test_the_pull_of_mu_to_the_centre_fades_with_data(transitions, weight):
     """Mean of |mu|^2 over states is (1 + 4) / 2; the error of Q is in reward^2, and is not made smaller by it."""
     mu = th.tensor([[1.0, 0.0], [0.0, -2.0]], requires_grad=True)
     q_loss = th.tensor(9.0, requires_grad=True)

@@ -24,7 +24,7 @@ from sarah.agents.naf_warnings import FirstUpdates, reward_warning, value_warnin
         (0.0, 29.0, None),
     ],
 )
-def test_rewards_are_far_by_their_deviation_and_large_by_its_size(mean, std, said):
+def test_rewards_are_far_by_their_deviation_large_by_its_size(mean, std, said):
     text = reward_warning(mean + std * np.array([-1.0, 1.0, -1.0, 1.0, -1.0, 1.0], np.float32))
     assert text is None if said is None else re.search(said, text)
 
@@ -65,7 +65,7 @@ def thread_warnings(model: NAF) -> list[str]:
     return [str(one.message) for one in caught if "threads" in str(one.message)]
 
 
-def test_updates_that_threads_make_slow_are_said_once_with_the_remedy(monkeypatch, tmp_path):
+def test_updates_that_threads_make_slow_are_said_once(monkeypatch, tmp_path):
     monkeypatch.setattr(th, "get_num_threads", lambda: 4)
     policy_kwargs = {"net_arch": [8], "optimizer_class": SlowSGD}
     model = NAF("MlpPolicy", "Pendulum-v1", policy_kwargs=policy_kwargs, learning_starts=10, batch_size=8)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from stable_baselines3.common.utils import set_random_seed
 
 from sarah.agents import NAF, LocalNAF, RankReplayBuffer
-from sarah.agents.buffers import average_ranks
+from sarah.agents.buffers import average_ranks, neighbourhood_means
 
 BOX = spaces.Box(-1, 1, (2,))
 
@@ -40,16 +40,16 @@ def test_ranks_by_counting(values):
     n = len(values)
     by_counting = [(sum(v < x for v in values) + (sum(v == x for v in values) - 1) / 2) for x in values]
     np.testing.assert_allclose(average_ranks(np.array(values)), np.array(by_counting) / max(n - 1, 1))
+    assert average_ranks(np.array([1.0, np.nan, 2.0])).tolist() == [0.5, 0.0, 1.0]
 
 
-@pytest.mark.parametrize("n_envs", [1, 4])
-def test_frequencies_follow_the_formula(n_envs):
+def test_frequencies_follow_the_formula():
     set_random_seed(0)
     rewards = [3.0, -1.0, 10.0, 3.0, 0.0, 7.0, 3.0, -8.0]
     ranks = np.array([4, 1, 7, 4, 2, 6, 4, 0]) / 7
     expected = np.exp(4 * ranks) / np.exp(4 * ranks).sum()
     # Standard error at most 0.001
-    np.testing.assert_allclose(frequencies(fill(rewards, n_envs), 8), expected, atol=0.005)
+    np.testing.assert_allclose(frequencies(fill(rewards, n_envs=4), 8), expected, atol=0.005)
 
 
 @pytest.mark.parametrize("rewards, temperature", [([1.0] * 8, 4.0), (list(range(8)), 0.0)])
@@ -79,6 +79,8 @@ def test_ranks_follow_additions_and_reset():
     buffer.add(*(np.full((1, d), 2.0, np.float32) for d in (1, 1, 2)), np.array([9.0]), np.ones(1), [{}])
     assert np.argmax(frequencies(buffer, 3)) == 2
     buffer.reset()
+    with pytest.raises(ValueError, match="the replay buffer is empty, so there is nothing to sample"):
+        buffer.sample(4)
     buffer.add(*(np.zeros((1, d), np.float32) for d in (1, 1, 2)), np.array([-9.0]), np.ones(1), [{}])
     assert frequencies(buffer, 3)[0] == 1.0
 
@@ -104,10 +106,6 @@ def test_what_is_not_supported_is_refused():
     space = spaces.Dict(a=spaces.Box(-1, 1, (1,)))
     with pytest.raises(NotImplementedError, match="doesn't support Dict observations: flatten them"):
         RankReplayBuffer(10, space, spaces.Box(-1, 1, (1,)))
-
-
-def test_what_is_not_a_number_ranks_lowest():
-    assert average_ranks(np.array([1.0, np.nan, 2.0])).tolist() == [0.5, 0.0, 1.0]
 
 
 def add(buffer: RankReplayBuffer, action, reward: float) -> None:
@@ -141,17 +139,16 @@ def test_ranks_say_nothing_of_what_follows(algorithm):
     assert LocalNAF("MlpPolicy", "Pendulum-v1", policy_kwargs={"net_arch": [8]}).gamma == 0.0
 
 
+def test_neighbourhood_means_by_hand():
+    means = neighbourhood_means(np.array([[0.0], [3.0]]), np.array([[0.0], [0.2]]), np.array([1.0, 3.0]), distance=0.2)
+    weight = np.exp(-0.5)
+    assert means[0] == pytest.approx((1.0 + 3.0 * weight) / (1.25 + weight))
+    assert means[1] == pytest.approx(0.0, abs=1e-9)  # far from all
+
+
 def test_what_is_far_away_is_no_error_of_numpy():
     buffer = fill([1.0, 2.0, 3.0], temperature=1000.0)  # with actions far from each other
     with np.errstate(all="raise"):
         buffer.best_action()
         buffer.draw_near_best(0.01, 16)
-        buffer.sample(4)
-
-
-def test_a_buffer_that_was_reset_has_nothing_to_sample():
-    buffer = fill([1.0, 2.0, 3.0])
-    buffer.sample(4)
-    buffer.reset()
-    with pytest.raises(ValueError, match="the replay buffer is empty, so there is nothing to sample"):
         buffer.sample(4)

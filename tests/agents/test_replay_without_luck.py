@@ -70,7 +70,7 @@ def test_the_best_action_is_a_good_one_and_not_a_lucky_one() -> None:
 
 
 @pytest.mark.parametrize("buffer_size", [1000, 50])
-def test_sampled_rewards_are_corrected_and_stored_ones_as_they_came(buffer_size: int) -> None:
+def test_sampled_rewards_are_corrected_and_stored_ones_are_not(buffer_size: int) -> None:
     """Also where the oldest have been overwritten."""
     buffer = played(120, buffer_size, temperature=0.0)
     first = max(0, 120 - buffer_size)

@@ -38,7 +38,7 @@ def sampled(buffer: RankReplayBuffer) -> tuple[np.ndarray, np.ndarray]:
     return samples.actions.numpy(), samples.rewards.numpy()[:, 0]
 
 
-def test_sampled_rewards_are_near_the_truth_and_lucky_actions_rare() -> None:
+def test_sampled_rewards_are_near_the_truth_and_luck_is_rare() -> None:
     smoothed, plain = played(), played(RankReplayBuffer)
     assert (smoothed.rewards == plain.rewards).all()
     samples = [sampled(buffer) for buffer in (smoothed, plain)]
@@ -48,7 +48,7 @@ def test_sampled_rewards_are_near_the_truth_and_lucky_actions_rare() -> None:
     assert good[0] > good[1] + 0.1
 
 
-def test_the_best_action_is_near_the_top_and_so_are_draws_near_it() -> None:
+def test_the_best_action_and_draws_near_it_are_near_the_top() -> None:
     buffer = played()
     best = buffer.best_action()
     assert hill(best) > 0.9 and best.tolist() not in buffer.actions[:, 0].tolist()
@@ -74,7 +74,7 @@ def test_what_is_known_follows_every_addition() -> None:
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])
-def test_a_reward_that_is_no_number_stays_one_and_spoils_no_other(value: float) -> None:
+def test_a_reward_that_is_no_number_spoils_no_other(value: float) -> None:
     """So the loss still says that something is wrong."""
     buffer = played(count=60)
     best = buffer.best_action()

@@ -37,7 +37,7 @@ def test_changes_are_objects_or_mappings() -> None:
         SarahOperationEnv(changes=["1: payload=3"])
 
 
-def test_the_checkers_of_gymnasium_and_stable_baselines3_find_nothing() -> None:
+def test_checkers_find_nothing() -> None:
     env = SarahOperationEnv(quick(minutes=0.2))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -47,7 +47,7 @@ def test_the_checkers_of_gymnasium_and_stable_baselines3_find_nothing() -> None:
     env.close()
 
 
-def test_a_step_is_a_window_and_its_reward_is_what_the_robot_observes() -> None:
+def test_a_step_is_a_window_whose_reward_the_robot_observes() -> None:
     env = SarahOperationEnv(quick(minutes=0.2))
     observation, info = env.reset(seed=1)
     assert info["window"].parameters == SHIPPED

@@ -147,7 +147,7 @@ def test_balance_episode_repeats_with_its_push() -> None:
     env.close()
 
 
-def test_step_tells_the_disturbances_of_the_episode_unless_the_task_names_none() -> None:
+def test_step_tells_the_disturbances_that_the_task_names() -> None:
     for task in (BALANCE, dataclasses.replace(BALANCE, name="mine", disturbances=None)):
         env = SarahEnv(task, BalanceConfig(time_limit=1.2, physics=COARSE_PHYSICS, push=Push(newtons=(50, 80))))
         env.reset(seed=0)

@@ -48,7 +48,7 @@ def test_time_goes_on_without_gaps_until_the_operation_is_over() -> None:
     assert windows[-2].end < 9.0 <= windows[-1].end
 
 
-def test_a_robot_whose_operation_was_extended_looks_to_the_next_end() -> None:
+def test_a_robot_in_longer_operation_looks_to_the_next_end() -> None:
     """As it did before: whoever chooses parameters by the time that is left chooses the same ones again."""
     config = quick(minutes=0.2)
     robots = [RobotInOperation(settings, 0) for settings in (config, config.extended_to(0.3))]
@@ -62,7 +62,7 @@ def test_a_robot_whose_operation_was_extended_looks_to_the_next_end() -> None:
     assert not robots[1].is_over and robots[1].windows_left == 6.0
 
 
-def test_a_window_that_steps_well_is_worth_more_than_one_that_stands() -> None:
+def test_a_window_that_steps_is_worth_more_than_one_that_stands() -> None:
     """By equation 2 and by what the robot itself feels, in plausible units."""
     stepping, standing = (run_all(OperationConfig(minutes=0.2), parameters=chosen)[-1] for chosen in (SHIPPED, STANDS))
     for reward in ("score", "observed_reward"):
@@ -75,7 +75,7 @@ def test_a_window_that_steps_well_is_worth_more_than_one_that_stands() -> None:
     assert felt["shift_seconds"] + felt["lift_seconds"] + felt["land_seconds"] == pytest.approx(1.0 / 3.0, abs=0.1)
 
 
-def test_a_fall_ends_the_window_costs_time_and_the_next_begins_from_standing() -> None:
+def test_a_fall_costs_time_and_the_next_window_begins_standing() -> None:
     windows = run_all(quick(minutes=0.25, robot=KICKED, push_seconds=6.0))
     fallen = next(index for index, window in enumerate(windows) if window.fell)
     window, after, next_but_one = windows[fallen : fallen + 3]
@@ -85,7 +85,7 @@ def test_a_fall_ends_the_window_costs_time_and_the_next_begins_from_standing() -
     assert next_but_one.seconds == 1.0
 
 
-def test_the_robot_stays_the_same_after_a_fall_but_its_noise_does_not_repeat() -> None:
+def test_after_a_fall_the_robot_is_the_same_with_other_noise() -> None:
     robot = RobotInOperation(quick(minutes=1.0, robot={**KICKED, "payload": 3.0}), 0)
     first = robot.run(SHIPPED)
     while not robot.run(SHIPPED).fell:
@@ -96,7 +96,7 @@ def test_the_robot_stays_the_same_after_a_fall_but_its_noise_does_not_repeat() -
     assert load(first) == pytest.approx(load(again), rel=0.15)
 
 
-def test_a_change_holds_from_the_next_window_on_and_from_standing() -> None:
+def test_a_change_holds_from_the_next_window_and_standing() -> None:
     config = quick(minutes=0.2, changes=(Change(0.1, {"payload": 20.0}),))
     changed, unchanged = run_all(config), run_all(dataclasses.replace(config, changes=()))
     at = next(index for index, window in enumerate(changed) if window.changes)
@@ -113,7 +113,7 @@ def test_pushes_come_at_their_interval() -> None:
     assert pushed[first].begin <= 4.0 < pushed[first].end
 
 
-def test_windows_that_are_known_are_not_simulated_again_and_change_nothing() -> None:
+def test_known_windows_are_skipped_and_change_nothing() -> None:
     config = quick(minutes=0.3, robot=KICKED, changes=(Change(0.15, SLOPE),))
     whole = run_all(config)
     assert any(window.fell for window in whole) and whole[-1].changes == 1
@@ -145,7 +145,7 @@ def test_impossible_operations_are_refused(settings: dict[str, Any], words: str)
         OperationConfig(**settings)
 
 
-def test_a_robot_that_cannot_be_built_is_refused_before_the_operation_begins() -> None:
+def test_a_robot_that_cannot_be_built_is_refused_at_once() -> None:
     with pytest.raises(DescriptionError, match="foot plates reach the floor"):
         quick(changes=(Change(0.05, {"dimensions": {"hinge_height": 0.005}}),))
 

@@ -89,7 +89,7 @@ def read(text: str, folder: Path) -> AgentSettings:
     return read_config(TrainingConfig, path).agent
 
 
-def test_what_a_file_does_not_name_is_the_default_of_its_algorithm(tmp_path: Path) -> None:
+def test_what_a_file_does_not_name_is_its_algorithms_default(tmp_path: Path) -> None:
     assert read("agent: {tau: 0.1}", tmp_path) == NAFSettings(tau=0.1)
     assert read("{agent: {learning_rate: 3e-4, layers: [8]}, algo: td3}", tmp_path) == TD3Settings(3e-4, layers=(8,))
     assert read("{algo: sac, agent: {ent_coef: 0.1}}", tmp_path) == SACSettings(ent_coef=0.1)

@@ -16,7 +16,7 @@ from sarah.operation.settings import Change, OperationConfig
 from sarah.robot.description import describe_robot
 from sarah.runs.agent_settings import NAFSettings
 from sarah.runs.config import TrainingConfig
-from sarah.runs.config_files import read_config, write_config
+from sarah.runs.config_files import changed_alike, read_config, write_config
 from sarah.runs.session import SessionSpec
 from sarah.simulation.engines import default_engine
 from sarah.simulation.physics import PyBulletPhysics
@@ -40,7 +40,7 @@ BEFORE_SIZES = (
 """Settings of a robot of another size as a version wrote them in which nothing went with the size."""
 
 
-def test_files_from_before_settings_went_with_the_size_keep_the_robot_they_were_written_of(tmp_path: Path) -> None:
+def test_files_from_before_sizes_keep_their_robot(tmp_path: Path) -> None:
     path = tmp_path / "config.yaml"
     path.write_text(f"episode: {BEFORE_SIZES}")
     training = read_config(TrainingConfig, path).episode
@@ -132,9 +132,16 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
         read_config(TrainingConfig, tmp_path / "nothing.yaml")
 
 
-def test_configurations_are_immutable() -> None:
+def test_changes_of_one_are_made_alike_in_another() -> None:
+    before = EpisodeConfig()
+    after = dataclasses.replace(before, payload=3.0, physics=dataclasses.replace(before.physics, rate=800))
+    other = dataclasses.replace(
+        before, time_limit=9.0, physics=dataclasses.replace(before.physics, solver_iterations=9)
+    )
+    changed = changed_alike(other, before, after)
+    assert changed == dataclasses.replace(other, payload=3.0, physics=dataclasses.replace(other.physics, rate=800))
     with pytest.raises(dataclasses.FrozenInstanceError):
-        TrainingConfig().seed = 3  # type: ignore[misc]
+        changed.payload = 0.0  # type: ignore[misc]
 
 
 @pytest.mark.parametrize(

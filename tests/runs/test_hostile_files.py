@@ -185,7 +185,7 @@ def test_sizes_are_those_that_are_said(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("within_seconds")
-def test_what_is_replaced_goes_through_no_link_and_waits_for_nobody(tmp_path: Path) -> None:
+def test_what_is_replaced_goes_through_no_link_and_no_fifo(tmp_path: Path) -> None:
     precious = tmp_path / "precious"
     precious.write_text("data")
     (tmp_path / "file").symlink_to(precious)

@@ -80,9 +80,7 @@ def test_trials_come_before_any_seed_of_the_summary_is_seen(tmp_path: Path, monk
     assert [summary[0].parameters] * 5 in trials
 
 
-def test_without_neutral_parameters_nothing_is_simulated_for_them(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_without_neutral_parameters_none_are_simulated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Stage, "trials", 2)
     assert STEPPING.neutral is None
     _, _, specs = trained(tmp_path / "run", TrainingConfig(algo="random", episodes=16, slots=1, episode=EPISODE))

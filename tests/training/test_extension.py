@@ -86,7 +86,7 @@ def test_a_cut_extension_goes_on_to_the_same_end(new_rows: int, folder: Path, tm
         ("--episodes 30 --scheduler nowhere://127.0.0.1:1", "nowhere"),  # there are no workers
     ],
 )
-def test_an_extension_that_is_refused_leaves_the_training_finished(
+def test_a_refused_extension_leaves_the_training_finished(
     options: str, words: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     before = tree(folder / "before")

@@ -129,7 +129,7 @@ def test_defaults_are_the_preset() -> None:
     assert model.gamma == preset.gamma
 
 
-def test_the_preset_paper_is_plain_naf_with_the_networks_of_the_paper() -> None:
+def test_the_preset_paper_is_plain_naf_with_the_papers_networks() -> None:
     env = EpisodeVecEnv("stepping", TrainingConfig().episode, 1, 1, Workers())
     plain = NAF("MlpPolicy", env, **PRESETS["paper"])
     model = built(preset="paper")

@@ -56,9 +56,7 @@ def in_pieces(run: Callable[..., SessionResult]) -> SessionResult:
     raise AssertionError("it never ends")
 
 
-def test_an_extension_that_is_cut_after_every_window_ends_in_the_same_bytes(
-    finished: Path, whole: Path, tmp_path: Path
-) -> None:
+def test_an_extension_cut_after_every_window_ends_the_same(finished: Path, whole: Path, tmp_path: Path) -> None:
     folder = copied(finished, tmp_path / "cut")
     spec = extend(folder, LONGER)
     assert spec == SPEC.extended_to(LONGER) == folder.spec() and not folder.is_finished
@@ -69,7 +67,7 @@ def test_an_extension_that_is_cut_after_every_window_ends_in_the_same_bytes(
 
 
 @pytest.mark.parametrize("learner", ["naf", "cma-es", "random"])
-def test_a_learner_that_does_not_look_ahead_does_as_if_it_had_been_as_long_from_the_beginning(learner: str) -> None:
+def test_who_does_not_look_ahead_does_as_in_a_long_session(learner: str) -> None:
     spec = dataclasses.replace(SPEC, learner=learner)
     longer = dataclasses.replace(spec, config=dataclasses.replace(spec.config, minutes=LONGER))
     assert run_session(spec.extended_to(LONGER)) == run_session(longer)

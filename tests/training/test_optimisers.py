@@ -72,7 +72,7 @@ def test_a_generation_is_told_before_the_next_is_asked_for(population: int) -> N
     assert search.ready()
 
 
-def test_the_first_generation_of_cma_es_has_the_deviation_that_is_set() -> None:
+def test_the_first_generation_has_the_deviation_that_is_set() -> None:
     for deviation in (0.05, 0.2):
         search = make_search("cma-es", EvolutionSettings(deviation=deviation, population=500), 4, 0)
         actions = np.array([box_of(4).scaled(search.ask()) for _ in range(500)])

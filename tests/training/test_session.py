@@ -131,7 +131,7 @@ def test_every_window_can_be_played_as_it_was(whole: tuple[Path, SessionResult])
         assert window.fell or played.duration == CONFIG.settle_seconds + CONFIG.measure_seconds
 
 
-def test_a_change_that_never_came_is_none_of_the_robots_in_the_end(tmp_path: Path) -> None:
+def test_a_change_that_never_came_is_none_in_the_end(tmp_path: Path) -> None:
     changes = (Change(0.05, {"payload": 5.0}), Change(0.1, {"payload": 60.0}))
     spec = SessionSpec(learner="none", config=quick(changes=changes))
     folder = SessionFolder.create(tmp_path / "late", spec)

@@ -42,7 +42,7 @@ def test_the_careful_learner_climbs_and_does_not_fall(seed: int) -> None:
     assert robot.mean_reward(8.0) > hill(START) + 0.6 * (0.9 - hill(START))
 
 
-def test_it_loses_little_where_nothing_is_to_be_gained_and_random_search_much() -> None:
+def test_it_loses_little_on_a_top_and_random_search_much() -> None:
     robot, random = operated("careful", cliff), operated("random", cliff)
     assert robot.falls <= 1 and robot.mean_reward() > 0.9 - 0.05
     assert random.falls > 5 * max(1, robot.falls) and random.mean_reward() < robot.mean_reward()
@@ -98,7 +98,7 @@ def test_the_others_climb_too(learner: str) -> None:
 
 
 @pytest.mark.parametrize("learner", LEARNERS)
-def test_learners_begin_with_what_they_are_given_and_do_not_see_the_score(learner: str) -> None:
+def test_learners_begin_as_given_and_do_not_see_the_score(learner: str) -> None:
     """Only the robot's own reward: a score from another world changes nothing."""
 
     class Blind(FormulaRobot):

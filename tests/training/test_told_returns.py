@@ -30,9 +30,7 @@ class Listening(RandomSearch):
         super().tell(parameters, merit, fell)
 
 
-def test_each_return_is_corrected_by_what_is_known_when_it_is_told(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_each_return_is_corrected_by_what_is_known_then(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Stage, "trials", 1)
     monkeypatch.setattr(Listening, "told", [], raising=False)
     monkeypatch.setitem(OPTIMISERS, "random", Listening)
