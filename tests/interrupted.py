@@ -1,5 +1,6 @@
 """Short trainings that are interrupted."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -11,11 +12,14 @@ from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
 from sarah.training.train import train
 
-EPISODE = EpisodeConfig(
-    time_limit=1.2, physics=Physics(rate=100, solver_iterations=5, control_rate=50), dimensions={"thigh_length": 0.34}
-)
-INTERRUPTED = 3
-"""Number of episodes after which a training of these tests is interrupted."""
+EPISODE = EpisodeConfig(time_limit=1.2, physics=Physics(rate=50, solver_iterations=5, control_rate=50))
+"""Settings of an episode that costs next to nothing, for tests that do not look at the robot."""
+
+
+def interrupted_after(results: int) -> Callable[[], bool]:
+    """Function that asks to stop after some results, those from the journal included."""
+    countdown = iter(range(results))
+    return lambda: next(countdown, None) is None
 
 
 def begun(path: Path, config: TrainingConfig) -> RunFolder:
@@ -25,16 +29,15 @@ def begun(path: Path, config: TrainingConfig) -> RunFolder:
         return run
 
 
-def interrupted(path: Path, config: TrainingConfig, episodes: int = INTERRUPTED) -> RunFolder:
+def interrupted(path: Path, config: TrainingConfig, results: int = 3) -> RunFolder:
     run = RunFolder.create(path, config)
-    go_on(run, episodes)
+    go_on(run, results)
     return run
 
 
-def go_on(run: RunFolder, episodes: int) -> None:
-    countdown = iter(range(episodes))
+def go_on(run: RunFolder, results: int) -> None:
     with pytest.raises(TrainingInterruptedError):
-        train(run.config(), run, interrupted=lambda: next(countdown, None) is None)
+        train(run.config(), run, interrupted=interrupted_after(results))
 
 
 def content(run: RunFolder) -> dict[str, bytes]:

@@ -13,9 +13,9 @@ from sarah.operation.window import FELT, Window
 
 
 def quick(minutes: float = 0.1, robot: dict[str, Any] | None = None, **settings: Any) -> OperationConfig:
-    """Settings with windows of a second, in which nobody rests after a fall."""
+    """Settings with windows of a second and coarse physics, in which nobody rests after a fall."""
     config = OperationConfig(settle_seconds=0.5, measure_seconds=0.5, fall_seconds=2.0, push_seconds=4.0)
-    pushed = from_mapping(config.robot, robot or {})
+    pushed = from_mapping(config.robot, {"physics": {"rate": 200, "solver_iterations": 5}, **(robot or {})})
     return dataclasses.replace(config, robot=pushed, minutes=minutes, **settings)
 
 

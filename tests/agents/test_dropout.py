@@ -6,7 +6,7 @@ import torch as th
 from sarah.agents.dropout import ByteDropout
 
 
-@pytest.mark.parametrize("share", [0.1, 0.2, 0.5, 0.9])
+@pytest.mark.parametrize("share", [0.1, 0.9])
 def test_the_share_is_left_out_and_the_mean_stays(share):
     th.manual_seed(0)
     units = ByteDropout(share)(th.ones(401, 999))  # 8 bytes are drawn at a time, which do not come out even

@@ -38,7 +38,7 @@ def test_bounds_are_those_of_the_definition() -> None:
     assert process.upper_bounds(places, 2.0) == pytest.approx(process.expected(places) + 2.0 * np.sqrt(unknown))
 
 
-def test_an_optimist_leaves_a_good_place_for_one_that_may_be_better() -> None:
+def test_an_optimist_leaves_a_good_place_for_a_possible_one() -> None:
     """Thirty fair trials on one side, one on the other that was as good."""
     actions = np.array([[-0.6, -0.6]] * 30 + [[0.6, 0.6]])
     rewards = np.array([0.5, 0.7] * 15 + [0.65])
@@ -46,13 +46,7 @@ def test_an_optimist_leaves_a_good_place_for_one_that_may_be_better() -> None:
     assert process.best()[0] < -0.5 < process.best(deviations=1.0)[0]
 
 
-def test_what_nobody_has_tried_is_worth_little() -> None:
-    actions, rewards = tried(0)
-    far = GaussianProcess(actions / 100, rewards).expected(np.full((1, 3), 9.0))
-    assert far == pytest.approx(np.quantile(rewards, PRIOR_QUANTILE))
-
-
-@pytest.mark.parametrize(("scale", "shift"), [(1e-3, 0.0), (1e3, -4e3), (1.0, 100.0)])
+@pytest.mark.parametrize(("scale", "shift"), [(1e-3, 100.0), (1e3, -4e3)])
 def test_units_of_the_reward_make_no_difference(scale: float, shift: float) -> None:
     actions, rewards = tried(1)
     process, other = GaussianProcess(actions, rewards), GaussianProcess(actions, scale * rewards + shift)
@@ -75,13 +69,15 @@ def test_a_fine_landscape_is_recognised() -> None:
     assert GaussianProcess(actions, np.sin(2 * actions[:, 0])).kernel[0] == LENGTHS[0]
 
 
-def test_a_few_episodes_choose_nothing() -> None:
+def test_a_few_episodes_choose_no_kernel() -> None:
     actions = np.linspace(-1, 1, 9)[:, None]
     assert GaussianProcess(actions, np.sin(9 * actions[:, 0])).kernel == (LENGTHS[0], NOISES[0])
+    nothing = GaussianProcess(np.empty((0, 2)), np.empty(0))
+    assert nothing.best(np.array([[0.1, 0.2], [0.3, 0.4]])).tolist() == [0.1, 0.2]
 
 
 @pytest.mark.parametrize("top", [(0.3, -0.2), (1.0, 0.4)])
-def test_the_best_is_the_highest_in_the_box_whether_it_was_tried_or_not(top: tuple[float, float]) -> None:
+def test_the_best_is_the_highest_in_the_box_tried_or_not(top: tuple[float, float]) -> None:
     rng = np.random.default_rng(3)
     actions = rng.uniform(-1, 1, (60, 2))
     process = GaussianProcess(actions, -((actions - top) ** 2).sum(axis=1))
@@ -106,11 +102,6 @@ def test_how_deep_a_few_disasters_are_makes_no_difference() -> None:
 def test_lengths_grow_with_the_distances_in_a_large_box() -> None:
     few = [GaussianProcess(np.zeros((5, dim)), np.zeros(5)).kernel[0] for dim in (1, 4, 16)]
     assert few == [LENGTHS[0], LENGTHS[0], 2 * LENGTHS[0]]
-
-
-def test_without_episodes_the_first_candidate_is_best() -> None:
-    nothing = GaussianProcess(np.empty((0, 2)), np.empty(0))
-    assert nothing.best(np.array([[0.1, 0.2], [0.3, 0.4]])).tolist() == [0.1, 0.2]
 
 
 def test_the_newest_episodes_decide() -> None:

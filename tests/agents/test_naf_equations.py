@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 import torch as th
 from gymnasium import spaces
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from stable_baselines3.common.torch_layers import FlattenExtractor
 from stable_baselines3.common.utils import ConstantSchedule
 from torch import nn
@@ -57,7 +55,7 @@ def lower_by_hand(outputs: np.ndarray, action_dim: int) -> np.ndarray:
 
 @pytest.mark.parametrize("min_curvature", [0.0, 1.5])
 @for_every_architecture
-@pytest.mark.parametrize("action_dim", [1, 2, 5])
+@pytest.mark.parametrize("action_dim", [1, 5])
 def test_q_is_equation_3(action_dim, net_arch, min_curvature):
     critic = make_critic(action_dim, net_arch=net_arch, min_curvature=min_curvature)
     obs, actions = draw(action_dim)
@@ -79,92 +77,26 @@ def test_q_is_equation_3(action_dim, net_arch, min_curvature):
         assert q_values[n].item() == pytest.approx(values[n, 0] - 0.5 * quadratic, rel=1e-5, abs=1e-5)
 
 
-def test_lower_triangle_of_the_paper():
-    critic = make_critic(5)
-    nn.init.zeros_(critic.lower_net[-1].weight)
-    critic.lower_net[-1].bias.data = th.arange(1.0, 16.0) / 10
-    lower = critic.lower(draw(5)[0])[0].detach().numpy()
-    expected = np.array(
-        [
-            [np.exp(0.1), 0, 0, 0, 0],
-            [0.2, np.exp(0.3), 0, 0, 0],
-            [0.4, 0.5, np.exp(0.6), 0, 0],
-            [0.7, 0.8, 0.9, np.exp(1.0), 0],
-            [1.1, 1.2, 1.3, 1.4, np.exp(1.5)],
-        ]
-    )
-    np.testing.assert_allclose(lower, expected, rtol=1e-6)
-
-
-@settings(max_examples=50)
-@given(
-    action_dim=st.integers(1, 6),
-    seed=st.integers(0, 10_000),
-    squash_mu=st.booleans(),
-)
-def test_mu_is_the_maximum_and_v_its_value(action_dim, seed, squash_mu):
-    critic = make_critic(action_dim, seed, squash_mu=squash_mu)
-    obs, actions = draw(action_dim, batch=64, seed=seed)
-    with th.no_grad():
-        mu, values = critic.mu(obs), critic.value(obs)
-        at_mu, elsewhere, nearby = critic(obs, mu), critic(obs, actions), critic(obs, mu + 0.1 * actions)
-    th.testing.assert_close(at_mu, values)
-    assert (elsewhere <= values).all() and (elsewhere < values).any()
-    assert (nearby <= values).all()
-
-
-@settings(max_examples=30)
-@given(action_dim=st.integers(1, 6), seed=st.integers(0, 10_000), min_curvature=st.floats(0, 10))
-def test_q_falls_in_every_direction_by_the_least_curvature(action_dim, seed, min_curvature):
-    """Whatever L learns: where Q were flat, mu would get no gradient."""
-    critic = make_critic(action_dim, seed, min_curvature=min_curvature)
-    obs, actions = draw(action_dim, seed=seed)
-    with th.no_grad():
-        distances = (actions - critic.mu(obs)).square().sum(dim=1, keepdim=True)
-        falls = critic.value(obs) - critic(obs, actions)
-    assert (falls >= 0.5 * min_curvature * distances - 1e-4).all()
-
-
-@settings(max_examples=30)
-@given(action_dim=st.integers(1, 6), seed=st.integers(0, 10_000))
-def test_curvature_is_positive_definite(action_dim, seed):
-    """L L^T is, exactly when L is triangular with a positive diagonal (Cholesky); its eigenvalues would be rounded."""
-    lower = make_critic(action_dim, seed).lower(draw(action_dim, seed=seed)[0]).detach()
-    assert th.equal(lower, lower.tril())
-    assert (lower.diagonal(dim1=1, dim2=2) > 0).all()
-
-
-@settings(max_examples=30)
-@given(scale=st.floats(1, 1e30), seed=st.integers(0, 10_000))
-def test_diagonal_is_bounded_whatever_the_weights(scale, seed):
-    critic = make_critic(3, seed)
-    critic.lower_net[-1].bias.data *= scale
-    lower = critic.lower(draw(3, seed=seed)[0]).detach()
-    diagonal = lower.diagonal(dim1=1, dim2=2)
-    assert (diagonal >= np.exp(-5.001)).all() and (diagonal <= np.exp(5.001)).all()
-    assert (lower.triu(1) == 0).all()
+def test_the_diagonal_is_bounded_whatever_the_weights():
+    critic = make_critic(3)
+    critic.lower_net[-1].bias.data = 1e9 * th.tensor([1.0, 0.0, -1.0, 0.0, 0.0, 1.0])
+    diagonal = critic.lower(draw(3)[0]).detach().diagonal(dim1=1, dim2=2)
+    assert {round(value, 3) for value in diagonal.log().unique().tolist()} == {-5.0, 5.0}
 
 
 def test_an_untrained_policy_proposes_the_centre():
-    th.manual_seed(0)
-    space = spaces.Box(np.array([0.0, -4.0], np.float32), np.array([2.0, 2.0], np.float32))
-    policy = MlpPolicy(spaces.Box(-1, 1, (OBS_DIM,)), space, ConstantSchedule(1e-3))
-    actions, _ = policy.predict(draw(2)[0].numpy())
-    np.testing.assert_array_equal(actions, np.tile([1.0, -1.0], (7, 1)))
-
-
-def test_an_untrained_mu_is_zero_because_its_output_layer_is():
     """The layers before it are not: there the gradient would be zero for good."""
     th.manual_seed(0)
-    spaces_ = spaces.Box(-1, 1, (OBS_DIM,)), spaces.Box(-1, 1, (2,))
+    space = spaces.Box(np.array([0.0, -4.0], np.float32), np.array([2.0, 2.0], np.float32))
     net_arch = dict(V=[8], shared=[8], mu=[16, 16], L=[8])
-    mu_net = MlpPolicy(*spaces_, ConstantSchedule(1e-3), net_arch=net_arch).q_net.mu_net
-    *hidden, output = [layer for layer in mu_net if isinstance(layer, nn.Linear)]
+    policy = MlpPolicy(spaces.Box(-1, 1, (OBS_DIM,)), space, ConstantSchedule(1e-3), net_arch=net_arch)
+    np.testing.assert_array_equal(policy.predict(draw(2)[0].numpy())[0], np.tile([1.0, -1.0], (7, 1)))
+    *hidden, output = [layer for layer in policy.q_net.mu_net if isinstance(layer, nn.Linear)]
     assert not output.weight.any() and not output.bias.any()
     assert len(hidden) == 2 and all(layer.weight.all() for layer in hidden)
 
 
-def test_a_critic_by_itself_is_the_publications_with_mu_in_the_action_space():
+def test_a_critic_by_itself_is_the_publications():
     """Images in [0, 1], mu behind a tanh, and no curvature but that of L. Its weights are the networks' only."""
     th.manual_seed(0)
     image = spaces.Box(0, 255, (3, 4, 4), np.uint8)

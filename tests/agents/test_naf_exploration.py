@@ -47,24 +47,17 @@ def explore(steps: int, n_envs: int = 1, algorithm: type[NAF] = NAF, **kwargs) -
 
 
 def test_noise_has_its_standard_deviation():
-    actions = explore(3000, exploration_std=0.2)
-    np.testing.assert_allclose(actions.std(axis=0), 0.2, rtol=0.05)
-    np.testing.assert_allclose(actions.mean(axis=0), 0.0, atol=0.02)
-
-
-def test_zero_switches_noise_off():
+    actions = explore(1000, n_envs=3, exploration_std=0.2)
+    np.testing.assert_allclose(actions.std(axis=0), 0.2, rtol=0.1)
+    np.testing.assert_allclose(actions.mean(axis=0), 0.0, atol=0.03)
+    assert np.abs(np.corrcoef(actions.reshape(1000, 6).T) - np.eye(6)).max() < 0.13  # independent
     np.testing.assert_array_equal(explore(20, exploration_std=0.0), 0.0)
 
 
-def test_noise_is_independent_between_environments_and_dimensions():
-    actions = explore(1500, n_envs=3, exploration_std=0.2).reshape(1500, 6)
-    assert np.abs(np.corrcoef(actions.T) - np.eye(6)).max() < 0.1
-
-
 def test_schedule():
-    actions = explore(3000, exploration_std=LinearSchedule(0.3, 0.05, end_fraction=0.5))
-    np.testing.assert_allclose(actions[:100].std(), 0.3, rtol=0.15)
-    np.testing.assert_allclose(actions[1500:].std(), 0.05, rtol=0.05)
+    actions = explore(800, exploration_std=LinearSchedule(0.3, 0.05, end_fraction=0.5))
+    np.testing.assert_allclose(actions[:100].std(), 0.27, rtol=0.15)
+    np.testing.assert_allclose(actions[400:].std(), 0.05, rtol=0.08)
 
 
 def test_given_action_noise_takes_precedence():
@@ -73,23 +66,21 @@ def test_given_action_noise_takes_precedence():
     np.testing.assert_allclose(actions, np.broadcast_to([0.5, -0.5], actions.shape), atol=1e-6)
 
 
-def test_uniform_warm_up():
-    actions = explore(3000, learning_starts=3000, exploration_std=0.0)
-    np.testing.assert_allclose(actions.std(axis=0), 1 / np.sqrt(3), rtol=0.05)
-
-
 @pytest.mark.parametrize(
-    "noise", [{"exploration_std": 0.3}, {"action_noise": NormalActionNoise(np.full(2, 0.5), np.full(2, 0.3))}]
+    ("algorithm", "noise"),
+    [
+        (NAF, {"exploration_std": 0.3}),
+        (LocalNAF, {"action_noise": NormalActionNoise(np.full(2, 0.5), np.full(2, 0.3))}),
+    ],
 )
-@pytest.mark.parametrize("algorithm", [NAF, LocalNAF])
 def test_noise_moves_no_warm_up_action(algorithm, noise):
     """Otherwise many of them would be clipped to the bounds."""
-    actions = explore(3100, algorithm=algorithm, learning_starts=3000, **noise)
-    warm_up = actions[:3000]
+    actions = explore(1050, algorithm=algorithm, learning_starts=1000, **noise)
+    warm_up = actions[:1000]
     assert np.abs(warm_up).max() < 1.0
-    np.testing.assert_allclose(warm_up.mean(axis=0), 0.0, atol=0.04)
-    np.testing.assert_allclose(warm_up.std(axis=0), 1 / np.sqrt(3), rtol=0.03)
-    assert len(np.unique(actions[3000:], axis=0)) > 90  # noise again
+    np.testing.assert_allclose(warm_up.mean(axis=0), 0.0, atol=0.06)
+    np.testing.assert_allclose(warm_up.std(axis=0), 1 / np.sqrt(3), rtol=0.05)
+    assert len(np.unique(actions[1000:], axis=0)) > 40  # noise again
 
 
 class Target(Recorder):
@@ -111,7 +102,7 @@ def elite_actions(steps: int, environment: type[Recorder] = Target, **kwargs) ->
 
 
 @pytest.mark.parametrize("on_request", [False, True])
-def test_only_the_first_environment_begins_at_the_centre_on_request(on_request: bool):
+def test_only_the_first_environment_begins_at_the_centre(on_request: bool):
     kwargs = dict(learning_starts=30, elite_share=0.0, first_action_centre=on_request)
     actions = explore(4, n_envs=2, algorithm=LocalNAF, **kwargs)
     assert (actions[0, 0] == 0.0).all() == on_request
@@ -127,31 +118,31 @@ def test_from_the_centre_the_draws_begin_at_once():
 
 
 def test_elite_actions_follow_the_best_of_the_replay_buffer():
-    _, after = elite_actions(300, elite_share=1.0, elite_std=0.1)
-    np.testing.assert_allclose(after[200:].mean(axis=0), [0.5, -0.5], atol=0.1)
+    _, after = elite_actions(200, elite_share=1.0, elite_std=0.1)
+    np.testing.assert_allclose(after[100:].mean(axis=0), [0.5, -0.5], atol=0.1)
     np.testing.assert_allclose(after.std(axis=0), 0.1, rtol=0.5)
     warm_up, after = elite_actions(1, elite_share=1.0, elite_std=0.0)
     assert np.abs(warm_up - after).sum(axis=1).min() < 1e-6  # one of those that have been tried
 
 
 def test_elite_draws_follow_their_schedule():
-    _, after = elite_actions(600, elite_share=1.0, elite_std=LinearSchedule(0.3, 0.02, end_fraction=0.5))
+    _, after = elite_actions(200, elite_share=1.0, elite_std=LinearSchedule(0.3, 0.02, end_fraction=0.5))
     spread = np.abs(np.diff(after, axis=0))
-    assert spread[:100].mean() > 5 * spread[400:].mean()
+    assert spread[:40].mean() > 5 * spread[120:].mean()
 
 
 def test_of_many_draws_the_most_promising_is_tried():
     """With wide draws only those towards what has been good are worth an episode."""
     distances = {
-        draws: np.abs(elite_actions(200, elite_share=1.0, elite_std=0.5, elite_draws=draws)[1] - [0.5, -0.5]).mean()
+        draws: np.abs(elite_actions(100, elite_share=1.0, elite_std=0.5, elite_draws=draws)[1] - [0.5, -0.5]).mean()
         for draws in (1, 16)
     }
     assert distances[16] < 0.6 * distances[1]
 
 
 def test_the_other_actions_keep_to_mu():
-    _, after = elite_actions(1000, elite_share=0.7, elite_std=0.01)
-    assert np.mean(np.abs(after).sum(axis=1) == 0.0) == pytest.approx(0.3, abs=0.05)
+    _, after = elite_actions(400, elite_share=0.7, elite_std=0.01)
+    assert np.mean(np.abs(after).sum(axis=1) == 0.0) == pytest.approx(0.3, abs=0.06)
 
 
 def test_elite_actions_need_a_buffer_that_knows_the_best():

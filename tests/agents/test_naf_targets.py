@@ -53,7 +53,7 @@ def fill_target(model) -> dict[int, float]:
 
 
 def one_update(model, batch_size=64):
-    """Run one update; returns its batch, the loss by hand for given targets, and the logged loss."""
+    """Run one update; returns its batch and the logged loss."""
     batches = []
     sample = model.replay_buffer.sample
 
@@ -69,10 +69,11 @@ def one_update(model, batch_size=64):
     return batches[0], logged
 
 
-@pytest.mark.parametrize("timeout", [False, True])
-@pytest.mark.parametrize("n_steps", [1, 2])
-@pytest.mark.parametrize("net_arch", [WITH_W, WITHOUT_W], ids=["W", "V"])
-def test_targets(timeout, n_steps, net_arch):
+@pytest.mark.parametrize(
+    ("net_arch", "n_steps", "timeout"),
+    [(WITH_W, 1, False), (WITHOUT_W, 1, True), (WITH_W, 2, True), (WITHOUT_W, 2, False)],
+)
+def test_targets(net_arch, n_steps, timeout):
     """The end of an episode is worth nothing, unless a time limit made it; n steps are discounted n times."""
     model = make_model(Corridor(timeout=timeout), net_arch, n_steps=n_steps).learn(30)
     values = fill_target(model)
@@ -92,7 +93,7 @@ def test_targets(timeout, n_steps, net_arch):
     assert logged == pytest.approx(np.mean((q_values - targets) ** 2), rel=1e-5)
 
 
-def test_without_a_future_the_reward_is_the_target_whatever_the_target_network_says():
+def test_without_a_future_the_reward_is_the_target():
     model = make_model(Corridor(), gamma=0.0).learn(30)
     for parameter in model.q_net_target.parameters():
         nn.init.constant_(parameter, np.inf)
@@ -108,15 +109,6 @@ def test_target_network_starts_as_a_copy():
         assert th.equal(target, online) and target.data_ptr() != online.data_ptr()
 
 
-def test_target_network_follows_by_tau():
-    model = make_model(Corridor(), tau=0.25).learn(30)
-    fill_target(model)
-    before = [p.clone() for p in model.q_net_target.parameters()]
-    model.train(1, 16)
-    for old, new, online in zip(before, model.q_net_target.parameters(), model.q_net.parameters(), strict=True):
-        th.testing.assert_close(new, 0.75 * old + 0.25 * online)
-
-
 def test_an_update_samples_100_transitions_unless_told_otherwise():
     model, sizes = make_model(Corridor()).learn(30), []
     sample = model.replay_buffer.sample
@@ -124,13 +116,6 @@ def test_an_update_samples_100_transitions_unless_told_otherwise():
     model.train(1)
     model.train(2, 16)
     assert sizes == [100, 16, 16]
-
-
-def test_gradient_is_clipped():
-    model = make_model(Corridor(), max_grad_norm=1e-3).learn(30)
-    model.train(1, 16)
-    norm = th.stack([p.grad.norm() for p in model.q_net.parameters()]).norm().item()
-    assert norm == pytest.approx(1e-3, rel=1e-3)
 
 
 def test_schedules_and_logs():
@@ -152,21 +137,23 @@ def test_fast_updates_are_the_plain_ones():
     """Fused Adam, averaging in one call and L in one piece change nothing but rounding: here all of it in loops."""
     env = Corridor()
     env.action_space = spaces.Box(-1, 1, (3,))
-    settings = dict(gamma=GAMMA, learning_starts=40, gradient_steps=0, seed=0, policy_kwargs=dict(dropout=0))
+    settings = dict(
+        gamma=GAMMA, max_grad_norm=0.1, learning_starts=40, gradient_steps=0, seed=0, policy_kwargs=dict(dropout=0)
+    )
     model = NAF("MlpPolicy", env, **settings)
-    model.learn(60)
+    model.learn(50)
     q_net, target = deepcopy(model.q_net), deepcopy(model.q_net_target)
     optimizer = th.optim.Adam(q_net.parameters(), lr=model.learning_rate, foreach=False)
     batches, sample = [], model.replay_buffer.sample
     model.replay_buffer.sample = lambda *args, **kwargs: batches.append(sample(*args, **kwargs)) or batches[-1]
-    model.train(10, 32)
+    model.train(3, 16)
 
     for batch in batches:
         with th.no_grad():
-            distances = [(batch.actions[n] - q_net.mu(batch.observations[n : n + 1])[0]).norm() ** 2 for n in range(32)]
-        weights = [th.exp(-distance * 32 / sum(distances)) for distance in distances]
+            distances = [(batch.actions[n] - q_net.mu(batch.observations[n : n + 1])[0]).norm() ** 2 for n in range(16)]
+        weights = [th.exp(-distance * 16 / sum(distances)) for distance in distances]
         q_loss, w_loss, mu_length = 0.0, 0.0, 0.0
-        for n in range(32):
+        for n in range(16):
             obs, next_obs = batch.observations[n : n + 1], batch.next_observations[n : n + 1]
             with th.no_grad():
                 next_value = target.value_net(next_obs)[0, 1]
@@ -182,9 +169,9 @@ def test_fast_updates_are_the_plain_ones():
             for j in range(len(difference)):
                 advantage -= 0.5 * sum(difference[i] * lower[i, j] for i in range(j, len(difference))) ** 2
             v, w = q_net.value_net(obs)[0]
-            q_loss += (v + advantage - wanted) ** 2 / 32
-            w_loss += (0.8 * weights[n] / sum(weights) + 0.2 / 32) * (w - wanted) ** 2
-            mu_length += sum(entry**2 for entry in q_net.mu(obs)[0]) / 32
+            q_loss += (v + advantage - wanted) ** 2 / 16
+            w_loss += (0.8 * weights[n] / sum(weights) + 0.2 / 16) * (w - wanted) ** 2
+            mu_length += sum(entry**2 for entry in q_net.mu(obs)[0]) / 16
         optimizer.zero_grad()
         (q_loss + w_loss + 0.1 * q_loss.detach() * mu_length).backward()
         norm = sum(parameter.grad.square().sum() for parameter in q_net.parameters()).sqrt()

@@ -4,17 +4,14 @@ The tasks are linear-quadratic: V, mu and the curvature are known in closed form
 """
 
 import warnings
+from types import SimpleNamespace
 
 import gymnasium as gym
 import numpy as np
 import pytest
 import torch as th
 from gymnasium import spaces
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from stable_baselines3.common.buffers import BaseBuffer
 from stable_baselines3.common.env_util import make_vec_env
-from stable_baselines3.common.type_aliases import ReplayBufferSamples
 
 from sarah.agents import NAF, RankReplayBuffer
 from sarah.agents.critic import Values
@@ -69,13 +66,13 @@ def trained(steps, **kwargs):
     return Recorder("MlpPolicy", Drift(), **arguments).learn(steps)
 
 
-def test_v_stays_within_the_bound_where_the_published_targets_let_it_run_away():
-    fast = dict(learning_starts=500, tau=0.1, batch_size=64)  # a target that follows faster shows it sooner
-    held = trained(2000, **fast)
+def test_v_stays_within_the_bound_where_the_published_runs_away():
+    fast = dict(learning_starts=300, tau=0.1, batch_size=64)  # a target that follows faster shows it sooner
+    held = trained(1600, **fast)
     with pytest.warns(UserWarning, match="it runs away"):
-        published = trained(2000, policy_kwargs=dict(net_arch=PUBLISHED), **fast)
+        published = trained(1600, policy_kwargs=dict(net_arch=PUBLISHED), **fast)
     assert held.highest < 1.0 and published.highest > 1.5
-    observations = th.as_tensor(held.replay_buffer.observations[500:2000, 0])
+    observations = th.as_tensor(held.replay_buffer.observations[300:1600, 0])
     with th.no_grad():
         curvatures = [model.q_net.lower(observations).square().sum(dim=(1, 2)).mean() for model in (held, published)]
     assert curvatures[0] < 0.2 * curvatures[1]
@@ -114,30 +111,16 @@ def test_value_over_bound_is_that_of_the_largest_reward_so_far():
     assert logged_value == pytest.approx(values.max().item(), rel=0.02)
 
 
-def with_rewards(model, reward):
-    """The model as if it had seen one reward only."""
-    model.replay_buffer.rewards[:] = reward
-    model.value_bound = model.value_ceiling = 0.0
-    return model
-
-
 def test_where_all_rewards_are_negative_no_value_is_above_zero():
-    model = with_rewards(trained(1100), -1.0)
+    model = trained(1020)
+    model.replay_buffer.rewards[:] = -1.0
+    model.value_bound = model.value_ceiling = 0.0
     model.q_net.value_net[-1].bias.data.fill_(50.0)
     with th.no_grad():
-        highest = model.q_net.value(th.as_tensor(model.replay_buffer.observations[:1100, 0])).max().item()
-    model.train(1, 1100)
+        highest = model.q_net.value(th.as_tensor(model.replay_buffer.observations[:1020, 0])).max().item()
+    model.train(1, 1020)
     assert model.value_ceiling == 0.0
     assert model.logger.name_to_value["train/value_over_bound"] == pytest.approx(1 + highest / 100, rel=0.05)
-
-
-def test_rewards_smaller_than_what_networks_resolve_are_to_be_scaled():
-    model = trained(1000)
-    model.train(1000, 16)
-    with_rewards(model, 1e-6).q_net.value_net[-1].bias.data.fill_(1.0)
-    said = r": the rewards are smaller than what networks resolve\. Remedy: scale the rewards up$"
-    with pytest.warns(UserWarning, match=said):
-        model.train(1, 16)
 
 
 @pytest.mark.parametrize("gamma", [0.0, 1.0])
@@ -153,36 +136,22 @@ def test_w_is_the_mean_of_what_actions_near_mu_led_to():
     weights = 0.8 * th.exp(-distances) / th.exp(-distances).sum() + 0.2 / 3
     w = th.zeros(1, 1, requires_grad=True)
     values = Values(targets, targets, w.expand(3, 1), targets, distances)
-    for _ in range(200):
+    for _ in range(100):
         (slope,) = th.autograd.grad(nearby_loss(values._replace(target=w.expand(3, 1)), targets), w)
         w = (w - 0.25 * slope).detach().requires_grad_()
     assert w.item() == pytest.approx(((weights * targets).sum() / weights.sum()).item(), rel=1e-4)
 
 
-def test_w_follows_its_targets_also_where_nobody_acts_near_mu():
-    """Otherwise it is free there, and grows with what its own targets make of it."""
-    targets = th.zeros(10, 1)
-    distances = th.cat([th.zeros(9, 1), th.full((1, 1), 100.0)])
-    w = th.ones(10, 1, requires_grad=True)
-    (slope,) = th.autograd.grad(nearby_loss(Values(targets, targets, w, targets, distances), targets), w)
-    assert slope[-1].item() == pytest.approx(2 * 0.2 / 10, rel=1e-3)
-
-
-@settings(max_examples=50)
-@given(distance=st.floats(0, 30), seed=st.integers(0, 1000))
-def test_w_has_a_mean_whatever_the_distances(distance, seed):
-    """Also where all actions are mu itself; and W is not drawn beyond the largest target."""
-    generator = th.Generator().manual_seed(seed)
-    targets = th.randn(16, 1, generator=generator)
-    distances = distance * th.rand(16, 1, generator=generator)
-    w = targets.max().expand(16, 1).clone().requires_grad_()
-    loss = nearby_loss(Values(targets, targets, w, targets, distances), targets)
+def test_w_has_a_mean_where_all_actions_are_mu_itself():
+    targets = th.tensor([[1.0], [3.0]])
+    w = th.full((2, 1), 3.0, requires_grad=True)
+    loss = nearby_loss(Values(targets, targets, w, targets, th.zeros(2, 1)), targets)
     (slope,) = th.autograd.grad(loss, w)
-    assert th.isfinite(loss) and slope.isfinite().all() and (slope >= 0).all()
+    assert loss.item() == pytest.approx(2.0) and slope.flatten().tolist() == pytest.approx([2.0, 0.0])
 
 
 @pytest.mark.parametrize(("transitions", "weight"), [(1, 0.1), (300, 0.1), (600, 0.05), (30_000, 0.001)])
-def test_the_pull_of_mu_to_the_centre_has_the_units_of_the_loss_and_fades_with_data(transitions, weight):
+def test_the_pull_of_mu_to_the_centre_fades_with_data(transitions, weight):
     """Mean of |mu|^2 over states is (1 + 4) / 2; the error of Q is in reward^2, and is not made smaller by it."""
     mu = th.tensor([[1.0, 0.0], [0.0, -2.0]], requires_grad=True)
     q_loss = th.tensor(9.0, requires_grad=True)
@@ -193,13 +162,12 @@ def test_the_pull_of_mu_to_the_centre_has_the_units_of_the_loss_and_fades_with_d
     assert slope.numpy() == pytest.approx(weight * 9 * mu.detach().numpy())
 
 
-@pytest.mark.parametrize("n_envs", [1, 4])
 @pytest.mark.parametrize(
-    "buffer",
+    ("n_envs", "buffer"),
     [
-        {},
-        dict(buffer_size=40),
-        dict(replay_buffer_class=RankReplayBuffer, replay_buffer_kwargs=dict(temperature=0)),
+        (1, dict(buffer_size=40)),
+        (4, {}),
+        (4, dict(replay_buffer_class=RankReplayBuffer, replay_buffer_kwargs=dict(temperature=0))),
     ],
 )
 def test_all_transitions_count_beside_the_prior_of_mu(n_envs, buffer, monkeypatch):
@@ -219,21 +187,6 @@ def test_all_transitions_count_beside_the_prior_of_mu(n_envs, buffer, monkeypatc
 
 
 def test_a_replay_buffer_of_ones_own_needs_no_rewards():
-    """Only the samples that it gives are looked at."""
-
-    class Own(BaseBuffer):
-        def __init__(self, *args, optimize_memory_usage=False, **kwargs):
-            super().__init__(*args, **kwargs)
-            self.kept = []
-
-        def add(self, obs, next_obs, action, reward, done, infos):
-            self.kept.append([th.as_tensor(part, dtype=th.float32) for part in (obs, action, next_obs, done, reward)])
-            self.pos += 1
-
-        def _get_samples(self, batch_inds, env=None):
-            parts = zip(*(self.kept[index] for index in batch_inds), strict=True)
-            obs, action, next_obs, done, reward = map(th.cat, parts)
-            return ReplayBufferSamples(obs, action, next_obs, done.reshape(-1, 1), reward.reshape(-1, 1))
-
-    model = NAF("MlpPolicy", Drift(), learning_starts=20, replay_buffer_class=Own, device="cpu").learn(30)
-    assert model.logger.name_to_value["train/loss"] > 0.0
+    model = NAF("MlpPolicy", Drift())
+    model.replay_buffer = SimpleNamespace(size=lambda: 30)
+    model._check_rewards()

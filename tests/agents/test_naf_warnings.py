@@ -24,21 +24,17 @@ from sarah.agents.naf_warnings import FirstUpdates, reward_warning, value_warnin
         (0.0, 29.0, None),
     ],
 )
-def test_rewards_are_far_by_their_deviation_and_large_by_its_size(mean, std, said):
+def test_rewards_are_far_by_their_deviation_large_by_its_size(mean, std, said):
     text = reward_warning(mean + std * np.array([-1.0, 1.0, -1.0, 1.0, -1.0, 1.0], np.float32))
     assert text is None if said is None else re.search(said, text)
 
 
-def test_a_few_rewards_say_nothing():
+def test_a_few_rewards_and_what_is_no_number_say_nothing():
     assert reward_warning(np.full(4, -100.0)) is None
     assert reward_warning(np.full(5, -100.0)) is not None
-
-
-@pytest.mark.parametrize("wrong", [np.inf, np.nan])
-def test_what_is_no_number_is_for_the_loss_to_refuse(wrong):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert reward_warning(np.array([0.0, 0.0, 0.0, 0.0, wrong], np.float32)) is None
+        assert reward_warning(np.array([0.0, 0.0, 0.0, 0.0, np.inf], np.float32)) is None
 
 
 @pytest.mark.parametrize(
@@ -69,7 +65,7 @@ def thread_warnings(model: NAF) -> list[str]:
     return [str(one.message) for one in caught if "threads" in str(one.message)]
 
 
-def test_updates_that_threads_make_slow_are_said_once_with_the_remedy(monkeypatch, tmp_path):
+def test_updates_that_threads_make_slow_are_said_once(monkeypatch, tmp_path):
     monkeypatch.setattr(th, "get_num_threads", lambda: 4)
     policy_kwargs = {"net_arch": [8], "optimizer_class": SlowSGD}
     model = NAF("MlpPolicy", "Pendulum-v1", policy_kwargs=policy_kwargs, learning_starts=10, batch_size=8)

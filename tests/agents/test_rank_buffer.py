@@ -1,11 +1,9 @@
 """The rank replay buffer draws by the rank of the reward, and by nothing else."""
 
-import tracemalloc
-
 import numpy as np
 import pytest
 from gymnasium import spaces
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from stable_baselines3.common.utils import set_random_seed
 
@@ -31,33 +29,27 @@ def fill(rewards, n_envs: int = 1, buffer_size: int = 100, **kwargs) -> RankRepl
     return buffer
 
 
-def frequencies(buffer: RankReplayBuffer, n: int, draws: int = 200_000) -> np.ndarray:
+def frequencies(buffer: RankReplayBuffer, n: int, draws: int = 100_000) -> np.ndarray:
     numbers = buffer.sample(draws).observations[:, 0].numpy().astype(int)
     return np.bincount(numbers, minlength=n) / draws
 
 
+@settings(max_examples=30)
 @given(st.lists(st.integers(-5, 5), min_size=1, max_size=30))
 def test_ranks_by_counting(values):
     n = len(values)
     by_counting = [(sum(v < x for v in values) + (sum(v == x for v in values) - 1) / 2) for x in values]
     np.testing.assert_allclose(average_ranks(np.array(values)), np.array(by_counting) / max(n - 1, 1))
+    assert average_ranks(np.array([1.0, np.nan, 2.0])).tolist() == [0.5, 0.0, 1.0]
 
 
-@given(st.lists(st.floats(-1e6, 1e6, width=32), min_size=2, max_size=30))
-def test_ranks_are_in_the_unit_interval_and_centred(values):
-    ranks = average_ranks(np.array(values))
-    assert ranks.min() >= 0 and ranks.max() <= 1
-    assert ranks.mean() == pytest.approx(0.5)
-
-
-@pytest.mark.parametrize("n_envs", [1, 4])
-def test_frequencies_follow_the_formula(n_envs):
+def test_frequencies_follow_the_formula():
     set_random_seed(0)
     rewards = [3.0, -1.0, 10.0, 3.0, 0.0, 7.0, 3.0, -8.0]
     ranks = np.array([4, 1, 7, 4, 2, 6, 4, 0]) / 7
     expected = np.exp(4 * ranks) / np.exp(4 * ranks).sum()
     # Standard error at most 0.001
-    np.testing.assert_allclose(frequencies(fill(rewards, n_envs), 8), expected, atol=0.005)
+    np.testing.assert_allclose(frequencies(fill(rewards, n_envs=4), 8), expected, atol=0.005)
 
 
 @pytest.mark.parametrize("rewards, temperature", [([1.0] * 8, 4.0), (list(range(8)), 0.0)])
@@ -70,30 +62,8 @@ def test_at_any_temperature_the_best_are_drawn():
     np.testing.assert_allclose(frequencies(fill(range(8), temperature=1e5), 8), [0.0] * 7 + [1.0])
 
 
-def test_only_ranks_count():
-    """Scale, offset and outliers of the reward change nothing."""
-    draws = []
-    for rewards in ([1, 2, 3, 4], [10, 20, 30, 40], [-1e6, 0.0, 1e-3, 1e6]):
-        set_random_seed(0)
-        draws.append(fill(rewards).sample(1000).observations.numpy())
-    np.testing.assert_array_equal(draws[0], draws[1])
-    np.testing.assert_array_equal(draws[0], draws[2])
-
-
-def test_seeded_like_other_buffers():
-    buffer = fill(list(range(10)))
-    set_random_seed(3)
-    first = buffer.sample(50)
-    other = buffer.sample(50)
-    set_random_seed(3)
-    again = buffer.sample(50)
-    np.testing.assert_array_equal(first.actions, again.actions)
-    assert (first.actions != other.actions).any()
-
-
-@pytest.mark.parametrize("n_envs", [1, 3])
-def test_transitions_stay_together(n_envs):
-    batch = fill(list(np.linspace(-1, 1, 12)), n_envs).sample(200)
+def test_transitions_stay_together():
+    batch = fill(list(np.linspace(-1, 1, 12)), 3).sample(200)
     number = batch.observations[:, 0].numpy()
     assert set(number) <= set(range(12)) and len(set(number)) > 6
     np.testing.assert_array_equal(batch.next_observations[:, 0], number + 0.5)
@@ -109,13 +79,14 @@ def test_ranks_follow_additions_and_reset():
     buffer.add(*(np.full((1, d), 2.0, np.float32) for d in (1, 1, 2)), np.array([9.0]), np.ones(1), [{}])
     assert np.argmax(frequencies(buffer, 3)) == 2
     buffer.reset()
+    with pytest.raises(ValueError, match="the replay buffer is empty, so there is nothing to sample"):
+        buffer.sample(4)
     buffer.add(*(np.zeros((1, d), np.float32) for d in (1, 1, 2)), np.array([-9.0]), np.ones(1), [{}])
     assert frequencies(buffer, 3)[0] == 1.0
 
 
-@pytest.mark.parametrize("n_envs", [1, 3])
-def test_oldest_are_overwritten(n_envs):
-    buffer = fill(list(range(12, 0, -1)), n_envs, buffer_size=5)
+def test_oldest_are_overwritten():
+    buffer = fill(list(range(12, 0, -1)), 3, buffer_size=5)
     assert buffer.size() == 5
     assert set(buffer.sample(1000).observations[:, 0].numpy()) == {7.0, 8.0, 9.0, 10.0, 11.0}
 
@@ -129,54 +100,16 @@ def test_time_limits_are_not_ends():
     np.testing.assert_array_equal(batch.dones[:, 0], batch.observations[:, 0])
 
 
-def test_memory_optimisation_is_refused():
+def test_what_is_not_supported_is_refused():
     with pytest.raises(NotImplementedError, match="optimize_memory_usage"):
         fill([], optimize_memory_usage=True)
-
-
-def test_dict_observations_are_refused():
     space = spaces.Dict(a=spaces.Box(-1, 1, (1,)))
     with pytest.raises(NotImplementedError, match="doesn't support Dict observations: flatten them"):
         RankReplayBuffer(10, space, spaces.Box(-1, 1, (1,)))
 
 
-def test_what_is_not_a_number_ranks_lowest():
-    assert average_ranks(np.array([1.0, np.nan, 2.0])).tolist() == [0.5, 0.0, 1.0]
-
-
-def test_the_best_action_is_the_one_among_good_ones():
-    rng = np.random.default_rng(0)
-    buffer = fill([])
-    add(buffer, [-0.8, 0.8], 1.0)  # lucky, among bad ones
-    for _ in range(5):
-        add(buffer, rng.normal([-0.8, 0.8], 0.02), -1.0)
-        add(buffer, rng.normal([0.5, 0.5], 0.02), 0.7)
-    np.testing.assert_allclose(buffer.best_action(), [0.5, 0.5], atol=0.1)
-
-
 def add(buffer: RankReplayBuffer, action, reward: float) -> None:
     buffer.add(np.zeros((1, 1)), np.zeros((1, 1)), np.array([action]), np.array([reward]), np.ones(1), [{}])
-
-
-@pytest.mark.parametrize("outlier", [None, -1000.0])
-def test_one_terrible_reward_moves_no_choice(outlier):
-    """The best of a hill is its top, whatever it costs to fall off somewhere else."""
-
-    def hill(actions: np.ndarray) -> np.ndarray:
-        return np.exp(-4 * np.sum((actions - 0.6) ** 2, axis=-1))
-
-    rng = np.random.default_rng(0)
-    buffer = fill([])
-    for action in rng.uniform(-1, 1, (60, 2)):
-        add(buffer, action, float(hill(action)))
-    for action in rng.normal(-0.5, 0.05, (30, 2)):  # often tried, and worth little
-        add(buffer, action, 0.03)
-    if outlier is not None:
-        add(buffer, [0.9, -0.9], outlier)
-    assert hill(buffer.best_action()) > 0.8
-    set_random_seed(0)
-    for std in (0.2, 0.4, 1.0):
-        assert hill(np.array([buffer.draw_near_best(std, 16) for _ in range(40)])).mean() > 0.4
 
 
 def test_of_a_large_buffer_the_newest_decide():
@@ -189,22 +122,6 @@ def test_of_a_large_buffer_the_newest_decide():
     for _ in range(5):
         add(buffer, [0.5, 0.5], 9.0)
     np.testing.assert_array_equal(buffer.best_action(), [0.5, 0.5])
-
-
-def test_a_draw_takes_no_more_memory_in_a_large_buffer():
-    buffer = fill([], buffer_size=100_000)
-    rng = np.random.default_rng(0)
-    buffer.actions[:, 0], buffer.rewards[:, 0], buffer.full = (
-        rng.uniform(-1, 1, (100_000, 2)),
-        rng.random(100_000),
-        True,
-    )
-    tracemalloc.start()
-    buffer.draw_near_best(0.2, 16)
-    buffer.sample(64)
-    _, peak = tracemalloc.get_traced_memory()
-    tracemalloc.stop()
-    assert peak < 50e6
 
 
 @pytest.mark.parametrize("algorithm", [NAF, LocalNAF])
@@ -234,12 +151,4 @@ def test_what_is_far_away_is_no_error_of_numpy():
     with np.errstate(all="raise"):
         buffer.best_action()
         buffer.draw_near_best(0.01, 16)
-        buffer.sample(4)
-
-
-def test_a_buffer_that_was_reset_has_nothing_to_sample():
-    buffer = fill([1.0, 2.0, 3.0])
-    buffer.sample(4)
-    buffer.reset()
-    with pytest.raises(ValueError, match="the replay buffer is empty, so there is nothing to sample"):
         buffer.sample(4)

@@ -38,19 +38,17 @@ def sampled(buffer: RankReplayBuffer) -> tuple[np.ndarray, np.ndarray]:
     return samples.actions.numpy(), samples.rewards.numpy()[:, 0]
 
 
-def test_sampled_rewards_are_nearer_to_the_truth_than_those_that_came() -> None:
+def test_sampled_rewards_are_near_the_truth_and_luck_is_rare() -> None:
     smoothed, plain = played(), played(RankReplayBuffer)
     assert (smoothed.rewards == plain.rewards).all()
-    errors = [np.std(rewards - hill(actions)) for actions, rewards in (sampled(smoothed), sampled(plain))]
+    samples = [sampled(buffer) for buffer in (smoothed, plain)]
+    errors = [np.std(rewards - hill(actions)) for actions, rewards in samples]
     assert errors[0] < 0.4 * errors[1]
-
-
-def test_good_actions_are_sampled_and_not_lucky_ones() -> None:
-    good = [hill(sampled(buffer)[0]).mean() for buffer in (played(), played(RankReplayBuffer))]
+    good = [hill(actions).mean() for actions, _ in samples]
     assert good[0] > good[1] + 0.1
 
 
-def test_the_best_action_is_near_the_top_and_so_are_draws_near_it() -> None:
+def test_the_best_action_and_draws_near_it_are_near_the_top() -> None:
     buffer = played()
     best = buffer.best_action()
     assert hill(best) > 0.9 and best.tolist() not in buffer.actions[:, 0].tolist()
@@ -75,8 +73,8 @@ def test_what_is_known_follows_every_addition() -> None:
         buffer.best_action()
 
 
-@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
-def test_a_reward_that_is_no_number_stays_one_and_spoils_no_other(value: float) -> None:
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_a_reward_that_is_no_number_spoils_no_other(value: float) -> None:
     """So the loss still says that something is wrong."""
     buffer = played(count=60)
     best = buffer.best_action()

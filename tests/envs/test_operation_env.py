@@ -37,13 +37,7 @@ def test_changes_are_objects_or_mappings() -> None:
         SarahOperationEnv(changes=["1: payload=3"])
 
 
-@pytest.mark.parametrize("name", ["time_limit", "reward_form"])
-def test_a_setting_without_effect_is_refused(name: str) -> None:
-    with pytest.raises(ConfigurationError, match=f"{name} has no effect in an operation: leave it out"):
-        SarahOperationEnv(robot={name: 3.0})
-
-
-def test_the_checkers_of_gymnasium_and_stable_baselines3_find_nothing() -> None:
+def test_checkers_find_nothing() -> None:
     env = SarahOperationEnv(quick(minutes=0.2))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -53,7 +47,7 @@ def test_the_checkers_of_gymnasium_and_stable_baselines3_find_nothing() -> None:
     env.close()
 
 
-def test_a_step_is_a_window_and_its_reward_is_what_the_robot_observes() -> None:
+def test_a_step_is_a_window_whose_reward_the_robot_observes() -> None:
     env = SarahOperationEnv(quick(minutes=0.2))
     observation, info = env.reset(seed=1)
     assert info["window"].parameters == SHIPPED
@@ -99,24 +93,16 @@ def test_a_fall_terminates_and_the_same_robot_goes_on() -> None:
     env.close()
 
 
-def test_unknown_render_mode_is_refused() -> None:
+def test_settings_of_another_kind_are_refused() -> None:
+    with pytest.raises(ConfigurationError, match=r"^config must be an OperationConfig, not .*$"):
+        SarahOperationEnv(EpisodeConfig())  # type: ignore[arg-type]
     with pytest.raises(ConfigurationError, match=r"^unknown render_mode 'rgb_array' \(allowed: None\)$"):
         SarahOperationEnv(render_mode="rgb_array")
+    with pytest.raises(ConfigurationError, match="time_limit has no effect in an operation: leave it out"):
+        SarahOperationEnv(robot={"time_limit": 3.0})
 
 
-@pytest.mark.parametrize("config", [EpisodeConfig(), "mujoco", False])
-def test_settings_of_another_kind_are_refused(config: Any) -> None:
-    with pytest.raises(ConfigurationError, match=r"^config must be an OperationConfig, not .*$"):
-        SarahOperationEnv(config)
-
-
-def test_actions_that_rounding_puts_outside_are_the_ends() -> None:
-    env = SarahOperationEnv(quick())
-    end = np.ones(9, np.float32)
-    assert env.parameters_from(np.nextafter(end, np.float32(2.0))) == env.parameters_from(end)
-
-
-@pytest.mark.parametrize("action", [np.zeros(4), np.full(9, 1.5), np.full(9, np.nan)])
+@pytest.mark.parametrize("action", [np.zeros(4), np.full(9, 1.5)])
 def test_actions_out_of_their_box_are_refused(action: np.ndarray) -> None:
     env = SarahOperationEnv(quick())
     env.reset(seed=0)
@@ -125,14 +111,13 @@ def test_actions_out_of_their_box_are_refused(action: np.ndarray) -> None:
     env.close()
 
 
-@pytest.mark.parametrize("gamma", [0.0, 0.9])
-@pytest.mark.parametrize("algorithm", [NAF, TD3])
+@pytest.mark.parametrize(("algorithm", "gamma"), [(NAF, 0.9), (TD3, 0.0)])
 def test_agents_learn_on_it_with_any_discount(algorithm: type, gamma: float) -> None:
     env = SarahOperationEnv(quick(minutes=0.2, robot=KICKED))
     model = algorithm(
         "MlpPolicy", env, gamma=gamma, learning_starts=4, batch_size=8, seed=0, policy_kwargs=dict(net_arch=[16])
     )
-    model.learn(16)
+    model.learn(10)
     action, _ = model.predict(env.observation_space.sample(), deterministic=True)
-    assert np.isfinite(action).all() and model.num_timesteps == 16
+    assert np.isfinite(action).all() and model.num_timesteps == 10
     env.close()

@@ -25,7 +25,7 @@ def test_a_robot_that_stands_does_not_move() -> None:
 
 
 @pytest.mark.parametrize(("joint", "x", "y"), [(0, 1.0, 0.0), (2, 0.0, -1.0)])
-def test_the_leg_that_carries_moves_the_torso_by_the_height_times_the_sine(joint: int, x: float, y: float) -> None:
+def test_the_leg_that_carries_moves_the_torso_by_its_lean(joint: int, x: float, y: float) -> None:
     """Abduction turns the feet to the left, so the torso goes to the right; flexion turns them forward."""
     odometry = LegOdometry(HEIGHT, DT)
     odometry.tick(reading(LEFT))

@@ -2,10 +2,13 @@
 
 import dataclasses
 import errno
+import hashlib
 import json
+import re
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -13,6 +16,7 @@ import throws
 from throws import THROWS, Game, play
 
 from sarah.errors import ResumeError, RunFolderError
+from sarah.recorded import folder
 from sarah.recorded.folder import Folder
 from sarah.versions import versions
 
@@ -37,11 +41,29 @@ def test_killed_in_the_middle_it_goes_on_to_the_same_bytes(tmp_path: Path) -> No
         assert (journal.parent / name).read_bytes() == (tmp_path / "whole" / name).read_bytes(), name
 
 
+@pytest.mark.parametrize("line", [b"\n", b"rubbish\n", b"0000000 {}\n", b"\xff\x00\n", b"ffffffff []\n"])
+def test_rubbish_in_a_journal_does_no_harm(line: bytes, tmp_path: Path) -> None:
+    path = begun(tmp_path / "game")
+    best = play(path, GAME)
+    first, *rows = (path / "journal.jsonl").read_bytes().splitlines(keepends=True)
+    (path / "journal.jsonl").write_bytes(b"".join([first, line, *rows]))
+    assert play(path, GAME, seconds=10.0) == best
+    assert (path / "journal.jsonl").read_bytes().count(b"\n") == 42  # nothing was added
+
+
 def test_what_is_known_is_not_asked_again(tmp_path: Path) -> None:
     path = begun(tmp_path / "game")
     best = play(path, GAME)
     began = time.monotonic()
     assert play(path, GAME, seconds=10.0) == best and time.monotonic() - began < 5.0
+
+
+def refused(path: Path, game: Game, words: str) -> None:
+    """Check that a game does not go on, and is left as it is."""
+    before = {file: file.read_bytes() for file in path.iterdir()}
+    with pytest.raises(ResumeError, match=words) as found:
+        play(path, game)
+    assert str(found.value).isprintable() and before == {file: file.read_bytes() for file in path.iterdir()}
 
 
 @pytest.mark.parametrize(
@@ -54,10 +76,60 @@ def test_what_is_known_is_not_asked_again(tmp_path: Path) -> None:
 def test_edited_settings_are_refused(game: Game, words: str, tmp_path: Path) -> None:
     path = begun(tmp_path / "game")
     play(path, GAME)
-    before = (path / "journal.jsonl").read_bytes()
-    with pytest.raises(ResumeError, match=words):
-        play(path, game)
-    assert (path / "journal.jsonl").read_bytes() == before
+    refused(path, game, words)
+
+
+@pytest.mark.parametrize("name", ["python", "sarah-sources", "torch"])
+def test_other_versions_are_refused(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = begun(tmp_path / "game")
+    with monkeypatch.context() as other:
+        other.setattr(folder, "versions", lambda: {**versions(), name: "0.0.7"})
+        play(path, GAME)
+    refused(
+        path, GAME, rf"game cannot be resumed: {name} is {re.escape(versions()[name])} here, and 0\.0\.7 in this game"
+    )
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda first: first.replace(b'"seed":3', b'"seed":4'),
+        lambda first: b"",
+        lambda first: b"x" * 200_000 + b"\n",
+    ],
+)
+def test_without_the_first_row_nothing_goes_on(damage: Callable[[bytes], bytes], tmp_path: Path) -> None:
+    path = begun(tmp_path / "game")
+    play(path, GAME)
+    first, *rows = (path / "journal.jsonl").read_bytes().splitlines(keepends=True)
+    (path / "journal.jsonl").write_bytes(b"".join([damage(first), *rows]))
+    refused(path, GAME, r"the first row of journal.jsonl, .* is damaged or missing")
+
+
+def test_rows_of_another_training_do_not_count(tmp_path: Path) -> None:
+    for seed in (3, 4):
+        play(begun(tmp_path / str(seed)), Game(seed, 40))
+    path, other = (tmp_path / str(seed) / "journal.jsonl" for seed in (3, 4))
+    first, _ = path.read_bytes().split(b"\n", 1)
+    path.write_bytes(first + b"\n" + other.read_bytes().split(b"\n", 1)[1])
+    with Folder(path.parent, THROWS).journal(dataclasses.asdict(GAME), 40) as journal:
+        assert not journal.replaying
+
+
+def test_what_others_wrote_is_printed_without_control_characters(tmp_path: Path) -> None:
+    path = begun(tmp_path / "game")
+    origin = json.dumps({"torch": "\x1b[31m" * 3000, "\x1b[2J": 1}).encode()
+    (path / "journal.jsonl").write_bytes(hashlib.sha256(origin).hexdigest()[:16].encode() + b" " + origin + b"\n")
+    refused(path, GAME, "not known")
+
+
+def test_a_journal_larger_than_any_such_game_is_not_read(tmp_path: Path) -> None:
+    path = begun(tmp_path / "game")
+    play(path, GAME)
+    with (path / "journal.jsonl").open("ab") as file:
+        file.truncate(400_001)
+    with pytest.raises(ResumeError, match=r"journal.jsonl has 400001 bytes, but such a game writes at most 400000"):
+        play(path, GAME)
 
 
 def test_a_beginning_that_was_cut_is_no_obstacle(tmp_path: Path) -> None:

@@ -61,7 +61,6 @@ def test_settings_of_another_algorithm_are_refused() -> None:
         ({"preset": "papr"}, "unknown agent.preset 'papr', did you mean 'paper'? (allowed: one-step, paper)"),
         ({"activation": "tan"}, "unknown agent.activation 'tan', did you mean 'tanh'?"),
         ({"device": "gpu"}, "agent.device must be 'cpu', 'cuda', 'cuda:' and a number, or 'auto', not 'gpu'"),
-        ({"device": "cuda:"}, "agent.device must be"),
     ],
 )
 def test_unknown_names_are_refused(settings: dict[str, Any], message: str) -> None:
@@ -73,12 +72,9 @@ def test_unknown_names_are_refused(settings: dict[str, Any], message: str) -> No
 @pytest.mark.parametrize(
     ("algo", "settings"),
     [
-        *((algo, {}) for algo in ALGORITHMS),
         ("naf", {"preset": "paper", "exploration_std": (0.1, 0.4), "shared_layers": (5, 6, 7), "device": "cuda:1"}),
         ("naf", {"v_layers": (), "learning_rate": 1e-9}),
         ("sac", {"ent_coef": 0.1}),
-        ("td3", {"learning_rate": 1e-5, "layers": (9,)}),
-        ("cma-es", {"population": 20}),
     ],
 )
 def test_a_file_gives_them_back(algo: str, settings: dict[str, Any], tmp_path: Path) -> None:
@@ -93,7 +89,7 @@ def read(text: str, folder: Path) -> AgentSettings:
     return read_config(TrainingConfig, path).agent
 
 
-def test_what_a_file_does_not_name_is_the_default_of_its_algorithm(tmp_path: Path) -> None:
+def test_what_a_file_does_not_name_is_its_algorithms_default(tmp_path: Path) -> None:
     assert read("agent: {tau: 0.1}", tmp_path) == NAFSettings(tau=0.1)
     assert read("{agent: {learning_rate: 3e-4, layers: [8]}, algo: td3}", tmp_path) == TD3Settings(3e-4, layers=(8,))
     assert read("{algo: sac, agent: {ent_coef: 0.1}}", tmp_path) == SACSettings(ent_coef=0.1)
@@ -109,22 +105,11 @@ def test_what_a_file_does_not_name_is_the_default_of_its_algorithm(tmp_path: Pat
         ("{algo: td3, agent: {elite_share: 1}}", "unknown key 'agent.elite_share'"),
         ("{algo: gp, agent: {layers: [1]}}", "unknown key 'agent.layers' (allowed: none)"),
         ("{algo: td4, agent: {layers: [1]}}", "unknown algo 'td4', did you mean 'td3'?"),
-        ("{agent: {}, algo: [1]}", "algo must be a text, not [1]"),
         ("agent: 5", "agent must hold keys and values, not 5"),
         ("agent: {v_layers: 5}", "agent.v_layers must be a list, not 5"),
-        ("agent: {v_layers: [5, x]}", "agent.v_layers must be a whole number, not 'x'"),
-        (
-            "agent: {exploration_std: [0.1]}",
-            r"agent.exploration_std must be one number, or a list of 2 for a range, not [0.1]",
-        ),
-        ("agent: {batch_size: 2.5}", "agent.batch_size must be a whole number, not 2.5"),
-        ("agent: {learning_rate: fast}", "agent.learning_rate must be a number, not 'fast'"),
         ("agent: {learning_rate: 3e9}", "agent.learning_rate must be between 1e-09 and 1, not 3000000000.0"),
-        ("agent: {squash_mu: 1}", "agent.squash_mu must be true or false, not 1"),
-        ("agent: {preset: papr}", "unknown agent.preset 'papr', did you mean 'paper'?"),
         ("{algo: sac, agent: {ent_coef: aut}}", "unknown agent.ent_coef 'aut', did you mean 'auto'?"),
         ("{algo: sac, agent: {ent_coef: -1}}", "agent.ent_coef must be between 0 and 100, not -1.0"),
-        ("{algo: sac, agent: {ent_coef: [1]}}", "agent.ent_coef must be a number, not [1]"),
     ],
 )
 def test_mistakes_in_a_file_are_named_in_one_line(text: str, message: str, tmp_path: Path) -> None:

@@ -16,27 +16,10 @@ from sarah.operation.settings import Change, OperationConfig
 from sarah.robot.description import describe_robot
 from sarah.runs.agent_settings import NAFSettings
 from sarah.runs.config import TrainingConfig
-from sarah.runs.config_files import read_config, write_config
+from sarah.runs.config_files import changed_alike, read_config, write_config
 from sarah.runs.session import SessionSpec
 from sarah.simulation.engines import default_engine
-from sarah.simulation.physics import Physics, PyBulletPhysics
-from sarah.simulation.randomisation import Randomisation
-
-
-def test_a_written_configuration_reads_back(tmp_path: Path) -> None:
-    config = TrainingConfig(
-        algo="td3",
-        episodes=7,
-        episode=EpisodeConfig(
-            physics=Physics(rate=200, solver_iterations=10),
-            randomisation=Randomisation(friction=(0.5, 0.6), enabled=False),
-            dimensions={"thigh_length": 0.35},
-            engine="mujoco",
-            reward_form="printed",
-        ),
-    )
-    write_config(config, tmp_path / "config.yaml")
-    assert read_config(TrainingConfig, tmp_path / "config.yaml") == config
+from sarah.simulation.physics import PyBulletPhysics
 
 
 def test_what_a_file_does_not_name_keeps_its_default(tmp_path: Path) -> None:
@@ -57,7 +40,7 @@ BEFORE_SIZES = (
 """Settings of a robot of another size as a version wrote them in which nothing went with the size."""
 
 
-def test_files_from_before_settings_went_with_the_size_keep_the_robot_they_were_written_of(tmp_path: Path) -> None:
+def test_files_from_before_sizes_keep_their_robot(tmp_path: Path) -> None:
     path = tmp_path / "config.yaml"
     path.write_text(f"episode: {BEFORE_SIZES}")
     training = read_config(TrainingConfig, path).episode
@@ -99,14 +82,10 @@ def test_what_a_task_and_an_engine_have_of_their_own_is_read(tmp_path: Path) -> 
         ("episods: 5", "unknown key 'episods', did you mean 'episodes'"),
         ("episode: {physics: {raet: 500}}", "unknown key 'episode.physics.raet', did you mean 'episode.physics.rate'"),
         ("episodes: many", "episodes must be a whole number, not 'many'"),
-        ("episodes: 2.5", "episodes must be a whole number, not 2.5"),
-        ("episodes: true", "episodes must be a whole number, not True"),
         ("episodes: 0", "episodes must be between 1 and 1000000, not 0"),
-        ("episodes: -3", "episodes must be between 1 and 1000000, not -3"),
         ("seed: -1", "seed must be between 0 and 2147483647, not -1"),
         ("slots: 0", "slots must be between 1 and 10000, not 0"),
         ("task: walking", "unknown task 'walking'"),
-        ("task: walking\nepisode: {push: {newtons: [50, 60]}}", "unknown task 'walking'"),
         ("episode: {time_limit: 1:30}", "episode.time_limit must be a number, not '1:30'"),
         ("episode: {randomisation: {enabled: off}}", "enabled must be true or false, not 'off'"),
         ("task: [balance]", "task must be a text, not ['balance']"),
@@ -122,37 +101,19 @@ def test_what_a_task_and_an_engine_have_of_their_own_is_read(tmp_path: Path) -> 
             "episode: {physics: {rate: 333}}",
             "physics.rate must be a multiple of the control rate, 100 Hz, such as 400, not 333",
         ),
-        ("episode: {physics: {solver_iterations: 0}}", "physics.solver_iterations must be between 1 and 10000, not 0"),
-        (
-            "episode: {engine: pybullet, physics: {added_plate_inertia: -1}}",
-            "added_plate_inertia must be between 0 and 100 kg m^2, not -1",
-        ),
         (
             "episode: {randomisation: {friction: [0.9]}}",
             "friction must be one number, or a list of 2 for a range, not [0.9]",
         ),
         ("episode: {randomisation: {friction: [1.0, 0.7]}}", "friction must be between 0 and 5 and in rising order"),
-        ("episode: {randomisation: {friction: [.nan, 0.7]}}", "friction must be a number, not '.nan'"),
-        ("episode: {randomisation: {mass_deviation: 1.0}}", "mass_deviation must be between 0 and 0.9, not 1.0"),
-        (
-            "episode: {randomisation: {actuator_bandwidth: [0, 50]}}",
-            "actuator_bandwidth must be between 0.1 and 1000 per second",
-        ),
-        ("episode: {randomisation: {enabled: 1}}", "enabled must be true or false, not 1"),
         ("episode: {dimensions: [0.3]}", "dimensions must hold names and values"),
         ("episode: {dimensions: {thigh_length: long}}", "dimensions.thigh_length must be a number, not 'long'"),
         ("episode: {push: {newtons: [50, 60]}}", "episode.push is for task balance"),
         ("task: stepping\nepisode: {stepping: [1, 1, 1, 1, 1]}", "episode.stepping is for task balance"),
         (
-            "{task: balance, episode: {push: {newton: [50, 60]}}}",
-            "unknown key 'episode.push.newton', did you mean 'episode.push.newtons'?",
-        ),
-        (
             "episode: {engine: mujoco, physics: {added_plate_inertia: 0.01}}",
             "unknown key 'episode.physics.added_plate_inertia', did you mean",
         ),
-        ("episode: {controller: {leg_sped: 1}}", "did you mean 'episode.controller.leg_speed'?"),
-        ("episode: {controller: {leg_speed: 0}}", "controller.leg_speed must be between 0.01 and 100 m/s, not 0"),
         ("{task: balance, episode: {time_limit: 3, push: {at_seconds: [3, 4]}}}", "before the time_limit of 3 s"),
         ("a: [", "is not YAML"),
     ],
@@ -171,21 +132,23 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
         read_config(TrainingConfig, tmp_path / "nothing.yaml")
 
 
-def test_configurations_are_immutable() -> None:
+def test_changes_of_one_are_made_alike_in_another() -> None:
+    before = EpisodeConfig()
+    after = dataclasses.replace(before, payload=3.0, physics=dataclasses.replace(before.physics, rate=800))
+    other = dataclasses.replace(
+        before, time_limit=9.0, physics=dataclasses.replace(before.physics, solver_iterations=9)
+    )
+    changed = changed_alike(other, before, after)
+    assert changed == dataclasses.replace(other, payload=3.0, physics=dataclasses.replace(other.physics, rate=800))
     with pytest.raises(dataclasses.FrozenInstanceError):
-        TrainingConfig().seed = 3  # type: ignore[misc]
+        changed.payload = 0.0  # type: ignore[misc]
 
 
 @pytest.mark.parametrize(
     ("make", "words"),
     [
         (lambda: TrainingConfig(episodes=10.5), "episodes must be a whole number, not 10.5"),
-        (lambda: TrainingConfig(seed=True), "seed must be a whole number, not True"),
-        (lambda: TrainingConfig(seed="1"), "seed must be a whole number, not '1'"),
-        (lambda: NAFSettings(batch_size=64.5), "agent.batch_size must be a whole number, not 64.5"),
         (lambda: NAFSettings(mu_layers=16), "agent.mu_layers must be a list, not 16"),
-        (lambda: NAFSettings(squash_mu="no"), "agent.squash_mu must be true or false, not 'no'"),
-        (lambda: NAFSettings(device=None), "agent.device must be a text, not None"),
         (lambda: Change("x", {}), "change.minute must be a number, not 'x'"),
         (lambda: SessionSpec(seed=1.5), "seed must be a whole number, not 1.5"),
     ],

@@ -6,26 +6,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+from interrupted import EPISODE
 
 from sarah.envs.sarah_env import draw_seed
-from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
-from sarah.episode.tasks import BALANCE, STEPPING, TASKS
+from sarah.episode.tasks import BALANCE, STEPPING
 from sarah.episode.workers import Executor, Job, Workers, begin_episode
 from sarah.runs.agent_settings import settings_of
 from sarah.runs.config import AGENTS, ALGORITHMS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
-from sarah.simulation.physics import Physics
-from sarah.training import train as training
 from sarah.training.plan import Stage, seeds_of
 from sarah.training.train import train
-
-EPISODE = EpisodeConfig(time_limit=1.2, physics=Physics(rate=50, solver_iterations=5, control_rate=50))
-
-
-@pytest.fixture(autouse=True)
-def short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
 
 
 class Recording(Executor):
@@ -44,7 +35,7 @@ def trained(path: Path, config: TrainingConfig) -> tuple[np.ndarray, list[int], 
     """Actions within -1 and 1 and seeds of a training's episodes, and all episodes that it has simulated."""
     run, recording = RunFolder.create(path, config), Recording()
     train(config, run, recording)
-    rows, box = list(run.episodes()), TASKS[config.task.name].box
+    rows, box = list(run.episodes()), config.task.box
     actions = [box.scaled([float(row[name]) for name in box.names]) for row in rows]
     return np.array(actions), [int(row["seed"]) for row in rows], recording.specs
 
@@ -58,10 +49,9 @@ def test_the_first_episode_of_every_algorithm_is_neutral(algo: str, tmp_path: Pa
     assert seeds == [draw_seed(generator) for _ in range(3)]
 
 
-@pytest.mark.parametrize("algo", ["td3", "ddpg"])
-def test_the_warm_up_has_no_noise(algo: str, tmp_path: Path) -> None:
-    agent = settings_of(algo)(action_noise_std=2.0)  # type: ignore[call-arg]  # of a learner
-    config = TrainingConfig(algo=algo, episodes=12, slots=1, agent=agent, episode=EPISODE)
+def test_the_warm_up_has_no_noise(tmp_path: Path) -> None:
+    agent = settings_of("ddpg")(action_noise_std=2.0)  # type: ignore[call-arg]  # of a learner
+    config = TrainingConfig(algo="ddpg", episodes=12, slots=1, agent=agent, episode=EPISODE)
     actions, _, _ = trained(tmp_path / "run", config)
     on_a_bound = np.isclose(np.abs(actions), 1.0).any(axis=1)
     assert not on_a_bound[:5].any() and on_a_bound[5:].all()
@@ -81,17 +71,16 @@ def test_trials_come_before_any_seed_of_the_summary_is_seen(tmp_path: Path, monk
     assert BALANCE.neutral is not None
     config = TrainingConfig("balance", "random", episodes=16, slots=1, episode=BALANCE.config_of(EPISODE))
     _, seeds, specs = trained(tmp_path / "run", config)
-    met = list(dict.fromkeys(seeds[6:]))
-    assert len(met) == 5
+    assert seeds[6:11] == seeds[11:] and len(set(seeds[11:])) == 5
     steering, summary = specs[:21], specs[21:]
-    assert [(spec.parameters, spec.seed) for spec in steering[6:11]] == [(BALANCE.neutral, seed) for seed in met]
+    assert [(spec.parameters, spec.seed) for spec in steering[6:11]] == [(BALANCE.neutral, seed) for seed in seeds[11:]]
     assert all(spec.seed >= FIRST_TRAINING_SEED for spec in steering)
     assert [spec.seed for spec in summary] == [0, 1, 0, 1]
+    trials = [[spec.parameters for spec in trial] for trial in (specs[11:16], specs[16:21])]
+    assert [summary[0].parameters] * 5 in trials
 
 
-def test_without_neutral_parameters_nothing_is_simulated_for_them(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_without_neutral_parameters_none_are_simulated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Stage, "trials", 2)
     assert STEPPING.neutral is None
     _, _, specs = trained(tmp_path / "run", TrainingConfig(algo="random", episodes=16, slots=1, episode=EPISODE))

@@ -1,7 +1,6 @@
 """Agents are built from their settings: by default as the presets say, and every setting reaches them."""
 
 import copy
-import dataclasses
 from collections.abc import Callable
 from typing import Any
 
@@ -17,14 +16,13 @@ from sarah.envs.episode_vec_env import EpisodeVecEnv
 from sarah.envs.sarah_env import draw_seed
 from sarah.episode.workers import Job, Workers
 from sarah.errors import ConfigurationError
-from sarah.runs.agent_settings import AgentSettings, LearnerSettings, NAFSettings, settings_of
+from sarah.runs.agent_settings import AgentSettings, NAFSettings, settings_of
 from sarah.runs.config import AGENTS, TrainingConfig
 from sarah.training.learners import check_device, make_agent
 from sarah.training.plan import plan_of
 
 
 def built(algo: str = "naf", slots: int = 1, task: str = "stepping", **settings: Any) -> OffPolicyAlgorithm:
-    """The agent of some settings."""
     config = TrainingConfig(task=task, algo=algo, slots=slots, agent=settings_of(algo)(**settings))
     return make_agent(plan_of(config), EpisodeVecEnv(task, config.episode, 1, slots, Workers()))
 
@@ -65,7 +63,6 @@ NOISY = {**CRITICS, "action_noise_std": (0.7, noise_std)}
 SETTINGS: dict[str, dict[str, tuple[Any, Callable[[Any], Any]]]] = {
     "naf": {
         **{name: entry for name, entry in COMMON.items() if name != "gamma"},  # 0 while good episodes are preferred
-        "preset": ("paper", lambda model: "paper" if widths(model.q_net.value_net) == (256, 256, 256) else "one-step"),
         "max_grad_norm": (2.5, lambda model: model.max_grad_norm),
         "exploration_std": ((0.5, 0.2), lambda model: pair(model.exploration_schedule)),
         "temperature": (1.5, lambda model: model.replay_buffer.temperature),
@@ -93,20 +90,20 @@ SETTINGS: dict[str, dict[str, tuple[Any, Callable[[Any], Any]]]] = {
 """Of every setting another value than the default, and where the agent has it."""
 
 
-@pytest.mark.parametrize(("algo", "name"), [(algo, name) for algo, names in SETTINGS.items() for name in names])
-def test_every_setting_reaches_the_agent(algo: str, name: str) -> None:
-    value, found = SETTINGS[algo][name]
-    default = getattr(settings_of(algo)(), name)
-    assert value != default and found(built(algo, **{name: value})) == value
-    if name != "device":
-        assert found(built(algo)) == default
+def found(algo: str, **settings: Any) -> dict[str, Any]:
+    """Settings that an agent has."""
+    model = built(algo, **settings)
+    return {name: of(model) for name, (_, of) in SETTINGS[algo].items()}
 
 
-def test_no_setting_is_left_out() -> None:
-    assert set(SETTINGS) == set(AGENTS)
-    for algo, names in SETTINGS.items():
-        left_out = {"gamma"} if algo == "naf" else set()
-        assert set(names) | left_out == {item.name for item in dataclasses.fields(settings_of(algo))}
+@pytest.mark.parametrize("algo", AGENTS)
+def test_every_setting_reaches_the_agent(algo: str) -> None:
+    changed = {name: value for name, (value, _) in SETTINGS[algo].items()}
+    defaults = {name: getattr(settings_of(algo)(), name) for name in changed}
+    assert set(changed) | ({"gamma", "preset"} if algo == "naf" else set()) == set(vars(settings_of(algo)()))
+    assert not changed.items() & defaults.items()
+    assert found(algo, **changed) == changed
+    assert found(algo) == {**defaults, "device": found(algo)["device"]}
 
 
 def test_what_follows_counts_only_where_no_episode_is_preferred() -> None:
@@ -114,24 +111,6 @@ def test_what_follows_counts_only_where_no_episode_is_preferred() -> None:
     for preferred in ({}, {"temperature": 0.0}, {"elite_share": 0.0}, {"preset": "paper", "elite_share": 0.1}):
         with pytest.raises(ConfigurationError, match=r"agent\.gamma must be 0 unless .* are 0, not 0\.5$"):
             NAFSettings(gamma=0.5, **preferred)  # type: ignore[arg-type]
-
-
-def arguments(model: LocalNAF) -> dict[str, Any]:
-    """What the model was made with, in a form that can be compared."""
-    networks = model.policy_kwargs
-    return {
-        **{name: getattr(model, name) for name in COMMON if name != "device"},
-        "max_grad_norm": model.max_grad_norm,
-        "exploration_std": pair(model.exploration_schedule),
-        "elite": (model.elite_share, pair(model.elite_std_schedule), model.elite_draws),
-        "temperature": model.replay_buffer.temperature,
-        "networks": {
-            "squash_mu": True,
-            "min_curvature": 0.0,
-            **networks,
-            "net_arch": model.policy.net_args["net_arch"],
-        },
-    }
 
 
 @pytest.mark.parametrize("algo", [algo for algo in AGENTS if algo != "naf"])
@@ -144,11 +123,13 @@ def test_defaults_are_the_preset() -> None:
     env = EpisodeVecEnv("stepping", TrainingConfig().episode, 1, 1, Workers())
     preset = LocalNAF("MlpPolicy", env, **PRESETS["one-step"])
     model = built()
-    assert type(model) is LocalNAF and isinstance(model.replay_buffer, RankReplayBuffer)
-    assert arguments(model) == arguments(preset)
+    assert type(model) is LocalNAF and isinstance(model.replay_buffer, SmoothedReplayBuffer)
+    ours, theirs = ({name: of(agent) for name, (_, of) in SETTINGS["naf"].items()} for agent in (model, preset))
+    assert {name for name in ours if ours[name] != theirs[name]} <= {"device"}
+    assert model.gamma == preset.gamma
 
 
-def test_the_preset_paper_is_plain_naf_with_the_networks_of_the_paper() -> None:
+def test_the_preset_paper_is_plain_naf_with_the_papers_networks() -> None:
     env = EpisodeVecEnv("stepping", TrainingConfig().episode, 1, 1, Workers())
     plain = NAF("MlpPolicy", env, **PRESETS["paper"])
     model = built(preset="paper")
@@ -156,9 +137,6 @@ def test_the_preset_paper_is_plain_naf_with_the_networks_of_the_paper() -> None:
         assert str(getattr(model.q_net, name)) == str(getattr(plain.q_net, name))
     assert model.q_net.min_curvature == plain.q_net.min_curvature == 0.0
     assert (model.elite_share, model.replay_buffer.temperature) == (0.0, 0.0)  # nothing that plain NAF has not
-    changed = {"networks", "temperature", "elite"}
-    ours, theirs = arguments(model), arguments(built())
-    assert {name for name in ours if ours[name] != theirs[name]} == changed
 
 
 def test_the_warm_up_knows_as_many_outcomes_as_are_in_flight() -> None:
@@ -202,22 +180,3 @@ def test_a_device_that_is_not_there_is_refused(device: str, monkeypatch: pytest.
     monkeypatch.setattr(torch.cuda, "device_count", lambda: 2)
     check_device(NAFSettings(device=device))
     check_device(AgentSettings())
-
-
-def test_a_training_computes_on_the_processor_and_naf_alone_where_stable_baselines3_would(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    asked: list[Any] = []
-
-    def device(name: Any) -> torch.device:
-        asked.append(name)
-        return torch.device("cpu")
-
-    monkeypatch.setattr("stable_baselines3.common.base_class.get_device", device)
-    model = built()
-    NAF("MlpPolicy", model.get_env())
-    assert asked == ["cpu", "auto"]
-
-
-def test_agents_are_those_with_networks() -> None:
-    assert all(issubclass(settings_of(algo), LearnerSettings) for algo in AGENTS)

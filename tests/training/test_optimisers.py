@@ -13,8 +13,6 @@ from sarah.training.optimisers import OPTIMISERS
 from sarah.training.search import Search, Start
 
 BEST = np.array([0.3, -0.4])
-
-
 PLAIN = Start()
 
 
@@ -24,7 +22,6 @@ def box_of(dimensions: int) -> Box:
 
 
 def make_search(algo: str, settings: AgentSettings, dimensions: int, seed: int, start: Start = PLAIN) -> Search:
-    """A search of the table."""
     return OPTIMISERS[algo](settings, box_of(dimensions), seed, start)
 
 
@@ -32,7 +29,7 @@ def episode(parameters: Parameters) -> float:
     return 1.0 - float(np.square(np.array(parameters) / 2.0 - 1.0 - BEST).sum())
 
 
-def tried(algo: str, seed: int, episodes: int = 40, in_flight: int = 3) -> tuple[list[Parameters], Parameters]:
+def tried(algo: str, seed: int, episodes: int, in_flight: int = 3) -> tuple[list[Parameters], Parameters]:
     """Parameters tried, and the choice in the end."""
     search = make_search(algo, settings_of(algo)(), 2, seed)
     asked: list[Parameters] = []
@@ -48,21 +45,21 @@ def tried(algo: str, seed: int, episodes: int = 40, in_flight: int = 3) -> tuple
 
 @pytest.mark.parametrize("algo", OPTIMISERS)
 def test_searches_find_what_is_good_within_the_box(algo: str) -> None:
-    asked, choice = tried(algo, seed=1)
+    asked, choice = tried(algo, seed=1, episodes=20 if algo == "gp" else 40)
     assert all(box_of(2).checked(parameters) == parameters for parameters in (*asked, choice))
     assert episode(choice) > 0.9
     if algo != "random":
-        late, early = (np.median([episode(parameters) for parameters in part]) for part in (asked[30:], asked[:10]))
+        late, early = (np.median([episode(parameters) for parameters in part]) for part in (asked[-10:], asked[:10]))
         assert late > early
 
 
 @pytest.mark.parametrize("algo", OPTIMISERS)
 def test_searches_repeat_with_their_seed(algo: str) -> None:
-    first, second, other = (tried(algo, seed, episodes=16)[0] for seed in (1, 1, 2))
+    first, second, other = (tried(algo, seed, episodes=9)[0] for seed in (1, 1, 2))
     assert first == second != other
 
 
-@pytest.mark.parametrize("population", [2, 8, 13])
+@pytest.mark.parametrize("population", [2, 13])
 def test_a_generation_is_told_before_the_next_is_asked_for(population: int) -> None:
     search = make_search("cma-es", EvolutionSettings(population=population), 2, 0)
     generation = []
@@ -75,7 +72,7 @@ def test_a_generation_is_told_before_the_next_is_asked_for(population: int) -> N
     assert search.ready()
 
 
-def test_the_first_generation_of_cma_es_has_the_deviation_that_is_set() -> None:
+def test_the_first_generation_has_the_deviation_that_is_set() -> None:
     for deviation in (0.05, 0.2):
         search = make_search("cma-es", EvolutionSettings(deviation=deviation, population=500), 4, 0)
         actions = np.array([box_of(4).scaled(search.ask()) for _ in range(500)])
@@ -123,7 +120,7 @@ def test_any_returns_are_learned_from(algo: str, dimensions: int) -> None:
         search = make_search(algo, settings_of(algo)(), dimensions, 0)
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            for _ in range(17):
+            for _ in range(10):
                 search.tell(parameters := search.ask(), return_of(parameters))
         assert box_of(dimensions).checked(search.choice())
 

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from laboratory import RESULT
 
@@ -51,7 +51,7 @@ def test_a_good_neighbourhood_beats_one_lucky_episode() -> None:
 
 
 @pytest.mark.parametrize("top", [(0.7, 1.3, 1.0, 0.9, 1.2), (2.0, 1.3, 1.0, 0.9, 1.2)])
-def test_the_best_may_lie_between_the_episodes_and_at_an_end_of_the_box(top: Parameters) -> None:
+def test_the_best_may_lie_between_episodes_and_at_an_end(top: Parameters) -> None:
     places = np.random.default_rng(0).uniform(0.0, WIDTH, (300, 5))
     near = [(tuple(map(float, place)), 1.0 - 0.5 * math.dist(place, top) ** 2 / WIDTH) for place in places]
     near = [(place, worth) for place, worth in near if worth > 0.3]
@@ -96,7 +96,7 @@ def test_what_failed_is_avoided() -> None:
     assert after(episodes).best_of([third, second, first]) == first
 
 
-def test_where_the_best_expected_disappoints_the_best_of_what_was_simulated_is_tried() -> None:
+def test_where_the_best_expected_disappoints_another_is_tried() -> None:
     """A cliff beside the best makes the process promise too much beyond it."""
     episodes = [(around(*CHOICE, offset=0.02 * step), 0.9 if step < 5 else 0.1 * step) for step in range(10)]
     promised = after(episodes).best(CHOICE)
@@ -113,6 +113,7 @@ def test_distances_are_shares_of_the_box() -> None:
     assert after(wider, task).best(around(*CHOICE, offset=1.0)) == pytest.approx([2.0 * value for value in best])
 
 
+@settings(max_examples=20)
 @given(st.lists(st.tuples(st.tuples(*[st.floats(0, 2)] * 5), st.floats(0, 1)), max_size=20))
 def test_whatever_was_tried_what_is_best_can_be_simulated(tried: Tries) -> None:
     assert STEPPING.box.checked(after(tried).best(CHOICE)) == after(tried).best(CHOICE)
@@ -124,9 +125,9 @@ def random_episodes(count: int) -> Tries:
 
 
 def test_a_crest_is_found_though_single_episodes_say_little() -> None:
-    """Merit falls with the distance from a place, and noise as large as the differences hides it: ten trainings."""
+    """Merit falls with the distance from a place, and noise as large as the differences hides it: five trainings."""
     crest, found = np.full(3, 1.2), []
-    for seed in range(10):
+    for seed in range(5):
         generator = np.random.default_rng(seed)
         places = generator.uniform(0.4, 2.0, (200, 5))
         merits = 0.8 - 0.5 * np.linalg.norm(places[:, :3] - crest, axis=1) + generator.normal(scale=0.2, size=200)
@@ -144,7 +145,7 @@ def test_merits_that_are_no_number_or_overflow_leave_a_choice(merit: float) -> N
     assert all(map(math.isfinite, after(tried).best(CHOICE)))
 
 
-def test_a_long_training_is_judged_by_its_last_five_hundred_episodes() -> None:
+def test_a_long_training_is_judged_by_its_last_500_episodes() -> None:
     old, late = random_episodes(200), [(parameters, merit) for parameters, merit in random_episodes(700)[200:]]
     assert after([*old, *late]).best(CHOICE) == after(late).best(CHOICE)
 

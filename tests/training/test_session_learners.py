@@ -31,57 +31,48 @@ def operated(learner: str, reward: object, seed: int = 0, minutes: float = 10.0)
     return robot
 
 
-@pytest.mark.parametrize("learner", LEARNERS)
-def test_every_learner_begins_with_the_parameters_that_it_is_given(learner: str) -> None:
-    robot = operated(learner, hill, minutes=1.0)
-    assert robot.windows[0].parameters == SHIPPED
-
-
 def test_without_a_learner_nothing_changes() -> None:
     assert {window.parameters for window in operated("none", hill).windows} == {SHIPPED}
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_the_careful_learner_climbs_and_does_not_fall(seed: int) -> None:
     robot = operated("careful", hill, seed)
     assert robot.falls == 0
     assert robot.mean_reward(8.0) > hill(START) + 0.6 * (0.9 - hill(START))
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_it_loses_little_where_nothing_is_to_be_gained(seed: int) -> None:
-    robot = operated("careful", cliff, seed)
+def test_it_loses_little_on_a_top_and_random_search_much() -> None:
+    robot, random = operated("careful", cliff), operated("random", cliff)
     assert robot.falls <= 1 and robot.mean_reward() > 0.9 - 0.05
+    assert random.falls > 5 * max(1, robot.falls) and random.mean_reward() < robot.mean_reward()
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_it_begins_again_when_the_robot_has_changed(seed: int) -> None:
+def test_it_begins_again_when_the_robot_has_changed() -> None:
     def changing(shares: np.ndarray, minute: float) -> float:
         return hill(shares) if minute < 5.0 else float(0.9 - 1.2 * np.square(shares - 2.0 * START + TOP).sum())
 
-    robot = operated("careful", changing, seed)
+    robot = operated("careful", changing)
     lost = robot.mean_reward(4.0, 5.0) - robot.mean_reward(5.0, 5.5)
     assert lost > 0.2
     assert robot.mean_reward(8.0, 10.0) > robot.mean_reward(5.0, 5.5) + 0.5 * lost
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
-def test_it_does_not_take_chance_for_a_change(seed: int) -> None:
+def test_it_does_not_take_chance_for_a_change() -> None:
     """Windows of weak servos differ by more than the process knows: it must not begin again, and drift downhill."""
     robot = FormulaRobot(hill, minutes=30.0, noise=0.15)
-    left = LEARNERS["careful"](robot, SHIPPED, seed)
+    left = LEARNERS["careful"](robot, SHIPPED, 1)
     assert hill(np.array(BOX.shares(left))) > hill(START)
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_it_follows_a_robot_that_changes_slowly(seed: int) -> None:
+def test_it_follows_a_robot_that_changes_slowly() -> None:
     """Each window falls short by little, but one after the other does."""
 
     def drifting(shares: np.ndarray, minute: float) -> float:
         share = min(max((minute - 5.0) / 15.0, 0.0), 1.0)
         return float(0.9 - 1.2 * np.square(shares - START - (1.0 - 2.0 * share) * (TOP - START)).sum())
 
-    robot = operated("careful", drifting, seed, minutes=25.0)
+    robot = operated("careful", drifting, minutes=25.0)
     kept = drifting(TOP, 25.0)
     assert robot.mean_reward(20.0) > kept + 0.6 * (0.9 - kept)
 
@@ -95,30 +86,25 @@ def test_a_single_bad_window_is_no_change() -> None:
             stumbles = window.index % 10 == 9 and not window.fell
             return dataclasses.replace(window, observed_reward=0.3) if stumbles else window
 
-    robots = [Stumbling(hill) for _ in range(4)]
+    robots = [Stumbling(hill) for _ in range(2)]
     for seed, robot in enumerate(robots):
         LEARNERS["careful"](robot, SHIPPED, seed)
     assert np.mean([robot.mean_reward(8.0) for robot in robots]) > hill(START) + 0.6 * (0.9 - hill(START))
 
 
-def test_random_search_is_the_floor() -> None:
-    random, careful = operated("random", cliff), operated("careful", cliff)
-    assert random.falls > 5 * max(1, careful.falls) and random.mean_reward() < careful.mean_reward()
-
-
 @pytest.mark.parametrize("learner", ["cma-es", "naf"])
 def test_the_others_climb_too(learner: str) -> None:
-    found = [operated(learner, hill, seed) for seed in range(3)]
-    assert np.median([robot.mean_reward(8.0) for robot in found]) > hill(START) + 0.03
+    assert operated(learner, hill).mean_reward(8.0) > hill(START) + 0.03
 
 
-def test_learners_do_not_see_the_score() -> None:
+@pytest.mark.parametrize("learner", LEARNERS)
+def test_learners_begin_as_given_and_do_not_see_the_score(learner: str) -> None:
     """Only the robot's own reward: a score from another world changes nothing."""
 
     class Blind(FormulaRobot):
-        def run(self, parameters: tuple[float, ...]):  # type: ignore[no-untyped-def]
+        def run(self, parameters: Parameters) -> Window:
             return dataclasses.replace(super().run(parameters), score=-1.0)
 
-    for learner in LEARNERS:
-        seen, blind = FormulaRobot(hill, 2.0), Blind(hill, 2.0)
-        assert LEARNERS[learner](seen, SHIPPED, 0) == LEARNERS[learner](blind, SHIPPED, 0)
+    seen, blind = FormulaRobot(hill, 1.5), Blind(hill, 1.5)
+    assert LEARNERS[learner](seen, SHIPPED, 0) == LEARNERS[learner](blind, SHIPPED, 0)
+    assert seen.windows[0].parameters == SHIPPED

@@ -5,25 +5,19 @@ from typing import Any
 
 import numpy as np
 import pytest
+from interrupted import EPISODE
 
 from sarah.agents.corrections import corrected
 from sarah.control.parameters import Parameters
 from sarah.episode.episode import simulate
-from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import disturbances_of
 from sarah.episode.tasks import BALANCE
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
-from sarah.simulation.physics import Physics
-from sarah.training import train as training
 from sarah.training.optimisers import OPTIMISERS, RandomSearch
 from sarah.training.plan import Stage
 from sarah.training.train import train
-
-EPISODE = BALANCE.config_of(
-    EpisodeConfig(time_limit=1.2, physics=Physics(rate=50, solver_iterations=5, control_rate=50))
-)
 
 
 class Listening(RandomSearch):
@@ -36,16 +30,14 @@ class Listening(RandomSearch):
         super().tell(parameters, merit, fell)
 
 
-def test_each_return_is_corrected_by_what_is_known_when_it_is_told(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
-    monkeypatch.setattr(Stage, "trials", 2)
+def test_each_return_is_corrected_by_what_is_known_then(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Stage, "trials", 1)
     monkeypatch.setattr(Listening, "told", [], raising=False)
     monkeypatch.setitem(OPTIMISERS, "random", Listening)
-    run = RunFolder.create(tmp_path / "run", TrainingConfig("balance", "random", 40, slots=3, episode=EPISODE))
-    train(run.config(), run)
-    specs = [spec_of(row) for row in run.episodes()][: len(Listening.told)]
+    config = TrainingConfig("balance", "random", 28, slots=3, episode=BALANCE.config_of(EPISODE))
+    run = RunFolder.create(tmp_path / "run", config)
+    train(config, run)
+    specs = [spec_of(row, config) for row in run.episodes()][: len(Listening.told)]
     returns = np.array([simulate(spec).episode_return for spec in specs])
     assert [float(row["return"]) for row in run.episodes()][: len(specs)] == returns.tolist()
     disturbances = np.array([disturbances_of(spec) for spec in specs])
@@ -53,6 +45,6 @@ def test_each_return_is_corrected_by_what_is_known_when_it_is_told(
     assert Listening.told == expected and (np.array(expected[19:]) != returns[19:]).any()
 
 
-def spec_of(row: Any) -> EpisodeSpec:
+def spec_of(row: Any, config: TrainingConfig) -> EpisodeSpec:
     parameters = tuple(float(row[name]) for name in BALANCE.parameter_names)
-    return EpisodeSpec(parameters, int(row["seed"]), BALANCE, EPISODE)
+    return EpisodeSpec(parameters, int(row["seed"]), BALANCE, config.episode)

@@ -1,0 +1,146 @@
+"""The folder of a training: its tables, its learned parameters, and the episodes that commands choose from."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from interrupted import EPISODE
+from laboratory import COARSE_PHYSICS
+
+from sarah.episode.episode import simulate
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BALANCE, STEPPING
+from sarah.episode.workers import Workers, begin_episode, finish_episode
+from sarah.errors import ConfigurationError, RunFolderError
+from sarah.recorded.folder import new_path
+from sarah.runs.config import TrainingConfig
+from sarah.runs.recorded_episodes import RecordedEpisodes
+from sarah.runs.run_episodes import choose_episode, episode_of_parameters, episodes_of_run
+from sarah.runs.run_folder import RunFolder
+from sarah.runs.run_record import RunRecord
+
+CONFIG = TrainingConfig(algo="random", episodes=3, slots=1, episode=EPISODE)
+SPECS = [EpisodeSpec((1.0, 0.5, 0.2, 1.0, share), seed, config=EPISODE) for seed, share in ((7, 0.5), (8, 1.5))]
+LEARNED = {"P5": 0.5, "P2": 0.2, "P1": 0.1, "P4": 0.4, "P3": 0.3}
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> RunFolder:
+    """A training of two episodes, which names its learned parameters in another order."""
+    folder = RunFolder.create(tmp_path / "run", CONFIG)
+    for index, spec in enumerate(SPECS):
+        folder.append_episode(index, spec, simulate(spec))
+    folder.append_recommendation(2, LEARNED)
+    folder.write_parameters({"parameters": LEARNED})
+    return folder
+
+
+def test_tables_say_what_was_written(run: RunFolder) -> None:
+    record = RunRecord(RunFolder.open(run.path))
+    assert record.config == CONFIG and record.learned == (0.1, 0.2, 0.3, 0.4, 0.5)
+    results = [simulate(spec) for spec in SPECS]
+    expected = {"return": [result.episode_return for result in results], "P5": [0.5, 1.5], "seed": [7.0, 8.0]}
+    assert record.columns(record.episodes, list(expected)) == expected
+    (row,) = record.recommendations
+    assert row["episodes"] == "2" and row["P3"] == "0.3"
+    with pytest.raises(RunFolderError, match=r"the episodes of .*run cannot be read: KeyError"):
+        record.columns(record.episodes, ["nothing"])
+
+
+def test_progress_gets_more_columns_and_records_go(run: RunFolder) -> None:
+    run.append_progress(["b"], {"b": 1})
+    run.widen_progress(["b", "a"])
+    run.append_progress(["b", "a"], {"a": 2})
+    assert (run.path / "progress.csv").read_text().split() == ["b,a", "1,", ",2"]
+    run.remove_records()
+    assert not list(run.episodes()) and not list(run.recommendations()) and run.is_finished
+
+
+def test_its_episodes_are_there_to_choose_from(run: RunFolder) -> None:
+    learned, best, *both = episodes_of_run(run)
+    assert learned.spec == EpisodeSpec((0.1, 0.2, 0.3, 0.4, 0.5), 0, config=EPISODE)
+    assert [episode.spec for episode in both] == SPECS and [episode.name for episode in both] == ["0", "1"]
+    assert best.name == "best" and best.score == max(episode.score for episode in both)  # type: ignore[type-var]
+    assert best.spec in SPECS and both[1].of(SPECS[1]) is both[1] and both[1].of(SPECS[0]).score is None
+    episodes = [learned, best, *both]
+    assert choose_episode(episodes, None) is learned and choose_episode(episodes, "1") is both[1]
+    with pytest.raises(ConfigurationError, match=r"unknown episode '2' \(allowed: learned, best, 0 to 1\)"):
+        choose_episode(episodes, "2")
+
+
+def test_without_episodes_there_is_nothing_to_show(run: RunFolder) -> None:
+    run.remove_records()
+    assert [episode.name for episode in episodes_of_run(run)] == ["learned"]
+    run.result_path.unlink()
+    with pytest.raises(RunFolderError, match="has no episodes to show yet"):
+        episodes_of_run(run)
+
+
+def test_given_parameters_are_an_episode() -> None:
+    assert episode_of_parameters((0.5,) * 5).spec == EpisodeSpec((0.5,) * 5, 0, STEPPING)
+    assert episode_of_parameters((0.5,) * 4).spec == EpisodeSpec((0.5,) * 4, 0, BALANCE)
+    both = episode_of_parameters((0.5,) * 5 + (0.25,) * 4).spec
+    assert both.parameters == (0.25,) * 4 and both.config.stepping == (0.5,) * 5  # type: ignore[attr-defined]
+    words = r"must be 5 numbers \(P1 to P5\) or 4 numbers \(V1 to V4\) or all 9, not 3$"
+    with pytest.raises(ConfigurationError, match=words):
+        episode_of_parameters((0.5,) * 3)
+    with pytest.raises(ConfigurationError, match=r"must be 5 numbers \(P1 to P5\), not 9$"):
+        episode_of_parameters((0.5,) * 9, STEPPING)
+
+
+def test_a_run_has_no_more_rows_than_episodes(run: RunFolder) -> None:
+    run.append_episode(2, SPECS[0], simulate(SPECS[0]))
+    assert len(list(run.episodes())) == 3
+    run.append_episode(3, SPECS[0], simulate(SPECS[0]))
+    with pytest.raises(RunFolderError, match=r"episodes.csv cannot be read: it has more than 4 lines"):
+        list(run.episodes())
+
+
+def test_a_folder_that_is_not_empty_is_refused_and_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "precious.txt").write_text("data")
+    with pytest.raises(RunFolderError, match="is not empty"):
+        RunFolder.create(tmp_path, CONFIG)
+    assert [path.name for path in tmp_path.iterdir()] == ["precious.txt"]
+
+
+def test_run_folders_number_themselves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert new_path("stepping", "naf-s3") == Path("runs/stepping/naf-s3")
+    assert new_path("stepping", "naf-s3") == Path("runs/stepping/naf-s3-2")
+
+
+def test_folders_without_a_finished_training_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(RunFolderError, match="does not exist"):
+        RunFolder.open(tmp_path / "nowhere")
+    RunFolder.create(tmp_path / "begun", CONFIG)
+    with pytest.raises(RunFolderError, match=r"no parameters.json"):
+        RunFolder.open(tmp_path / "begun")
+    assert RunFolder.open(tmp_path / "begun", unfinished=True).config() == CONFIG
+
+
+@pytest.mark.parametrize(
+    "content",
+    ["{", "[]", "{}", '{"parameters": {"P1": 1}}', '{"parameters": {"P1": "x", "P2": 1, "P3": 1, "P4": 1, "P5": 1}}'],
+)
+def test_spoilt_parameters_are_named(content: str, run: RunFolder) -> None:
+    run.result_path.write_text(content)
+    with pytest.raises(RunFolderError, match=r"parameters.json does not hold learned parameters"):
+        run.parameters()
+
+
+@pytest.mark.parametrize(
+    ("function", "seeds"), [(begin_episode, [3]), (finish_episode, [3]), (finish_episode, [3, 4]), (simulate, [3])]
+)
+def test_the_journal_gives_back_every_bit(function: Callable[..., Any], seeds: list[int], tmp_path: Path) -> None:
+    run = RunFolder.create(tmp_path / "run", CONFIG)
+    config = EpisodeConfig(time_limit=2.0, physics=COARSE_PHYSICS)
+    specs = [EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), seed, config=config) for seed in seeds]
+    with run.journal_of(CONFIG) as journal:
+        simulated = RecordedEpisodes(journal, Workers()).submit(function, *specs).result()
+    with run.journal_of(CONFIG) as journal:
+        assert journal.replaying
+        known = RecordedEpisodes(journal, Workers()).submit(function, *specs).result()
+        assert not journal.replaying
+    assert repr(known) == repr(simulated) and type(known) is type(simulated)
