@@ -47,7 +47,7 @@ autodoc_preserve_defaults = True
 
 def write_api(app: Sphinx) -> None:
     """Write a page for every module; by the command, as the extension needs Python 3.11."""
-    command = [Path(sys.executable).with_name("sphinx-apidoc"), "-q", "--force", "--separate", "--module-first"]
+    command = [str(Path(sys.executable).with_name("sphinx-apidoc")), "-q", "--force", "--separate", "--module-first"]
     environment = {**os.environ, "SPHINX_APIDOC_OPTIONS": "members,show-inheritance,ignore-module-all"}
     arguments = ["--follow-links", "--output-dir", str(GENERATED), str(HERE.parent / "sarah")]
     subprocess.run([*command, *arguments], env=environment, check=True)
