@@ -37,16 +37,6 @@ def test_every_kind_is_a_subject(command: str, folder: Path) -> None:
         assert len(files) >= 10 and all(file.stat().st_size > 5000 for file in files)
 
 
-@pytest.mark.parametrize("kind", ["stepping", "session"])
-def test_only_the_code_that_began_it_goes_on_with_it(kind: str, folder: Path) -> None:
-    (folder / kind / "parameters.json").unlink()
-    before = tree(folder)
-    command = "sarah-operate" if kind == "session" else "sarah-train"
-    process = run(command, "--resume", str(folder / kind), cwd=folder.parent)
-    assert process.returncode == 2 and "sarah-sources is" in process.stderr
-    assert tree(folder) == before
-
-
 @pytest.mark.parametrize(("kind", "name"), [("stepping", "training"), ("session", "session")])
 def test_no_race_is_run_in_the_folder_of_something_else(kind: str, name: str, folder: Path) -> None:
     before = tree(folder)

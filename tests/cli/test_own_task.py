@@ -112,7 +112,7 @@ def test_the_next_steps_name_it_too(folder: Path, monkeypatch: pytest.MonkeyPatc
     figures = run("sarah-figures", "run", *TASK, cwd=folder)
     assert "sarah-report run --task my_task.py:THRIFTY\n" in figures.stderr
     report = run("sarah-report", "run", *TASK, cwd=folder)
-    assert "sarah-view run --task my_task.py:THRIFTY\n" in report.stderr
+    assert report.stdout == "run/report.html\n" and "sarah-view run --task my_task.py:THRIFTY\n" in report.stderr
 
 
 def test_another_file_is_refused(folder: Path, tmp_path: Path) -> None:

@@ -12,15 +12,16 @@ from laboratory import RESULT
 from terminal import COARSE, run
 
 import sarah
+from sarah.cli.episode_options import EpisodeOptions
 from sarah.cli.eval_text import rows_of
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import Push, draw_push
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import STEPPING, BalanceConfig
+from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.simulation.engines import default_engine
-from sarah.simulation.physics import Physics
+from sarah.simulation.physics import Physics, PyBulletPhysics
 
 QUICK = ("--episodes", "2", "--json", "--episode.time-limit", "3", *COARSE)
 NUMBERS = "1.09,0.17,0.65,1.13"
@@ -87,6 +88,10 @@ def test_options_reach_the_episodes(tmp_path: Path) -> None:
     assert alone["survival_rate"] == 1.0 and pushed["survival_rate"] == 0.0
     exact = shown("stepping", "--no-randomisation", folder=tmp_path)
     assert exact["score_mean"] != alone["score_mean"] and exact["survival_rate"] == 1.0
+    own = BalanceConfig(engine="pybullet", physics=PyBulletPhysics(rate=400, control_rate=200))
+    options = EpisodeOptions(physics="reference", episode=own)
+    physics = options.applied_to(EpisodeSpec((0.0,) * 4, 0, BALANCE)).config.physics
+    assert physics == PyBulletPhysics(1000, 100, 200, 0.0)
 
 
 @pytest.mark.parametrize(
@@ -140,7 +145,8 @@ def test_it_says_nothing_of_what_is_as_usual() -> None:
     rows = dict(rows_of("1,2", spec.config, still, range(1), Evaluation((RESULT,)), Evaluation((RESULT,))))
     assert rows["neutral"] and rows["chatter"].startswith("no chatter: ")
     soft = dataclasses.replace(PARAMETER_SETS["balance"].spec, config=BalanceConfig(push=Push(0.0)))
-    assert "pushes" not in dict(rows_of("x", soft.config, soft, range(1), Evaluation((RESULT,)), None))
+    early = Evaluation((dataclasses.replace(RESULT, duration=1.0),))
+    assert "pushes" not in dict(rows_of("x", soft.config, soft, range(1), early, None))
 
 
 @pytest.mark.parametrize(("host", "warned"), [("127.0.0.1", False), ("0.0.0.0", True)])

@@ -1,7 +1,6 @@
 """``sarah-train`` as a user runs it."""
 
 import dataclasses
-import json
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -28,13 +27,6 @@ def test_train_shows_its_progress_and_ends_with_a_summary(
     assert "4/4" in process.stderr and "evaluating on 10 unseen seeds" in process.stderr
     assert (folder / "parameters.json").is_file()
     assert "sarah-train --task stepping" in (folder / "command.txt").read_text()
-
-
-def test_second_training_keeps_what_the_first_learned(balanced: Path) -> None:
-    first = json.loads((balanced.parent / "mine" / "parameters.json").read_text())
-    second = json.loads((balanced / "parameters.json").read_text())
-    assert second["stepping"] == list(first["parameters"].values())
-    assert list(second["parameters"]) == ["V1", "V2", "V3", "V4"]
 
 
 def test_the_summary_tells_of_falls_and_of_the_baseline(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
