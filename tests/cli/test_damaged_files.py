@@ -22,14 +22,9 @@ EPISODE = "index,return,steps_per_second,x,y,P1,P2,P3,P4,P5\n0,1,1,0,0,1,1,1,1,1
     ("text", "message"),
     [
         ("episodes: 10\nepisodes: 20\n", "key 'episodes' is given twice"),
-        ("{task: balance, episode: {push: {newton: [1, 2]}}}", "did you mean 'episode.push.newtons'?"),
         ("1: 2", "line 1: a key must be a text, not 1"),
-        ("episodes: 1e3", "episodes must be a whole number, not 1000.0"),
         (f"seed: {'9' * 5000}", "seed must be a whole number, not '9999"),
         (f"episode: {{time_limit: {'9' * 400}}}", "time_limit must be a number that a float can hold"),
-        ("algo: [naf]", "algo must be a text, not ['naf']"),
-        ("episode: [1]", "must hold keys and values, not [1]"),
-        ("{task: balance, episode: {stepping: [1, 1, 1, 1, .inf]}}", "stepping must be a number, not '.inf'"),
         ("!!python/object/apply:os.system ['touch hacked']", "tags are not allowed"),
         (
             "a: &a [x, x, x, x]\nb: &b [*a, *a, *a, *a]\nepisode: [*b, *b, *b]",
@@ -38,8 +33,6 @@ EPISODE = "index,return,steps_per_second,x,y,P1,P2,P3,P4,P5\n0,1,1,0,0,1,1,1,1,1
         ("[" * 5000, "it is not YAML: maximum recursion depth exceeded"),
         ("episodes: 1" + ":1" * 5000 + ".5", "episodes must be a whole number, not '1:1:1"),
         ("\x00", "is not YAML"),
-        ("just words", "the file must hold keys and values, not 'just words'"),
-        ("task: balance\nepisode: {time_limit: 2, push: {at_seconds: [2, 3]}}", "before the time_limit of 2 s"),
     ],
 )
 def test_configuration_files(text: str, message: str, answer: Callable[[str], str], tmp_path: Path) -> None:
@@ -66,7 +59,6 @@ def test_a_file_that_is_no_text(answer: Callable[[str], str], tmp_path: Path) ->
         ("parameters.json", json.dumps({"parameters": {**PARAMETERS, "P2": "1"}}), "sarah-eval", "P2 must be between"),
         ("parameters.json", json.dumps({"parameters": PARAMETERS | {"P6": 1}}), "sarah-eval", "it names 'P1, P2"),
         ("parameters.json", "{}", "sarah-train --task balance --from", "does not hold learned parameters"),
-        ("config.yaml", "task: stepp", "sarah-eval", "config.yaml: unknown task 'stepp', did you mean 'stepping'?"),
         ("config.yaml", "episods: 5", "sarah-figures", "config.yaml: unknown key 'episods'"),
         ("episodes.csv", EPISODE.replace("0,1,1", "0,x,1"), "sarah-figures", "cannot be read"),
         ("episodes.csv", EPISODE.replace("0,1,1", "0,nan,1"), "sarah-figures", "must be a number, not 'nan'"),
