@@ -11,9 +11,10 @@ SEED ?= 1
 RUN ?= runs/$(shell date +%Y%m%d-%H%M%S)
 NAME ?=
 TIMINGS := throughput episodes updates decisions viewer
+PAGE := tests/viewer/test_page.py
 ENDURANCE := kills killed_workers resume long_run protections
 
-.PHONY: help install train figures stepping-report balance-report test test-slow lint format docs results bench endurance mutants clean
+.PHONY: help install train figures stepping-report balance-report test test-page test-slow lint format docs results bench endurance mutants clean
 
 help:  ## show what can be made
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
@@ -47,8 +48,11 @@ stepping-report balance-report:
 	$(BIN)/sarah-report $(RUN)/$(@:-report=)
 
 # One thread for each process: two of them share the machine, and threads that wait for each other cost more than they do.
-test: install  ## the tests
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m 'not slow'
+test: install  ## the tests, except those of the viewer's page
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m 'not slow' --ignore=$(PAGE)
+
+test-page: install  ## the tests of the viewer's page, in Chromium
+	$(BIN)/python -m pytest $(PAGE)
 
 test-slow: install  ## the slow tests: minutes of simulation
 	$(BIN)/python -m pytest -m slow

@@ -22,7 +22,7 @@ PRESETS: dict[str, dict[str, Any]] = {
         replay_buffer_kwargs=dict(temperature=8.0),
         exploration_std=LinearSchedule(0.3, 0.05, end_fraction=0.8),
         elite_share=0.8,
-        elite_std=LinearSchedule(0.9, 0.15, end_fraction=0.8),
+        elite_std=LinearSchedule(1.2, 0.15, end_fraction=0.5),
         elite_draws=1,  # Of several the most promising one would explore too little
         policy_kwargs=dict(
             net_arch=dict(V=[32, 32], mu=[32, 32], L=[32, 32]), activation_fn=nn.Tanh, min_curvature=1.0

@@ -108,7 +108,7 @@ class NAFSettings(LearnerSettings):
     :param temperature: logarithm of how much more often the best episode is replayed than the worst
     :param smoothed: smoothing of the returns over similar actions, by a Gaussian process of the newest 500 episodes
     :param elite_share: share of the actions that are drawn around the best one so far instead of around mu
-    :param elite_std: standard deviation of these draws: at first, and after 80 % of the training
+    :param elite_std: standard deviation of these draws: at first, and after half of the training
     :param elite_draws: number of draws, of which the most promising is tried
     :param v_layers: widths of the hidden layers of V
     :param mu_layers: widths of the hidden layers of mu
@@ -127,7 +127,7 @@ class NAFSettings(LearnerSettings):
     temperature: Annotated[float, Within(0.0, 100.0)] = _by_preset()
     smoothed: bool = _by_preset()
     elite_share: Share = _by_preset()
-    elite_std: tuple[Deviation, Deviation] = (0.9, 0.15)
+    elite_std: tuple[Deviation, Deviation] = (1.2, 0.15)
     elite_draws: Annotated[int, Within(1, 10_000)] = 1
     v_layers: Layers = _by_preset()
     mu_layers: Layers = _by_preset()

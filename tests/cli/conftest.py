@@ -1,4 +1,4 @@
-"""Trainings that several tests of commands look at, and commands that are refused."""
+"""Trainings that several tests of commands look at, commands that are refused, and trainings that only begin."""
 
 import shlex
 import subprocess
@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 from terminal import SHORT, run, tree
+
+from sarah.runs.config import TrainingConfig
 
 
 @pytest.fixture(scope="session")
@@ -30,21 +32,40 @@ def balanced(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> Path:
 
 
 @pytest.fixture
-def answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Callable[[str], str]:
-    """Runs a command line in this process, in a folder of its own, and returns its one line."""
-    monkeypatch.chdir(tmp_path)
+def answer(tmp_path: Path) -> Callable[[str], str]:
+    """Runs a command line in ``tmp_path``, and returns its one line."""
 
     def ask(line: str) -> str:
         command, *arguments = shlex.split(line)
         before = tree(tmp_path)
-        monkeypatch.setattr("sys.argv", [command, *arguments])
-        with pytest.raises(SystemExit) as ended:
-            import_module(f"sarah.cli.{command.removeprefix('sarah-')}").main()
-        captured = capsys.readouterr()
-        assert ended.value.code == 2 and captured.out == ""
-        (message,) = captured.err.splitlines()
+        process = run(command, *arguments, cwd=tmp_path)
+        assert process.returncode == 2 and process.stdout == ""
+        (message,) = process.stderr.splitlines()
         assert message.startswith(f"{command}: error: ") and len(message) < 1000
         assert tree(tmp_path) == before
         return message
 
     return ask
+
+
+@pytest.fixture
+def begun(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], TrainingConfig]:
+    """Settings of the training that a command line begins, which is interrupted before its first episode."""
+    monkeypatch.chdir(tmp_path)
+
+    def begin(line: str) -> TrainingConfig:
+        settings: list[TrainingConfig] = []
+
+        def train(config: TrainingConfig, *_: object, **__: object) -> None:
+            settings.append(config)
+            raise KeyboardInterrupt
+
+        monkeypatch.setattr("sarah.reports.race.train", train)
+        monkeypatch.setattr("sarah.training.train.train", train)
+        command, *arguments = line.split()
+        monkeypatch.setattr("sys.argv", [command, *arguments])
+        with pytest.raises(SystemExit, match="130"):
+            import_module(f"sarah.cli.{command.removeprefix('sarah-')}").main()
+        return settings[0]
+
+    return begin

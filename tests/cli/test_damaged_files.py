@@ -22,38 +22,17 @@ EPISODE = "index,return,steps_per_second,x,y,P1,P2,P3,P4,P5\n0,1,1,0,0,1,1,1,1,1
     ("text", "message"),
     [
         ("episodes: 10\nepisodes: 20\n", "key 'episodes' is given twice"),
-        ("episode:\n  time_limit: 3\n  time_limit: 4\n", "key 'time_limit' is given twice"),
-        ("{task: balance, episode: {push: {newton: [1, 2]}}}", "did you mean 'episode.push.newtons'?"),
-        ("Algo: naf", "unknown key 'Algo', did you mean 'algo'?"),
         ("1: 2", "line 1: a key must be a text, not 1"),
-        ("episodes:", "episodes must be a whole number, not None"),
-        ("episodes: 1e3", "episodes must be a whole number, not 1000.0"),
-        ("episodes: 2020-01-01", "episodes must be a whole number, not '2020-01-01'"),
-        ("seed: 0x7fffffffff", "seed must be a whole number, not '0x7fffffffff'"),
         (f"seed: {'9' * 5000}", "seed must be a whole number, not '9999"),
         (f"episode: {{time_limit: {'9' * 400}}}", "time_limit must be a number that a float can hold"),
-        ("algo: [naf]", "algo must be a text, not ['naf']"),
-        ("task: true", "task must be a text, not True"),
-        ("episode: {reward_form: true}", "reward_form must be a text, not True"),
-        ("episode: [1]", "must hold keys and values, not [1]"),
-        ("episode: {dimensions: {thigh_length: 330}}", "'thigh_length' must be a number between 0.033 and 3.3"),
-        ("episode: {dimensions: {tigh_length: 0.3}}", "did you mean 'thigh_length'?"),
-        ("episode: {dimensions: {thigh_length: '${__import__(\"os\").getcwd()}'}}", "must be a number, not"),
-        ("{task: balance, episode: {stepping: [1, 1, 1, 1]}}", "stepping must be a list of 5 values"),
-        ("{task: balance, episode: {stepping: [1, 1, 1, 1, .inf]}}", "stepping must be a number, not '.inf'"),
         ("!!python/object/apply:os.system ['touch hacked']", "tags are not allowed"),
         (
             "a: &a [x, x, x, x]\nb: &b [*a, *a, *a, *a]\nepisode: [*b, *b, *b]",
             "anchors and aliases are not allowed, such as 'a'",
         ),
         ("[" * 5000, "it is not YAML: maximum recursion depth exceeded"),
-        ("episodes: !!int '0100'", "tags are not allowed, such as 'tag:yaml.org,2002:int'"),
         ("episodes: 1" + ":1" * 5000 + ".5", "episodes must be a whole number, not '1:1:1"),
-        (f"episode: {{dimensions: {{{'x' * 1000}: [1]}}}}", "must be a number, not [1]"),
-        ("--- 1\n--- 2\n", "is not YAML"),
         ("\x00", "is not YAML"),
-        ("just words", "the file must hold keys and values, not 'just words'"),
-        ("task: balance\nepisode: {time_limit: 2, push: {at_seconds: [2, 3]}}", "before the time_limit of 2 s"),
     ],
 )
 def test_configuration_files(text: str, message: str, answer: Callable[[str], str], tmp_path: Path) -> None:
@@ -70,7 +49,6 @@ def test_a_file_that_is_no_text(answer: Callable[[str], str], tmp_path: Path) ->
 @pytest.mark.parametrize(
     ("name", "content", "command", "message"),
     [
-        ("parameters.json", "{", "sarah-eval", "parameters.json does not hold learned parameters"),
         ("parameters.json", "[" * 60_000, "sarah-eval", "parameters.json does not hold learned parameters"),
         (
             "parameters.json",
@@ -78,27 +56,16 @@ def test_a_file_that_is_no_text(answer: Callable[[str], str], tmp_path: Path) ->
             "sarah-eval",
             "P3 must be between",
         ),
-        ("parameters.json", json.dumps({"parameters": {**PARAMETERS, "P2": 2.5}}), "sarah-eval", "P2 must be between"),
         ("parameters.json", json.dumps({"parameters": {**PARAMETERS, "P2": "1"}}), "sarah-eval", "P2 must be between"),
         ("parameters.json", json.dumps({"parameters": PARAMETERS | {"P6": 1}}), "sarah-eval", "it names 'P1, P2"),
         ("parameters.json", "{}", "sarah-train --task balance --from", "does not hold learned parameters"),
-        ("config.yaml", "task: stepp", "sarah-eval", "config.yaml: unknown task 'stepp', did you mean 'stepping'?"),
         ("config.yaml", "episods: 5", "sarah-figures", "config.yaml: unknown key 'episods'"),
         ("episodes.csv", EPISODE.replace("0,1,1", "0,x,1"), "sarah-figures", "cannot be read"),
         ("episodes.csv", EPISODE.replace("0,1,1", "0,nan,1"), "sarah-figures", "must be a number, not 'nan'"),
-        ("episodes.csv", EPISODE + "1,1\n", "sarah-figures", "cannot be read"),
         ("episodes.csv", "", "sarah-figures", "no episodes to draw"),
         ("episodes.csv", "a,b\n\udcff\n", "sarah-figures", "cannot be read"),
         ("journal.jsonl", None, "sarah-train --episodes 200 --resume", "cannot be resumed: it has no journal.jsonl"),
-        ("config.yaml", "slots: 9", "sarah-train --slots 4 --resume", "slots is 9 in this training, not 4"),
-        ("config.yaml", "algo: sac", "sarah-train --algo td3 --resume", "algo is 'sac' in this training, not 'td3'"),
-        ("config.yaml", "task: balance", "sarah-train --task stepping --resume", "task is 'balance' in this training"),
-        *(
-            ("config.yaml", "episode: {engine: pybullet}", f"sarah-train {option} mujoco --resume", "not 'mujoco'")
-            for option in ("--engine", "--episode.engine")
-        ),
         ("config.yaml", "slots: 4", "sarah-train --out x --resume", "leave --out, --config and --from out"),
-        ("config.yaml", "seed: 1", "sarah-train --episode.time-limit 9 --resume", "episode.time_limit is 30.0 in this"),
     ],
 )
 def test_damaged_run_folders(
@@ -124,7 +91,7 @@ VALUES = st.recursive(
 CONFIGS = st.dictionaries(st.sampled_from(KEYS), VALUES, max_size=4)
 
 
-@settings(max_examples=300, derandomize=True)
+@settings(max_examples=100, derandomize=True)
 @given(content=(VALUES | CONFIGS).map(yaml.safe_dump) | st.text(max_size=40))
 def test_any_file_is_a_configuration_or_a_mistake(content: str, tmp_path_factory: pytest.TempPathFactory) -> None:
     path = tmp_path_factory.getbasetemp() / "any.yaml"

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from laboratory import need
-from terminal import SHORT, run
+from terminal import run
 
 from sarah.cli.describe_text import lines_of
 from sarah.episode.settings import EpisodeConfig
@@ -17,25 +17,22 @@ from sarah.episode.settings import EpisodeConfig
 DIMENSIONS = ("--episode.dimensions", "thigh_length", "0.2", "shank_length", "0.25")
 
 
-@pytest.fixture(scope="module")
-def described(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
-    """A folder with the files of a robot, and what was printed of it."""
-    folder = tmp_path_factory.mktemp("robot")
-    process = run("sarah-describe", *DIMENSIONS, "--out", "other", cwd=folder)
-    assert process.returncode == 0 and process.stderr.startswith("to train it: ")
-    return folder / "other", process.stdout
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Commands draw no robot, which would take most of their time."""
+    monkeypatch.setattr("sarah.pictures.dimension_figure.draw_dimensions", lambda *_: None)
 
 
-def test_it_shows_a_robot_of_other_dimensions(described: tuple[Path, str]) -> None:
-    folder, text = described
-    assert "standing height  0.65 m" in text and "left_hip_flexion" in text
-    assert ["thigh_length", "0.2", "0.33", "m"] in [line.split() for line in text.splitlines()]
-    assert text.splitlines()[-2:] == ["other/sarah_robot.png", "other/sarah_robot.urdf"]
-    assert {path.name for path in folder.iterdir()} == {"sarah_robot.png", "sarah_robot.urdf"}
-
-
-def test_other_tools_load_the_urdf_from_the_file_alone(described: tuple[Path, str]) -> None:
-    file = str(described[0] / "sarah_robot.urdf")
+def test_a_robot_of_other_dimensions_is_drawn_and_other_tools_load_its_urdf(tmp_path: Path) -> None:
+    process = run("sarah-describe", *DIMENSIONS, "--out", "other", cwd=tmp_path)
+    said = "to train it:  sarah-train --episode.dimensions thigh_length 0.2 shank_length 0.25\n"
+    assert process.returncode == 0 and re.sub(r":  \S*/sarah", ":  sarah", process.stderr) == said
+    lines = process.stdout.splitlines()
+    assert "standing height  0.65 m" in process.stdout and "left_hip_flexion" in process.stdout
+    assert ["thigh_length", "0.2", "0.33", "m"] in [line.split() for line in lines]
+    assert lines[-2:] == ["other/sarah_robot.png", "other/sarah_robot.urdf"]
+    assert {path.name for path in (tmp_path / "other").iterdir()} == {"sarah_robot.png", "sarah_robot.urdf"}
+    file = str(tmp_path / "other" / "sarah_robot.urdf")
     import yourdfpy
 
     robot = yourdfpy.URDF.load(file)
@@ -46,11 +43,11 @@ def test_other_tools_load_the_urdf_from_the_file_alone(described: tuple[Path, st
     assert mujoco.MjModel.from_xml_path(file).njnt == 10
 
 
-def test_it_shows_the_robot_of_a_training(tmp_path: Path) -> None:
-    short = ("--task", "stepping", "--algo", "random", "--episodes", "2", "--run-dir", "mine", *SHORT)
-    assert run("sarah-train", *short, *DIMENSIONS, cwd=tmp_path).returncode == 0
-    text = run("sarah-describe", "mine", cwd=tmp_path).stdout
-    assert "standing height  0.65 m" in text and "\nthigh_length" in text
+def test_the_robot_of_a_training_is_not_trained_again(
+    trained: tuple[Path, subprocess.CompletedProcess[str]], undrawn: None, tmp_path: Path
+) -> None:
+    process = run("sarah-describe", str(trained[0]), cwd=tmp_path)
+    assert "standing height  0.84 m" in process.stdout and process.stderr == ""
 
 
 def test_the_default_robot_has_no_rows_about_others() -> None:
@@ -81,25 +78,8 @@ def test_it_needs_neither_an_engine_nor_a_learner(tmp_path: Path) -> None:
     assert (tmp_path / "sarah_robot.png").stat().st_size > 50_000
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ("nobody", "'nobody' is neither a run folder, nor numbers"),
-        ("--episode.dimensions tigh_length 0.3", "did you mean 'thigh_length'"),
-        (
-            "--episode.dimensions thigh_length 9",
-            "'thigh_length' must be a number between 0.033 and 3.3 m, not 9.0 (default: 0.33 m; distance from",
-        ),
-        ("--episode.dimensions hinge_height 0.005", "'hinge_height' must be at least 0.015 m"),
-    ],
-)
-def test_a_mistake_is_one_line_and_writes_nothing(answer: Callable[[str], str], arguments: str, message: str) -> None:
-    assert message in answer(f"sarah-describe {arguments}")
-
-
 @pytest.mark.parametrize("newtons", [5, 30])
-def test_a_file_and_an_option_describe_one_robot(newtons: int, tmp_path: Path) -> None:
-    """What the file sets by hand stays, whatever the option changes, also if it is what the default robot has."""
+def test_a_file_and_an_option_describe_one_robot(newtons: int, undrawn: None, tmp_path: Path) -> None:
     controller = f"{{pad_threshold: {newtons}}}"
     (tmp_path / "mine.yaml").write_text(f"episode: {{dimensions: {{thigh_length: 0.2}}, controller: {controller}}}\n")
     process = run("sarah-describe", "--config", "mine.yaml", "--episode.dimensions", "torso_mass", "23", cwd=tmp_path)
@@ -108,7 +88,12 @@ def test_a_file_and_an_option_describe_one_robot(newtons: int, tmp_path: Path) -
     assert re.search(rf"controller.pad-threshold +{newtons} +30 +the rule gives 45\n", process.stdout)
 
 
-def test_dimensions_are_one_robot_however_often_they_are_given(tmp_path: Path) -> None:
+def test_dimensions_are_one_robot_however_often_they_are_given(undrawn: None, tmp_path: Path) -> None:
     once = run("sarah-describe", "--episode.dimensions", "thigh_length", "0.1", "shank_length", "0.2", cwd=tmp_path)
     twice = ("--episode.dimensions=thigh_length", "0.1", "--episode.dimensions", "shank_length", "0.2")
     assert run("sarah-describe", *twice, cwd=tmp_path).stdout == once.stdout
+
+
+def test_a_file_or_a_subject(answer: Callable[[str], str], tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text("episodes: 5\n")
+    assert "give --config or a subject, not both" in answer("sarah-describe balance --config mine.yaml")

@@ -16,38 +16,25 @@ def folder(tmp_path: Path) -> Path:
     return Path(shutil.copytree(FORMER, tmp_path / "former"))
 
 
-@pytest.mark.parametrize("kind", ["stepping", "balance", "session"])
 @pytest.mark.parametrize(
     "command",
-    ["sarah-eval {} --episodes 1", "sarah-describe {}", "sarah-operate {} --minutes 0.1 --learner none --out out"],
+    [
+        "sarah-eval stepping --episodes 1",
+        "sarah-eval session --episodes 1",
+        "sarah-operate balance --minutes 0.1 --learner none --out ../out",
+        "sarah-figures stepping balance --out ../out",
+        "sarah-train --task balance --from stepping --episodes 1 --algo random --episode.time-limit 2 --out ../out",
+    ],
 )
-def test_every_kind_is_a_subject(command: str, kind: str, folder: Path) -> None:
+def test_every_kind_is_a_subject(command: str, folder: Path) -> None:
     before = tree(folder)
-    name, *arguments = command.format(folder / kind).split()
-    process = run(name, *arguments, cwd=folder.parent)
+    name, *arguments = command.split()
+    process = run(name, *arguments, cwd=folder)
     assert process.returncode == 0, process.stderr
     assert tree(folder) == before
-
-
-def test_trainings_are_reported_and_learned_from(folder: Path) -> None:
-    for command in (
-        f"sarah-figures {folder / 'stepping'} {folder / 'balance'} --out out",
-        f"sarah-report {folder / 'stepping'}",
-        f"sarah-train --task balance --from {folder / 'stepping'} --episodes 1 --algo random --out more",
-    ):
-        name, *arguments = command.split()
-        process = run(name, *arguments, cwd=folder.parent)
-        assert process.returncode == 0, process.stderr
-
-
-@pytest.mark.parametrize("kind", ["stepping", "balance", "session"])
-def test_only_the_code_that_began_it_goes_on_with_it(kind: str, folder: Path) -> None:
-    (folder / kind / "parameters.json").unlink()
-    before = tree(folder)
-    command = "sarah-operate" if kind == "session" else "sarah-train"
-    process = run(command, "--resume", str(folder / kind), cwd=folder.parent)
-    assert process.returncode == 2 and "sarah-sources is" in process.stderr
-    assert tree(folder) == before
+    if name == "sarah-figures":
+        files = [folder / file for file in process.stdout.split()]
+        assert len(files) >= 10 and all(file.stat().st_size > 5000 for file in files)
 
 
 @pytest.mark.parametrize(("kind", "name"), [("stepping", "training"), ("session", "session")])

@@ -6,7 +6,7 @@ from pathlib import Path
 from urllib.parse import unquote, urlparse
 
 import pytest
-from terminal import BIN, SHORT, run
+from terminal import BIN, COARSE, SHORT, run
 
 from sarah.cli import next_steps
 from sarah.cli.next_steps import passed_on, say_next, to_see, to_watch
@@ -39,9 +39,7 @@ def paste(words: list[str], folder: Path) -> str:
     return process.stdout
 
 
-def test_a_training_can_be_seen_tested_and_watched(
-    trained: tuple[Path, subprocess.CompletedProcess[str]],
-) -> None:
+def test_a_training_can_be_seen_tested_and_watched(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
     folder, process = trained
     steps = steps_of(process.stderr)
     assert list(steps) == ["see it", "test it", "watch its curves"] and "sarah-" not in process.stdout.splitlines()[-1]
@@ -51,25 +49,20 @@ def test_a_training_can_be_seen_tested_and_watched(
 
 
 def test_an_episode_that_was_evaluated_is_seen_under_the_same_conditions(tmp_path: Path) -> None:
-    line = ("0.4,1.3,0.1,1,1", "--episodes", "1", "--episode.time-limit", "1.5", "--episode.payload", "3")
-    steps = steps_of(run("sarah-eval", *line, cwd=tmp_path).stderr)
-    assert steps == {"see it": ["sarah-view", line[0], *line[3:], "--seed", str(FIRST_EVALUATION_SEED)]}
+    settings = ("--episode.time-limit", "1.5", "--episode.payload", "3", *COARSE)
+    steps = steps_of(run("sarah-eval", "0.4,1.3,0.1,1,1", "--episodes", "1", *settings, cwd=tmp_path).stderr)
+    assert steps == {"see it": ["sarah-view", "0.4,1.3,0.1,1,1", *settings, "--seed", str(FIRST_EVALUATION_SEED)]}
     assert paste(steps["see it"], tmp_path) == "page.html\n"
-
-
-def test_json_comes_alone(tmp_path: Path) -> None:
-    process = run("sarah-eval", "stepping", "--episodes", "1", "--episode.time-limit", "1.5", "--json", cwd=tmp_path)
-    assert process.returncode == 0 and process.stderr == ""
 
 
 @pytest.mark.parametrize(
     ("line", "purposes"),
     [
-        ("sarah-figures {run}", ["open it", "have it on one page"]),
         ("sarah-view {run} --out 'a page.html'", ["open it"]),
+        ("sarah-eval {run} --episodes 1", ["see it", "have it on one page"]),
         ("sarah-operate {run} --learner none --minutes 0.1", ["see it", "test it", "watch its curves"]),
         (
-            "sarah-compare --out race --algorithms random --seeds 1 --episodes 5 --evaluations 1 " + " ".join(SHORT),
+            "sarah-compare --out race --algorithms random --seeds 1 --episodes 2 --evaluations 1 " + " ".join(SHORT),
             ["open it", "see its best", "watch its curves"],
         ),
     ],

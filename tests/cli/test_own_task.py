@@ -9,6 +9,9 @@ import pytest
 from laboratory import need
 from terminal import run, tree
 
+from sarah.episode.push import PushedConfig
+from sarah.episode.tasks.task_file import task_of_text
+from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import is_installed
 
@@ -26,7 +29,7 @@ def reward(tick, config):
 
 
 COARSE = sarah.Physics(rate=100, solver_iterations=5)
-EPISODE = sarah.PushedConfig(time_limit=2.0, push=sarah.Push(30), physics=COARSE)
+EPISODE = sarah.PushedConfig(time_limit=1.5, push=sarah.Push(30, at_seconds=1.1), physics=COARSE)
 THRIFTY = dataclasses.replace(sarah.STEPPING, name="thrifty", reward=reward, episode=EPISODE)
 """
 TASK = ("--task", "my_task.py:THRIFTY")
@@ -37,17 +40,19 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the file, and with a training of its task in ``run``."""
     path = tmp_path_factory.mktemp("own")
     (path / "my_task.py").write_text(FILE)
-    process = run("sarah-train", *TASK, "--episodes", "10", "--workers", "2", "--out", "run", cwd=path)
+    process = run("sarah-train", *TASK, "--algo", "random", "--episodes", "4", "--out", "run", cwd=path)
     assert process.returncode == 0, process.stderr
     assert "score       -" in process.stdout  # its power costs more than the paper's reward gives
+    assert "sarah-eval run --task my_task.py:THRIFTY" in process.stderr
     (path / "it_ran").unlink()
+    task_of_text.cache_clear()
     return path
 
 
 def test_the_run_records_the_file(folder: Path) -> None:
     assert (folder / "run" / "task.py").read_text() == FILE
     config = RunFolder.open(folder / "run").config()
-    assert config.task.reference == "my_task.py:THRIFTY" and config.episode.time_limit == 2.0
+    assert config.task.reference == "my_task.py:THRIFTY" and config.episode.time_limit == 1.5
     assert config.task.parameter_names == ("P1", "P2", "P3", "P4", "P5")
     assert not (folder / "it_ran").exists()
 
@@ -61,42 +66,53 @@ def test_the_run_records_the_file(folder: Path) -> None:
         "sarah-view run --out out.html",
         "sarah-report run --out report.html",
         "sarah-train --resume run",
-        "sarah-train --resume run --episodes 20",
         "sarah-train --config run/config.yaml",
         "sarah-transfer run",
     ],
 )
-def test_nothing_that_opens_a_run_runs_the_file(folder: Path, command: str) -> None:
+def test_nothing_that_opens_a_run_runs_the_file(folder: Path, command: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    task_of_text.cache_clear()  # which remembers what it has run
     name, *arguments = command.split()
     if name == "sarah-transfer":
         need("pybullet")
         need("mujoco")
+    drawn: list[object] = []
+    monkeypatch.setattr(
+        "sarah.reports.all_figures.draw_all_figures", lambda *given: drawn.extend(given) or [Path("a.png")]
+    )
     process = run(name, *arguments, cwd=folder)
     assert not (folder / "it_ran").exists()
-    if name == "sarah-figures":  # which needs only its tables
-        assert process.returncode == 0 and (folder / "out" / "thrifty_parameters.png").exists()
+    if drawn:  # which needs only tables
+        assert process.returncode == 0
     else:
         assert process.returncode == 2 and process.stderr.count("\n") == 1
         assert "--task my_task.py:THRIFTY" in process.stderr
 
 
-def test_every_command_takes_it_when_it_is_named(folder: Path) -> None:
+def test_every_command_takes_it_when_it_is_named(folder: Path, begun: Callable[[str], TrainingConfig]) -> None:
     process = run("sarah-eval", "run", *TASK, "--episodes", "2", "--json", cwd=folder)
     assert json.loads(process.stdout)["score_mean"] < 0.0
     kept = ("--task", "run/task.py:THRIFTY")  # the copy is the same file
     again = run("sarah-eval", "run", *kept, "--episodes", "2", "--json", cwd=folder)
     assert json.loads(again.stdout) | {"task": "my_task.py:THRIFTY"} == json.loads(process.stdout)
-    if is_installed("pybullet"):  # which draws
-        assert run("sarah-video", "run", "--out", "a.gif", *TASK, "--seconds", "1", "1.1", cwd=folder).returncode == 0
     numbers = run("sarah-eval", "0.4,0.5,0.6,1,1", *TASK, "--episodes", "1", "--json", cwd=folder)
     assert json.loads(numbers.stdout)["task"] == "my_task.py:THRIFTY"
-    drawn = run("sarah-figures", "run", *TASK, "--out", "drawn", cwd=folder)
-    assert drawn.returncode == 0 and "no gait cycle of run" in drawn.stderr  # in a second there is none
-    assert run("sarah-report", "run", *TASK, "--episodes", "1", "--seconds", "1", "1.1", cwd=folder).returncode == 0
-    page = (folder / "run" / "report.html").read_text()
-    assert "sarah-eval naf-s0-again --task my_task.py:THRIFTY" in page
+    if is_installed("pybullet"):  # which draws
+        assert run("sarah-video", "run", "--out", "a.gif", *TASK, "--seconds", "1", "1.1", cwd=folder).returncode == 0
     finished = run("sarah-train", "--resume", "run", *TASK, cwd=folder)
     assert finished.returncode == 0 and "run is finished" in finished.stdout
+    Path("my_task.py").write_text(FILE)
+    assert begun(f"sarah-compare --out race {' '.join(TASK)}").episode.time_limit == 1.5
+
+
+def test_the_next_steps_name_it_too(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown = folder / "shown.png"
+    monkeypatch.setattr("sarah.reports.all_figures.draw_all_figures", lambda *_: [shown])
+    monkeypatch.setattr("sarah.reports.report.write_report", lambda *_: None)
+    figures = run("sarah-figures", "run", *TASK, cwd=folder)
+    assert "sarah-report run --task my_task.py:THRIFTY\n" in figures.stderr
+    report = run("sarah-report", "run", *TASK, cwd=folder)
+    assert report.stdout == "run/report.html\n" and "sarah-view run --task my_task.py:THRIFTY\n" in report.stderr
 
 
 def test_another_file_is_refused(folder: Path, tmp_path: Path) -> None:
@@ -111,22 +127,12 @@ def test_another_file_is_refused(folder: Path, tmp_path: Path) -> None:
     assert tree(folder) == before
 
 
-def test_a_file_of_settings_keeps_what_it_says(folder: Path) -> None:
-    """What it does not say is the task's own: a time limit of 2 s, and 30 N."""
-    (folder / "mine.yaml").write_text("algo: random\nepisodes: 2\nepisode: {push: {degrees: 90}}\n")
-    process = run("sarah-train", "--config", "mine.yaml", *TASK, "--out", "mine", cwd=folder)
-    assert process.returncode == 0, process.stderr
-    episode = RunFolder.open(folder / "mine").config().episode
-    assert episode.time_limit == 2.0
-    assert episode.push.newtons == (30.0, 30.0) and episode.push.degrees == (90.0, 90.0)  # type: ignore[attr-defined]
-
-
-def test_a_race_of_it_goes_on(folder: Path) -> None:
-    race = ("--out", "race", *TASK, "--algorithms", "random", "--seeds", "1", "--episodes", "5", "--evaluations", "1")
-    process = run("sarah-compare", *race, cwd=folder)
-    assert process.returncode == 0 and "| random | 1 |" in process.stdout, process.stderr
-    again = run("sarah-compare", *race, cwd=folder)
-    assert again.stdout == process.stdout
+def test_a_file_of_settings_keeps_what_it_says(tmp_path: Path, begun: Callable[[str], TrainingConfig]) -> None:
+    (tmp_path / "my_task.py").write_text(FILE)
+    (tmp_path / "mine.yaml").write_text("algo: random\nepisode: {push: {degrees: 90}}\n")
+    episode = begun(f"sarah-train --config mine.yaml {' '.join(TASK)}").episode
+    assert isinstance(episode, PushedConfig) and episode.time_limit == 1.5
+    assert episode.push.newtons == (30.0, 30.0) and episode.push.degrees == (90.0, 90.0)
 
 
 @pytest.mark.parametrize(
@@ -135,11 +141,7 @@ def test_a_race_of_it_goes_on(folder: Path) -> None:
         ("sarah-train --task my_task.py:THIFTY", "unknown task in my_task.py 'THIFTY', did you mean 'THRIFTY'?"),
         ("sarah-train --task my_task.py", "name the task in my_task.py too, as in my_task.py:TASK"),
         ("sarah-train --task nowhere.py:JUMP", "cannot read nowhere.py: No such file or directory"),
-        ("sarah-eval 1,0,1,0 --robustness --out out --task my_task.py:THRIFTY", "must be 5 numbers (P1 to P5), not 4"),
-        (
-            "sarah-eval 1,1,1,1,1 --robustness --out out --task my_task.py:THRIFTY",
-            "--robustness needs parameters of task 'balance', and these are of 'thrifty'",
-        ),
+        ("sarah-eval 1,0,1,0 --task my_task.py:THRIFTY", "must be 5 numbers (P1 to P5), not 4"),
     ],
 )
 def test_mistakes(folder: Path, command: str, words: str) -> None:
@@ -150,30 +152,23 @@ def test_mistakes(folder: Path, command: str, words: str) -> None:
 
 def test_a_mistake_in_the_reward_names_file_and_line(folder: Path) -> None:
     (folder / "wrong.py").write_text(FILE.replace("tick.power", "tick.pover"))
-    task = ("--task", "wrong.py:THRIFTY", "--out", "wrong")
-    process = run("sarah-train", *task, "--episodes", "2", "--workers", "1", cwd=folder)
-    assert process.returncode == 2 and process.stderr.count("\n") == 1
-    assert "wrong.py, line 11: AttributeError: 'Tick' object has no attribute 'pover'" in process.stderr
-    assert not (folder / "wrong").exists()  # nothing is in the way of a second try
-
-
-def test_a_mistake_that_shows_late_says_what_to_do(folder: Path) -> None:
-    late = FILE.replace("0.01 * tick.power", "(1 / 0 if tick.time > 1.9 else 0.0)")
-    (folder / "late.py").write_text(late)
-    process = run("sarah-train", "--task", "late.py:THRIFTY", "--episodes", "2", "--out", "late", cwd=folder)
-    assert process.returncode == 2 and "Traceback" not in process.stderr
-    assert "late.py, line 11: ZeroDivisionError" in process.stderr
-    assert "correct the file, and train into another folder than late" in process.stderr
+    early = run("sarah-train", "--task", "wrong.py:THRIFTY", "--out", "wrong", cwd=folder)
+    assert early.returncode == 2 and early.stderr.count("\n") == 1
+    assert "wrong.py, line 11: AttributeError: 'Tick' object has no attribute 'pover'" in early.stderr
+    assert not (folder / "wrong").exists()
+    late_mistake = FILE.replace("0.01 * tick.power", "(1 / 0 if tick.time > 1.9 else 0.0)")
+    (folder / "late.py").write_text(late_mistake.replace("1.5", "2.0"))
+    late = run("sarah-train", "--task", "late.py:THRIFTY", "--algo", "random", "--out", "late", cwd=folder)
+    assert late.returncode == 2 and "late.py, line 11: ZeroDivisionError" in late.stderr
+    assert "correct the file, and train into another folder than late" in late.stderr
 
 
 def test_a_damaged_description_is_one_line(folder: Path, answer: Callable[[str], str], tmp_path: Path) -> None:
-
     shutil.copytree(folder / "run", tmp_path / "run")
-    for text in ("{", "[]", '{"file": 1}', (folder / "run" / "task.json").read_text().replace("EpisodeConfig", "Path")):
-        (tmp_path / "run" / "task.json").write_text(text.replace("PushedConfig", "Path"))
-        assert "the task of run cannot be read" in answer("sarah-eval run")
-    description = json.loads((folder / "run" / "task.json").read_text())
-    for change in ({"file": "../\x1b[31mevil.py"}, {"attribute": ["a"]}, {"title": 5}, {"must_step": "no"}):
-        (tmp_path / "run" / "task.json").write_text(json.dumps(description | change))
+    description = (folder / "run" / "task.json").read_text()
+    changes = ({"file": "../\x1b[31mevil.py"}, {"attribute": ["a"]}, {"title": 5}, {"must_step": "no"})
+    changed = [json.dumps(json.loads(description) | change) for change in changes]
+    for text in ("{", "[]", '{"file": 1}', description.replace("PushedConfig", "Path"), *changed):
+        (tmp_path / "run" / "task.json").write_text(text)
         line = answer("sarah-eval run")
         assert "the task of run cannot be read" in line and line.strip().isprintable()

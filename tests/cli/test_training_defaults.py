@@ -1,9 +1,7 @@
 """What ``sarah-train`` and ``sarah-compare`` train with unless somebody says otherwise."""
 
 import dataclasses
-import re
 from collections.abc import Callable
-from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -25,49 +23,12 @@ MINE = dataclasses.replace(sarah.BALANCE, name="mine")
 """
 
 
-@pytest.fixture
-def begun(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], TrainingConfig]:
-    """Settings of the training that a command line begins, which is interrupted before its first episode."""
-    monkeypatch.chdir(tmp_path)
-
-    def begin(line: str) -> TrainingConfig:
-        settings: list[TrainingConfig] = []
-
-        def train(config: TrainingConfig, *_: object, **__: object) -> None:
-            settings.append(config)
-            raise KeyboardInterrupt
-
-        monkeypatch.setattr("sarah.training.train.train", train)
-        monkeypatch.setattr("sarah.reports.race.train", train)
-        command, *arguments = line.split()
-        monkeypatch.setattr("sys.argv", [command, *arguments])
-        with pytest.raises(SystemExit, match="130"):
-            import_module(f"sarah.cli.{command.removeprefix('sarah-')}").main()
-        return settings[0]
-
-    return begin
-
-
 @pytest.mark.parametrize("command", [TRAIN, COMPARE])
 def test_balance_is_learned_from_pushes_that_tell_sets_apart(
     command: str, begun: Callable[[str], TrainingConfig]
 ) -> None:
     config = begun(command)
     assert (config.task, config.episodes, config.episode) == (BALANCE, 300, PUSHED)
-
-
-@pytest.mark.parametrize("command", [TRAIN, COMPARE])
-def test_help_shows_these_defaults(
-    command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    name, *arguments = command.split()
-    monkeypatch.setattr("sys.argv", [name, *arguments, "--help"])
-    with pytest.raises(SystemExit):
-        import_module(f"sarah.cli.{name.removeprefix('sarah-')}").main()
-    text = " ".join(capsys.readouterr().out.replace("│", " ").split())
-    shown = dict(re.findall(r"--(\S+) (?:INT|FLOAT)(?: \[FLOAT\])? (?:(?!--).)*?\((?:[^()]*; )?default: (.*?)\)", text))
-    assert shown["episodes"] == "300" and shown["episode.time-limit"] == "10.0"
-    assert shown["episode.push.newtons"] == "100.0 125.0" and shown["episode.push.sagittal-share"] == "0.5"
 
 
 @pytest.mark.parametrize("command", [TRAIN, COMPARE])

@@ -1,15 +1,14 @@
 """``--out`` is what a command writes, in every command, and its former names work for one release more."""
 
-from importlib import import_module
 from pathlib import Path
 
 import pytest
 from laboratory import need
+from terminal import run
 
 from sarah.cli.tables import leave_table
 from sarah.reports.transfer import ENGINES
 
-COMMANDS = ("train", "operate", "eval", "view", "video", "transfer", "report", "compare", "figures")
 FORMER = {
     "sarah-train --run-dir=mine --seed -1": ("--out mine", "--run-dir mine"),
     "sarah-operate --run_dir mine --seed -1": ("--out mine", "--run_dir mine"),
@@ -30,55 +29,31 @@ TABLES = {
 """Commands that leave a table, by the name of its file."""
 
 
-def ended(line: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> tuple[str, str]:
-    """Both streams of a command that ends early, run in this process."""
-    monkeypatch.setattr("sys.argv", line.split())
-    with pytest.raises(SystemExit):
-        import_module(f"sarah.cli.{line.split()[0].removeprefix('sarah-')}").main()
-    return capsys.readouterr()
-
-
-@pytest.mark.parametrize("command", COMMANDS)
-def test_every_command_writes_to_out(
-    command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    shown, _ = ended(f"sarah-{command} --help", monkeypatch, capsys)
-    assert "--out DIR" in shown or "--out FILE" in shown
-    assert "--run-dir" not in shown and "--export" not in shown
-
-
 @pytest.mark.parametrize("line", FORMER)
-def test_a_former_name_works_and_one_line_says_the_present_one(
-    line: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_former_name_works_and_one_line_says_the_present_one(line: str, tmp_path: Path) -> None:
     present, former = FORMER[line]
-    shown, said = ended(line, monkeypatch, capsys)
-    notice, error = said.splitlines()
-    command = line.split()[0]
+    command, *arguments = line.split()
+    process = run(command, *arguments, cwd=tmp_path)
+    notice, error = process.stderr.splitlines()
     assert notice == f"{command}: say {present} instead of {former}, which the next release refuses"
-    assert " must be between " in error and shown == ""
+    assert " must be between " in error and process.stdout == ""
 
 
-def test_a_former_name_is_understood(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("full").mkdir()
-    Path("full/precious.txt").touch()
-    _, said = ended("sarah-train --run-dir full", monkeypatch, capsys)
+def test_a_former_name_is_understood(tmp_path: Path) -> None:
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full/precious.txt").touch()
+    said = run("sarah-train", "--run-dir", "full", cwd=tmp_path).stderr
     assert said.splitlines()[-1].endswith("run folder full is not empty: name another with --out")
 
 
 @pytest.mark.parametrize("name", TABLES)
-def test_that_a_table_is_replaced_is_said_before_the_work(
-    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_that_a_table_is_replaced_is_said_before_the_work(name: str, tmp_path: Path) -> None:
     for engine in ENGINES:
         need(engine)
-    line = f"{TABLES[name]} --out {tmp_path} --workers 1000"  # so many never begin to work
-    assert "replaced" not in ended(line, monkeypatch, capsys)[1]
+    line = [*TABLES[name].split(), "--out", str(tmp_path), "--workers", "1000"]  # so many never begin to work
+    assert "replaced" not in run(*line, cwd=tmp_path).stderr
     (tmp_path / name).write_text("precious")
-    assert f"{tmp_path / name} is there already, and will be replaced\n" in ended(line, monkeypatch, capsys)[1]
+    assert f"{tmp_path / name} is there already, and will be replaced\n" in run(*line, cwd=tmp_path).stderr
     assert (tmp_path / name).read_text() == "precious"
 
 

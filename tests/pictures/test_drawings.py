@@ -97,7 +97,6 @@ def test_gravity_points_down_in_the_picture_of_a_slope(uphill: float) -> None:
 
 
 def test_floor_of_a_slope_rises_uphill() -> None:
-    """The camera stands in front of the robot, whose right is on the left of the picture."""
     camera = Camera(yaw=180.0, ground=draw_ground(Terrain((15.0, 15.0), (0.0, 0.0)), 0))
     (x_right, y_right), (x_left, y_left) = View(*SIZE, camera).pixels(np.array(((0.5, 0.0, 0.0), (-0.5, 0.0, 0.0))))
     assert x_right < x_left and y_right < y_left

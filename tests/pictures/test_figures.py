@@ -18,6 +18,7 @@ from sarah.episode.episode import simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks.balance import TRAINED_STEPPING
+from sarah.episode.trace import Trace
 from sarah.errors import ConfigurationError
 from sarah.operation.settings import SHIPPED, Change
 from sarah.operation.window import Window
@@ -32,7 +33,6 @@ from sarah.robot.reading import SensorReading, Side
 
 @pytest.mark.parametrize("constants", [CONSTANTS, ControllerConstants(lift_retraction=0.011, time_out_seconds=0.2)])
 def test_the_state_machine_is_that_of_the_generator(constants: ControllerConstants) -> None:
-    """Its order, its time-outs and its leg lengths, without a sensor that ends a phase."""
     silence = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (0.0,) * 4, (0.0,) * 6)  # type: ignore[arg-type]
     generator = PatternGenerator(SteppingParameters(1.0, 1.0, 1.0, P4=0.5, P5=1.0), dt=0.001, constants=constants)
     while generator.phase is Phase.STAND:
@@ -85,10 +85,14 @@ def test_labels_point_at_the_robot_as_it_is() -> None:
     assert abs(height - other_height) < 0.06  # the knee stands as high, the hips higher
 
 
-def test_gait_cycle_is_one_step_with_each_leg(tmp_path: Path) -> None:
-    config = EpisodeConfig(time_limit=6.0)
-    trace = simulate(EpisodeSpec(TRAINED_STEPPING, 0, config=config), record_trace=True).trace
-    assert trace is not None
+@pytest.fixture(scope="module")
+def trace() -> Trace:
+    found = simulate(EpisodeSpec(TRAINED_STEPPING, 0, config=EpisodeConfig(time_limit=4.0)), record_trace=True).trace
+    assert found is not None
+    return found
+
+
+def test_gait_cycle_is_one_step_with_each_leg(trace: Trace, tmp_path: Path) -> None:
     rows = gait_cycle(trace)
     assert 0.3 < trace.time[rows][-1] - trace.time[rows][0] < 1.2
     stance = trace.stance[rows]
@@ -114,10 +118,7 @@ def figures(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
     return drawn
 
 
-def test_the_axis_of_loads_goes_with_the_weight(figures: list[Figure]) -> None:
-    config = EpisodeConfig(time_limit=6.0)
-    trace = simulate(EpisodeSpec(TRAINED_STEPPING, 0, config=config), record_trace=True).trace
-    assert trace is not None
+def test_the_axis_of_loads_goes_with_the_weight(trace: Trace, figures: list[Figure]) -> None:
     for factor in (0.1, 1.0, 4.0):
         loads = dataclasses.replace(trace, pressures=factor * trace.pressures)
         draw_gait_cycle(loads, SteppingParameters(*TRAINED_STEPPING), Path("cycle"))

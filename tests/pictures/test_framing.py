@@ -26,15 +26,9 @@ pytestmark = NEEDS_PYBULLET
 LENGTHS = {"torso_height": 0.3, "torso_width": 0.36, "thigh_length": 0.33, "shank_length": 0.31, "hip_offset": 0.13}
 DIMENSIONS = [
     {},
-    {"thigh_length": 0.6},
     {"thigh_length": 3.3},
-    {"shank_length": 0.031},
-    {"torso_height": 3.0},
     {"torso_width": 3.59},
-    {"torso_depth": 2.0},
     {"hip_offset": 1.3},
-    {"hip_size": 0.8},
-    {"thigh_width": 1.0},
     {"forefoot_contact": 1.4, "sole_half_width": 0.5, "hip_offset": 0.6},
     {name: 9.9 * value for name, value in LENGTHS.items()},
     {name: 0.11 * value for name, value in LENGTHS.items()} | {"sole_half_width": 0.006, "contact_radius": 0.008},
@@ -83,7 +77,6 @@ def still(robot: RobotDescription, force: np.ndarray, drift: tuple[float, float]
 
 
 def test_shadows_are_whole(robot: RobotDescription, renderer: Renderer) -> None:
-    """Far above the floor, a robot and its shadows are apart."""
     high = (0.0, 0.0, 1.8 * robot.standing_height)
     camera = renderer.camera.seeing(renderer.seen(high, (0.0, 0.0, 0.0, 1.0), {}), *SIZE)
     picture = renderer.draw(high, (0.0, 0.0, 0.0, 1.0), {}, *SIZE, camera)
@@ -144,7 +137,7 @@ def purple(picture: Image.Image) -> np.ndarray:
     return (red > green + 60) & (blue > green + 60)
 
 
-@pytest.mark.parametrize("dimensions", DIMENSIONS[::5], ids=str)
+@pytest.mark.parametrize("dimensions", DIMENSIONS[::3], ids=str)
 def test_no_arrow_and_no_label_touches_the_edge(dimensions: dict[str, float]) -> None:
     robot = describe_robot(dimensions)
     for force in pushes(150.0, 4):

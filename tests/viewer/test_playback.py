@@ -11,6 +11,7 @@ from sarah.cli import view
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import simulate
 from sarah.episode.result import EpisodeResult
+from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.viewer.background import BackgroundSimulation, Wish
 from sarah.viewer.playback import Playback
@@ -51,7 +52,7 @@ def test_the_newest_wish_is_simulated_and_the_one_before_it_given_up() -> None:
     finished = threading.Event()
     shares: list[float] = []
     simulation = BackgroundSimulation(shares.append, pytest.fail)
-    old, new = (EpisodeSpec(PAPER_STEPPING, seed) for seed in (0, 1))
+    old, new = (EpisodeSpec(PAPER_STEPPING, 0, config=EpisodeConfig(time_limit=seconds)) for seconds in (30.0, 1.5))
     simulation.request(Wish(old, done.append))
     while not shares:
         time.sleep(0.01)

@@ -5,16 +5,18 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from laboratory import COARSE_PHYSICS
 
 from sarah.episode.episode import simulate
 from sarah.episode.push import Push
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BalanceConfig
 from sarah.episode.trace import Trace
+from sarah.simulation.terrain import Terrain
 from sarah.viewer.scene import RobotScene
 from sarah.viewer.server import serving
 
-SPEC = EpisodeSpec((0.0,) * 4, 0, "balance", BalanceConfig(time_limit=1.5, push=Push(0.0)))
+SPEC = EpisodeSpec((0.0,) * 4, 0, "balance", BalanceConfig(time_limit=1.5, push=Push(0.0), physics=COARSE_PHYSICS))
 SHORT_LEGS = dataclasses.replace(SPEC, config=dataclasses.replace(SPEC.config, dimensions={"thigh_length": 0.2}))
 
 
@@ -25,7 +27,7 @@ def trace() -> Trace:
     return found
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def scene() -> Iterator[RobotScene]:
     with serving("127.0.0.1", 8080) as server:
         yield RobotScene(server, SPEC.robot)
@@ -53,11 +55,20 @@ def test_an_episode_of_another_robot_shows_that_robot(scene: RobotScene, trace: 
         assert scene.robot == spec.robot
 
 
+def test_rough_ground_is_drawn_and_leaves_with_its_episode(scene: RobotScene, trace: Trace) -> None:
+    rough = dataclasses.replace(SPEC, config=dataclasses.replace(SPEC.config, terrain=Terrain(roughness=(0.02, 0.02))))
+    scene.load(trace, rough)
+    assert scene._bumps is not None and scene._floor.position[2] < -0.01
+    scene.load(trace, SPEC)
+    assert scene._bumps is None and scene._floor.position[2] == 0.0
+
+
 def test_what_no_scene_shows_is_written_above_the_robot(scene: RobotScene, trace: Trace) -> None:
     scene.load(trace, SPEC)
     scene.tell(["payload 5", "terrain.friction_left 0.2"])
     scene.show(0)
     assert scene.status.text.startswith("payload 5, terrain.friction_left 0.2\n1.0 s")
+    scene.tell([])
 
 
 def test_a_robot_that_fell_while_it_stood_has_no_stance(scene: RobotScene, trace: Trace) -> None:

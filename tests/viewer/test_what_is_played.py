@@ -5,6 +5,7 @@ import shutil
 from pathlib import Path
 
 import pytest
+from laboratory import COARSE_PHYSICS
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import simulate
@@ -20,7 +21,7 @@ from sarah.simulation.engines import default_engine
 from sarah.simulation.terrain import Terrain, draw_ground
 from sarah.viewer.scenario import Scenario
 
-PUSHED = BalanceConfig(time_limit=6.0, push=Push(newtons=(40.0, 60.0), at_seconds=(2.0, 3.0)))
+PUSHED = BalanceConfig(time_limit=4.0, push=Push(newtons=(40.0, 60.0), at_seconds=(2.0, 3.0)), physics=COARSE_PHYSICS)
 LEARNED = (0.8, 0.1, 0.3, -0.1)
 
 
@@ -67,24 +68,23 @@ def test_an_unfinished_run_can_be_played_and_a_damaged_one_is_named(run: RunFold
 
 
 def test_sliders_that_stand_still_change_nothing() -> None:
-    stepping = EpisodeSpec(PAPER_STEPPING, 3, config=EpisodeConfig(time_limit=6.0))
+    stepping = EpisodeSpec(PAPER_STEPPING, 3, config=EpisodeConfig(time_limit=3.0, physics=COARSE_PHYSICS))
     assert simulate(Scenario.of(stepping).spec()) == simulate(stepping)
     pushed = EpisodeSpec(LEARNED, 3, "balance", PUSHED)
     again = simulate(Scenario.of(pushed).spec())
     # The push goes by degrees and back, which costs a bit of precision.
-    assert again.score == pytest.approx(simulate(pushed).score, abs=0.02) and again.duration == 6.0
+    assert again.score == pytest.approx(simulate(pushed).score, abs=0.02) and again.duration == 4.0
 
 
 def test_ground_that_the_seed_drew_stays_when_the_sliders_stand_still() -> None:
     terrain = Terrain((0.0, 6.0), roughness=(0.0, 0.01), cell=(0.04, 0.08), friction_right=(0.3, 0.6))
-    spec = EpisodeSpec(PAPER_STEPPING, 3, config=EpisodeConfig(time_limit=4.0, terrain=terrain))
+    spec = EpisodeSpec(PAPER_STEPPING, 3, config=EpisodeConfig(time_limit=2.0, terrain=terrain))
     scenario = Scenario.of(spec)
     assert draw_ground(scenario.terrain, 3) == draw_ground(terrain, 3)
     assert simulate(scenario.spec()) == simulate(spec)
 
 
 def test_sliders_leave_reward_and_ending_of_an_own_task() -> None:
-    """Whatever the sliders set, somebody's own reward judges it, and their own ending ends it."""
     own = dataclasses.replace(
         STEPPING, reward=lambda tick, config: 2.0, best_reward=4.0, ending=lambda tick, config: "tired"
     )
@@ -102,7 +102,9 @@ def test_a_push_of_a_task_keeps_its_duration() -> None:
 
 def test_a_given_push_is_the_push_that_is_simulated() -> None:
     push = Push((50.0, 50.0), (90.0, 90.0), (2.5, 2.5))
-    scenario = Scenario(PAPER_STEPPING, LEARNED, push, Terrain(), 1, BalanceConfig(time_limit=4.0))
+    scenario = Scenario(
+        PAPER_STEPPING, LEARNED, push, Terrain(), 1, BalanceConfig(time_limit=3.0, physics=COARSE_PHYSICS)
+    )
     trace = simulate(scenario.spec(), record_trace=True).trace
     assert trace is not None
     assert trace.push[trace.tick_at(2.55)] == pytest.approx([0.0, 50.0, 0.0])
