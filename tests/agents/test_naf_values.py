@@ -173,9 +173,12 @@ def test_the_pull_of_mu_to_the_centre_fades_with_data(transitions, weight):
 def test_all_transitions_count_beside_the_prior_of_mu(n_envs, buffer, monkeypatch):
     """Those of all environments, and also those that a small replay buffer has forgotten."""
     counted = []
-    monkeypatch.setattr(
-        "sarah.agents.naf.centre_loss", lambda values, loss, n: counted.append(n) or centre_loss(values, loss, n)
-    )
+
+    def watched(values, loss, n):
+        counted.append(n)
+        return centre_loss(values, loss, n)
+
+    monkeypatch.setattr("sarah.agents.naf.centre_loss", watched)
     env = make_vec_env(Drift, n_envs)
     model = NAF("MlpPolicy", env, learning_starts=20, batch_size=8, device="cpu", **buffer).learn(100)
     assert counted[-1] == 100
@@ -186,7 +189,7 @@ def test_all_transitions_count_beside_the_prior_of_mu(n_envs, buffer, monkeypatc
     assert counted[-1] == min(120, buffer.get("buffer_size", 120))
 
 
-def test_a_replay_buffer_of_ones_own_needs_no_rewards():
+def test_a_replay_buffer_of_ones_own_needs_no_rewards(monkeypatch):
     model = NAF("MlpPolicy", Drift())
-    model.replay_buffer = SimpleNamespace(size=lambda: 30)
+    monkeypatch.setattr(model, "replay_buffer", SimpleNamespace(size=lambda: 30))
     model._check_rewards()
