@@ -49,7 +49,7 @@ stepping-report balance-report:
 
 # One thread for each process: two of them share the machine, and threads that wait for each other cost more than they do.
 test: install  ## the tests, except those of the viewer's page
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m 'not slow' --ignore=$(PAGE)
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m 'not slow' --durations 20 --ignore=$(PAGE)
 
 test-page: install  ## the tests of the viewer's page, in Chromium
 	$(BIN)/python -m pytest $(PAGE)

@@ -49,7 +49,9 @@ def write_api(app: Sphinx) -> None:
     """Write a page for every module; by the command, as the extension needs Python 3.11."""
     command = [str(Path(sys.executable).with_name("sphinx-apidoc")), "-q", "--force", "--separate", "--module-first"]
     environment = {**os.environ, "SPHINX_APIDOC_OPTIONS": "members,show-inheritance,ignore-module-all"}
-    arguments = ["--follow-links", "--output-dir", str(GENERATED), str(HERE.parent / "sarah")]
+    package = HERE.parent / "sarah"
+    without_commands = str(package / "cli")  # commands have a page of their own
+    arguments = ["--follow-links", "--output-dir", str(GENERATED), str(package), without_commands]
     subprocess.run([*command, *arguments], env=environment, check=True)
 
 
@@ -60,7 +62,13 @@ def add_contents(app: Sphinx, page: str, source: list[str]) -> None:
         source[0] += f"\n```{{toctree}}\n:hidden:\n:caption: {caption}\n:maxdepth: 1\n\n{entries}\n```\n"
 
 
+def skip_field(app: Sphinx, what: str, name: str, member: object, skip: bool, options: object) -> bool | None:
+    """Leave out fields of named tuples, which their classes describe: each says only that it is field number 0 or 1."""
+    return True if (member.__doc__ or "").startswith("Alias for field number") else None
+
+
 def setup(app: Sphinx) -> None:
     """Have the pages of modules written before the others are read, and the contents added to these."""
+    app.connect("autodoc-skip-member", skip_field)
     app.connect("builder-inited", write_api)
     app.connect("source-read", add_contents)

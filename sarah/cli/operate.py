@@ -262,17 +262,20 @@ def _watched(
 def _summarise(result: SessionResult, frozen: SessionResult | None, spec: SessionSpec, path: Path) -> None:
     named = zip((parameter.name for parameter in PARAMETERS), result.parameters, strict=True)
     print("\nleft with   " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
-    print(f"score       {_scores_of(result)}")
+    print(f"score       {scores_of(result)}")
     print(f"falls       {result.falls} in {len(result.windows)} windows")
     if frozen is not None:
-        print(f"frozen      {_scores_of(frozen)}; falls: {frozen.falls} in {len(frozen.windows)} windows")
+        print(f"frozen      {scores_of(frozen)}; falls: {frozen.falls} in {len(frozen.windows)} windows")
     for change in spec.config.changes[result.windows[-1].changes :]:
         print(f"no change   at minute {change.minute:g}: no window began after it")
     print(f"folder      {path}")
 
 
-def _scores_of(result: SessionResult) -> str:
-    """Mean score of a session, and how it went from its first fifth to its last."""
+def scores_of(result: SessionResult) -> str:
+    """Mean score of a session, and how it went from its first fifth to its last.
+
+    :param result: result of the session
+    """
     scores = [window.score for window in result.windows]
     fifth = max(1, len(scores) // 5)
     first, last = sum(scores[:fifth]) / fifth, sum(scores[-fifth:]) / fifth

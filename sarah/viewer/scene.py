@@ -78,7 +78,8 @@ class RobotScene:
         self.arrows: dict[Vector, viser.ArrowsHandle] = {}
         """Arrows of the episode's pushes, by their force in N."""
         self._ground = LEVEL
-        self._bumps: viser.MeshHandle | None = None
+        self.bumps: viser.MeshHandle | None = None
+        """Rough ground, while an episode has some."""
         self._add_surroundings(first_camera(robot, self._model))
         self._trace: Trace | None = None
         self._told = ""
@@ -161,17 +162,17 @@ class RobotScene:
             return
         self._ground = ground
         self._scene.set_up_direction(-np.array(ground.gravity))
-        if self._bumps is not None:
-            self._bumps.remove()
-            self._bumps = None
+        if self.bumps is not None:
+            self.bumps.remove()
+            self.bumps = None
         lowest = 0.0
         if ground.is_rough:
             nodes, triangles = mesh(ground)
             lowest = float(nodes[:, 2].min())
-            self._bumps = self._scene.add_mesh_simple(
+            self.bumps = self._scene.add_mesh_simple(
                 "/bumps", nodes, triangles, color=BUMPS, flat_shading=True, cast_shadow=False
             )
-        self._floor.position = np.array([0.0, 0.0, lowest])
+        self.floor.position = np.array([0.0, 0.0, lowest])
 
     def _show_push(self, trace: Trace, tick: int) -> None:
         """Show the push that acts, or has just acted, and all words."""
@@ -197,7 +198,7 @@ class RobotScene:
 
     def _add_surroundings(self, view: Camera) -> None:
         scene = self._scene
-        self._floor = scene.add_grid(
+        self.floor = scene.add_grid(
             "/floor",
             4.0,
             4.0,

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from terminal import COARSE, run
 
-from sarah.cli.operate import _scores_of, change_of
+from sarah.cli.operate import change_of, scores_of
 from sarah.errors import TrainingInterruptedError
 from sarah.operation.settings import PARAMETERS, SHIPPED, Change
 from sarah.operation.window import FELT, Window
@@ -145,10 +145,10 @@ def test_the_score_is_that_of_all_of_the_first_and_of_the_last_windows() -> None
         window = Window(0, 0.0, 6.0, 0, SHIPPED, 0.0, 0.0, False, (0.0,) * len(FELT))
         return SessionResult(tuple(dataclasses.replace(window, score=score) for score in scores), SHIPPED)
 
-    assert _scores_of(result(0.1, 0.3, *(0.5,) * 6, 0.6, 0.8)) == (
+    assert scores_of(result(0.1, 0.3, *(0.5,) * 6, 0.6, 0.8)) == (
         "0.480: 0.200 in the first 2 windows, 0.700 in the last"
     )
-    assert _scores_of(result(0.2, 0.4)) == "0.300: 0.200 in the first window, 0.400 in the last"
+    assert scores_of(result(0.2, 0.4)) == "0.300: 0.200 in the first window, 0.400 in the last"
 
 
 def test_the_former_name_of_the_careful_learner_is_taken(tmp_path: Path) -> None:

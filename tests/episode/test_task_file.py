@@ -63,6 +63,12 @@ def test_same_bytes_in_another_process(tmp_path: Path, workers: Workers) -> None
         list(workers.simulate_all([sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT)]))
 
 
+def test_workers_refuse_the_task_of_a_script(workers: Workers) -> None:
+    task = dataclasses.replace(sarah.STEPPING, name="mine", reward=lambda tick, config: 1.0)
+    with pytest.raises(ConfigurationError, match="load_task"):
+        list(workers.simulate_all([sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT)]))
+
+
 def test_a_task_of_this_package_is_the_same_after_a_journey() -> None:
     assert pickle.loads(pickle.dumps(sarah.BALANCE)) is sarah.BALANCE
     assert sarah.load_task("balance") is sarah.BALANCE

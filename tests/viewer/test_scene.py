@@ -58,9 +58,12 @@ def test_an_episode_of_another_robot_shows_that_robot(scene: RobotScene, trace: 
 def test_rough_ground_is_drawn_and_leaves_with_its_episode(scene: RobotScene, trace: Trace) -> None:
     rough = dataclasses.replace(SPEC, config=dataclasses.replace(SPEC.config, terrain=Terrain(roughness=(0.02, 0.02))))
     scene.load(trace, rough)
-    assert scene._bumps is not None and scene._floor.position[2] < -0.01
+    bumps = scene.bumps
+    assert bumps is not None
+    assert np.reshape(bumps.vertices, (-1, 3))[:, 2].min() == pytest.approx(scene.floor.position[2])
+    assert scene.floor.position[2] < -0.01
     scene.load(trace, SPEC)
-    assert scene._bumps is None and scene._floor.position[2] == 0.0
+    assert scene.bumps is None and scene.floor.position[2] == 0.0
 
 
 def test_what_no_scene_shows_is_written_above_the_robot(scene: RobotScene, trace: Trace) -> None:
