@@ -34,7 +34,7 @@ from sarah.simulation.randomisation import NOMINAL, Randomisation
 ROOT = Path(__file__).parent.parent
 AS_DESIGNED = Randomisation(enabled=False)
 SET = dict(V1=0.8, V2=0.1, V3=0.2, V4=0.1)
-LEARNED = {
+LEARNED: dict[str, dict[str, Any]] = {
     "stepping": {"task": "stepping", "parameters": dict(P1=0.4, P2=1.3, P3=0.1, P4=1.0, P5=1.0), "stepping": None},
     "balance": {"task": "balance", "parameters": SET, "stepping": [0.4, 0.5, 0.6, 1, 1]},
 }

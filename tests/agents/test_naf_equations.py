@@ -151,9 +151,9 @@ def test_q_does_not_reach_the_output_of_w():
     """What a parabola promises cannot get into targets, but by the layers that V and W share."""
     critic = make_critic(3)
     critic(*draw(3)).sum().backward()
-    output = critic.value_net[-1]
-    assert output.weight.grad[0].any() and not output.weight.grad[1].any()
-    assert output.bias.grad[0] != 0 and output.bias.grad[1] == 0
+    weight, bias = (parameter.grad for parameter in critic.value_net[-1].parameters())
+    assert weight is not None and weight[0].any() and not weight[1].any()
+    assert bias is not None and bias[0] != 0 and bias[1] == 0
 
 
 def dropout_of(*nets: nn.Module) -> list[float]:
@@ -176,7 +176,8 @@ def test_values_of_states_that_nobody_has_seen_are_bounded():
 
     def growth(net_arch) -> float:
         critic = make_critic(2, net_arch=net_arch)
-        critic.value_net[0].bias.data.zero_()
+        _, bias = critic.value_net[0].parameters()
+        bias.data.zero_()
         with th.no_grad():
             near, further = (critic.target_value(distance * far).abs().max().item() for distance in (1e2, 1e6))
         return further / near
@@ -190,7 +191,8 @@ def test_values_of_states_that_nobody_has_seen_are_bounded():
 def test_only_updates_leave_units_out():
     th.manual_seed(0)
     policy = MlpPolicy(spaces.Box(-1, 1, (OBS_DIM,)), spaces.Box(-1, 1, (2,)), ConstantSchedule(1e-3), net_arch=[16])
-    nn.init.normal_(policy.q_net.mu_net[0].weight)
+    weight, _ = policy.q_net.mu_net[0].parameters()
+    nn.init.normal_(weight)
     obs = draw(2)[0]
     policy.set_training_mode(True)
     assert not th.equal(policy.q_net.mu(obs), policy.q_net.mu(obs))

@@ -66,7 +66,7 @@ def test_rewards_far_from_zero_get_a_warning_once(algorithm, arguments, constant
 
 def test_it_is_the_reward_of_a_step_that_counts():
     """A sum of three steps would be far below 0, a step is not."""
-    env = gym.wrappers.TransformReward(gym.make("MountainCarContinuous-v0"), lambda reward: reward - 3.0)
+    env = gym.wrappers.TransformReward(gym.make("MountainCarContinuous-v0"), lambda reward: float(reward) - 3.0)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         NAF("MlpPolicy", env, seed=0, learning_starts=5, n_steps=3).learn(12)

@@ -1,5 +1,7 @@
 """NAF runs wherever SB3's other off-policy algorithms run."""
 
+from typing import Any
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -15,7 +17,9 @@ from stable_baselines3.common.vec_env import DummyVecEnv, VecNormalize
 
 from sarah.agents import NAF, MlpPolicy
 
-SMALL = dict(policy_kwargs=dict(net_arch=[16]), learning_starts=20, batch_size=8, buffer_size=300, seed=0)
+SMALL: dict[str, Any] = dict(
+    policy_kwargs=dict(net_arch=[16]), learning_starts=20, batch_size=8, buffer_size=300, seed=0
+)
 
 
 class Steady(gym.Env):
@@ -38,7 +42,8 @@ class Steady(gym.Env):
 
 def assert_learned(model: NAF) -> None:
     """All weights moved, and all are finite."""
-    fresh = NAF(model.policy_class, model.env, policy_kwargs=model.policy_kwargs, seed=model.seed)
+    assert model.env is not None
+    fresh = NAF(type(model.policy), model.env, policy_kwargs=model.policy_kwargs, seed=model.seed)
     for old, new in zip(fresh.q_net.parameters(), model.q_net.parameters(), strict=True):
         assert th.isfinite(new).all() and not th.equal(old, new)
 

@@ -4,6 +4,7 @@ The tasks are linear-quadratic: V, mu and the curvature are known in closed form
 """
 
 import warnings
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -174,9 +175,12 @@ def test_the_pull_of_mu_to_the_centre_fades_with_data(transitions, weight):
 def test_all_transitions_count_beside_the_prior_of_mu(n_envs, buffer, monkeypatch):
     """Those of all environments, and also those that a small replay buffer has forgotten."""
     counted = []
-    monkeypatch.setattr(
-        "sarah.agents.naf.centre_loss", lambda values, loss, n: counted.append(n) or centre_loss(values, loss, n)
-    )
+
+    def watched(values, loss, n):
+        counted.append(n)
+        return centre_loss(values, loss, n)
+
+    monkeypatch.setattr("sarah.agents.naf.centre_loss", watched)
     env = make_vec_env(Drift, n_envs)
     model = NAF("MlpPolicy", env, learning_starts=20, batch_size=8, device="cpu", **buffer).learn(100)
     assert counted[-1] == 100
@@ -204,5 +208,6 @@ def test_a_replay_buffer_of_ones_own_needs_no_rewards():
             obs, action, next_obs, done, reward = map(th.cat, parts)
             return ReplayBufferSamples(obs, action, next_obs, done.reshape(-1, 1), reward.reshape(-1, 1))
 
-    model = NAF("MlpPolicy", Drift(), learning_starts=20, replay_buffer_class=Own, device="cpu").learn(30)
+    kind: Any = Own  # stable-baselines3 takes it, although its types ask for a ReplayBuffer
+    model = NAF("MlpPolicy", Drift(), learning_starts=20, replay_buffer_class=kind, device="cpu").learn(30)
     assert model.logger.name_to_value["train/loss"] > 0.0

@@ -156,7 +156,7 @@ def test_mistakes_get_one_line_and_leave_everything_alone(line: str, message: st
 
 def test_a_plain_terminal_gets_one_line_too(tmp_path: Path) -> None:
     environment = {**os.environ, "LC_ALL": "C", "PYTHONIOENCODING": "ascii"}
-    command = [BIN / "sarah-eval", "--nonsense"]
+    command = [str(BIN / "sarah-eval"), "--nonsense"]
     process = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=environment)
     assert (process.returncode, process.stdout) == (2, "")
     assert process.stderr == "sarah-eval: error: Unrecognized options: --nonsense\n"

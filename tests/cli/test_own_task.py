@@ -106,10 +106,10 @@ def test_the_next_steps_name_it_too(folder: Path, monkeypatch: pytest.MonkeyPatc
 
 def test_another_file_is_refused(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "my_task.py").write_text(FILE.replace("0.01", "0.02"))
-    before = tree(folder)
+    task, before = f"{tmp_path / 'my_task.py'}:THRIFTY", tree(folder)
     for command in ("sarah-train --resume", "sarah-eval"):
-        name, *arguments = (*command.split(), str(folder / "run"), "--task", f"{tmp_path / 'my_task.py'}:THRIFTY")
-        process = run(name, *arguments, cwd=tmp_path)
+        name, *arguments = command.split()
+        process = run(name, *arguments, str(folder / "run"), "--task", task, cwd=tmp_path)
         assert_one_line(process, "is of task THRIFTY (")
         assert "the file as it was is" in process.stderr
     assert tree(folder) == before

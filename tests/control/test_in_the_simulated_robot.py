@@ -17,7 +17,9 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.robot.description import ACTUATED_JOINTS, describe_robot
+from sarah.robot.reading import SensorReading
 from sarah.simulation.build import simulator_of
+from sarah.simulation.engines import Engine
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import NOMINAL
 
@@ -52,7 +54,7 @@ def test_who_is_pushed_over_is_noticed_half_a_second_later(engine: str, degrees:
 
 
 @ENGINES
-def test_no_push_that_the_robot_survives_is_taken_for_a_fall(engine: str) -> None:
+def test_no_push_that_the_robot_survives_is_taken_for_a_fall(engine: Engine) -> None:
     need(engine)
     survived = 0
     for seed in range(3):
@@ -67,7 +69,7 @@ def test_no_push_that_the_robot_survives_is_taken_for_a_fall(engine: str) -> Non
 
 @ENGINES
 @pytest.mark.parametrize("v2", [1.0, -1.0])
-def test_a_jump_of_v2_while_the_robot_steps_is_no_push(engine: str, v2: float) -> None:
+def test_a_jump_of_v2_while_the_robot_steps_is_no_push(engine: Engine, v2: float) -> None:
     need(engine)
     config = BalanceConfig(engine=engine, push=NO_PUSH, time_limit=5.0, stepping=STEPPING)
     for seed in (2, 5):  # two moments of the gait
@@ -113,10 +115,10 @@ def test_zeros_of_the_joints_may_be_as_far_off_as_the_page_says(offsets: tuple[f
     with Episode(config, 1000, BALANCE) as episode:
         read = episode.robot.simulation.read
 
-        def askew() -> Any:
+        def askew() -> SensorReading:
             seen = read()
             shifted = [joint + offset for joint, offset in zip(seen.joints, (*offsets, 0.0, 0.0), strict=True)]
-            return seen._replace(joints=tuple(shifted))
+            return SensorReading._make((*seen[:-1], tuple(shifted)))
 
         episode.robot.simulation.read = askew  # type: ignore[method-assign]
         episode.stand()

@@ -2,6 +2,8 @@
 
 import dataclasses
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import pytest
 from laboratory import COARSE_PHYSICS, RESULT
@@ -16,12 +18,12 @@ from sarah.robot.reading import SensorReading
 from sarah.robot.scale import Scale
 from sarah.simulation.simulator import TorsoState
 
-STANDING = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (75.0,) * 4, (0.0,) * 6)  # type: ignore[arg-type]
-NOT_A_NUMBER = TorsoState((math.nan, 0.0, 0.8), (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3)  # type: ignore[arg-type]
+STANDING = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (75.0,) * 4, (0.0,) * 6)
+NOT_A_NUMBER = TorsoState((math.nan, 0.0, 0.8), (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3)
 
 
 def spoilt(
-    seconds: float, parts: dict[str, object], monkeypatch: pytest.MonkeyPatch, record_trace: bool = False
+    seconds: float, parts: Mapping[str, object], monkeypatch: pytest.MonkeyPatch, record_trace: bool = False
 ) -> Episode:
     """An episode in which what the engine returns is replaced from some time on."""
     episode = Episode(EpisodeConfig(time_limit=3.0, physics=COARSE_PHYSICS), 0, record_trace=record_trace)
@@ -45,7 +47,7 @@ def spoilt(
     ],
 )
 def test_diverging_physics_ends_with_a_finite_reward(
-    seconds: float, parts: dict[str, object], monkeypatch: pytest.MonkeyPatch
+    seconds: float, parts: Mapping[str, object], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with spoilt(seconds, parts, monkeypatch) as episode:
         observation = observation_from(episode.stand(), Scale())
@@ -71,6 +73,7 @@ def test_who_diverges_while_standing_leaves_nothing_to_show(monkeypatch: pytest.
 
 
 def test_results_that_are_no_numbers_are_named() -> None:
-    for name, value in (("vibration", math.nan), ("final_position", (0.0, math.inf, 0.8))):
+    wrong: dict[str, Any] = {"vibration": math.nan, "final_position": (0.0, math.inf, 0.8)}
+    for name, value in wrong.items():
         with pytest.raises(SimulationError, match=f"{name} of an episode must be finite"):
             dataclasses.replace(RESULT, **{name: value})

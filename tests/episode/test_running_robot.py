@@ -5,7 +5,7 @@ from laboratory import NoPhysics
 
 from sarah.control.pattern_generator import PhaseChange
 from sarah.episode.episode import Episode
-from sarah.episode.running_robot import RunningRobot
+from sarah.episode.running_robot import Observer, RunningRobot
 from sarah.episode.settings import EpisodeConfig
 from sarah.robot.reading import Vector
 
@@ -19,8 +19,8 @@ class Pushed(NoPhysics):
         pass
 
 
-class Diary:
-    """Observer that writes down time, number of commands so far, and push."""
+class Diary(Observer):
+    """Writes down time, number of commands so far, and push."""
 
     def __init__(self) -> None:
         self.entries: list[tuple[float, int, Vector | None]] = []

@@ -3,13 +3,13 @@
 from pathlib import Path
 
 import pytest
+from endurance.mutants import EXPLAINED, SUBJECTS
+from endurance.protections import PROTECTIONS, place_of
 
 from experiments import record
 from experiments.found import ENDURANCE, find, paths_of
 from experiments.making import make
 from experiments.record import ROOT
-from tests.endurance.mutants import EXPLAINED, SUBJECTS
-from tests.endurance.protections import PROTECTIONS, place_of
 
 
 @pytest.mark.slow

@@ -12,6 +12,7 @@ from experiments.robot import engines, landscape, physics
 from experiments.robot.conditions import askew, biased
 from experiments.robot.hard_pushes import difference
 from experiments.robot.race import columns, curve_of, ranked
+from sarah.agents import NAF
 from sarah.reports.race_entry import RaceCurve
 from sarah.simulation.randomisation import SensorConditions
 
@@ -114,4 +115,4 @@ def test_an_agent_explores_with_the_noise_of_its_name(name: str) -> None:
     if name in OTHERS:
         assert type(made) is OTHERS[name] and (made.action_noise is None) == (name == "SAC")
     else:
-        assert made.exploration_std == EXPLORATION_STD[name]
+        assert isinstance(made, NAF) and made.exploration_std == EXPLORATION_STD[name]

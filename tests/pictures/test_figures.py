@@ -11,7 +11,7 @@ import pytest
 from laboratory import NEEDS_PYBULLET
 from matplotlib.figure import Figure
 from matplotlib.image import imread
-from matplotlib.transforms import Bbox
+from matplotlib.transforms import Bbox, BboxBase
 from pytest import MonkeyPatch
 
 from sarah.control.constants import STANDARD_CONSTANTS as CONSTANTS
@@ -39,7 +39,7 @@ from sarah.robot.reading import SensorReading, Side
 
 @pytest.mark.parametrize("constants", [CONSTANTS, ControllerConstants(lift_retraction=0.011, time_out_seconds=0.2)])
 def test_the_state_machine_is_that_of_the_generator(constants: ControllerConstants) -> None:
-    silence = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (0.0,) * 4, (0.0,) * 6)  # type: ignore[arg-type]
+    silence = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (0.0,) * 4, (0.0,) * 6)
     generator = PatternGenerator(SteppingParameters(1.0, 1.0, 1.0, P4=0.5, P5=1.0), dt=0.001, constants=constants)
     while generator.phase is Phase.STAND:
         generator.tick(silence)
@@ -114,8 +114,13 @@ def test_gait_cycle_is_one_step_with_each_leg(trace: Trace, tmp_path: Path) -> N
 @pytest.fixture
 def figures(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
     drawn: list[Figure] = []
+
+    def save(figure: Figure, path: Path) -> list[Path]:
+        drawn.append(figure)
+        return []
+
     for module in (gait_figure, session_figure):
-        monkeypatch.setattr(module, "save", lambda figure, path: drawn.append(figure) or [])
+        monkeypatch.setattr(module, "save", save)
     return drawn
 
 
@@ -134,7 +139,9 @@ def test_words_of_changes_do_not_overlap(figures: list[Figure]) -> None:
     draw_session(windows, [Change(minute, settings) for minute in (1.0, 1.1, 2.9)], Path("session"))
     (figure,) = figures
     figure.canvas.draw()
-    boxes = [words.get_window_extent() for words in (*figure.axes[0].texts, figure.axes[0].get_legend())]
+    legend = figure.axes[0].get_legend()
+    assert legend is not None
+    boxes = [words.get_window_extent() for words in (*figure.axes[0].texts, legend)]
     assert len(boxes) == 4
     assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
     assert all(figure.bbox.x0 <= box.x0 and box.x1 <= figure.bbox.x1 for box in boxes)
@@ -162,11 +169,11 @@ def test_every_dimension_is_marked_and_each_arrow_is_as_long_as_it_says(changed:
 @pytest.mark.parametrize("changed", ROBOTS)
 def test_names_are_readable_whatever_the_proportions(changed: dict[str, float], monkeypatch: MonkeyPatch) -> None:
     seen: list[tuple[str, str, Bbox]] = []
-    edges: list[Bbox] = []
+    edges: list[BboxBase] = []
 
     def look(figure: Figure, *_: object, **__: object) -> None:
         texts = [text for axis in figure.axes for text in axis.texts if text.get_text()]
-        seen.extend((text.get_text(), str(text.get_weight()), text.get_window_extent()) for text in texts)
+        seen.extend((text.get_text(), str(text.get_fontweight()), text.get_window_extent()) for text in texts)
         edges.append(figure.bbox)
 
     monkeypatch.setattr(Figure, "savefig", look)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib.image
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -117,7 +118,7 @@ def test_a_situation_changes_ground_push_and_time_limit_only(task: Any) -> None:
     assert (free.engine, free.randomisation) == (own.engine, own.randomisation)
     small = EpisodeConfig(dimensions=dimensions_alike(0.5, 0.2))  # for which bumps lie closer
     ground = Situation("roughness", 0.005, "", 0.0).config(STEPPING, small).terrain
-    assert ground == Terrain(roughness=0.005, cell=0.025, reach=0.35)  # type: ignore[arg-type]  # one number fixes it
+    assert ground == Terrain(roughness=0.005, cell=0.025, reach=0.35)
 
 
 def test_every_situation_meets_the_same_seeds(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -172,8 +173,8 @@ def test_the_picture_shows_every_row(tmp_path: Path, monkeypatch: pytest.MonkeyP
     terrain_figure.draw_terrain(evaluations, tmp_path / "terrain")
     for axis in drawn[0].axes:
         low, high = axis.get_ylim()
-        values = [value for line in axis.get_lines() for value in line.get_ydata()]
-        assert low <= min(values) and max(values) < high
+        values = np.concatenate([np.ravel(line.get_ydata()) for line in axis.get_lines()])
+        assert low <= values.min() and values.max() < high
 
 
 def scoring(score: float) -> Evaluation:
@@ -181,7 +182,7 @@ def scoring(score: float) -> Evaluation:
 
 
 LEARNED = EpisodeSpec(PAPER_STEPPING, 0, STEPPING, EpisodeConfig(engine="mujoco"))
-SCORES = {"pybullet": scoring(0.6), "mujoco": scoring(0.8)}
+SCORES: dict[Any, Evaluation] = {"pybullet": scoring(0.6), "mujoco": scoring(0.8)}
 
 
 def test_the_name_of_a_run_stays_in_its_cell_of_the_table() -> None:
@@ -191,5 +192,5 @@ def test_the_name_of_a_run_stays_in_its_cell_of_the_table() -> None:
 
 def test_kept_is_the_lowest_share_in_any_other_engine() -> None:
     scores = {**SCORES, "third": scoring(0.4)}
-    assert Transfer("run", LEARNED, scores).kept == pytest.approx(0.5)  # type: ignore[arg-type]  # a third engine
-    assert Transfer("run", LEARNED, {**scores, "mujoco": scoring(0.0)}).kept == 0.0  # type: ignore[arg-type]
+    assert Transfer("run", LEARNED, scores).kept == pytest.approx(0.5)
+    assert Transfer("run", LEARNED, {**scores, "mujoco": scoring(0.0)}).kept == 0.0

@@ -1,8 +1,8 @@
 """Settings: what a file may say, and what is answered when it says something else."""
 
 import dataclasses
-from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -49,8 +49,8 @@ def test_files_from_before_sizes_keep_their_robot(tmp_path: Path) -> None:
     for read, usual in ((training, EpisodeConfig()), (session, OperationConfig().robot)):
         assert describe_robot(read.dimensions).efforts == describe_robot().efforts
         drawn = dataclasses.replace(usual.randomisation, mass_deviation=0.02)
-        own = {"engine": "mujoco", "randomisation": drawn, "dimensions": read.dimensions, "time_limit": 20.0}
-        assert read == dataclasses.replace(usual, **own)
+        own = dataclasses.replace(usual, engine="mujoco", randomisation=drawn, time_limit=20.0)
+        assert read == dataclasses.replace(own, dimensions=read.dimensions)
 
 
 def test_what_a_task_and_an_engine_have_of_their_own_is_read(tmp_path: Path) -> None:
@@ -145,19 +145,20 @@ def test_changes_of_one_are_made_alike_in_another() -> None:
 
 
 @pytest.mark.parametrize(
-    ("make", "words"),
+    ("kind", "given", "words"),
     [
-        (lambda: TrainingConfig(episodes=10.5), "episodes must be a whole number, not 10.5"),
-        (lambda: NAFSettings(mu_layers=16), "agent.mu_layers must be a list, not 16"),
-        (lambda: Change("x", {}), "change.minute must be a number, not 'x'"),
-        (lambda: SessionSpec(seed=1.5), "seed must be a whole number, not 1.5"),
+        (TrainingConfig, {"episodes": 10.5}, "episodes must be a whole number, not 10.5"),
+        (NAFSettings, {"mu_layers": 16}, "agent.mu_layers must be a list, not 16"),
+        (Change, {"minute": "x", "settings": {}}, "change.minute must be a number, not 'x'"),
+        (SessionSpec, {"seed": 1.5}, "seed must be a whole number, not 1.5"),
     ],
 )
-def test_settings_from_python_are_checked_as_those_of_a_file(make: Callable[[], object], words: str) -> None:
+def test_settings_from_python_are_checked_as_those_of_a_file(kind: type, given: dict[str, Any], words: str) -> None:
     with pytest.raises(ConfigurationError, match=words):
-        make()
+        kind(**given)
 
 
 def test_settings_from_python_may_be_numbers_of_numpy() -> None:
-    config = TrainingConfig(episodes=np.int64(30), agent=NAFSettings(learning_rate=np.float32(0.5)))
-    assert type(config.episodes) is int and type(config.agent.learning_rate) is float
+    numbers: dict[str, Any] = {"episodes": np.int64(30), "learning_rate": np.float32(0.5)}
+    agent = NAFSettings(learning_rate=numbers["learning_rate"])
+    assert type(TrainingConfig(episodes=numbers["episodes"]).episodes) is int and type(agent.learning_rate) is float

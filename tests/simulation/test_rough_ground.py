@@ -22,7 +22,7 @@ from sarah.simulation.randomisation import Conditions
 from sarah.simulation.simulator import Simulator
 from sarah.simulation.terrain import Terrain, draw_ground
 
-ROUGH = Terrain(roughness=0.01)  # type: ignore[arg-type]  # one number fixes it
+ROUGH = Terrain(roughness=0.01)
 RADIUS = describe_robot().contact_radius
 HILL = Ground(heights=((0.0, 0.0, 0.0), (0.0, 0.01, 0.0), (0.0, 0.0, 0.0)), cell=0.1)
 
@@ -133,9 +133,8 @@ def test_a_seed_draws_the_same_bumps_at_any_height() -> None:
     assert np.array(high.heights) == pytest.approx(2 * np.array(low.heights))
     assert dataclasses.replace(high, heights=low.heights) == low
     assert low.gravity == draw_ground(Terrain(slope_degrees=(0.0, 9.0)), 7).gravity
-    assert np.corrcoef(*(np.ravel(draw_ground(ROUGH, seed).heights) for seed in (1, 2)))[0, 1] == pytest.approx(
-        0.0, abs=0.15
-    )
+    one, other = (np.ravel(draw_ground(ROUGH, seed).heights) for seed in (1, 2))
+    assert np.corrcoef(one, other)[0, 1] == pytest.approx(0.0, abs=0.15)
 
 
 @pytest.mark.parametrize("cell", [0.02, 0.1])
@@ -178,7 +177,7 @@ def test_soles_of_a_standing_robot_rest_on_the_bumps(build: BuildSimulation, see
 def test_clearance_of_a_foot_is_that_over_its_own_ground(lab: Laboratory, build: BuildSimulation) -> None:
     step = tuple(0.02 if column < 35 else 0.0 for column in range(71))
     simulation = build(Conditions(ground=Ground(heights=(step,) * 71, cell=0.02)))
-    lab.place(simulation, simulation.robot.standing_height + 0.05)
+    lab.place(simulation, describe_robot().standing_height + 0.05)
     assert simulation.sole_height(Side.LEFT) == pytest.approx(0.03, abs=1e-6)
     assert simulation.sole_height(Side.RIGHT) == pytest.approx(0.05, abs=1e-6)
 

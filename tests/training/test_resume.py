@@ -172,7 +172,7 @@ def test_weights_that_are_not_finite_stop_the_training(tmp_path: Path, monkeypat
             if model.num_timesteps >= 9:
                 next(model.policy.parameters()).data[0] = float("nan")
 
-        model.train = train_and_poison
+        monkeypatch.setattr(model, "train", train_and_poison)
         return model
 
     monkeypatch.setattr(learning, "make_agent", poisoned)

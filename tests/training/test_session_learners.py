@@ -1,6 +1,7 @@
 """The learners of a session, on robots that are formulas."""
 
 import dataclasses
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -11,6 +12,8 @@ from sarah.operation.window import Window
 from sarah.training.session_learners import LEARNERS
 
 TOP = START + 0.15 * np.array([1, -1, 1, 1, -1, 1, -1, 1, -1])
+
+Reward = Callable[[np.ndarray, float], float]
 
 
 def hill(shares: np.ndarray, minute: float = 0.0) -> float:
@@ -23,8 +26,8 @@ def cliff(shares: np.ndarray, minute: float = 0.0) -> float:
     return 0.0 if shares[0] > START[0] + 0.1 else float(0.9 - np.square(shares - START).sum())
 
 
-def operated(learner: str, reward: object, seed: int = 0, minutes: float = 10.0) -> FormulaRobot:
-    robot = FormulaRobot(reward, minutes)  # type: ignore[arg-type]
+def operated(learner: str, reward: Reward, seed: int = 0, minutes: float = 10.0) -> FormulaRobot:
+    robot = FormulaRobot(reward, minutes)
     left = LEARNERS[learner](robot, SHIPPED, seed)
     assert BOX.checked(left) == left
     assert robot.is_over
@@ -32,7 +35,7 @@ def operated(learner: str, reward: object, seed: int = 0, minutes: float = 10.0)
 
 
 def test_without_a_learner_nothing_changes() -> None:
-    assert {window.parameters for window in operated("none", hill).windows} == {SHIPPED}
+    assert {window.parameters for window in operated("none", hill).seen} == {SHIPPED}
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -105,6 +108,6 @@ def test_learners_begin_as_given_and_do_not_see_the_score(learner: str) -> None:
         def run(self, parameters: Parameters) -> Window:
             return dataclasses.replace(super().run(parameters), score=-1.0)
 
-    seen, blind = FormulaRobot(hill, 1.5), Blind(hill, 1.5)
-    assert LEARNERS[learner](seen, SHIPPED, 0) == LEARNERS[learner](blind, SHIPPED, 0)
-    assert seen.windows[0].parameters == SHIPPED
+    usual, blind = FormulaRobot(hill, 1.5), Blind(hill, 1.5)
+    assert LEARNERS[learner](usual, SHIPPED, 0) == LEARNERS[learner](blind, SHIPPED, 0)
+    assert usual.seen[0].parameters == SHIPPED

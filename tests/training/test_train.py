@@ -7,6 +7,7 @@ import math
 import random
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -65,7 +66,7 @@ def parameters_of(row: dict[str, str]) -> tuple[float, ...]:
 
 def result_of(row: dict[str, str]) -> EpisodeResult:
     """What a row of ``episodes.csv`` says; the height at the end is not in it."""
-    metrics = {name: float(row[name]) for name in METRICS if name in row}
+    metrics: dict[str, Any] = {name: float(row[name]) for name in METRICS if name in row}
     final_position = (float(row["x"]), float(row["y"]), 0.0)
     return EpisodeResult(row["termination"], final_position, episode_return=float(row["return"]), **metrics)
 
