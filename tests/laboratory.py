@@ -202,6 +202,12 @@ def turned(roll: float, pitch: float) -> tuple[float, float, float, float]:
     return w_y * x, y * w_x, -y * x, w_y * w_x
 
 
+def purple(picture: np.ndarray) -> np.ndarray:
+    """Which pixels have the colour of a push."""
+    red, green, blue = np.moveaxis(picture.astype(int), -1, 0)
+    return (red > green + 60) & (blue > green + 60)
+
+
 Laboratory = BulletLaboratory | MujocoLaboratory
 BuildSimulation = Callable[..., Simulator]
 """Function that builds a simulation of conditions and physics, which are both optional."""

@@ -4,16 +4,25 @@ import io
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from importlib import import_module
 from pathlib import Path
+
+from sarah.runs.config import TrainingConfig
 
 BIN = Path(sys.executable).parent
 COARSE = ("--episode.physics.rate", "100", "--episode.physics.solver-iterations", "5")
 """Options of physics that takes a fifth of the time, for tests that do not look at the robot."""
 SHORT = ("--episode.time-limit", "1.5", *COARSE, "--slots", "1")
 """Options of a training whose episodes are as short as can be."""
+
+Answer = Callable[[str], str]
+"""Function that runs a command line which is refused, and returns its message."""
+Begin = Callable[[str], TrainingConfig]
+"""Function that returns the settings of the training which a command line begins."""
+Trained = tuple[Path, subprocess.CompletedProcess[str]]
+"""Run folder of a training, and its process."""
 
 
 def run(command: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
@@ -26,6 +35,13 @@ def run(command: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess
         except SystemExit as ended:
             code = int(ended.code or 0)
     return subprocess.CompletedProcess(words, code, out.getvalue(), err.getvalue())
+
+
+def done(command: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    """Run a command in this process, which has to succeed."""
+    process = run(command, *arguments, cwd=cwd)
+    assert process.returncode == 0, process.stderr
+    return process
 
 
 @contextmanager

@@ -29,15 +29,12 @@ from sarah.runs.config_files import read_config, settings_by_key, write_config
 
 SINGLE: Any = np.float32
 """Type whose numbers stand where the package asks for floats."""
-
 EIGHTS = [
     *(kind(8) for kind in (np.float16, np.float32, np.float64, np.longdouble, np.int8, np.uint64, int)),
     *(np.array(8), np.array(8.0, np.float16), Fraction(8), Decimal("8.0")),
 ]
 SETTINGS: dict[str, Callable[[Any], object]] = {
-    "episode": lambda eight: sarah.EpisodeConfig(
-        time_limit=eight, payload=eight, dimensions={"ankle_damping": eight / 8}
-    ),
+    "episode": lambda eight: sarah.EpisodeConfig(time_limit=eight, dimensions={"ankle_damping": eight / 8}),
     "push": lambda eight: sarah.Push(newtons=eight, degrees=(0, eight), duration=eight),
     "terrain": lambda eight: sarah.Terrain(slope_degrees=eight, friction_left=(0, eight / 2)),
     "randomisation": lambda eight: sarah.Randomisation(imu_tilt_degrees=eight, actuator_bandwidth=eight),
@@ -45,14 +42,12 @@ SETTINGS: dict[str, Callable[[Any], object]] = {
     "spec": lambda eight: sarah.EpisodeSpec([eight / 8] * 5, _whole(eight)),
     "change": lambda eight: sarah.Change(eight, {"payload": eight / 1, "terrain": {"slope_degrees": (0, eight / 1)}}),
     "session": lambda eight: sarah.SessionSpec((eight / 8,) * 9, seed=_whole(eight)),
-    "training": lambda eight: TrainingConfig(
-        episodes=_whole(eight), agent=NAFSettings(max_grad_norm=eight, v_layers=(_whole(eight),), elite_std=eight / 8)
-    ),
+    "training": lambda eight: TrainingConfig(episodes=_whole(eight)),
+    "agent": lambda eight: NAFSettings(max_grad_norm=eight, v_layers=(_whole(eight),), elite_std=eight / 8),
     "keywords": lambda eight: from_mapping(sarah.PushedConfig(), {"time_limit": eight, "push": {"newtons": eight}}),
     "drawn push": lambda eight: sarah.DrawnPush((eight, 0, 0), eight, eight),
     "parameter": lambda eight: sarah.Parameter("A", eight / 8, eight, "", "", ""),
 }
-"""Makers of settings from an 8 of any type."""
 
 
 def _whole(eight: Any) -> Any:
@@ -65,8 +60,7 @@ def test_settings_hold_numbers_of_python_whatever_they_are_given(name: str) -> N
     expected = repr(SETTINGS[name](8.0))
     assert "np." not in expected
     for eight in EIGHTS:
-        made = SETTINGS[name](eight)
-        assert repr(made) == expected, repr(eight)
+        assert repr(SETTINGS[name](eight)) == expected, repr(eight)
 
 
 def test_what_is_no_number_is_refused_in_any_type() -> None:
@@ -79,19 +73,16 @@ def test_what_is_no_number_is_refused_in_any_type() -> None:
             SarahOperationEnv(first=(value, *[1.0] * 8))  # type: ignore[arg-type]
 
 
-def test_truth_values_and_texts_of_numpy_are_pythons() -> None:
-    with pytest.raises(ConfigurationError, match="unknown engine '3'"):
-        sarah.EpisodeConfig(engine=3)  # type: ignore[arg-type]
-    config = sarah.EpisodeConfig(engine=np.str_("mujoco"), randomisation=sarah.Randomisation(enabled=np.bool_(False)))  # type: ignore[arg-type]
-    assert type(config.engine) is str and config.randomisation.enabled is False
-
-
 def test_what_is_made_of_numpys_numbers_can_be_written_and_read(tmp_path: Path) -> None:
     change = sarah.Change(SINGLE(1), {"payload": SINGLE(5), "terrain": {"slope_degrees": np.arange(2)}})
     spec = sarah.SessionSpec(np.ones(9, np.float32), config=sarah.OperationConfig(changes=(change,)))  # type: ignore[arg-type]
     write_config(spec, tmp_path / "session.yaml")
     assert read_config(sarah.SessionSpec, tmp_path / "session.yaml") == spec
     json.dumps(settings_by_key(sarah.EpisodeConfig(time_limit=SINGLE(8))))
+    with pytest.raises(ConfigurationError, match="unknown engine '3'"):
+        sarah.EpisodeConfig(engine=3)  # type: ignore[arg-type]
+    config = sarah.EpisodeConfig(engine=np.str_("mujoco"), randomisation=sarah.Randomisation(enabled=np.bool_(False)))  # type: ignore[arg-type]
+    assert type(config.engine) is str and config.randomisation.enabled is False
 
 
 def test_single_precision_ends_where_settings_and_readings_begin() -> None:
@@ -101,9 +92,8 @@ def test_single_precision_ends_where_settings_and_readings_begin() -> None:
     )
     draw = np.random.default_rng(0)
     for _ in range(100):
-        signals = [
-            draw.normal(mean, 1.0, count).astype(np.float32) for mean, count in ((9, 3), (0, 3), (75, 4), (0, 6))
-        ]
+        means = ((9, 3), (0, 3), (75, 4), (0, 6))
+        signals = [draw.normal(mean, 1.0, count).astype(np.float32) for mean, count in means]
         single.tick(SensorReading._make(signals))
         double.tick(SensorReading(*[tuple(values.tolist()) for values in signals]))
     assert single.phase is not Phase.STAND and single.targets == double.targets
@@ -141,18 +131,18 @@ def test_other_spellings_are_refused_by_name_everywhere(text: str, capsys: pytes
         parse_options(EvalOptions, "sarah-eval", ["--forces", text], EvalOptions())
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("a: 1\nb: 2\na: 3", "line 3: key 'a' is given twice"),
-        ("l: [{a: 1, a: 2}]", "line 1: key 'a' is given twice"),
-        ("~: 3", "line 1: a key must be a text, not None"),
-        ("a: 1\n---\nb: 2", "it is not YAML: expected a single document"),
-        ("\ta: 1", "it is not YAML: "),
-    ],
-)
-def test_yaml_with_a_second_meaning_is_refused(text: str, words: str) -> None:
-    with pytest.raises(ConfigurationError, match=words) as caught:
+TWICE = {
+    "a: 1\nb: 2\na: 3": "line 3: key 'a' is given twice",
+    "l: [{a: 1, a: 2}]": "line 1: key 'a' is given twice",
+    "~: 3": "line 1: a key must be a text, not None",
+    "a: 1\n---\nb: 2": "it is not YAML: expected a single document",
+    "\ta: 1": "it is not YAML: ",
+}
+
+
+@pytest.mark.parametrize("text", TWICE)
+def test_yaml_with_a_second_meaning_is_refused(text: str) -> None:
+    with pytest.raises(ConfigurationError, match=TWICE[text]) as caught:
         read_yaml(text)
     assert "\n" not in str(caught.value)
 

@@ -1,4 +1,4 @@
-"""What is built: the wheel and the sdist hold everything, and claim one name."""
+"""The package: what importing it does to Python, which part imports which, and what is built of it."""
 
 import json
 import os
@@ -8,12 +8,59 @@ import sys
 import tarfile
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+import sarah
 from sarah.versions import source_hash
 
 ROOT = Path(__file__).parent.parent
+
+
+def test_importing_registers_environments_and_patches_nothing() -> None:
+    program = """
+import sys
+before = list(sys.meta_path), list(sys.path_hooks), sys.excepthook, __import__
+import sarah
+assert before == (list(sys.meta_path), list(sys.path_hooks), sys.excepthook, __import__)
+import gymnasium
+print(*sorted(name for name in gymnasium.registry if name.startswith('Sarah')))
+print(*sorted({'mujoco', 'pybullet', 'torch', 'stable_baselines3', 'matplotlib'} & set(sys.modules)))
+"""
+    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert process.stdout.splitlines() == ["SarahBalance-v0 SarahEpisode-v0 SarahOperation-v0 SarahStepping-v0", ""]
+
+
+def test_a_command_imports_nothing_slow_that_its_episodes_do_not_need() -> None:
+    """Importing yourdfpy, which brings scipy, takes longer than the episode; the robot is the default one."""
+    program = (
+        "import sys\n"
+        "from sarah.cli.eval import main\n"
+        "sys.argv = ['sarah-eval', 'stepping', '--episodes', '1', '--episode.time-limit', '2']\n"
+        "main()\n"
+        "slow = {'yourdfpy', 'scipy', 'torch', 'stable_baselines3', 'matplotlib', 'pandas', 'sklearn', 'distributed'}\n"
+        "sys.exit(' '.join(slow & set(sys.modules)) or 0)"
+    )
+    process = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True)
+    assert process.returncode == 0, process.stderr
+
+
+def test_no_module_imports_the_package_that_imports_it() -> None:
+    grimp = pytest.importorskip("grimp", reason="import-linter is not installed")
+    graph = grimp.build_graph("experiments", "sarah", cache_dir=None)
+    for module in graph.modules:
+        for package in graph.find_modules_directly_imported_by(module):
+            is_above = module.startswith(f"{package}.")
+            assert not (is_above and graph.chain_exists(importer=package, imported=module)), (module, package)
+
+
+def test_a_shell_completes_the_public_names() -> None:
+    assert set(sarah.__all__) <= set(dir(sarah))
+    with pytest.raises(AttributeError, match="simulat"):
+        sarah.simulat  # noqa: B018
+
+
 PROGRAM = (
     "import sarah, sarah.agents, sarah.urdf\n"
     "from sarah.robot.description import describe_robot\n"
@@ -40,15 +87,8 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
 
 def test_wheel_holds_the_robot_and_the_agent_and_claims_one_name(built: tuple[Path, Path]) -> None:
     names = zipfile.ZipFile(built[1]).namelist()
-    for name in (
-        "urdf/sarah.urdf.xacro",
-        "urdf/__init__.py",
-        "agents/local_naf.py",
-        "cli/train.py",
-        "py.typed",
-        "episode/parameter_sets.json",
-    ):
-        assert f"sarah/{name}" in names
+    data = {"sarah/urdf/sarah.urdf.xacro", "sarah/py.typed", "sarah/episode/parameter_sets.json"}
+    assert data | {"sarah/urdf/__init__.py", "sarah/agents/local_naf.py"} <= set(names)
     assert sorted(names) == sorted(set(names))
     modules = {str(path.relative_to(ROOT)) for path in (ROOT / "sarah").rglob("*.py")}
     assert modules <= set(names), "setup.cfg lists every package"
@@ -59,8 +99,7 @@ def test_wheel_holds_the_robot_and_the_agent_and_claims_one_name(built: tuple[Pa
 def test_sdist_holds_what_a_developer_needs(built: tuple[Path, Path]) -> None:
     with tarfile.open(built[0]) as archive:
         names = {name.split("/", 1)[1] for name in archive.getnames() if "/" in name}
-    for name in ("setup.cfg", "pyproject.toml", "constraints.txt", "Makefile", "LICENSE", "urdf/sarah.urdf.xacro"):
-        assert name in names
+    assert {"setup.cfg", "pyproject.toml", "constraints.txt", "Makefile", "LICENSE", "urdf/sarah.urdf.xacro"} <= names
     assert {"agents/naf.py", "tests/test_package.py", "README.md", "CITATION.cff", "CHANGELOG.md"} <= names
 
 
@@ -70,15 +109,11 @@ def test_wheel_works_from_another_folder(built: tuple[Path, Path], tmp_path: Pat
     subprocess.run(pip, check=True, capture_output=True)
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
-    environment = {**os.environ, "PYTHONPATH": str(site)}
-    process = subprocess.run(
-        [sys.executable, "-c", PROGRAM], cwd=elsewhere, env=environment, capture_output=True, text=True, check=True
-    )
+    there: dict[str, Any] = {"cwd": elsewhere, "env": {**os.environ, "PYTHONPATH": str(site)}, "capture_output": True}
+    process = subprocess.run([sys.executable, "-c", PROGRAM], **there, text=True, check=True)
     assert process.stdout.startswith(str(site))
     assert source_hash() in process.stdout  # workers may have the wheel, and the learner a checkout
     assert "0.84" in process.stdout and "one-step" in process.stdout
     arguments = ["0.4,1.3,0.1,1,1", "--episodes", "1", "--episode.time-limit", "2", "--json"]
-    evaluated = subprocess.run(
-        [site / "bin" / "sarah-eval", *arguments], cwd=elsewhere, env=environment, capture_output=True, check=True
-    )
+    evaluated = subprocess.run([site / "bin" / "sarah-eval", *arguments], **there, check=True)
     assert json.loads(evaluated.stdout)["survival_rate"] == 1.0

@@ -1,38 +1,33 @@
 """Trainings that several tests of commands look at, commands that are refused, and trainings that only begin."""
 
 import shlex
-import subprocess
-from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 
 import pytest
-from terminal import SHORT, run, tree
+from terminal import SHORT, Answer, Begin, Trained, done, run, tree
 
 from sarah.runs.config import TrainingConfig
 
 
 @pytest.fixture(scope="session")
-def trained(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, subprocess.CompletedProcess[str]]:
-    """The run folder of a First Training, and its process."""
+def trained(tmp_path_factory: pytest.TempPathFactory) -> Trained:
     folder = tmp_path_factory.mktemp("work")
     arguments = ("--task", "stepping", "--algo", "naf", "--episodes", "4", "--seed", "1", "--out", "mine")
     return folder / "mine", run("sarah-train", *arguments, *SHORT, cwd=folder)
 
 
 @pytest.fixture(scope="session")
-def balanced(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> Path:
-    """The run folder of a Second Training on what the First one learned."""
+def balanced(trained: Trained) -> Path:
     first, _ = trained
     arguments = ("--task", "balance", "--from", "mine", "--episodes", "4", "--out", "second", *SHORT)
-    process = run("sarah-train", *arguments, cwd=first.parent)
-    assert process.returncode == 0, process.stderr
+    process = done("sarah-train", *arguments, cwd=first.parent)
     assert "V4 = " in process.stdout and "baseline (V = 0)" in process.stdout
     return first.parent / "second"
 
 
 @pytest.fixture
-def answer(tmp_path: Path) -> Callable[[str], str]:
+def answer(tmp_path: Path) -> Answer:
     """Runs a command line in ``tmp_path``, and returns its one line."""
 
     def ask(line: str) -> str:
@@ -49,7 +44,7 @@ def answer(tmp_path: Path) -> Callable[[str], str]:
 
 
 @pytest.fixture
-def begun(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], TrainingConfig]:
+def begun(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Begin:
     """Settings of the training that a command line begins, which is interrupted before its first episode."""
     monkeypatch.chdir(tmp_path)
 

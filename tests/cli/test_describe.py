@@ -3,13 +3,13 @@
 import re
 import subprocess
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from laboratory import need
-from terminal import run
+from pytest import MonkeyPatch
+from terminal import Answer, Trained, done, run
 
 from sarah.cli.describe_text import lines_of
 from sarah.episode.settings import EpisodeConfig
@@ -18,7 +18,7 @@ DIMENSIONS = ("--episode.dimensions", "thigh_length", "0.2", "shank_length", "0.
 
 
 @pytest.fixture
-def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+def undrawn(monkeypatch: MonkeyPatch) -> None:
     """Commands draw no robot, which would take most of their time."""
     monkeypatch.setattr("sarah.pictures.dimension_figure.draw_dimensions", lambda *_: None)
 
@@ -43,29 +43,22 @@ def test_a_robot_of_other_dimensions_is_drawn_and_other_tools_load_its_urdf(tmp_
     assert mujoco.MjModel.from_xml_path(file).njnt == 10
 
 
-def test_the_robot_of_a_training_is_not_trained_again(
-    trained: tuple[Path, subprocess.CompletedProcess[str]], undrawn: None, tmp_path: Path
-) -> None:
+def test_the_robot_of_a_training_is_not_trained_again(trained: Trained, undrawn: None, tmp_path: Path) -> None:
     process = run("sarah-describe", str(trained[0]), cwd=tmp_path)
     assert "standing height  0.84 m" in process.stdout and process.stderr == ""
-
-
-def test_the_default_robot_has_no_rows_about_others() -> None:
-    lines = list(lines_of(EpisodeConfig(), EpisodeConfig()))
-    for text in ("mass             30 kg", "standing height  0.84 m"):
-        assert any(line.startswith(text) for line in lines)
-    assert not any("default" in line for line in lines)
 
 
 def test_it_says_what_follows_from_length_and_mass_and_what_was_set_by_hand() -> None:
     usual = EpisodeConfig()
     config = usual.for_robot({"torso_mass": 38.0})
     config = replace(config, controller=replace(config.controller, pad_threshold=40.0, largest_blow=50.0))
-    text = "\n".join(lines_of(config, usual))
+    text, plain = ("\n".join(lines_of(each, usual)) for each in (config, usual))
     rows = {line.split()[0]: line.split()[1:] for line in text.split("Follows from ")[1].splitlines() if line}
     assert rows["leg_effort"] == ["2000", "1000"] and rows["hip_effort"] == ["300", "150"]
     assert rows["episode.controller.pad-threshold"] == ["40", "30", "the", "rule", "gives", "60"]
     assert "episode.controller.leg-speed" not in rows and "episode.controller.largest-blow" not in rows
+    assert "\nstanding height  0.84 m" in plain and plain.startswith("mass             30 kg")
+    assert "default" not in plain
 
 
 def test_it_needs_neither_an_engine_nor_a_learner(tmp_path: Path) -> None:
@@ -79,21 +72,16 @@ def test_it_needs_neither_an_engine_nor_a_learner(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("newtons", [5, 30])
-def test_a_file_and_an_option_describe_one_robot(newtons: int, undrawn: None, tmp_path: Path) -> None:
+def test_a_file_and_options_describe_one_robot(newtons: int, undrawn: None, tmp_path: Path) -> None:
     controller = f"{{pad_threshold: {newtons}}}"
     (tmp_path / "mine.yaml").write_text(f"episode: {{dimensions: {{thigh_length: 0.2}}, controller: {controller}}}\n")
-    process = run("sarah-describe", "--config", "mine.yaml", "--episode.dimensions", "torso_mass", "23", cwd=tmp_path)
-    assert process.returncode == 0, process.stderr
-    assert re.search(r"thigh_length +0.2 .*\n.*torso_mass +23 |torso_mass +23 .*\n.*thigh_length +0.2 ", process.stdout)
+    options = "--episode.dimensions=torso_mass 23 --episode.dimensions shank_length 0.25"
+    process = done("sarah-describe", "--config", "mine.yaml", *options.split(), cwd=tmp_path)
+    for row in ("thigh_length +0.2 ", "torso_mass +23 ", "shank_length +0.25 "):
+        assert re.search(f"\n{row}", process.stdout)
     assert re.search(rf"controller.pad-threshold +{newtons} +30 +the rule gives 45\n", process.stdout)
 
 
-def test_dimensions_are_one_robot_however_often_they_are_given(undrawn: None, tmp_path: Path) -> None:
-    once = run("sarah-describe", "--episode.dimensions", "thigh_length", "0.1", "shank_length", "0.2", cwd=tmp_path)
-    twice = ("--episode.dimensions=thigh_length", "0.1", "--episode.dimensions", "shank_length", "0.2")
-    assert run("sarah-describe", *twice, cwd=tmp_path).stdout == once.stdout
-
-
-def test_a_file_or_a_subject(answer: Callable[[str], str], tmp_path: Path) -> None:
+def test_a_file_or_a_subject(answer: Answer, tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text("episodes: 5\n")
     assert "give --config or a subject, not both" in answer("sarah-describe balance --config mine.yaml")

@@ -1,4 +1,4 @@
-"""Commands that are interrupted, locked out, or run out of disk: nothing finished is lost."""
+"""Commands that are interrupted, locked out, out of disk, or read by nobody: nothing finished is lost."""
 
 import os
 import re
@@ -8,41 +8,25 @@ import subprocess
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
-from terminal import BIN, COARSE, run
+from terminal import BIN, COARSE, done, run
 
 from sarah.cli.interruption import interruptible
 from sarah.errors import ResumeError, RunFolderError
 
 # Long enough to be interrupted also where the test itself has to wait for the processor.
-TRAINING = (
-    "--algo",
-    "random",
-    "--episodes",
-    "60",
-    "--slots",
-    "2",
-    "--out",
-    "run",
-    "--episode.time-limit",
-    "2",
-    *COARSE,
-)
+OPTIONS = ("--algo", "random", "--episodes", "60", "--slots", "2", "--episode.time-limit", "2")
+TRAINING = (*OPTIONS, *COARSE, "--out", "run")
 RECORDS = ("episodes.csv", "recommendations.csv", "progress.csv", "parameters.json")
 
 
 def begin(folder: Path, *arguments: str) -> subprocess.Popen[str]:
-    """A training in a process of its own."""
-    return subprocess.Popen(
-        [BIN / "sarah-train", *arguments],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        cwd=folder,
-        # Whoever starts the tests in the background may have switched Ctrl-C off, and programs inherit that.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
-    )
+    shown: dict[str, Any] = dict(stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    # Whoever starts the tests in the background may have switched Ctrl-C off, and programs inherit that.
+    shown["preexec_fn"] = lambda: signal.signal(signal.SIGINT, signal.default_int_handler)
+    return subprocess.Popen([BIN / "sarah-train", *arguments], cwd=folder, **shown)
 
 
 def rows(folder: Path) -> list[bytes]:
@@ -53,8 +37,7 @@ def rows(folder: Path) -> list[bytes]:
 @pytest.fixture(scope="module")
 def expected(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     folder = tmp_path_factory.mktemp("expected")
-    finished = run("sarah-train", *TRAINING, cwd=folder)
-    assert finished.returncode == 0, finished.stderr
+    done("sarah-train", *TRAINING, cwd=folder)
     return {name: (folder / "run" / name).read_bytes() for name in RECORDS}
 
 
@@ -75,8 +58,7 @@ def test_killed_locked_stopped_and_resumed(expected: dict[str, bytes], tmp_path:
     (command,) = re.findall(r"sarah-train: interrupted; go on with (sarah-train --resume \S+)", errors)
     kept, known = rows(folder), len((folder / "episodes.csv").read_text().splitlines()) - 1
 
-    finished = run(*shlex.split(command), cwd=tmp_path)
-    assert finished.returncode == 0, finished.stderr
+    finished = done(*shlex.split(command), cwd=tmp_path)
     said = f"resuming the training of random on stepping: 60 episodes, of which episodes.csv has {known}, into run\n"
     assert said in finished.stdout
     assert rows(folder)[: len(kept)] == kept
@@ -104,8 +86,7 @@ def test_a_full_disk_stops_the_training_and_space_lets_it_go_on(expected: dict[s
     assert stopped.returncode == 2 and re.search(said, stopped.stderr)
     kept = rows(small_disk / "run")
     subprocess.run(["mount", "-o", "remount,size=8m", str(small_disk)], check=True)
-    finished = run("sarah-train", "--resume", "run", cwd=small_disk)
-    assert finished.returncode == 0, finished.stderr
+    done("sarah-train", "--resume", "run", cwd=small_disk)
     assert {name: (small_disk / "run" / name).read_bytes() for name in RECORDS} == expected
     assert set(kept[:-1]) <= set(rows(small_disk / "run"))  # the last one may be half a row
 
@@ -133,13 +114,32 @@ def test_the_first_ctrl_c_is_noted_and_the_second_stops(handlers: None, capsys: 
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
-@pytest.mark.parametrize(
-    ("error", "kind", "message"),
-    [
-        (OSError("disk full"), RunFolderError, "disk full; finished windows are kept, go on"),
-        (ResumeError("other settings"), ResumeError, "other settings"),
-    ],
-)
-def test_a_mistake_says_how_to_go_on_if_it_can(error: Exception, kind: type[Exception], message: str) -> None:
-    with pytest.raises(kind, match=f"^{message}$"), interruptible("sarah-operate", "window", "go on"):
-        raise error
+def test_a_mistake_says_how_to_go_on_if_it_can() -> None:
+    said = r"^disk full; finished windows are kept, go on$"
+    with pytest.raises(RunFolderError, match=said), interruptible("sarah-operate", "window", "go on"):
+        raise OSError("disk full")
+    with pytest.raises(ResumeError, match=r"^other settings$"), interruptible("sarah-operate", "window", "go on"):
+        raise ResumeError("other settings")
+
+
+EVALUATION = "sarah-eval 0.4,1.3,0.1,1,1 --episodes 1 --episode.time-limit 1.5"
+SHELL = {"closed": '"$@" <&- >&- 2>&-', "full": '"$@" > /dev/full 2>&1', "left": '"$@" >&"$0" 2>&"$0"'}
+
+
+STATUS = {
+    **{("sarah-describe", "closed"): 0, ("sarah-describe", "left"): 0, ("sarah-eval nonsense", "left"): 2},
+    **{(EVALUATION, "closed"): 0, (EVALUATION, "left"): 141, (f"{EVALUATION} --json", "full"): 2},
+    ("sarah-eval --help", "left"): 141,
+}
+
+
+@pytest.mark.parametrize(("line", "streams"), STATUS)
+def test_work_is_done_or_the_status_says_so(line: str, streams: str, tmp_path: Path) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    command = ["bash", "-c", SHELL[streams], str(writer), *line.split()]
+    environment = {**os.environ, "PATH": f"{BIN}{os.pathsep}{os.environ['PATH']}"}
+    with os.fdopen(writer, "wb"):
+        process = subprocess.run(command, cwd=tmp_path, env=environment, pass_fds=[writer], timeout=300)
+    assert process.returncode == STATUS[line, streams]
+    assert (tmp_path / "sarah_robot.png").exists() == (line == "sarah-describe")

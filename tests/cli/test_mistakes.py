@@ -2,37 +2,31 @@
 
 import os
 import subprocess
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from laboratory import NEEDS_PYBULLET, need
-from terminal import BIN
+from laboratory import need
+from pytest import CaptureFixture, MonkeyPatch
+from terminal import BIN, Answer
 
 from sarah.cli.options import as_command
 
 GIVEN, PUSHED = "1,1,1,1,1", "1,0,1,0"
+PUSH_AT = "--episode.push.newtons 80 --episode.push.at-seconds"
 MISTAKES = {
     "sarah-train": [
         ("--task steping", "unknown task 'steping', did you mean 'stepping'?"),
         ("--engine mujco", "unknown --engine/--episode.engine 'mujco', did you mean 'mujoco'?"),
         ("--episods 5", "did you mean --episodes?"),
         ("--episode 5", "did you mean --episodes?"),
-        ("--fron run", "did you mean --from?"),
-        ("--episode.controller.time-out 1", "did you mean --episode.controller.time-out-seconds?"),
         ("balance", "'balance' is no option: a task is given as --task balance"),
         ("--task", "--task"),
         ("--simulations 10.5", "--episodes must be a whole number, not '10.5'"),
         ("--out x --simulations=0", "episodes must be between 1 and 1000000, not 0"),
         ("--episode.time-limit nan", "--episode.time-limit must be a number, not 'nan'"),
-        ("--episode.dimensions thigh_length nan", "--episode.dimensions must be a number, not 'nan'"),
         ("--episode.dimensions thigh_length", "must be names and numbers in turn, and 'thigh_length' has no number"),
         ("--task balance --episode.push.newtons", "--episode.push.newtons must be one number, or two for a range"),
-        ("--task balance --episode.push.newtons=20000", "push.newtons must be between 0 and 10000 N"),
-        (
-            "--task balance --episode.push.newtons 50 20",
-            "push.newtons must be between 0 and 10000 N and in rising order",
-        ),
+        ("--task balance --episode.push.newtons 50 20", "between 0 and 10000 N and in rising order"),
         ("--task balance --episode.stepping 1 1 1", "--episode.stepping"),
         ("--task balance --episode.time-limit 1.5 --episode.push.at-seconds 2 3", "before the time_limit of 1.5 s"),
         ("--task stepping --episode.push.newtons 50 60", "--episode.push.newtons is for --task balance"),
@@ -47,13 +41,9 @@ MISTAKES = {
         ("--algo td3 --agent.preset paper", "--agent.preset is for --algo naf, not 'td3'"),
         ("--algo sac --agent.no-squash-mu", "--agent.no-squash-mu is for --algo naf, not 'sac'"),
         ("--agent.net-arch 8", "did you mean --agent.v-layers or --agent.mu-layers or --agent.l-layers?"),
-        (
-            "--algo td3 --agent.net_arch=8",
-            "of --algo td3, did you mean --agent.layers? (allowed: --agent.learning-rate, ",
-        ),
+        ("--algo td3 --agent.net_arch=8", "of --algo td3, did you mean --agent.layers? (allowed: --agent.learning-rat"),
         ("--agent.layers 8", "is for --algo td3 or sac or ddpg, not 'naf', did you mean --agent.v-layers or"),
         ("--algo td3 --agent.exploration-std 0.1", "not 'td3', did you mean --agent.action-noise-std?"),
-        ("--algo td3 --agent.policy-delays 1", "did you mean --agent.policy-delay?"),
         ("--algo tpe --agent.x 1", "unknown option --agent.x of --algo tpe (allowed: none)"),
         ("--algo sac --agent.ent-coef high", "--agent.ent-coef must be FLOAT|{auto}, not ['high']"),
     ],
@@ -64,74 +54,41 @@ MISTAKES = {
         ("--out race --algorithms naf tpee", "unknown algo 'tpee', did you mean 'tpe'?"),
         ("--out race --best-known nan", "--best-known must be a number, not 'nan'"),
         ("--out race --best-known 3", "best-known must be between 0.01 and 2, not 3.0"),
-        ("--out race --episode.push.newtons 1 2", "--episode.push.newtons is for --task balance"),
-        ("--out race --simulations 0", "episodes must be between 1 and 1000000, not 0"),
         ("--out race --evaluations 0", "evaluations must be between 1 and 1000, not 0"),
         ("--out race --evaluations 9 --evaluations-along 10", "evaluations-along must be between 1 and 9, not 10"),
-        ("--out race --first-seed -1", "seed must be between 0 and 2147483647, not -1"),
         ("--out race --seeds 0", "seeds must be between 1 and 1000, not 0"),
     ],
     "sarah-eval": [
         ("full", "not the folder of a finished training"),
-        ("full/precious.txt", "is neither a run folder, nor numbers separated by commas"),
         ("steping", "did you mean 'stepping'?"),
-        ("balance --task stepping", "'balance' are parameters of task 'balance': give others, or leave --task out"),
         ("--task stepping", "'balance' are parameters of task 'balance': give others, or leave --task out"),
         (f"full {GIVEN}", "Unrecognized options: 1,1,1,1,1"),
-        ("1,1,1,1,inf", "parameters must be numbers separated by commas"),
         ("1;1;1;1;1", "parameters must be numbers separated by commas, not '1;1;1;1;1'"),
         (f"{GIVEN} --episodes 0", "episodes must be between 1 and 1000000, not 0"),
-        (f"{GIVEN} --episodes 0100", "--episodes must be a whole number, not '0100'"),
         (f"{GIVEN} --first-seed -1", "first_seed must be between 0 and 4294967295, not -1"),
-        (f"{GIVEN} --x 0.1", "Unrecognized options: --x"),
-        (f"{GIVEN} --no-randomization", "did you mean --no-randomisation?"),
         (f"{GIVEN} --physics refrence", "unknown physics 'refrence', did you mean 'reference'?"),
         (f"{GIVEN} --engine mujoco --episode.engine=pybullet", "--engine and --episode.engine set the same"),
-        (f"{GIVEN} --physics reference --episode.physics.rate 500", "--episode.physics.rate set the same: give one"),
-        (f"{GIVEN} --episode.stepping 1 1 1 1 1", "--episode.stepping is for --task balance"),
-        (
-            "stepping --episode.push.newtons 80 --episode.push.at-seconds 5 --episode.time-limit 3",
-            "must begin before the time_limit of 3 s",
-        ),
-        (f"{GIVEN} --episode.terrain.friction-left ice", "must be one number, or two for a range, not ice"),
-        (f"{GIVEN} --episode.terrain.roughness", "must be one number, or two for a range, not nothing"),
+        (f"stepping --episode.time-limit 3 {PUSH_AT} 5", "must begin before the time_limit of 3 s"),
         ("--episode.push.newtons 100,125", "must be one number, or two for a range, not 100,125"),
-        (f"{PUSHED} --episode.push.newtons inf", "must be one number, or two for a range, not inf"),
         (f"{GIVEN} --episode.terrain.roughness 0 0.01 0.02", "or two for a range, not 0 0.01 0.02"),
-        (
-            f"{GIVEN} --episode.reward-form symetric",
-            "'symetric', did you mean 'symmetric'? (allowed: printed, symmetric)",
-        ),
-        (
-            f"{GIVEN} --no-randomisation --episode.randomisation.imu-tilt-degrees 5",
-            "--no-randomisation leaves --episode.randomisation.imu-tilt-degrees without effect",
-        ),
+        (f"{GIVEN} --episode.reward-form symetric", "did you mean 'symmetric'? (allowed: printed, symmetric)"),
+        ("--no-randomisation --episode.randomisation.friction 1", "leaves --episode.randomisation.friction without"),
         ("--terrain", "--terrain needs a folder for table and picture: --out DIR"),
         ("--out x", "--out is the folder of --robustness or --terrain: give one of them"),
         ("--terrain --out=", "--out must not be empty"),
         ("''", "an argument must not be empty"),
         (f"{GIVEN} --terrain --out caf\udce9", "--out must be UTF-8 text without control characters, not 'caf\\udce9'"),
         (f"{GIVEN} --json --robustness --out x", "--robustness prints a table, not JSON: leave --json out"),
-        (
-            f"{GIVEN} --robustness --out x",
-            "--robustness needs parameters of task 'balance', and these are of 'stepping'",
-        ),
+        (f"{GIVEN} --robustness --out x", "needs parameters of task 'balance', and these are of 'stepping'"),
         (f"{PUSHED} --robustness --out full/precious.txt", "cannot write folder full/"),
         (f"{GIVEN} --forces 0 50", "forces must be between 0.01 and 10000 N, not 0.0"),
         (f"{GIVEN} --forces 100", "--forces is for --robustness"),
         (f"{PUSHED} --robustness --out x --forces abc", "--forces must be numbers, not"),
-        (
-            f"{PUSHED} --robustness --out x --episode.time_limit=5",
-            "--robustness has pushes and a time limit of its own: leave --episode.time-limit out",
-        ),
-        (
-            f"{GIVEN} --terrain --out x --episode.terrain.roughness 0.01",
-            "--terrain has ground, pushes and a time limit of its own: leave --episode.terrain.roughness out",
-        ),
+        (f"{PUSHED} --robustness --out x --episode.time_limit=5", "has pushes and a time limit of its own: leave --ep"),
+        ("stepping --terrain --out x --episode.push.degrees 1", "has ground, pushes and a time limit of its own: leav"),
     ],
     "sarah-describe": [
         ("--episode.dimensions tigh_length 0.3", "did you mean 'thigh_length'"),
-        ("--episode.dimensions hinge_height 0.005", "'hinge_height' must be at least 0.015 m"),
         ("nobody", "'nobody' is neither a run folder, nor numbers"),
     ],
     "sarah-figures": [
@@ -173,17 +130,16 @@ MISTAKES = {
         ("--learner none --compare-frozen", "--compare-frozen is for a session that learns"),
         ("--resume nowhere --seed 3", "leave '--seed' out"),
     ],
+    "sarah-transfer": [
+        ("", "give at least one run folder, numbers or a name"),
+        ("full full", "anything but one run needs a folder for table and figure: --out DIR"),
+        ("balance", "anything but one run needs a folder for table and figure: --out DIR"),
+    ],
 }
-TRANSFER_MISTAKES = [
-    ("", "give at least one run folder, numbers or a name"),
-    ("full full", "anything but one run needs a folder for table and figure: --out DIR"),
-    ("balance", "anything but one run needs a folder for table and figure: --out DIR"),
-]
 
 
 @pytest.fixture(autouse=True)
 def full(tmp_path: Path) -> None:
-    """The folder ``full``, with a file that nobody may touch."""
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "precious.txt").write_text("data")
 
@@ -191,34 +147,22 @@ def full(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("line", "message"), [(f"{command} {rest}", text) for command, all_ in MISTAKES.items() for rest, text in all_]
 )
-def test_mistakes_get_one_line_and_leave_everything_alone(
-    line: str, message: str, answer: Callable[[str], str]
-) -> None:
+def test_mistakes_get_one_line_and_leave_everything_alone(line: str, message: str, answer: Answer) -> None:
+    if line.startswith("sarah-transfer"):
+        need("pybullet")
+        need("mujoco")
     assert message in answer(line)
 
 
-@NEEDS_PYBULLET
-@pytest.mark.parametrize(("arguments", "message"), TRANSFER_MISTAKES)
-def test_mistakes_with_both_engines_get_one_line(arguments: str, message: str, answer: Callable[[str], str]) -> None:
-    need("mujoco")
-    assert message in answer(f"sarah-transfer {arguments}")
-
-
 def test_a_plain_terminal_gets_one_line_too(tmp_path: Path) -> None:
-    process = subprocess.run(
-        [BIN / "sarah-eval", "--nonsense"],
-        capture_output=True,
-        text=True,
-        cwd=tmp_path,
-        env={**os.environ, "LC_ALL": "C", "PYTHONIOENCODING": "ascii"},
-    )
+    environment = {**os.environ, "LC_ALL": "C", "PYTHONIOENCODING": "ascii"}
+    command = [str(BIN / "sarah-eval"), "--nonsense"]
+    process = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=environment)
     assert (process.returncode, process.stdout) == (2, "")
     assert process.stderr == "sarah-eval: error: Unrecognized options: --nonsense\n"
 
 
-def test_a_working_folder_that_is_gone(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_working_folder_that_is_gone(tmp_path: Path, monkeypatch: MonkeyPatch, capsys: CaptureFixture[str]) -> None:
     folder = tmp_path / "gone"
     folder.mkdir()
     monkeypatch.chdir(folder)

@@ -1,19 +1,17 @@
 """What a command says one does next: at most three lines, whose commands work as they stand."""
 
 import shlex
-import subprocess
 from pathlib import Path
 from urllib.parse import unquote, urlparse
 
 import pytest
-from terminal import BIN, COARSE, SHORT, run
+from terminal import BIN, COARSE, SHORT, Trained, done, run
 
 from sarah.cli import next_steps
 from sarah.cli.next_steps import passed_on, say_next, to_see, to_watch
 from sarah.episode.spec import FIRST_EVALUATION_SEED
 
 ENDING = {"sarah-view": ("--out", "page.html"), "sarah-eval": ("--episodes", "1")}
-"""Options with which a suggested command soon ends."""
 
 
 def steps_of(said: str) -> dict[str, list[str]]:
@@ -34,12 +32,11 @@ def paste(words: list[str], folder: Path) -> str:
     if words[0] == "tensorboard":
         assert words[1] == "--logdir" and list((folder / words[2]).glob("**/events.out.tfevents.*"))
         return ""
-    process = run(*words, *ENDING.get(words[0], ()), cwd=folder)
-    assert process.returncode == 0, process.stderr
+    process = done(*words, *ENDING.get(words[0], ()), cwd=folder)
     return process.stdout
 
 
-def test_a_training_can_be_seen_tested_and_watched(trained: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
+def test_a_training_can_be_seen_tested_and_watched(trained: Trained) -> None:
     folder, process = trained
     steps = steps_of(process.stderr)
     assert list(steps) == ["see it", "test it", "watch its curves"] and "sarah-" not in process.stdout.splitlines()[-1]
@@ -55,27 +52,21 @@ def test_an_episode_that_was_evaluated_is_seen_under_the_same_conditions(tmp_pat
     assert paste(steps["see it"], tmp_path) == "page.html\n"
 
 
-@pytest.mark.parametrize(
-    ("line", "purposes"),
-    [
-        ("sarah-view {run} --out 'a page.html'", ["open it"]),
-        ("sarah-eval {run} --episodes 1", ["see it", "have it on one page"]),
-        ("sarah-operate {run} --learner none --minutes 0.1", ["see it", "test it", "watch its curves"]),
-        (
-            "sarah-compare --out race --algorithms random --seeds 1 --episodes 2 --evaluations 1 " + " ".join(SHORT),
-            ["open it", "see its best", "watch its curves"],
-        ),
-    ],
-    ids=lambda value: value.split()[0] if isinstance(value, str) else "",
-)
-def test_other_commands_say_what_one_does_next(
-    line: str, purposes: list[str], trained: tuple[Path, subprocess.CompletedProcess[str]], tmp_path: Path
-) -> None:
-    process = run(*shlex.split(line.format(run=trained[0])), cwd=tmp_path)
-    assert process.returncode == 0, process.stderr
+RACE = "sarah-compare --out race --algorithms random --seeds 1 --episodes 2 --evaluations 1"
+PURPOSES = {
+    "sarah-view {run} --out 'a page.html'": ["open it"],
+    "sarah-eval {run} --episodes 1": ["see it", "have it on one page"],
+    "sarah-operate {run} --learner none --minutes 0.1": ["see it", "test it", "watch its curves"],
+    f"{RACE} {' '.join(SHORT)}": ["open it", "see its best", "watch its curves"],
+}
+
+
+@pytest.mark.parametrize("line", PURPOSES)
+def test_other_commands_say_what_one_does_next(line: str, trained: Trained, tmp_path: Path) -> None:
+    process = done(*shlex.split(line.format(run=trained[0])), cwd=tmp_path)
     steps = steps_of(process.stderr)
-    assert list(steps) == purposes
-    for purpose in set(purposes) - {"have it on one page"}:
+    assert list(steps) == PURPOSES[line]
+    for purpose in steps.keys() - {"have it on one page"}:
         paste(steps[purpose], tmp_path)
 
 

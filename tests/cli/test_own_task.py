@@ -2,16 +2,15 @@
 
 import json
 import shutil
-from collections.abc import Callable
+import subprocess
 from pathlib import Path
 
 import pytest
 from laboratory import need
-from terminal import run, tree
+from terminal import Answer, Begin, done, run, tree
 
 from sarah.episode.push import PushedConfig
 from sarah.episode.tasks.task_file import task_of_text
-from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import is_installed
 
@@ -35,64 +34,51 @@ THRIFTY = dataclasses.replace(sarah.STEPPING, name="thrifty", reward=reward, epi
 TASK = ("--task", "my_task.py:THRIFTY")
 
 
+def assert_one_line(process: subprocess.CompletedProcess[str], words: str) -> None:
+    assert process.returncode == 2 and words in process.stderr and process.stderr.count("\n") == 1
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the file, and with a training of its task in ``run``."""
     path = tmp_path_factory.mktemp("own")
     (path / "my_task.py").write_text(FILE)
-    process = run("sarah-train", *TASK, "--algo", "random", "--episodes", "4", "--out", "run", cwd=path)
-    assert process.returncode == 0, process.stderr
+    process = done("sarah-train", *TASK, "--algo", "random", "--episodes", "4", "--out", "run", cwd=path)
     assert "score       -" in process.stdout  # its power costs more than the paper's reward gives
     assert "sarah-eval run --task my_task.py:THRIFTY" in process.stderr
     (path / "it_ran").unlink()
     task_of_text.cache_clear()
+    assert (path / "run" / "task.py").read_text() == FILE
+    config = RunFolder.open(path / "run").config()
+    assert config.task.reference == "my_task.py:THRIFTY" and config.episode.time_limit == 1.5
+    assert config.task.parameter_names == ("P1", "P2", "P3", "P4", "P5") and not (path / "it_ran").exists()
     return path
 
 
-def test_the_run_records_the_file(folder: Path) -> None:
-    assert (folder / "run" / "task.py").read_text() == FILE
-    config = RunFolder.open(folder / "run").config()
-    assert config.task.reference == "my_task.py:THRIFTY" and config.episode.time_limit == 1.5
-    assert config.task.parameter_names == ("P1", "P2", "P3", "P4", "P5")
-    assert not (folder / "it_ran").exists()
-
-
-@pytest.mark.parametrize(
-    "command",
-    [
-        "sarah-figures run --out out",
-        "sarah-eval run",
-        "sarah-video run --out out.gif",
-        "sarah-view run --out out.html",
-        "sarah-report run --out report.html",
-        "sarah-train --resume run",
-        "sarah-train --config run/config.yaml",
-        "sarah-transfer run",
-    ],
+OPENING = (
+    *("sarah-figures run --out out", "sarah-eval run", "sarah-video run --out a.gif", "sarah-view run --out a.html"),
+    *("sarah-report run --out a.html", "sarah-train --resume run", "sarah-train --config run/config.yaml"),
+    "sarah-transfer run",
 )
+
+
+@pytest.mark.parametrize("command", OPENING)
 def test_nothing_that_opens_a_run_runs_the_file(folder: Path, command: str, monkeypatch: pytest.MonkeyPatch) -> None:
     task_of_text.cache_clear()  # which remembers what it has run
     name, *arguments = command.split()
     if name == "sarah-transfer":
         need("pybullet")
         need("mujoco")
-    drawn: list[object] = []
-
-    def draw(*given: object) -> list[Path]:
-        drawn.extend(given)
-        return [Path("a.png")]
-
-    monkeypatch.setattr("sarah.reports.all_figures.draw_all_figures", draw)
+    monkeypatch.setattr("sarah.reports.all_figures.draw_all_figures", lambda *_: [Path("a.png")])
     process = run(name, *arguments, cwd=folder)
     assert not (folder / "it_ran").exists()
-    if drawn:  # which needs only tables
+    if name == "sarah-figures":  # which needs only tables
         assert process.returncode == 0
     else:
-        assert process.returncode == 2 and process.stderr.count("\n") == 1
-        assert "--task my_task.py:THRIFTY" in process.stderr
+        assert_one_line(process, "--task my_task.py:THRIFTY")
 
 
-def test_every_command_takes_it_when_it_is_named(folder: Path, begun: Callable[[str], TrainingConfig]) -> None:
+def test_every_command_takes_it_when_it_is_named(folder: Path, begun: Begin) -> None:
     process = run("sarah-eval", "run", *TASK, "--episodes", "2", "--json", cwd=folder)
     assert json.loads(process.stdout)["score_mean"] < 0.0
     kept = ("--task", "run/task.py:THRIFTY")  # the copy is the same file
@@ -102,8 +88,8 @@ def test_every_command_takes_it_when_it_is_named(folder: Path, begun: Callable[[
     assert json.loads(numbers.stdout)["task"] == "my_task.py:THRIFTY"
     if is_installed("pybullet"):  # which draws
         assert run("sarah-video", "run", "--out", "a.gif", *TASK, "--seconds", "1", "1.1", cwd=folder).returncode == 0
-    finished = run("sarah-train", "--resume", "run", *TASK, cwd=folder)
-    assert finished.returncode == 0 and "run is finished" in finished.stdout
+    finished = done("sarah-train", "--resume", "run", *TASK, cwd=folder)
+    assert "run is finished" in finished.stdout
     Path("my_task.py").write_text(FILE)
     assert begun(f"sarah-compare --out race {' '.join(TASK)}").episode.time_limit == 1.5
 
@@ -120,17 +106,16 @@ def test_the_next_steps_name_it_too(folder: Path, monkeypatch: pytest.MonkeyPatc
 
 def test_another_file_is_refused(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "my_task.py").write_text(FILE.replace("0.01", "0.02"))
-    before = tree(folder)
+    task, before = f"{tmp_path / 'my_task.py'}:THRIFTY", tree(folder)
     for command in ("sarah-train --resume", "sarah-eval"):
         name, *arguments = command.split()
-        task = ("--task", f"{tmp_path / 'my_task.py'}:THRIFTY")
-        process = run(name, *arguments, str(folder / "run"), *task, cwd=tmp_path)
-        assert process.returncode == 2 and process.stderr.count("\n") == 1
-        assert "is of task THRIFTY (" in process.stderr and "the file as it was is" in process.stderr
+        process = run(name, *arguments, str(folder / "run"), "--task", task, cwd=tmp_path)
+        assert_one_line(process, "is of task THRIFTY (")
+        assert "the file as it was is" in process.stderr
     assert tree(folder) == before
 
 
-def test_a_file_of_settings_keeps_what_it_says(tmp_path: Path, begun: Callable[[str], TrainingConfig]) -> None:
+def test_a_file_of_settings_keeps_what_it_says(tmp_path: Path, begun: Begin) -> None:
     (tmp_path / "my_task.py").write_text(FILE)
     (tmp_path / "mine.yaml").write_text("algo: random\nepisode: {push: {degrees: 90}}\n")
     episode = begun(f"sarah-train --config mine.yaml {' '.join(TASK)}").episode
@@ -138,26 +123,24 @@ def test_a_file_of_settings_keeps_what_it_says(tmp_path: Path, begun: Callable[[
     assert episode.push.newtons == (30.0, 30.0) and episode.push.degrees == (90.0, 90.0)
 
 
-@pytest.mark.parametrize(
-    ("command", "words"),
-    [
-        ("sarah-train --task my_task.py:THIFTY", "unknown task in my_task.py 'THIFTY', did you mean 'THRIFTY'?"),
-        ("sarah-train --task my_task.py", "name the task in my_task.py too, as in my_task.py:TASK"),
-        ("sarah-train --task nowhere.py:JUMP", "cannot read nowhere.py: No such file or directory"),
-        ("sarah-eval 1,0,1,0 --task my_task.py:THRIFTY", "must be 5 numbers (P1 to P5), not 4"),
-    ],
-)
-def test_mistakes(folder: Path, command: str, words: str) -> None:
-    name, *arguments = command.split()
-    process = run(name, *arguments, cwd=folder)
-    assert process.returncode == 2 and words in process.stderr and process.stderr.count("\n") == 1
+MISTAKES = {
+    "sarah-train --task my_task.py:THIFTY": "unknown task in my_task.py 'THIFTY', did you mean 'THRIFTY'?",
+    "sarah-train --task my_task.py": "name the task in my_task.py too, as in my_task.py:TASK",
+    "sarah-train --task nowhere.py:JUMP": "cannot read nowhere.py: No such file or directory",
+    "sarah-eval 1,0,1,0 --task my_task.py:THRIFTY": "must be 5 numbers (P1 to P5), not 4",
+}
+
+
+def test_mistakes(folder: Path) -> None:
+    for command, words in MISTAKES.items():
+        name, *arguments = command.split()
+        assert_one_line(run(name, *arguments, cwd=folder), words)
 
 
 def test_a_mistake_in_the_reward_names_file_and_line(folder: Path) -> None:
     (folder / "wrong.py").write_text(FILE.replace("tick.power", "tick.pover"))
     early = run("sarah-train", "--task", "wrong.py:THRIFTY", "--out", "wrong", cwd=folder)
-    assert early.returncode == 2 and early.stderr.count("\n") == 1
-    assert "wrong.py, line 11: AttributeError: 'Tick' object has no attribute 'pover'" in early.stderr
+    assert_one_line(early, "wrong.py, line 11: AttributeError: 'Tick' object has no attribute 'pover'")
     assert not (folder / "wrong").exists()
     late_mistake = FILE.replace("0.01 * tick.power", "(1 / 0 if tick.time > 1.9 else 0.0)")
     (folder / "late.py").write_text(late_mistake.replace("1.5", "2.0"))
@@ -166,7 +149,7 @@ def test_a_mistake_in_the_reward_names_file_and_line(folder: Path) -> None:
     assert "correct the file, and train into another folder than late" in late.stderr
 
 
-def test_a_damaged_description_is_one_line(folder: Path, answer: Callable[[str], str], tmp_path: Path) -> None:
+def test_a_damaged_description_is_one_line(folder: Path, answer: Answer, tmp_path: Path) -> None:
     shutil.copytree(folder / "run", tmp_path / "run")
     description = (folder / "run" / "task.json").read_text()
     changes = ({"file": "../\x1b[31mevil.py"}, {"attribute": ["a"]}, {"title": 5}, {"must_step": "no"})

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 from laboratory import RESULT
+from pytest import CaptureFixture, MonkeyPatch
 
 from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
 from sarah.episode.push import PushedConfig
@@ -51,9 +52,8 @@ CHOSEN: dict[str, Any] = {
 def odd(config: Any) -> Any:
     """The same settings, each with another value."""
     changes: dict[str, Any] = {}
-    for item in dataclasses.fields(config):
-        value = getattr(config, item.name)
-        changes[item.name] = CHOSEN[item.name] if item.name in CHOSEN else _other(value)
+    for name in (item.name for item in dataclasses.fields(config)):
+        changes[name] = CHOSEN[name] if name in CHOSEN else _other(getattr(config, name))
     return dataclasses.replace(config, **changes)
 
 
@@ -91,19 +91,15 @@ def subjects(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 NEEDS = {"sarah-view": ("viser",), "sarah-video": ("pybullet",), "sarah-transfer": ("pybullet", "mujoco")}
-"""Packages that a command does not work without."""
 DRAWN = (
     *((all_figures, name) for name in ("draw_figures", "draw_robot", "draw_state_machine", "draw_gait_cycle")),
     *((terrain_figure, "draw_terrain"), (training_figures, "draw_survival"), (transfer_figure, "draw_transfer")),
     *((session_figure, "draw_session"), (dimension_figure, "draw_dimensions")),
 )
-"""Modules, and names in them of functions that draw figures."""
 
 
 @dataclasses.dataclass
 class Ran:
-    """What a command did."""
-
     configs: list[EpisodeConfig] = dataclasses.field(default_factory=list)
     legs: list[SteppingParameters] = dataclasses.field(default_factory=list)
     drawn: list[object] = dataclasses.field(default_factory=list)
@@ -111,9 +107,7 @@ class Ran:
 
 
 @pytest.fixture
-def ran(
-    subjects: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> Callable[[str], Ran]:
+def ran(subjects: Path, tmp_path: Path, monkeypatch: MonkeyPatch, capsys: CaptureFixture[str]) -> Callable[[str], Ran]:
     """Runs a command line in this process: settings and P1 to P5 of all that it simulates, and what it shows."""
     found = Ran()
     build, set_parameters = RunningRobot.__init__, PatternGenerator.set_parameters
@@ -164,7 +158,9 @@ def ran(
 
 
 PUSH = {"push", *(f"push.{name}" for name in ("newtons", "degrees", "at_seconds", "duration", "sagittal_share"))}
-GROUND = {f"terrain.{name}" for name in ("slope_degrees", "direction_degrees", "cell", "reach", "friction_left")}
+GROUNDS = ("slope_degrees", "direction_degrees", "cell", "reach", "friction_left", "friction_right")
+GROUND = {f"terrain.{name}" for name in GROUNDS}
+TABLE = {"time_limit", "payload"}
 LADEN = "--episode.payload 3"
 SHORT = "--minutes 0.1 --learner none"
 
@@ -179,30 +175,17 @@ SHORT = "--minutes 0.1 --learner none"
         ("sarah-view first --out out.html --which best", set()),
         ("sarah-report second --out out.html --episodes 1 --seconds 1 1.05", set()),
         ("sarah-figures first --out out", set()),
-        (
-            f"sarah-transfer second --out out --episodes 1 {LADEN}",
-            {"engine", "physics.added_plate_inertia", "payload"},
-        ),
-        (
-            f"sarah-eval second --robustness --out out --forces 25 --episodes 1 {LADEN}",
-            {*PUSH, "time_limit", "payload"},
-        ),
-        *(
-            (
-                f"sarah-eval {subject} --terrain --out out --episodes 1 {LADEN}",
-                {*PUSH, *GROUND, "terrain.friction_right", "time_limit", "payload"},
-            )
-            for subject in ("first", "second")
-        ),
-        *(
-            (f"sarah-operate {run} {SHORT} --settle-seconds 0.5 --measure-seconds 0.5", PUSH)
-            for run in ("first", "second")
-        ),
+        (f"sarah-transfer second --out out --episodes 1 {LADEN}", {"engine", "physics.added_plate_inertia", "payload"}),
+        (f"sarah-eval second --robustness --out out --forces 25 --episodes 1 {LADEN}", PUSH | TABLE),
+        (f"sarah-eval first --terrain --out out --episodes 1 {LADEN}", PUSH | GROUND | TABLE),
+        (f"sarah-eval second --terrain --out out --episodes 1 {LADEN}", PUSH | GROUND | TABLE),
+        (f"sarah-operate first {SHORT} --settle-seconds 0.5 --measure-seconds 0.5", PUSH),
+        (f"sarah-operate second {SHORT} --settle-seconds 0.5 --measure-seconds 0.5", PUSH),
         (f"sarah-operate session {SHORT}", set()),
         ("sarah-train --task balance --from first", {"push", "time_limit"}),
     ],
 )
-def test_what_is_simulated_has_the_settings_of_the_subject_and_others_are_said(
+def test_what_is_simulated_has_the_settings_of_the_subject(
     line: str, others: set[str], ran: Callable[[str], Ran]
 ) -> None:
     subject = next(name for name in ("first", "second", "session") if name in line)
@@ -224,41 +207,36 @@ def test_what_is_simulated_has_the_settings_of_the_subject_and_others_are_said(
             assert (there[key] if key == "engine" else key) in found.printed
 
 
-@pytest.mark.parametrize("subject", ["first", "session"])
-def test_the_robot_that_is_described_is_that_of_the_subject(subject: str, ran: Callable[[str], Ran]) -> None:
-    assert describe_robot(CHOSEN["dimensions"]) in ran(f"sarah-describe {subject}").drawn
-
-
-def test_a_session_goes_on_with_windows_falls_and_pushes_as_there(subjects: Path, ran: Callable[[str], Ran]) -> None:
+def test_a_subjects_robot_is_described_and_a_session_goes_on(subjects: Path, ran: Callable[[str], Ran]) -> None:
+    for described, subject in enumerate(("first", "session"), 1):
+        assert ran(f"sarah-describe {subject}").drawn.count(describe_robot(CHOSEN["dimensions"])) == described
     ran(f"sarah-operate session {SHORT} --settle-seconds 0.9 --out out")
     before, after = (SessionFolder.open(path).spec().config for path in (subjects / "session", Path("out")))
     assert after == dataclasses.replace(before, minutes=0.1, settle_seconds=0.9)
 
 
-def test_an_option_changes_nothing_else_of_a_sessions_windows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_option_changes_nothing_else_of_a_sessions_windows(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
     pytest.importorskip("viser")
-    shown: list[list[RunEpisode]] = []
+    shown: list[RunEpisode] = []
 
     def page(server: object, choices: list[RunEpisode], chosen: RunEpisode) -> None:
-        shown.append(choices)
+        shown.extend(choices)
         raise KeyboardInterrupt
 
     monkeypatch.setattr("sarah.viewer.page.Page", page)
     monkeypatch.setattr("sarah.viewer.server.serving", lambda *_: contextlib.nullcontext())
     config = OperationConfig(minutes=0.2, changes=(Change(0.1, {"payload": 5.0}),))
     folder = SessionFolder.create(tmp_path / "session", SessionSpec(config=config))
-    parameters = ((*LEGS, *HIPS), (*LEGS[::-1], *HIPS))
-    felt = (0.0,) * len(FELT)
-    for index, each in enumerate(parameters):
-        folder.append_window(Window(index, 6.0 * index, 6.0, index, each, 0.5, 0.5, False, felt))
+    for index, each in enumerate(((*LEGS, *HIPS), (*LEGS[::-1], *HIPS))):
+        folder.append_window(Window(index, 6.0 * index, 6.0, index, each, 0.5, 0.5, False, (0.0,) * len(FELT)))
     changed = ["--episode.randomisation.friction", "0.5", "--episode.dimensions", "thigh_length", "0.36"]
     monkeypatch.setattr("sys.argv", ["sarah-view", str(folder.path), *changed])
     with pytest.raises(SystemExit):
         import_module("sarah.cli.view").main()
-    windows = [choice.spec.config for choice in shown[0] if choice.name != "best"]
+    windows = [choice.spec.config for choice in shown if choice.name != "best"]
     assert [window.stepping for window in windows] == [LEGS, LEGS[::-1]]  # type: ignore[attr-defined]
     assert [window.payload for window in windows] == [0.0, 5.0]
-    assert {window.randomisation.friction for window in windows} == {(0.5, 0.5)}
-    assert {window.randomisation.delay_seconds for window in windows} == {config.robot.randomisation.delay_seconds}
+    randomisation = dataclasses.replace(config.robot.randomisation, friction=(0.5, 0.5))
+    assert {window.randomisation for window in windows} == {randomisation}
     assert {window.controller for window in windows} == {config.robot.controller}  # as the folder has it
     assert [dict(window.dimensions) for window in windows] == [{"thigh_length": 0.36}] * 2

@@ -2,14 +2,14 @@
 
 import dataclasses
 import json
-import subprocess
 from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 from laboratory import RESULT
-from terminal import COARSE, run
+from pytest import MonkeyPatch
+from terminal import COARSE, Trained, done, run
 
 import sarah
 from sarah.cli.episode_options import EpisodeOptions
@@ -28,17 +28,15 @@ NUMBERS = "1.09,0.17,0.65,1.13"
 
 
 def shown(*arguments: str, folder: Path) -> dict[str, object]:
-    process = run("sarah-eval", *arguments, *QUICK, cwd=folder)
-    assert process.returncode == 0 and process.stderr == "", process.stderr
+    process = done("sarah-eval", *arguments, *QUICK, cwd=folder)
+    assert process.stderr == "", process.stderr
     content: dict[str, object] = json.loads(process.stdout)
     return content
 
 
-def test_an_option_before_or_after_it_changes_nothing(tmp_path: Path) -> None:
-    task = ("--task", "balance")  # which is also the name of shipped parameters
-    assert shown(*task, NUMBERS, folder=tmp_path) == shown(NUMBERS, *task, folder=tmp_path)
-    pushed = ("--episode.push.newtons", "60")
-    assert shown(*pushed, NUMBERS, folder=tmp_path) == shown(NUMBERS, *pushed, folder=tmp_path)
+@pytest.mark.parametrize("option", ["--task balance", "--episode.push.newtons 60"])  # the name of a set, and numbers
+def test_an_option_before_or_after_it_changes_nothing(option: str, tmp_path: Path) -> None:
+    assert shown(*option.split(), NUMBERS, folder=tmp_path) == shown(NUMBERS, *option.split(), folder=tmp_path)
 
 
 def test_shipped_parameters_come_with_their_settings(tmp_path: Path) -> None:
@@ -58,12 +56,9 @@ def test_numbers_as_people_write_them(numbers: str, tmp_path: Path) -> None:
     assert list(values.values()) == [float(value) for value in numbers.split(",")]  # type: ignore[attr-defined]
 
 
-def test_a_run_folder_is_evaluated_as_it_was_trained(
-    trained: tuple[Path, subprocess.CompletedProcess[str]], balanced: Path
-) -> None:
+def test_a_run_folder_is_evaluated_as_it_was_trained(trained: Trained, balanced: Path) -> None:
     folder, _ = trained
-    process = run("sarah-eval", "mine", "--episodes", "2", cwd=folder.parent)
-    assert process.returncode == 0, process.stderr
+    process = done("sarah-eval", "mine", "--episodes", "2", cwd=folder.parent)
     for text in ("subject          mine, task stepping", "score            0.", "SHIFT by sensors ", "sole clearance "):
         assert text in process.stdout
     assert "neutral" not in process.stdout
@@ -94,13 +89,11 @@ def test_options_reach_the_episodes(tmp_path: Path) -> None:
     assert physics == PyBulletPhysics(1000, 100, 200, 0.0)
 
 
+DIRECTED = "--episode.push.degrees 180"
+
+
 @pytest.mark.parametrize(
-    ("asked", "share"),
-    [
-        ("", 0.5),
-        ("--episode.push.degrees 180", 0.0),
-        ("--episode.push.degrees 180 --episode.push.sagittal-share=0.2", 0.2),
-    ],
+    ("asked", "share"), [("", 0.5), (DIRECTED, 0.0), (f"{DIRECTED} --episode.push.sagittal-share=0.2", 0.2)]
 )
 def test_directions_that_are_asked_for_are_those_of_all_pushes(asked: str, share: float, tmp_path: Path) -> None:
     found = shown("balance", "--episodes", "1", *asked.split(), folder=tmp_path)["episode"]
@@ -150,8 +143,8 @@ def test_it_says_nothing_of_what_is_as_usual() -> None:
 
 
 @pytest.mark.parametrize(("host", "warned"), [("127.0.0.1", False), ("0.0.0.0", True)])
-def test_the_page_says_where_it_is_and_where_shipped_parameters_come_from(
-    host: str, warned: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_the_page_says_where_it_is_and_what_it_shows(
+    host: str, warned: bool, tmp_path: Path, monkeypatch: MonkeyPatch
 ) -> None:
     pytest.importorskip("viser")
 

@@ -1,23 +1,26 @@
-"""``sarah-train`` as a user runs it."""
+"""``sarah-train`` as a user runs it, and what it and ``sarah-compare`` train with unless somebody says otherwise."""
 
 import dataclasses
-import subprocess
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from laboratory import RESULT
-from terminal import SHORT, run
+from pytest import CaptureFixture, MonkeyPatch
+from terminal import SHORT, Begin, Trained, done, run
 
 from sarah.episode.evaluation import Evaluation
+from sarah.episode.push import Push
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
+from sarah.simulation.physics import Physics
 from sarah.training import train as training
 from sarah.training.train import Learned
 
 
 def test_train_shows_its_progress_and_ends_with_a_summary(
-    trained: tuple[Path, subprocess.CompletedProcess[str]],
+    trained: Trained,
 ) -> None:
     folder, process = trained
     assert process.returncode == 0, process.stderr
@@ -29,7 +32,7 @@ def test_train_shows_its_progress_and_ends_with_a_summary(
     assert "sarah-train --task stepping" in (folder / "command.txt").read_text()
 
 
-def test_the_summary_tells_of_falls_and_of_the_baseline(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_summary_tells_of_falls_and_of_the_baseline(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
     up, fallen = dataclasses.replace(RESULT, score=0.8), dataclasses.replace(RESULT, score=0.0, termination="fallen")
 
     def trained(_: object, run: RunFolder, *__: object) -> Learned:
@@ -49,24 +52,21 @@ def test_the_summary_tells_of_falls_and_of_the_baseline(tmp_path: Path, monkeypa
 
 
 def test_only_a_balance_training_continues_a_first_one(balanced: Path) -> None:
-    for line, message in (
-        ("--from mine", "not 'stepping': to train again with its settings, say --config mine/config"),
-        ("--task balance --from second", "--from needs the run folder of a training of 'stepping'"),
-    ):
+    again = "not 'stepping': to train again with its settings, say --config mine/config"
+    other = "--from needs the run folder of a training of 'stepping'"
+    for line, message in (("--from mine", again), ("--task balance --from second", other)):
         process = run("sarah-train", *line.split(), cwd=balanced.parent)
         assert process.returncode == 2 and message in process.stderr and len(process.stderr.splitlines()) == 1
 
 
-def test_a_robot_of_another_size_is_told(
-    begun: Callable[[str], TrainingConfig], capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_robot_of_another_size_is_told(begun: Begin, capsys: CaptureFixture[str]) -> None:
     begun("sarah-train --episode.dimensions torso_mass 12 thigh_mass 6")
     size = "length (1 times the default), mass (1.2) and hip offset (1)"
     said = f"motors and other settings go with {size}: sarah-describe runs/stepping/naf-s0 lists them\n"
     assert said in capsys.readouterr().out
 
 
-def test_a_file_configures_it_and_options_go_before(begun: Callable[[str], TrainingConfig]) -> None:
+def test_a_file_configures_it_and_options_go_before(begun: Begin) -> None:
     Path("mine.yaml").write_text("algo: td3\nepisodes: 2\nslots: 1\nepisode: {time_limit: 1.5}\n")
     config = begun("sarah-train --config mine.yaml --episodes 3 --engine mujoco")
     assert (config.algo, config.episodes, config.slots, config.episode.time_limit) == ("td3", 3, 1, 1.5)
@@ -74,10 +74,88 @@ def test_a_file_configures_it_and_options_go_before(begun: Callable[[str], Train
 
 
 def test_a_finished_training_goes_on_if_it_is_made_longer(tmp_path: Path) -> None:
-    first = run("sarah-train", "--algo", "random", "--simulations=2", "--out", "mine", *SHORT, cwd=tmp_path)
-    assert first.returncode == 0, first.stderr
-    more = run("sarah-train", "--resume", "mine", "--simulations", "3", cwd=tmp_path)
-    assert more.returncode == 0, more.stderr
+    done("sarah-train", "--algo", "random", "--simulations=2", "--out", "mine", *SHORT, cwd=tmp_path)
+    more = done("sarah-train", "--resume", "mine", "--simulations", "3", cwd=tmp_path)
     said = "extending 2 to 3 episodes: what changes in the course of a training, such as NAF's exploration, is from now"
     assert f"{said} on as in the last 1 of 3 episodes\nresuming the training of random on stepping: 3" in more.stdout
     assert len(list(RunFolder.open(tmp_path / "mine").episodes())) == 3
+
+
+TRAIN, COMPARE = "sarah-train --task balance", "sarah-compare --task balance"
+PUSHED = BalanceConfig(push=Push(newtons=(100.0, 125.0), sagittal_share=0.5), time_limit=10.0)
+PAPER = "--episode.push.newtons 0 100 --episode.push.sagittal-share 0 --episode.time-limit 30"
+LEGS = (0.4, 1.3, 0.1, 1.0, 1.0)
+FILE = "import dataclasses, sarah\nMINE = dataclasses.replace(sarah.BALANCE, name='mine')\n"
+
+
+@pytest.mark.parametrize("command", [TRAIN, COMPARE])
+def test_balance_is_learned_from_pushes_that_tell_sets_apart(command: str, begun: Begin) -> None:
+    config = begun(f"{command} --out usual")
+    assert (config.task, config.episodes, config.episode) == (BALANCE, 300, PUSHED)
+    own = begun(f"{command} --out own --episodes 7 {PAPER}")
+    assert own.episodes == 7 and own.episode == BALANCE.episode
+    directed = Push(newtons=(100.0, 125.0), degrees=(0.0, 90.0))
+    config = begun(f"{command} --out directed --episode.push.degrees 0 90")
+    assert config.episode == BalanceConfig(push=directed, time_limit=10.0)
+
+
+@pytest.mark.parametrize("command", ["sarah-train", "sarah-compare --out race"])
+@pytest.mark.parametrize(("task", "own"), [("stepping", STEPPING.episode), ("my_task.py:MINE", BALANCE.episode)])
+def test_other_tasks_keep_their_own(command: str, task: str, own: EpisodeConfig, tmp_path: Path, begun: Begin) -> None:
+    (tmp_path / "my_task.py").write_text(FILE)
+    config = begun(f"{command} --task {task}")
+    assert (config.episodes, config.episode) == (100, own)
+
+
+def test_a_file_and_a_run_folder_keep_their_own(tmp_path: Path, begun: Begin) -> None:
+    (tmp_path / "mine.yaml").write_text("task: balance\nepisode: {push: {degrees: 90, sagittal_share: 0.2}}\n")
+    own = BalanceConfig(push=Push(degrees=(0.0, 0.0), sagittal_share=0.2))
+    paper = TrainingConfig("balance", episodes=20)
+    RunFolder.create(tmp_path / "run", paper)
+    for task in ("", " --task balance"):
+        config = begun(f"sarah-train --config mine.yaml{task} --episode.push.degrees 0")
+        assert config == TrainingConfig("balance", episode=own)
+        assert begun(f"sarah-train --resume run{task}") == paper
+
+
+@pytest.fixture
+def first(tmp_path: Path) -> EpisodeConfig:
+    """Settings of a First Training on a robot of its own, whose folder is ``first``."""
+    robot = {"thigh_length": 0.36}
+    own = EpisodeConfig(physics=Physics(400, 20, 200), payload=3.0, dimensions=robot, reward_form="printed")
+    run = RunFolder.create(tmp_path / "first", TrainingConfig(episode=own))
+    run.write_parameters({"parameters": dict(zip(STEPPING.parameter_names, LEGS, strict=True))})
+    return own
+
+
+def test_what_was_learned_first_gives_legs_and_robot(
+    first: EpisodeConfig, begun: Begin, capsys: CaptureFixture[str]
+) -> None:
+    config = begun(f"{TRAIN} --from first --episode.push.newtons 110 --episode.payload 1")
+    push = first.scale.scaled(Push(newtons=(110.0, 110.0), sagittal_share=0.5))  # its mass is the usual one
+    assert config.episodes == 300
+    assert config.episode == BALANCE.config_of(first, stepping=LEGS, push=push, time_limit=10.0, payload=1.0)
+    text = capsys.readouterr().out
+    said = [line.strip() for line in text.partition("all settings of its episodes, but\n")[2].splitlines()]
+    assert {"payload 1 instead of 3", "time_limit 10 instead of 30"} < set(said) and len(said) == 3
+    assert said[-1].startswith("push newtons 110, ") and said[-1].endswith(" instead of none")
+
+
+def test_a_file_goes_before_the_first_and_an_option_before_both(
+    first: EpisodeConfig, tmp_path: Path, begun: Begin, capsys: CaptureFixture[str]
+) -> None:
+    (tmp_path / "mine.yaml").write_text("episode: {payload: 2, physics: {solver_iterations: 30}, push: {degrees: 90}}")
+    others = "--episode.physics.control-rate 100 --episode.stepping 1 1 1 1 1"
+    config = begun(f"{TRAIN} --from first --config mine.yaml {others}")
+    assert "\n  stepping 1, 1, 1, 1, 1 instead of 0.4, 1.3, 0.1, 1, 1\n" in capsys.readouterr().out
+    assert config.episode.payload == 2.0 and config.episode.reward_form == "printed"
+    assert config.episode.physics == dataclasses.replace(first.physics, solver_iterations=30, control_rate=100)
+    push = Push((100.0, 125.0), degrees=(90.0, 90.0), sagittal_share=0.5)
+    assert BALANCE.config_of(config.episode).push == first.scale.scaled(push)
+
+
+def test_another_robot_has_its_push_and_settings_of_the_first(first: EpisodeConfig, begun: Begin) -> None:
+    config = begun(f"{TRAIN} --from first --episode.dimensions shank_length 0.5")
+    robot = EpisodeConfig(dimensions={"thigh_length": 0.36, "shank_length": 0.5})
+    own, push = dataclasses.replace(first, dimensions=robot.dimensions), robot.scale.scaled(PUSHED.push)
+    assert config.episode == BALANCE.config_of(own, stepping=LEGS, push=push, time_limit=10.0)

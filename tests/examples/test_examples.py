@@ -10,9 +10,7 @@ from laboratory import need
 EXAMPLES = Path(__file__).parents[2] / "examples"
 LONGEST = 40
 ENGINES = {"two_engines": ("pybullet", "mujoco")}
-"""Engines that an example cannot do without."""
 ARGUMENTS = {"naf_on_pendulum": ("100",)}
-"""Arguments with which an example takes less time."""
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)

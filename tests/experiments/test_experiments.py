@@ -3,6 +3,7 @@
 import dataclasses
 import subprocess
 from collections.abc import Iterator
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
@@ -10,6 +11,7 @@ from typing import Any
 
 import pytest
 from laboratory import need
+from pytest import CaptureFixture, MonkeyPatch
 
 from experiments import record
 from experiments.command import age, main
@@ -29,11 +31,9 @@ class Squares(Experiment):
     fails_at: int | None = None  # number at which the power fails
 
     def cases(self) -> list[Row]:
-        """The numbers."""
         return product(kind=["whole"], number=range(self.count))
 
     def rows(self, kind: str, number: int) -> Iterator[Row]:
-        """The square of a number, and its negative."""
         if number == self.fails_at:
             raise KeyboardInterrupt
         yield {"sign": 1, "square": float(number**2)}
@@ -47,89 +47,88 @@ def squares(full: Squares) -> Any:
 
 @pytest.fixture(scope="module")
 def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder for what several experiments share."""
     return tmp_path_factory.mktemp("workplace")
 
 
-@pytest.mark.parametrize("name", paths_of(EXPERIMENTS))
-def test_an_experiment_makes_the_columns_of_its_result(
-    name: str, workplace: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def check_columns(name: str, workplace: Path, *options: str) -> None:
     need("pybullet")
     need("mujoco")
-    monkeypatch.chdir(workplace)
-    path = make(find(name), "python -m experiments some", ["--quick", "--workers", "0", "--out", str(workplace)])
-    made = record.read(path.stem, workplace)
+    words = "python -m some"
+    made = record.read(make(find(name), words, ["--quick", *options, "--out", str(workplace)]).stem, workplace)
     assert made.rows and made.question.endswith("?") and not made.missing
     if name in record.names():
         assert list(made.rows[0]) == list(record.read(name).rows[0])
 
 
+@pytest.mark.parametrize("name", paths_of(EXPERIMENTS))
+def test_an_experiment_makes_the_columns_of_its_result(name: str, workplace: Path, monkeypatch: MonkeyPatch) -> None:
+    monkeypatch.chdir(workplace)
+    check_columns(name, workplace, "--workers", "0")
+
+
 @pytest.mark.parametrize("name", sorted(paths_of(BENCHMARKS).keys() - {"throughput", "viewer"}))
 def test_a_timing_makes_the_columns_of_its_result(name: str, workplace: Path) -> None:
     """The two that are left out take workers and a browser."""
-    need("pybullet")
-    need("mujoco")
-    made = record.read(
-        make(find(name), "python -m benchmarks some", ["--quick", "--out", str(workplace)]).stem, workplace
-    )
-    if name in record.names():
-        assert list(made.rows[0]) == list(record.read(name).rows[0])
+    check_columns(name, workplace)
 
 
-def test_every_result_has_an_experiment() -> None:
+def test_every_result_answers_the_question_of_an_experiment() -> None:
     assert set(record.names()) <= set(paths_of())
+    asked = questions()
+    assert [name for name in record.names() if record.read(name).question != asked[name]] == []
 
 
-def test_a_result_answers_the_question_of_its_experiment() -> None:
-    assert {name: record.read(name).question for name in record.names()} == {
-        name: question for name, question in questions().items() if name in record.names()
-    }
-
-
-def test_without_a_name_all_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+def test_without_a_name_all_are_listed(capsys: CaptureFixture[str]) -> None:
     main(EXPERIMENTS, [])
     listed = capsys.readouterr().out
     assert "first_training" in listed and "Does the robot learn to step" in listed
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["firts_training"], r"unknown experiment 'firts_training', did you mean 'first_training'\?"),
-        (["first_training", "--only", "sed=3"], "KEY=VALUE; unknown key 'sed'"),
-        (["first_training", "--only", "run=naf seed 33"], r"unknown run 'naf seed 33', did you mean 'naf seed 3'\?"),
-        (["first_training", "--seeds", "0"], "--seeds must be at least 1, not 0"),
-        (["age", "first_training"], "age takes no arguments, not 'first_training'"),
-    ],
-)
-def test_wrong_options_are_named(arguments: list[str], message: str) -> None:
-    with pytest.raises(ConfigurationError, match=message):
-        main(EXPERIMENTS, arguments)
+MISTAKES = {
+    ("firts_training",): r"unknown experiment 'firts_training', did you mean 'first_training'\?",
+    ("first_training", "--only", "sed=3"): "KEY=VALUE; unknown key 'sed'",
+    ("first_training", "--only", "run=naf seed 33"): r"unknown run 'naf seed 33', did you mean 'naf seed 3'\?",
+    ("first_training", "--seeds", "0"): "--seeds must be at least 1, not 0",
+    ("age", "first_training"): "age takes no arguments, not 'first_training'",
+}
+
+
+@pytest.mark.parametrize("arguments", MISTAKES)
+def test_wrong_options_are_named(arguments: tuple[str, ...]) -> None:
+    with pytest.raises(ConfigurationError, match=MISTAKES[arguments]):
+        main(EXPERIMENTS, list(arguments))
+
+
+def made(folder: Path, full: Squares, *options: str, command: str = "run squares") -> Result:
+    """What is made of squares; a power failure ends it early."""
+    with nullcontext() if full.fails_at is None else pytest.raises(KeyboardInterrupt):
+        make(squares(full), command, [*options, "--out", str(folder)])
+    return record.read("squares", folder)
 
 
 def test_what_was_interrupted_goes_on(tmp_path: Path) -> None:
-    with pytest.raises(KeyboardInterrupt):
-        make(squares(Squares(fails_at=2)), "run squares", ["--out", str(tmp_path)])
-    begun = record.read("squares", tmp_path)
+    begun = made(tmp_path, Squares(fails_at=2))
     assert len(begun.rows) == 4 and begun.missing == 1
     (tmp_path / "squares.csv").write_text((tmp_path / "squares.csv").read_text().replace(",-1,-1", ",-1,-7"))
-    make(squares(Squares()), "run squares", ["--out", str(tmp_path), "--workers", "0"])
-    whole = record.read("squares", tmp_path)
+    whole = made(tmp_path, Squares(), "--workers", "0")
     assert [row["square"] for row in whole.rows] == ["0", "-0", "1", "-7", "4", "-4"] and not whole.missing
 
 
 def test_rows_of_before_keep_what_their_head_says(tmp_path: Path) -> None:
-    with pytest.raises(KeyboardInterrupt):
-        make(squares(Squares(fails_at=1)), "run squares", ["--out", str(tmp_path)])
-    begun = dataclasses.replace(record.read("squares", tmp_path), tree="dirty", remark="Squares were rounder.")
-    record.write(begun, tmp_path)
-    make(squares(Squares()), "run squares", ["--out", str(tmp_path)])
-    whole = record.read("squares", tmp_path)
+    begun = made(tmp_path, Squares(fails_at=1))
+    record.write(dataclasses.replace(begun, tree="dirty", remark="Squares were rounder."), tmp_path)
+    whole = made(tmp_path, Squares())
     assert (whole.tree, whole.remark, len(whole.rows)) == ("dirty", "Squares were rounder.", 6)
 
 
-def test_a_new_module_is_a_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_command_begins_anew_and_cases_can_be_chosen(tmp_path: Path) -> None:
+    for words in ("run squares", "run other squares"):
+        begun = made(tmp_path, Squares(fails_at=1), command=words)
+    assert begun.command.startswith("run other squares")
+    assert [row["number"] for row in made(tmp_path / "some", Squares(), "--only", "number=2").rows] == ["2", "2"]
+
+
+def test_a_new_module_is_a_change(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
     subprocess.run(["git", "init", "-q", str(tmp_path)], check=True)
     monkeypatch.setattr(record, "ROOT", tmp_path)
     for path in (tmp_path / "new.py", tmp_path / "results" / "some.csv"):
@@ -138,36 +137,20 @@ def test_a_new_module_is_a_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert record.changed_files() == ["new.py"]
 
 
-def test_another_command_begins_anew(tmp_path: Path) -> None:
-    for words in ("run squares", "run other squares"):
-        with pytest.raises(KeyboardInterrupt):
-            make(squares(Squares(fails_at=1)), words, ["--out", str(tmp_path)])
-    assert record.read("squares", tmp_path).command.startswith("run other squares")
-
-
-def test_some_cases_alone(tmp_path: Path) -> None:
-    make(squares(Squares()), "run squares", ["--only", "number=2", "--out", str(tmp_path)])
-    assert [row["number"] for row in record.read("squares", tmp_path).rows] == ["2", "2"]
-
-
-def test_a_result_is_made_of_committed_code_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(record, "RESULTS", tmp_path)
+def test_only_the_full_experiment_of_committed_code_makes_it(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
+    monkeypatch.setattr(record, "RESULTS", tmp_path / "results")
+    monkeypatch.setattr("experiments.making.OTHER_RESULTS", tmp_path / "other")
     monkeypatch.setattr(record, "changed_files", lambda: ["sarah/files.py"])
     with pytest.raises(SarahError, match=r"made of: sarah/files[.]py has changes"):
         make(squares(Squares()), "run squares", [])
     assert not list(tmp_path.iterdir())
-
-
-def test_only_the_full_experiment_makes_the_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(record, "RESULTS", tmp_path / "results")
-    monkeypatch.setattr("experiments.making.OTHER_RESULTS", tmp_path / "other")
     monkeypatch.setattr(record, "changed_files", list)
     for options in (["--workers", "0"], ["--count", "2"], ["--only", "number=1"], ["--quick"]):
         path = make(squares(Squares()), "run squares", options)
         assert (path.parent.name == "results") == (options[0] == "--workers")
 
 
-def test_an_unpacked_archive_cannot_tell_its_commit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_unpacked_archive_cannot_tell_its_commit(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
     monkeypatch.setattr(record, "ROOT", tmp_path)
     assert record.commit() == "unknown"
     result = Result("some", "How much?", "run some", "0123abc", "2026-01-02")

@@ -1,15 +1,18 @@
 """The pages show today's results, and read as they lie."""
 
 import re
+from collections import Counter
 from pathlib import Path
 
 import pytest
 from laboratory import need
-from pandas import DataFrame
+from pandas import DataFrame, Series
 
 from experiments import record
 from experiments.found import paths_of
 from experiments.pages import write
+from experiments.record import ROOT
+from experiments.robot.first_training import settling
 from experiments.tables import heading, shown, span, table, turned_table
 
 PAGES = [
@@ -41,19 +44,11 @@ def test_every_result_is_shown_on_a_page() -> None:
     assert not set(re.findall(r'show\("(\w+)\.', texts)) - set(paths_of())
 
 
-def test_headings_have_units() -> None:
-    assert heading("sole_clearance_mm") == "sole clearance (mm)"
+def test_headings_and_values_are_written_as_people_write_them() -> None:
+    assert heading("sole_clearance_mm") == "sole clearance (mm)" and heading("score_low") == "from"
     assert heading("vibration_m2_s4") == "vibration (m²/s⁴)"
-    assert heading("score_low") == "from"
-
-
-def test_values_are_written_as_people_write_them() -> None:
-    assert [shown(value, spec) for value, spec in ((-0.126, ".2f"), (0.985, ".0%"), (3, ""), ("a", ".1f"))] == [
-        "\N{MINUS SIGN}0.13",
-        "98\N{NO-BREAK SPACE}%",
-        "3",
-        "a",
-    ]
+    written = ["\N{MINUS SIGN}0.13", "98\N{NO-BREAK SPACE}%", "3", "a"]
+    assert [shown(value, spec) for value, spec in ((-0.126, ".2f"), (0.985, ".0%"), (3, ""), ("a", ".1f"))] == written
     assert shown(float("nan"), ".2f") == "\N{EN DASH}" and shown(float("inf"), ".0f") == "not reached"
     assert span(ROWS.score, ".2f") == "\N{MINUS SIGN}0.25 to 1.00"
 
@@ -68,3 +63,22 @@ def test_a_table_can_be_turned() -> None:
         "| a | 0.50 | \N{MINUS SIGN}0.25 |",
         "| b | 1.00 | \N{EN DASH} |",
     ]
+
+
+NUMBERS = {1: "one", 2: "two", 3: "three", 4: "four", 5: "five", 6: "six", 7: "seven", 14: "fourteen"}
+
+
+def test_the_page_counts_what_its_tables_say() -> None:
+    page = (ROOT / "docs/results/claims.md").read_text(encoding="utf-8")
+    verdicts = Counter(re.findall(r"^\| [^|]+ \| (yes|in part|no|not tested) \|", page, re.MULTILINE))
+    found = [verdicts.total(), *(verdicts[verdict] for verdict in ("yes", "in part", "no", "not tested"))]
+    total, yes, part, no, untested = map(NUMBERS.__getitem__, found)
+    said = f"Of {total} claims {yes} hold, {part} hold in part, and {no} do not; {untested} was not tested."
+    assert said in " ".join(page.split())
+
+
+@pytest.mark.parametrize(
+    ("values", "verdict"), [([0.31, 0.5], "yes"), ([0.31, 0.6], "in part"), ([0.31, 0.6, 0.2], "no")]
+)
+def test_a_parameter_settles_if_trainings_end_near_the_claimed_value(values: list[float], verdict: str) -> None:
+    assert settling(Series(values, name="P1"), 0.4)[1] == verdict

@@ -1,9 +1,20 @@
-"""What pages about the robot make of rows, by hand-computed values."""
+"""What pages about the robot and about NAF make of rows, by hand-computed values."""
 
+import math
+
+import gymnasium as gym
+import pytest
 from pandas import DataFrame
 from pytest import approx
 
+from experiments.naf.standard_tasks import EXPLORATION_STD, OTHERS, agent, answer, ends, over_seeds
 from experiments.robot import engines, landscape, physics
+from experiments.robot.conditions import askew, biased
+from experiments.robot.hard_pushes import difference
+from experiments.robot.race import columns, curve_of, ranked
+from sarah.agents import NAF
+from sarah.reports.race_entry import RaceCurve
+from sarah.simulation.randomisation import SensorConditions
 
 
 def test_a_value_is_good_if_it_is_near_the_best_in_both_engines() -> None:
@@ -26,7 +37,82 @@ def test_what_is_kept_is_the_score_in_the_other_engine() -> None:
 
 def test_a_difference_is_a_share_of_the_score_at_the_finest_setting() -> None:
     condition = {"parameters": "shipped", "control_rate_hz": 100, "sensors": "10 ms"}
-    (row,) = physics.beside_finest(
-        DataFrame({**condition, "setting": ["reference", "standard"], "score": [0.8, 0.6]})
-    ).itertuples()
+    rows = DataFrame({**condition, "setting": ["reference", "standard"], "score": [0.8, 0.6]})
+    (row,) = physics.beside_finest(rows).itertuples()
     assert (row.setting, row.finest_score, row.difference) == ("standard", 0.8, approx(-0.25))
+
+
+def test_sensors_are_as_wrong_as_said_in_the_direction_drawn() -> None:
+    drawn = SensorConditions(imu_tilt=(0.003, -0.004), pad_noise_density=0.4)
+    two_degrees = math.pi / 90
+    assert askew(drawn).imu_tilt == approx((0.6 * two_degrees, -0.8 * two_degrees))
+    assert askew(drawn).pad_noise_density == 0.4
+    assert biased(SensorConditions(angular_rate_bias=(0.01, -0.02, -0.001))).angular_rate_bias == (0.05, -0.05, -0.05)
+
+
+def test_the_difference_counts_pushes_that_only_one_survives() -> None:
+    """Of 98 pushes the first survives 9 that the other does not, and the other 3: middle 6 / 100, variance 12.64e-4."""
+    ones, others = "s" * 9 + "l" * 3 + "s" * 86, "l" * 9 + "s" * 3 + "s" * 86
+    found = list(difference(ones, others).values())
+    assert found[0] == approx(6 / 98)
+    error = ((13 - 0.36) / 100**2) ** 0.5
+    assert found[1:] == approx((0.06 - 1.96 * error, 0.06 + 1.96 * error))
+    # Nobody knows a difference exactly from 18 pushes: 0 +- 1.96 sqrt(1 / 20 / 20).
+    assert tuple(difference("s" * 18, "s" * 18).values()) == approx((0.0, -1.96 / 20, 1.96 / 20))
+
+
+def training(seed: int, algorithm: str, final: tuple[float, ...], learning: float) -> dict[str, object]:
+    curve = RaceCurve(algorithm, (5, 5), (0.5, final[0]), final, 1, 2.0)
+    return {"task": "stepping", "seed": seed, "algorithm": algorithm, **columns(curve, learning)}
+
+
+def test_a_row_holds_the_curve_of_its_training() -> None:
+    curve = RaceCurve("naf", (5, 10, 10), (0.25, 0.5, 0.75), (0.75, 0.1234), 1, 2.0)
+    row = {"algorithm": "naf", **columns(curve, 0.5)}
+    assert curve_of(row) == curve
+
+
+def test_only_seeds_with_all_algorithms_are_ranked() -> None:
+    rows = [training(0, "naf", (0.5, 0.7), 0.2), training(0, "tpe", (0.6, 0.9), 0.4)]
+    rows += [training(1, "naf", (0.7, 0.9), 0.3), training(1, "tpe", (0.7, 0.9), 0.5)]
+    rows += [training(2, "naf", (0.0, 0.0), 0.0)]
+    naf, tpe = ranked(DataFrame(rows), "stepping").set_index("algorithm").loc[["naf", "tpe"]].to_dict("records")
+    assert (naf["runs"], tpe["runs"]) == (2, 2)
+    assert (round(naf["final_score"], 9), round(tpe["over_naf"], 9)) == (0.7, 0.075)
+    assert (round(naf["score_while_learning"], 9), round(naf["score_while_learning_error"], 9)) == (0.25, 0.05)
+
+
+def course(algorithm: str, seed: int, *returns: float, task: str = "Hopper-v5") -> list[dict]:
+    about = {"task": task, "algorithm": algorithm, "seed": seed}
+    return [{**about, "steps": step, "return": value, "v_over_bound": 0.5} for step, value in enumerate(returns)]
+
+
+def test_a_training_ends_with_the_mean_of_its_last_evaluations() -> None:
+    rows = DataFrame([*course("NAF", 0, 9.0, 1.0, 2.0, 6.0), *course("NAF", 1, 0.0, 5.0, 5.0, 5.0)])
+    assert ends(rows)["return"].tolist() == [3.0, 5.0]
+    (found,) = over_seeds(ends(rows), "task", "algorithm").to_dict("records")
+    assert (found["seeds"], found["return"], found["return_low"], found["return_high"]) == (2, 4.0, 3.0, 5.0)
+
+
+def test_an_algorithm_is_ahead_where_its_worst_seed_is_above_the_best_of_the_other() -> None:
+    returns = {"A": ((3.0, 5.0), (1.0, 2.0)), "B": ((1.0, 2.0), (3.0, 5.0)), "C": ((1.0, 4.0), (3.0, 5.0))}
+    rows = [
+        row
+        for task, of_algorithms in returns.items()
+        for algorithm, values in zip(("NAF", "TD3"), of_algorithms, strict=True)
+        for seed, value in enumerate(values)
+        for row in course(algorithm, seed, value, task=task)
+    ]
+    assert answer(DataFrame(rows)) == (
+        "Every seed of NAF ends above every seed of TD3 on A; every seed of NAF ends below every seed of TD3 on B; the "
+        "ranges of the seeds of NAF and TD3 overlap on C. V comes to 0.50 of its bound at most, on A."
+    )
+
+
+@pytest.mark.parametrize("name", [*EXPLORATION_STD, *OTHERS])
+def test_an_agent_explores_with_the_noise_of_its_name(name: str) -> None:
+    made = agent(name, gym.make("Pendulum-v1"), 0)
+    if name in OTHERS:
+        assert type(made) is OTHERS[name] and (made.action_noise is None) == (name == "SAC")
+    else:
+        assert isinstance(made, NAF) and made.exploration_std == EXPLORATION_STD[name]

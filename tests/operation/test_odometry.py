@@ -17,34 +17,31 @@ def reading(
     return SensorReading((0.0, 0.0, 9.81), rate, pads, joints)  # type: ignore[arg-type]
 
 
-def test_a_robot_that_stands_does_not_move() -> None:
-    odometry = LegOdometry(HEIGHT, DT)
+@pytest.fixture
+def odometry() -> LegOdometry:
+    return LegOdometry(HEIGHT, DT)
+
+
+def test_standing_and_the_leg_in_the_air_move_nothing(odometry: LegOdometry) -> None:
     for _ in range(300):
         odometry.tick(reading(LEFT))
     assert (odometry.x, odometry.y) == (0.0, 0.0)
-
-
-@pytest.mark.parametrize(("joint", "x", "y"), [(0, 1.0, 0.0), (2, 0.0, -1.0)])
-def test_the_leg_that_carries_moves_the_torso_by_its_lean(joint: int, x: float, y: float) -> None:
-    """Abduction turns the feet to the left, so the torso goes to the right; flexion turns them forward."""
-    odometry = LegOdometry(HEIGHT, DT)
-    odometry.tick(reading(LEFT))
-    joints = tuple(0.1 * (index == joint) for index in range(6))
-    odometry.tick(reading(LEFT, joints))
-    moved = HEIGHT * math.sin(0.1)
-    assert (odometry.x, odometry.y) == pytest.approx((x * moved, y * moved))
-
-
-def test_the_leg_in_the_air_moves_nothing() -> None:
-    odometry = LegOdometry(HEIGHT, DT)
-    odometry.tick(reading(LEFT))
     odometry.tick(reading(LEFT, (0.0, 0.1, 0.0, 0.1, 0.0, 0.0)))
     assert (odometry.x, odometry.y) == (0.0, 0.0)
 
 
-def test_steps_add_up() -> None:
-    """Each leg in turn swings forward in the air, lands, and carries the torso over itself."""
-    odometry = LegOdometry(HEIGHT, DT)
+@pytest.mark.parametrize(("joint", "x", "y"), [(0, 1.0, 0.0), (2, 0.0, -1.0)])
+def test_the_leg_that_carries_moves_the_torso_by_its_lean(
+    joint: int, x: float, y: float, odometry: LegOdometry
+) -> None:
+    """Abduction turns the feet to the left, so the torso goes to the right; flexion turns them forward."""
+    odometry.tick(reading(LEFT))
+    odometry.tick(reading(LEFT, tuple(0.1 * (index == joint) for index in range(6))))
+    moved = HEIGHT * math.sin(0.1)
+    assert (odometry.x, odometry.y) == pytest.approx((x * moved, y * moved))
+
+
+def test_steps_add_up(odometry: LegOdometry) -> None:
     steps = 6
     for step in range(steps):
         pads, is_left = (LEFT, True) if step % 2 else (RIGHT, False)
@@ -54,16 +51,14 @@ def test_steps_add_up() -> None:
     assert odometry.y == pytest.approx(steps * 2.0 * HEIGHT * math.sin(0.1))
 
 
-def test_what_the_torso_moves_while_the_feet_change_counts() -> None:
-    odometry = LegOdometry(HEIGHT, DT)
+def test_what_the_torso_moves_while_the_feet_change_counts(odometry: LegOdometry) -> None:
     odometry.tick(reading(LEFT, (0.0, 0.0, 0.1, 0.3, 0.0, 0.0)))
     odometry.tick(reading(RIGHT, (0.0, 0.0, 0.0, 0.2, 0.0, 0.0)))
     odometry.tick(reading(RIGHT, (0.0, 0.0, -0.1, 0.1, 0.0, 0.0)))
     assert odometry.y == pytest.approx(HEIGHT * (math.sin(0.1) + math.sin(0.2) - math.sin(0.1)))
 
 
-def test_a_constant_error_of_the_gyroscope_is_forgotten() -> None:
-    odometry = LegOdometry(HEIGHT, DT)
+def test_a_constant_error_of_the_gyroscope_is_forgotten(odometry: LegOdometry) -> None:
     for tick in range(6000):
         odometry.tick(reading(LEFT, rate=(0.05, 0.05, 0.0)))
         if tick == 4000:

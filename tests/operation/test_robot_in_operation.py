@@ -35,13 +35,9 @@ def load(window: Window) -> float:
     return felt["left_load"] + felt["right_load"]
 
 
-def test_the_same_windows_again() -> None:
-    assert run_all(quick()) == run_all(quick())
-    assert run_all(quick()) != run_all(quick(), seed=1)
-
-
-def test_time_goes_on_without_gaps_until_the_operation_is_over() -> None:
+def test_windows_follow_without_gaps_and_come_again() -> None:
     windows = run_all(quick(minutes=0.15))
+    assert windows == run_all(quick(minutes=0.15)) != run_all(quick(minutes=0.15), seed=1)
     assert [window.index for window in windows] == list(range(len(windows)))
     assert windows[0].begin == 0.0 and windows[0].seconds == 2.0  # of which it stands for one
     assert all(after.begin == before.end for before, after in pairwise(windows))
@@ -63,7 +59,6 @@ def test_a_robot_in_longer_operation_looks_to_the_next_end() -> None:
 
 
 def test_a_window_that_steps_is_worth_more_than_one_that_stands() -> None:
-    """By equation 2 and by what the robot itself feels, in plausible units."""
     stepping, standing = (run_all(OperationConfig(minutes=0.2), parameters=chosen)[-1] for chosen in (SHIPPED, STANDS))
     for reward in ("score", "observed_reward"):
         assert getattr(stepping, reward) > 0.85 and getattr(standing, reward) < 0.1
@@ -81,8 +76,7 @@ def test_a_fall_costs_time_and_the_next_window_begins_standing() -> None:
     window, after, next_but_one = windows[fallen : fallen + 3]
     assert 2.0 < window.seconds < 2.0 + 1.0  # the fall's two, and what it ran before
     assert after.begin == window.end
-    assert after.seconds == 2.0  # it stands for one, and runs for one
-    assert next_but_one.seconds == 1.0
+    assert (after.seconds, next_but_one.seconds) == (2.0, 1.0)  # it stands for one, and runs for one
 
 
 def test_after_a_fall_the_robot_is_the_same_with_other_noise() -> None:
@@ -106,11 +100,10 @@ def test_a_change_holds_from_the_next_window_and_standing() -> None:
 
 
 def test_pushes_come_at_their_interval() -> None:
-    config = quick(minutes=0.2, robot={"push": {"newtons": 60.0}})
-    calm = quick(minutes=0.2, robot={"push": {"newtons": 0.0}})
-    pushed, unpushed = run_all(config), run_all(calm)
+    pushed, unpushed = (run_all(quick(minutes=0.2, robot={"push": {"newtons": force}})) for force in (60.0, 0.0))
     first = next(index for index, (one, other) in enumerate(zip(pushed, unpushed, strict=False)) if one != other)
     assert pushed[first].begin <= 4.0 < pushed[first].end
+    assert OperationConfig().robot.push == Push(newtons=(0.0, 50.0))
 
 
 def test_known_windows_are_skipped_and_change_nothing() -> None:
@@ -145,15 +138,12 @@ def test_impossible_operations_are_refused(settings: dict[str, Any], words: str)
         OperationConfig(**settings)
 
 
-def test_a_robot_that_cannot_be_built_is_refused_at_once() -> None:
-    with pytest.raises(DescriptionError, match="foot plates reach the floor"):
-        quick(changes=(Change(0.05, {"dimensions": {"hinge_height": 0.005}}),))
-
-
-def test_a_change_of_one_dimension_leaves_the_others() -> None:
+def test_a_change_of_one_dimension_leaves_the_others_and_fits() -> None:
     changes = (Change(0.05, {"dimensions": {"torso_width": 0.3}}), Change(0.06, {"dimensions": {"thigh_length": 0.34}}))
     config = quick(robot={"dimensions": {"hinge_height": 0.04}}, changes=changes)
     assert config.robot_after(2).dimensions == {"hinge_height": 0.04, "torso_width": 0.3, "thigh_length": 0.34}
+    with pytest.raises(DescriptionError, match="foot plates reach the floor"):
+        quick(changes=(Change(0.05, {"dimensions": {"hinge_height": 0.005}}),))  # which cannot be built
 
 
 @pytest.mark.parametrize(
@@ -164,7 +154,3 @@ def test_parameters_out_of_their_box_are_refused(parameters: tuple[float, ...]) 
     robot = RobotInOperation(quick(), 0)
     with pytest.raises(ConfigurationError, match=r"parameter"):
         robot.run(parameters)
-
-
-def test_soft_pushes_are_the_default() -> None:
-    assert OperationConfig().robot.push == Push(newtons=(0.0, 50.0))

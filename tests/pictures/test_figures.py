@@ -1,7 +1,8 @@
-"""Figures of the robot, of the controller as it runs, and of a gait cycle."""
+"""Figures of the robot, of its dimensions, of the controller as it runs, and of a gait cycle."""
 
 import dataclasses
 import itertools
+from itertools import combinations
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -10,6 +11,8 @@ import pytest
 from laboratory import NEEDS_PYBULLET
 from matplotlib.figure import Figure
 from matplotlib.image import imread
+from matplotlib.transforms import Bbox, BboxBase
+from pytest import MonkeyPatch
 
 from sarah.control.constants import STANDARD_CONSTANTS as CONSTANTS
 from sarah.control.constants import ControllerConstants
@@ -23,11 +26,14 @@ from sarah.errors import ConfigurationError
 from sarah.operation.settings import SHIPPED, Change
 from sarah.operation.window import Window
 from sarah.pictures import gait_figure, session_figure
+from sarah.pictures.dimension_figure import draw_dimensions
+from sarah.pictures.dimension_marks import CENTRE_OF_MASS, marks
 from sarah.pictures.gait_figure import draw_gait_cycle, gait_cycle
 from sarah.pictures.robot_figure import draw_robot, labels_of
 from sarah.pictures.session_figure import draw_session
 from sarah.pictures.state_machine_figure import draw_state_machine, hip_law, phases
 from sarah.robot.description import RobotDescription, describe_robot
+from sarah.robot.dimensions import all_dimensions, default_dimensions
 from sarah.robot.reading import SensorReading, Side
 
 
@@ -57,16 +63,13 @@ def test_the_hip_law_has_the_constants_of_the_controller() -> None:
 
 
 @NEEDS_PYBULLET
-def test_robot_and_state_machine_are_drawn(tmp_path: Path) -> None:
+def test_robot_and_state_machine_are_drawn_in_their_own_style(tmp_path: Path) -> None:
     files = draw_robot(describe_robot(), tmp_path / "robot") + draw_state_machine(tmp_path / "machine")
-    assert {file.name for file in files} == {"robot.png", "robot.pdf", "machine.png", "machine.pdf"}
+    assert [file.name for file in files] == ["robot.png", "robot.pdf", "machine.png", "machine.pdf"]
     for file in files[::2]:
-        picture = imread(file)
-        assert picture.shape[1] == 700 and picture[..., :3].std() > 0.02
-
-
-def test_figures_do_not_follow_the_style_of_the_caller(tmp_path: Path) -> None:
-    picture, _ = draw_state_machine(tmp_path / "plain")
+        shown = imread(file)
+        assert shown.shape[1] == 700 and shown[..., :3].std() > 0.02
+    picture = files[2]
     with plt.style.context(["dark_background", {"savefig.dpi": 30}]):
         styled, _ = draw_state_machine(tmp_path / "styled")
         assert plt.rcParams["savefig.dpi"] == 30
@@ -85,11 +88,16 @@ def test_labels_point_at_the_robot_as_it_is() -> None:
     assert abs(height - other_height) < 0.06  # the knee stands as high, the hips higher
 
 
-@pytest.fixture(scope="module")
-def trace() -> Trace:
-    found = simulate(EpisodeSpec(TRAINED_STEPPING, 0, config=EpisodeConfig(time_limit=4.0)), record_trace=True).trace
+def traced(seconds: float) -> Trace:
+    spec = EpisodeSpec(TRAINED_STEPPING, 0, config=EpisodeConfig(time_limit=seconds))
+    found = simulate(spec, record_trace=True).trace
     assert found is not None
     return found
+
+
+@pytest.fixture(scope="module")
+def trace() -> Trace:
+    return traced(4.0)
 
 
 def test_gait_cycle_is_one_step_with_each_leg(trace: Trace, tmp_path: Path) -> None:
@@ -99,19 +107,12 @@ def test_gait_cycle_is_one_step_with_each_leg(trace: Trace, tmp_path: Path) -> N
     assert (np.diff(stance) != 0).sum() == 2 and stance[0] == stance[-1] == 1
     files = draw_gait_cycle(trace, SteppingParameters(*TRAINED_STEPPING), tmp_path / "cycle")
     assert [file.name for file in files] == ["cycle.png", "cycle.pdf"]
-
-
-def test_robot_that_makes_no_cycle_has_none_to_draw() -> None:
-    spec = EpisodeSpec(TRAINED_STEPPING, 0, config=EpisodeConfig(time_limit=1.3))
-    trace = simulate(spec, record_trace=True).trace
-    assert trace is not None
     with pytest.raises(ConfigurationError, match="completes no cycle"):
-        gait_cycle(trace)
+        gait_cycle(traced(1.3))
 
 
 @pytest.fixture
 def figures(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
-    """Figures that are drawn, in place of their files."""
     drawn: list[Figure] = []
 
     def save(figure: Figure, path: Path) -> list[Path]:
@@ -128,8 +129,7 @@ def test_the_axis_of_loads_goes_with_the_weight(trace: Trace, figures: list[Figu
         loads = dataclasses.replace(trace, pressures=factor * trace.pressures)
         draw_gait_cycle(loads, SteppingParameters(*TRAINED_STEPPING), Path("cycle"))
     light, usual, heavy = (figure.axes[2].get_ylim()[1] for figure in figures)
-    assert 600.0 < usual < 800.0
-    assert (light, heavy) == pytest.approx((0.1 * usual, 4.0 * usual))
+    assert 600.0 < usual < 800.0 and (light, heavy) == pytest.approx((0.1 * usual, 4.0 * usual))
 
 
 def test_words_of_changes_do_not_overlap(figures: list[Figure]) -> None:
@@ -139,11 +139,54 @@ def test_words_of_changes_do_not_overlap(figures: list[Figure]) -> None:
     draw_session(windows, [Change(minute, settings) for minute in (1.0, 1.1, 2.9)], Path("session"))
     (figure,) = figures
     figure.canvas.draw()
-    axis = figure.axes[0]
-    legend = axis.get_legend()
+    legend = figure.axes[0].get_legend()
     assert legend is not None
-    boxes = [words.get_window_extent() for words in (*axis.texts, legend)]
+    boxes = [words.get_window_extent() for words in (*figure.axes[0].texts, legend)]
     assert len(boxes) == 4
-    for one, other in itertools.combinations(boxes, 2):
-        assert not one.overlaps(other)
+    assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
     assert all(figure.bbox.x0 <= box.x0 and box.x1 <= figure.bbox.x1 for box in boxes)
+
+
+SMALL = {name: 0.12345 * value for name, value in default_dimensions().items()}
+STILTS = {"thigh_length": 1.5, "shank_length": 2.5, "sole_half_width": 0.02}
+DWARF = {"thigh_length": 0.05, "shank_length": 0.05, "torso_height": 0.9, "hip_drop": 0.45, "flexion_limit": 2.5}
+FEET = {"forefoot_contact": 0.6, "hindfoot_contact": 0.03, "ankle_up_limit": 1.4, "hinge_height": 0.05}
+ROBOTS: list[dict[str, float]] = [{}, SMALL, STILTS, DWARF, FEET]
+
+
+@pytest.mark.parametrize("changed", ROBOTS)
+def test_every_dimension_is_marked_and_each_arrow_is_as_long_as_it_says(changed: dict[str, float]) -> None:
+    dimensions = all_dimensions(changed)
+    shown = [mark for panel in marks(dimensions, np.zeros(3)).values() for mark in panel]
+    assert sorted(mark.name for mark in shown) == sorted([*dimensions, CENTRE_OF_MASS])
+    for mark in shown:
+        if len(mark.points) == 2:
+            along = 2 if mark.beside in ("left", "right") else slice(None, 2)
+            length = np.linalg.norm(np.diff(mark.points, axis=0)[0, along])
+            assert length == pytest.approx(dimensions[mark.name]), mark.name
+
+
+@pytest.mark.parametrize("changed", ROBOTS)
+def test_names_are_readable_whatever_the_proportions(changed: dict[str, float], monkeypatch: MonkeyPatch) -> None:
+    seen: list[tuple[str, str, Bbox]] = []
+    edges: list[BboxBase] = []
+
+    def look(figure: Figure, *_: object, **__: object) -> None:
+        texts = [text for axis in figure.axes for text in axis.texts if text.get_text()]
+        seen.extend((text.get_text(), str(text.get_fontweight()), text.get_window_extent()) for text in texts)
+        edges.append(figure.bbox)
+
+    monkeypatch.setattr(Figure, "savefig", look)
+    dimensions = all_dimensions(changed)
+    draw_dimensions(describe_robot(changed), dimensions, Path("robot.png"))
+    inner = [(text, box.shrunk(0.98, 0.9)) for text, _, box in seen]
+    assert [(one, other) for (one, a), (other, b) in combinations(inner, 2) if a.overlaps(b)] == []
+    assert [text for text, _, box in seen if (Bbox.union([box, *edges]).bounds != edges[0].bounds)] == []
+    different = dict(dimensions.items() - default_dimensions().items())
+    assert {text.splitlines()[0] for text, weight, _ in seen if weight == "bold"} == different.keys()
+
+
+def test_it_is_a_picture(tmp_path: Path) -> None:
+    draw_dimensions(describe_robot(), default_dimensions(), tmp_path / "robot.png")
+    picture = plt.imread(tmp_path / "robot.png")
+    assert picture.shape[1] == 1520 and picture[..., :3].std() > 0.05

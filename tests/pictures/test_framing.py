@@ -3,13 +3,13 @@
 import dataclasses
 import math
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
 import pytest
-from laboratory import NEEDS_PYBULLET, turned
+from laboratory import NEEDS_PYBULLET, purple, turned
 from matplotlib.image import imread
-from PIL import Image
 
 from sarah.episode.trace import Trace
 from sarah.pictures.overlay import arrow
@@ -25,10 +25,7 @@ pytestmark = NEEDS_PYBULLET
 
 LENGTHS = {"torso_height": 0.3, "torso_width": 0.36, "thigh_length": 0.33, "shank_length": 0.31, "hip_offset": 0.13}
 DIMENSIONS = [
-    {},
-    {"thigh_length": 3.3},
-    {"torso_width": 3.59},
-    {"hip_offset": 1.3},
+    *({}, {"thigh_length": 3.3}, {"torso_width": 3.59}, {"hip_offset": 1.3}),
     {"forefoot_contact": 1.4, "sole_half_width": 0.5, "hip_offset": 0.6},
     {name: 9.9 * value for name, value in LENGTHS.items()},
     {name: 0.11 * value for name, value in LENGTHS.items()} | {"sole_half_width": 0.006, "contact_radius": 0.008},
@@ -45,13 +42,11 @@ def robot(request: pytest.FixtureRequest) -> RobotDescription:
 
 @pytest.fixture(scope="module")
 def renderer(robot: RobotDescription) -> Iterator[Renderer]:
-    renderer = Renderer(robot)
-    yield renderer
-    renderer.close()
+    with closing(Renderer(robot)) as renderer:
+        yield renderer
 
 
 def poses(robot: RobotDescription) -> Iterator[tuple[Vector, tuple[float, float, float, float]]]:
-    """Standing, drifted and fallen."""
     for x, y in DRIFTS:
         yield (x, y, robot.standing_height), (0.0, 0.0, 0.0, 1.0)
     for roll, pitch in FALLS:
@@ -65,15 +60,10 @@ def still(robot: RobotDescription, force: np.ndarray, drift: tuple[float, float]
     rows |= {name: np.zeros((ticks, 3)) for name in ("acceleration", "angular_rate")}
     rows |= {name: np.zeros((ticks, 6)) for name in ("joints", "targets")}
     rows |= {name: np.zeros((ticks, 4)) for name in ("ankles", "pressures")}
-    return Trace(
-        time=np.arange(ticks) / 10,
-        position=np.tile((*drift, robot.standing_height), (ticks, 1)),
-        orientation=np.tile((0.0, 0.0, 0.0, 1.0), (ticks, 1)),
-        phase=np.full(ticks, "shift"),
-        stance=np.ones(ticks),
-        push=np.tile(force, (ticks, 1)),
-        **rows,
-    )
+    rows |= {"time": np.arange(ticks) / 10, "stance": np.ones(ticks), "push": np.tile(force, (ticks, 1))}
+    rows["position"] = np.tile((*drift, robot.standing_height), (ticks, 1))
+    rows["orientation"] = np.tile((0.0, 0.0, 0.0, 1.0), (ticks, 1))
+    return Trace(phase=np.full(ticks, "shift"), **rows)
 
 
 def test_shadows_are_whole(robot: RobotDescription, renderer: Renderer) -> None:
@@ -124,17 +114,9 @@ def test_pushes_from_all_sides_are_in_the_picture(robot: RobotDescription, rende
 
 def test_a_standing_robot_of_standard_size_is_seen_as_ever() -> None:
     robot = describe_robot()
-    renderer = Renderer(robot)
-    try:
+    with closing(Renderer(robot)) as renderer:
         for force in pushes(100.0, 12):
             assert cameras(still(robot, force), robot, renderer)[0] == STANDARD_CAMERA
-    finally:
-        renderer.close()
-
-
-def purple(picture: Image.Image) -> np.ndarray:
-    red, green, blue = np.moveaxis(np.asarray(picture).astype(int), -1, 0)
-    return (red > green + 60) & (blue > green + 60)
 
 
 @pytest.mark.parametrize("dimensions", DIMENSIONS[::3], ids=str)
@@ -142,19 +124,18 @@ def test_no_arrow_and_no_label_touches_the_edge(dimensions: dict[str, float]) ->
     robot = describe_robot(dimensions)
     for force in pushes(150.0, 4):
         (picture,) = frames(still(robot, force, (-0.25, 0.25)), robot, (0.0,))
-        marks = purple(picture)
+        marks = purple(np.asarray(picture))
         assert marks.sum() > 1000
         assert not (marks[:5].any() or marks[-5:].any() or marks[:, :5].any() or marks[:, -5:].any())
 
 
-@pytest.mark.parametrize(
-    "caption",
-    [
-        ", ".join(f"P{index} = {index / 7:.2f}" for index in range(60)),
-        "a_task_with_a_name_" + 20 * "without_end_" + ": P1 0.40",
-        "one\ntwo\nthree",
-    ],
-)
+CAPTIONS = [
+    *(", ".join(f"P{index} = {index / 7:.2f}" for index in range(60)), "one\ntwo\nthree"),
+    "a_task_with_a_name_" + 20 * "without_end_" + ": P1 0.40",
+]
+
+
+@pytest.mark.parametrize("caption", CAPTIONS)
 def test_long_captions_stay_clear_of_edges_of_the_robot_and_of_the_phases(caption: str) -> None:
     robot = describe_robot()
     trace = still(robot, np.zeros(3))

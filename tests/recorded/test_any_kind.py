@@ -8,7 +8,6 @@ import re
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -31,6 +30,11 @@ def begun(path: Path) -> Path:
     return path
 
 
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return begun(tmp_path / "game")
+
+
 def test_killed_in_the_middle_it_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
     play(begun(tmp_path / "whole"), GAME)
     journal = tmp_path / "killed/journal.jsonl"
@@ -44,21 +48,14 @@ def test_killed_in_the_middle_it_goes_on_to_the_same_bytes(tmp_path: Path) -> No
         assert (journal.parent / name).read_bytes() == (tmp_path / "whole" / name).read_bytes(), name
 
 
-@pytest.mark.parametrize("line", [b"\n", b"rubbish\n", b"0000000 {}\n", b"\xff\x00\n", b"ffffffff []\n"])
-def test_rubbish_in_a_journal_does_no_harm(line: bytes, tmp_path: Path) -> None:
-    path = begun(tmp_path / "game")
+@pytest.mark.parametrize("line", [b"", b"\n", b"rubbish\n", b"0000000 {}\n", b"\xff\x00\n", b"ffffffff []\n"])
+def test_what_is_known_is_not_asked_again_whatever_is_between(line: bytes, path: Path) -> None:
     best = play(path, GAME)
     first, *rows = (path / "journal.jsonl").read_bytes().splitlines(keepends=True)
     (path / "journal.jsonl").write_bytes(b"".join([first, line, *rows]))
-    assert play(path, GAME, seconds=10.0) == best
-    assert (path / "journal.jsonl").read_bytes().count(b"\n") == 42  # nothing was added
-
-
-def test_what_is_known_is_not_asked_again(tmp_path: Path) -> None:
-    path = begun(tmp_path / "game")
-    best = play(path, GAME)
     began = time.monotonic()
     assert play(path, GAME, seconds=10.0) == best and time.monotonic() - began < 5.0
+    assert (path / "journal.jsonl").read_bytes().count(b"\n") == 41 + bool(line)  # nothing was added
 
 
 def refused(path: Path, game: Game, words: str) -> None:
@@ -69,44 +66,27 @@ def refused(path: Path, game: Game, words: str) -> None:
     assert str(found.value).isprintable() and before == {file: file.read_bytes() for file in path.iterdir()}
 
 
-@pytest.mark.parametrize(
-    ("game", "words"),
-    [
-        (Game(4, 40), "seed is 4 here, and 3 in this game: put that back, or begin anew .*game.json has the settings"),
-        (Game(3, 10), "throws is 10 here, and 40 in this game"),
-    ],
-)
-def test_edited_settings_are_refused(game: Game, words: str, tmp_path: Path) -> None:
-    path = begun(tmp_path / "game")
+def test_edited_settings_are_refused(path: Path) -> None:
     play(path, GAME)
-    refused(path, game, words)
+    refused(path, Game(4, 40), "seed is 4 here, and 3 in this game: put that back, or begin anew .*game.json has")
+    refused(path, Game(3, 10), "throws is 10 here, and 40 in this game")
 
 
 @pytest.mark.parametrize("name", ["python", "sarah-sources", "torch"])
-def test_other_versions_are_refused(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = begun(tmp_path / "game")
+def test_other_versions_are_refused(name: str, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as other:
         other.setattr(folder, "versions", lambda: {**versions(), name: "0.0.7"})
         play(path, GAME)
-    refused(
-        path, GAME, rf"game cannot be resumed: {name} is {re.escape(versions()[name])} here, and 0\.0\.7 in this game"
-    )
+    here = re.escape(versions()[name])
+    refused(path, GAME, rf"game cannot be resumed: {name} is {here} here, and 0\.0\.7 in this game")
 
 
-@pytest.mark.parametrize(
-    "damage",
-    [
-        lambda first: first.replace(b'"seed":3', b'"seed":4'),
-        lambda first: b"",
-        lambda first: b"x" * 200_000 + b"\n",
-    ],
-)
-def test_without_the_first_row_nothing_goes_on(damage: Callable[[bytes], bytes], tmp_path: Path) -> None:
-    path = begun(tmp_path / "game")
+def test_without_the_first_row_nothing_goes_on(path: Path) -> None:
     play(path, GAME)
     first, *rows = (path / "journal.jsonl").read_bytes().splitlines(keepends=True)
-    (path / "journal.jsonl").write_bytes(b"".join([damage(first), *rows]))
-    refused(path, GAME, r"the first row of journal.jsonl, .* is damaged or missing")
+    for damaged in (first.replace(b'"seed":3', b'"seed":4'), b"", b"x" * 200_000 + b"\n"):
+        (path / "journal.jsonl").write_bytes(b"".join([damaged, *rows]))
+        refused(path, GAME, r"the first row of journal.jsonl, .* is damaged or missing")
 
 
 def test_rows_of_another_training_do_not_count(tmp_path: Path) -> None:
@@ -119,15 +99,13 @@ def test_rows_of_another_training_do_not_count(tmp_path: Path) -> None:
         assert not journal.replaying
 
 
-def test_what_others_wrote_is_printed_without_control_characters(tmp_path: Path) -> None:
-    path = begun(tmp_path / "game")
+def test_what_others_wrote_is_printed_without_control_characters(path: Path) -> None:
     origin = json.dumps({"torch": "\x1b[31m" * 3000, "\x1b[2J": 1}).encode()
     (path / "journal.jsonl").write_bytes(hashlib.sha256(origin).hexdigest()[:16].encode() + b" " + origin + b"\n")
     refused(path, GAME, "not known")
 
 
-def test_a_journal_larger_than_any_such_game_is_not_read(tmp_path: Path) -> None:
-    path = begun(tmp_path / "game")
+def test_a_journal_larger_than_any_such_game_is_not_read(path: Path) -> None:
     play(path, GAME)
     with (path / "journal.jsonl").open("ab") as file:
         file.truncate(400_001)
@@ -150,8 +128,7 @@ def test_a_beginning_that_was_cut_is_no_obstacle(tmp_path: Path) -> None:
     play(begun(path), GAME)
 
 
-def test_a_result_whose_outcomes_are_lost_is_left_alone(tmp_path: Path) -> None:
-    path = begun(tmp_path / "game")
+def test_a_result_whose_outcomes_are_lost_is_left_alone(path: Path) -> None:
     play(path, GAME)
     (path / "journal.jsonl").write_bytes(b"")
     with pytest.raises(ResumeError, match=r"it has a result, but journal\.jsonl is empty"):
@@ -169,8 +146,7 @@ def test_what_somebody_else_has_in_a_folder_is_left_alone(other: str, tmp_path: 
     assert (tmp_path / other).read_text() == "theirs"
 
 
-def test_its_folder_belongs_to_one(tmp_path: Path) -> None:
-    path = begun(tmp_path / "game")
+def test_its_folder_belongs_to_one(path: Path) -> None:
     with pytest.raises(RunFolderError, match=r"not empty: name another .*, or go on with python throws.py --resume"):
         begun(path)
     with Folder(path, THROWS).journal(dataclasses.asdict(GAME), 40), pytest.raises(ResumeError, match="another game"):

@@ -5,8 +5,6 @@ import dataclasses
 import threading
 import time
 from collections.abc import Iterable
-from concurrent.futures import ThreadPoolExecutor
-from concurrent.futures import TimeoutError as FutureTimeoutError
 from pathlib import Path
 from statistics import mean
 from types import SimpleNamespace
@@ -16,7 +14,6 @@ import pytest
 from laboratory import COARSE_PHYSICS
 
 from sarah.episode.episode import simulate
-from sarah.episode.evaluation import Evaluation
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING
@@ -27,7 +24,7 @@ from sarah.recorded import folder as folder_module
 from sarah.reports import race as race_module
 from sarah.reports.judging import Evaluations
 from sarah.reports.race import LOCK_FILE, TIME_FILE, race, run_entry
-from sarah.reports.race_entry import RaceCurve, entries_of, is_evaluated, read_curve
+from sarah.reports.race_entry import RaceCurve, entries_of, is_evaluated
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 
@@ -83,34 +80,29 @@ def met(monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, int]]:
 
 
 def test_what_is_recommended_again_is_judged_once(tmp_path: Path, met: list[tuple[float, int]]) -> None:
-    (found,) = race(entries_of(("random",), range(1), TINY, Evaluations(3, 2), tmp_path), Workers())
+    (entry,) = entries_of(("random",), range(1), TINY, Evaluations(3, 2), tmp_path)
+    (found,) = race([entry], Workers())
     assert met == [(0.3, 0), (0.3, 1), (0.4, 0), (0.4, 1), (0.4, 2)]
     assert found.final == pytest.approx((0.4, 0.5, 0.6)) and found.scores == pytest.approx((0.35, 0.45, 0.45))
-
-
-@pytest.mark.usefixtures("met")
-def test_a_folder_without_scores_of_episodes_is_judged_again(tmp_path: Path) -> None:
-    (entry,) = entries_of(("random",), range(1), TINY, Evaluations(2, 1), tmp_path)
-    (whole,) = race([entry], Workers())
     scores = entry.folder / "race_scores.csv"
-    for cut in ("", "seed,score\n0,0.5\n"):
+    for cut in ("", "seed,score\n0,0.5\n"):  # judged again, if it has not all scores of its episodes
         scores.write_text(cut) if cut else scores.unlink()
-        assert race([entry], Workers()) == [whole]
+        assert race([entry], Workers()) == [found]
 
 
 @pytest.mark.usefixtures("met")
 def test_a_race_says_before_it_starts_what_there_is_to_do(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def said(trainings: int, judging: int) -> str:
+        to_do = f"{trainings} trainings to go, with at most 10 episodes together"
+        return f"{to_do}; at most {judging} others judge what they recommend\n"
+
     entries = entries_of(("random",), range(2), TINY, Evaluations(2, 1), tmp_path)
     race(entries[:1], Workers(), progress_bar=True)
-    judging = 2 * 1 + 2
-    told = f"1 trainings to go, with at most 10 episodes together; at most {judging} others judge what they recommend\n"
     shown = capsys.readouterr().err
-    assert shown.startswith(told) and "1/1" in shown
+    assert shown.startswith(said(1, 2 * 1 + 2)) and "1/1" in shown
     more = [dataclasses.replace(entry, evaluations=Evaluations(3, 1)) for entry in entries]
     race(more, Workers(), progress_bar=True)
-    judging = 2 * (2 * 1 + 3)
-    told = f"2 trainings to go, with at most 10 episodes together; at most {judging} others judge what they recommend\n"
-    assert capsys.readouterr().err.startswith(told)
+    assert capsys.readouterr().err.startswith(said(2, 2 * (2 * 1 + 3)))
     race(more, Workers(), progress_bar=True)
     race([dataclasses.replace(entry, evaluations=Evaluations(4, 1)) for entry in entries], Workers())
     assert not capsys.readouterr().err
@@ -128,48 +120,18 @@ def test_a_race_does_not_mix_states_of_the_code(tmp_path: Path, monkeypatch: pyt
     assert not second.folder.exists()
 
 
-def test_a_race_removes_nobody_elses_run(tmp_path: Path) -> None:
+def test_a_race_leaves_alone_what_is_not_its_own_or_in_use(tmp_path: Path) -> None:
     precious = tmp_path / "naf-s0" / "parameters.json"
     precious.parent.mkdir()
     precious.write_text("{}")
     with pytest.raises(RunFolderError, match="is not of a race"):
         race(entries_of(("naf",), range(1), TINY, ONCE, tmp_path), Workers())
     assert precious.read_text() == "{}"
-
-
-def test_a_race_leaves_a_training_alone_that_another_is_at(tmp_path: Path) -> None:
     (entry,) = entries_of(("random",), range(1), TINY, ONCE, tmp_path)
     begun = RunFolder.create(tmp_path / "random-s0", entry.config)
-    with (
-        begun.journal_of(entry.config),
-        pytest.raises(RunFolderError, match="in use by another training"),
-    ):
+    with begun.journal_of(entry.config), pytest.raises(RunFolderError, match="in use by another training"):
         run_entry(entry)
     assert begun.config() == entry.config
-
-
-def test_a_race_waits_for_another_that_is_at_the_same_training(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (entry,) = entries_of(("random",), range(1), TINY, ONCE, tmp_path)
-    begun, may_end = threading.Event(), threading.Event()
-    evaluate = race_module.evaluate
-
-    def slow(*arguments: Any) -> Evaluation:
-        begun.set()
-        assert may_end.wait(60)
-        return evaluate(*arguments)
-
-    monkeypatch.setattr(race_module, "evaluate", slow)
-    with ThreadPoolExecutor(2) as pool:
-        first = pool.submit(run_entry, entry)
-        assert begun.wait(60)
-        monkeypatch.setattr(race_module, "train", lambda *_, **__: pytest.fail("it is trained already"))
-        second = pool.submit(run_entry, entry)
-        with pytest.raises(FutureTimeoutError):
-            second.result(0.3)
-        may_end.set()
-        first.result(60)
-        second.result(60)
-    assert read_curve(entry).episodes == (5, 10, 10)
 
 
 def test_a_race_leaves_out_what_another_is_at_until_its_end(tmp_path: Path) -> None:
@@ -190,17 +152,17 @@ def test_a_race_leaves_out_what_another_is_at_until_its_end(tmp_path: Path) -> N
     assert curves[0].seconds > 1000.0 > curves[1].seconds
 
 
-@pytest.mark.parametrize(
-    ("name", "content"),
-    [
-        ("race.csv", "episodes,score,seconds,evaluations\n" + 50 * "5,0.5,1,1\n"),
-        ("race.csv", "episodes,score,seconds,evaluations\n5,x,1,1\n10,0.5,1,1\n"),
-        ("race.csv", ""),
-        ("race_scores.csv", "seed,score\n0,x\n"),
-        ("race_scores.csv", "seed,score\n1,0.5\n"),
-        ("recommendations.csv", "episodes\nx\n"),
-    ],
-)
+HEAD = "episodes,score,seconds,evaluations\n"
+
+
+DAMAGED = [
+    *(("race.csv", content) for content in ("", HEAD + 50 * "5,0.5,1,1\n", f"{HEAD}5,x,1,1\n10,0.5,1,1\n")),
+    *(("race_scores.csv", f"seed,score\n{row}\n") for row in ("0,x", "1,0.5")),
+    ("recommendations.csv", "episodes\nx\n"),
+]
+
+
+@pytest.mark.parametrize(("name", "content"), DAMAGED)
 @pytest.mark.usefixtures("met")
 def test_damaged_tables_are_named(name: str, content: str, tmp_path: Path) -> None:
     (entry,) = entries_of(("random",), range(1), TINY, ONCE, tmp_path)

@@ -1,13 +1,15 @@
-"""The table of a race: what counts as reached and held, and how trainings are summed up."""
+"""The table of a race: what counts as reached and held, how trainings are summed up, and how far to trust that."""
 
 import csv
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from sarah.reports.race_entry import RaceCurve
 from sarah.reports.rankings import as_markdown, episodes_until, rankings, write_csv
+from sarah.reports.uncertainty import best_known, difference, number_at, share_of, standard_error
 from sarah.runs.config import ALGORITHMS
 
 
@@ -20,10 +22,7 @@ def test_a_score_counts_once_it_is_held() -> None:
     assert episodes_until(curve("naf", 0.2, 0.9, 0.3, 0.9, 0.9, 0.9), 0.8) == 20
     assert episodes_until(curve("naf", 0.9, 0.9, 0.9), 0.8) == 5
     assert math.isinf(episodes_until(curve("naf", 0.2, 0.9, 0.9), 0.8))
-
-
-def test_two_evaluations_after_the_same_episodes_are_one() -> None:
-    """Without trials of it, the last recommendation along the way is the final one too, and is evaluated twice."""
+    # The last recommendation along the way is the final one too: two evaluations after the same episodes are one.
     assert math.isinf(episodes_until(RaceCurve("naf", (5, 10, 15, 15), (0.2, 0.9, 0.9, 0.9), (0.9,), 1, 1.0), 0.8))
 
 
@@ -85,13 +84,10 @@ def test_a_table_names_its_columns_and_what_judged(tmp_path: Path) -> None:
     assert td3["over_naf"][:4] == "-0.2" and td3["over_naf_low"] == ""  # of one seed there is no interval
 
 
-def test_a_known_best_score_is_the_one_that_shares_are_of() -> None:
+def test_shares_are_of_a_known_best_score_and_may_be_below_zero() -> None:
     table = rankings([curve("naf", 0.8, 0.8, 0.8)], best=2.0)
     assert table.rows[0].held == {0.9: 0, 0.95: 0} and table.rows[0].at_share == (0, 0, 0)
     assert table.best == table.best_along == 2.0
-
-
-def test_rewards_below_zero_have_shares_as_well() -> None:
     (row,) = rankings([curve("naf", -9.0, -1.09, -1.0, -1.0, -1.0)]).rows
     assert row.episodes == {0.9: 10.0, 0.95: 15.0}
 
@@ -100,3 +96,60 @@ def test_the_origin_of_every_algorithms_settings_is_said() -> None:
     table = as_markdown(rankings([curve(algo, 0.1, 0.2) for algo in ALGORITHMS]))
     assert "- mine: nobody has said" in as_markdown(rankings([curve("mine", 0.1, 0.2)]))
     assert "- td3, sac, ddpg: set once by hand" in table and "- gp, tpe: the defaults of Optuna" in table
+
+
+@pytest.mark.parametrize(
+    ("scores", "variance"),
+    [
+        ([[0.2, 0.4, 0.6, 0.8]], 0.2 / 3 / 4),  # one training: that over its episodes
+        ([[0.2], [0.4], [0.9]], 0.13 / 3),  # one episode: that over the trainings
+        # Means of the trainings are 0.2 and 0.6, of the episodes 0.3, 0.3 and 0.6; what is left is 0.1 or 0.2 each.
+        ([[0.2, 0.0, 0.4], [0.4, 0.6, 0.8]], (3 * 0.08 + 2 * 0.03 - 0.04 / 2) / 6),
+        # Episodes are alike on average, which counts as not at all: only the trainings' means say something.
+        ([[0.2, 0.4], [0.6, 0.4]], 2 * 0.02 / 4),
+        # All means are alike, and every score is 0.5 off: the rest is the error, with one degree of freedom.
+        ([[0.0, 1.0], [1.0, 0.0]], 4 * 0.25 / 4),
+    ],
+)
+def test_the_error_is_over_trainings_and_episodes(scores: list[list[float]], variance: float) -> None:
+    assert standard_error(np.array(scores)) == pytest.approx(math.sqrt(variance))
+
+
+def test_luck_that_two_algorithms_share_is_no_difference() -> None:
+    luck = np.array([0.0, 0.3, 0.6])
+    found, low, high = difference(np.array([luck + 0.3, luck + 0.1]), np.array([luck, luck]))
+    half = 12.706 * 0.1  # Student's factor for one degree of freedom; 0.3 and 0.1 have a standard error of 0.1
+    assert found == pytest.approx(0.2)
+    assert (low, high) == pytest.approx((0.2 - half, 0.2 + half), abs=1e-3)
+
+
+def test_one_training_says_nothing_of_other_seeds() -> None:
+    assert math.isnan(standard_error(np.array([[0.7]])))
+    found, *ends = difference(np.array([[0.5, 0.7]]), np.array([[0.4, 0.4]]))
+    assert found == pytest.approx(0.2) and all(map(math.isnan, ends))
+
+
+def test_episodes_judge_where_they_have_not_chosen() -> None:
+    # The first training is best in episodes 0 and 2, the second in 1 and 3.
+    scores = np.array([[0.9, 0.5, 0.7, 0.3], [0.2, 0.8, 0.4, 0.6]])
+    assert best_known(scores) == pytest.approx(((0.5 + 0.3) / 2 + (0.2 + 0.4) / 2) / 2)
+    # In episodes 0 and 1 the first is best, but the others choose the second for both.
+    scores = np.array([[0.9, 0.9, 0.1, 0.1], [0.5, 0.7, 0.9, 0.9]])
+    assert best_known(scores, 2) == pytest.approx((0.5 + 0.7) / 2)
+    assert best_known(np.array([[0.4], [0.6]])) == pytest.approx(0.6)  # a single one does both
+
+
+def test_a_share_of_a_reward_below_zero_is_further_below() -> None:
+    assert share_of(0.8, 0.95) == pytest.approx(0.76)
+    assert share_of(-1.0, 0.95) == pytest.approx(-1.05)
+
+
+def test_the_interval_of_a_count_knows_the_luck_of_the_judge() -> None:
+    """Of two equal trainings a dozen episodes find one 5 % better; the interval has both numbers."""
+    lucky = np.array([0.9, 0.7] * 6)
+    scores = np.array([lucky, lucky - [0.3, 0.0, 0.0, 0.3, *(0.0,) * 8]])
+    assert number_at(scores, np.array([False, True]), 0.95) == (0, 0, 1)
+    assert number_at(scores, np.array([True, True]), 0.95, best=0.5) == (2, 2, 2)
+    # What lifts one training in an episode lifts the best as well, as all meet the same ones.
+    luck = 0.3 * np.random.default_rng(0).normal(size=40)
+    assert number_at(np.array([0.8 + luck, 0.79 + luck, 0.4 + luck]), np.full(3, True), 0.95) == (2, 2, 2)

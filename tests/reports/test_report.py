@@ -34,7 +34,6 @@ PHYSICS = Physics(rate=100, solver_iterations=10, control_rate=100)
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
-    """A training that draws pictures."""
     episode = EpisodeConfig(time_limit=1.5, physics=PHYSICS)
     pictures = 5 if is_installed("pybullet") else 0
     config = TrainingConfig(episodes=10, seed=3, slots=1, episode=episode, pictures=pictures)
@@ -89,18 +88,12 @@ def counts(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
             counted[f"{parameters} with seed {self.seed}"] += 1
             super().start(parameters)
 
-    def counting(name: str) -> Callable[..., Any]:
-        read = getattr(RunFolder, name)
-
-        def count(*arguments: Any) -> Any:
-            counted[name] += 1
-            return read(*arguments)
-
-        return count
+    def counting(name: str, read: Callable[..., Any]) -> Callable[..., Any]:
+        return lambda *arguments: (counted.update([name]), read(*arguments))[1]
 
     monkeypatch.setattr("sarah.episode.episode.Episode", Counting)
     for name in ("config", "config_text", "parameters", "episodes", "recommendations"):
-        monkeypatch.setattr(RunFolder, name, counting(name))
+        monkeypatch.setattr(RunFolder, name, counting(name, getattr(RunFolder, name)))
     for module in (training_figures, all_figures, report):  # drawing would take most of the time
         for name in {"save", "draw_robot", "draw_state_machine", "frames"} & set(vars(module)):
             monkeypatch.setattr(module, name, lambda *_, **__: [Path("drawn.png")])
@@ -126,8 +119,9 @@ def test_a_run_is_read_once_and_no_episode_is_simulated_twice(
     assert ("about 0.4" in page.read_text()) == (task == "stepping")
 
 
-def test_without_the_renderer_the_page_has_no_film(
-    run: RunFolder, tmp_path: Path, counts: Counter[str], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.usefixtures("counts")
+def test_what_a_report_cannot_show_is_said(
+    run: RunFolder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def refuse() -> None:
         raise ConfigurationError("pictures need a package")
@@ -136,19 +130,12 @@ def test_without_the_renderer_the_page_has_no_film(
     call(monkeypatch, report_command, run.path, "--out", tmp_path / "page.html", "--episodes", 1)
     page = (tmp_path / "page.html").read_text()
     assert "No video: pictures need a package." in page and "<video" not in page
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [([], "give a run folder"), (["nowhere", "--seconds", "3", "2"], "seconds must be in rising order")],
-)
-def test_report_says_what_it_cannot_do(
-    arguments: list[str], message: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    with pytest.raises(SystemExit):
-        call(monkeypatch, report_command, *arguments)
-    said = capsys.readouterr().err
-    assert message in said and said.count("\n") == 1
+    for arguments, message in (([], "give a run"), (["nowhere", "--seconds", "3", "2"], "must be in rising order")):
+        capsys.readouterr()
+        with pytest.raises(SystemExit):
+            call(monkeypatch, report_command, *arguments)
+        said = capsys.readouterr().err
+        assert message in said and said.count("\n") == 1
 
 
 def events(run: RunFolder) -> EventAccumulator:

@@ -11,6 +11,7 @@ import pytest
 from laboratory import RESULT
 from matplotlib.figure import Figure
 from matplotlib.image import imread
+from pytest import MonkeyPatch
 
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING, TASKS
@@ -22,6 +23,8 @@ from sarah.reports.training_figures import draw_race
 from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.runs.run_record import RunRecord
+
+Drawn = dict[str, Figure]
 
 
 def run_with_episodes(path: Path, task: str, count: int, algo: str = "naf") -> RunFolder:
@@ -39,8 +42,7 @@ def draw_figures(runs: Sequence[RunFolder], folder: Path) -> list[Path]:
 
 
 @pytest.fixture
-def drawn(monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[str, Figure]]:
-    """Figures by name, which are drawn and not saved."""
+def drawn(monkeypatch: MonkeyPatch) -> Iterator[dict[str, Figure]]:
     figures: dict[str, Figure] = {}
 
     def keep(figure: Figure, path: Path) -> list[Path]:
@@ -61,43 +63,32 @@ def test_the_two_trainings_make_figures_4_to_7(tmp_path: Path) -> None:
     runs = [run_with_episodes(tmp_path / task, task, 10) for task in ("stepping", "balance")]
     files = draw_figures(runs, tmp_path / "out")
     assert sorted(file.name for file in files) == sorted(path.name for path in (tmp_path / "out").iterdir())
-    assert {file.stem for file in files} == {
-        "figure_4_reward_and_frequency",
-        "figure_5_parameters",
-        "figure_6_reward_and_position",
-        "figure_7_parameters",
-    }
-    assert {file.suffix for file in files} == {".png", ".pdf"}
-    for file in files:
-        if file.suffix == ".png":
-            picture = imread(file)
-            assert picture.shape[1] == 700 and picture[..., :3].std() > 0.02
+    of_stepping, of_balance = ("4_reward_and_frequency", "5_parameters"), ("6_reward_and_position", "7_parameters")
+    names = [f"figure_{name}.{suffix}" for name in (*of_stepping, *of_balance) for suffix in ("pdf", "png")]
+    assert sorted(file.name for file in files) == names
+    for file in (file for file in files if file.suffix == ".png"):
+        picture = imread(file)
+        assert picture.shape[1] == 700 and picture[..., :3].std() > 0.02
 
 
-def test_another_task_has_figures_of_its_own_parameters(
-    tmp_path: Path, drawn: dict[str, Figure], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_another_task_has_figures_if_it_has_episodes(tmp_path: Path, drawn: Drawn, monkeypatch: MonkeyPatch) -> None:
     task = dataclasses.replace(STEPPING, name="three", parameters=STEPPING.parameters[:3], baseline=(0.4, 1.3, 0.1))
     monkeypatch.setitem(TASKS, task.name, task)
     draw_figures([run_with_episodes(tmp_path / "run", task.name, 20)], tmp_path / "out")
     assert set(drawn) == {"three_reward_and_frequency", "three_parameters"}
+    with pytest.raises(RunFolderError, match="has no episodes"):
+        draw_figures([run_with_episodes(tmp_path / "empty", task.name, 0)], tmp_path / "none")
+    assert not (tmp_path / "none").exists()
 
 
-def test_runs_of_different_length_and_algorithm_share_a_figure(tmp_path: Path, drawn: dict[str, Figure]) -> None:
+def test_runs_of_different_length_and_algorithm_share_a_figure(tmp_path: Path, drawn: Drawn) -> None:
     runs = [run_with_episodes(tmp_path / f"naf{i}", "stepping", 20 + i) for i in range(3)]
     draw_figures([*runs, run_with_episodes(tmp_path / "cma", "stepping", 20, "cma-es")], tmp_path / "out")
     words = ["CMA-ES", "NAF, 3 runs", "random warm-up of some"]
     assert words_of(drawn["figure_4_reward_and_frequency"]) == words
 
 
-def test_run_without_episodes_is_named(tmp_path: Path) -> None:
-    run = run_with_episodes(tmp_path / "run", "stepping", 0)
-    with pytest.raises(RunFolderError, match="has no episodes"):
-        draw_figures([run], tmp_path / "out")
-    assert not (tmp_path / "out").exists()
-
-
-def test_axes_and_lines_have_their_names(tmp_path: Path, drawn: dict[str, Figure]) -> None:
+def test_axes_and_lines_have_their_names(tmp_path: Path, drawn: Drawn) -> None:
     run = run_with_episodes(tmp_path / "run", "stepping", 20, "td3")
     run.append_recommendation(5, dict.fromkeys(STEPPING.parameter_names, 0.3))
     draw_figures([run], tmp_path / "out")
@@ -110,19 +101,18 @@ def test_axes_and_lines_have_their_names(tmp_path: Path, drawn: dict[str, Figure
 
 @pytest.mark.parametrize(("algo", "warm_up"), [("naf", 8), ("gp", 8), ("cma-es", 0)])
 def test_the_warm_up_is_shaded_and_no_line_goes_through_it(
-    algo: str, warm_up: int, tmp_path: Path, drawn: dict[str, Figure]
+    algo: str, warm_up: int, tmp_path: Path, drawn: Drawn
 ) -> None:
     draw_figures([run_with_episodes(tmp_path / "run", "stepping", 40, algo)], tmp_path / "out")
     (axis, *_) = drawn["figure_4_reward_and_frequency"].axes
-    shades = [
-        tuple(patch.get_window_extent().transformed(axis.transData.inverted()).intervalx) for patch in axis.patches
-    ]
+    to_data = axis.transData.inverted()
+    shades = [tuple(patch.get_window_extent().transformed(to_data).intervalx) for patch in axis.patches]
     assert shades == ([pytest.approx((0.5, warm_up + 0.5))] if warm_up else [])
     lines = [line for line in axis.lines if line.get_linestyle() == "-"]
     assert [float(np.min(line.get_xdata())) for line in lines] == [warm_up + 1]
 
 
-def test_algorithms_without_a_colour_of_their_own_are_told_apart(tmp_path: Path, drawn: dict[str, Figure]) -> None:
+def test_algorithms_without_a_colour_of_their_own_are_told_apart(tmp_path: Path, drawn: Drawn) -> None:
     names = [*ALGORITHMS, "mine", "yours", "theirs"]
     colours = algorithm_colours(names)
     assert len(set(colours.values())) == len(names) and colours == algorithm_colours(reversed(names))
@@ -132,8 +122,7 @@ def test_algorithms_without_a_colour_of_their_own_are_told_apart(tmp_path: Path,
     assert [line.get_color() for line in lines.lines] == [algorithm_colours([name])[name] for name in ("naf", "mine")]
 
 
-def test_figures_of_all_algorithms_have_room_for_their_legend(tmp_path: Path, drawn: dict[str, Figure]) -> None:
-    """Nothing is drawn on the picture's border, where it would be cut off."""
+def test_figures_of_all_algorithms_have_room_for_their_legend(tmp_path: Path, drawn: Drawn) -> None:
     runs = [run_with_episodes(tmp_path / f"{algo}{i}", "stepping", 10, algo) for algo in ALGORITHMS for i in range(2)]
     draw_figures(runs, tmp_path / "out")
     curves = [RaceCurve(algo, (5, 10), (0.2, 0.8), (0.7, 0.9), 2, 1.0) for algo in ALGORITHMS for _ in range(10)]

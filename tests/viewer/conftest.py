@@ -16,7 +16,6 @@ LEARNED = (0.8, 0.1, 0.3, -0.1)
 
 @pytest.fixture(scope="session")
 def run(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
-    """A Second Training of three episodes."""
     path = tmp_path_factory.mktemp("runs") / "balance"
     run = RunFolder.create(path, TrainingConfig(task="balance", episodes=3, episode=CONFIG))
     for index, parameters in enumerate(TRIED):

@@ -68,11 +68,8 @@ def test_the_newest_wish_is_simulated_and_the_one_before_it_given_up() -> None:
 
 def test_the_page_is_served_to_this_machine_only() -> None:
     with serving(view.ViewOptions().host, view.DEFAULT_PORT) as server:
-        listening = [
-            connection.laddr
-            for connection in psutil.Process().net_connections()
-            if connection.status == psutil.CONN_LISTEN
-        ]
+        connections = psutil.Process().net_connections()
+        listening = [connection.laddr for connection in connections if connection.status == psutil.CONN_LISTEN]
         assert {address.ip for address in listening} == {"127.0.0.1"}
         assert server.get_port() in {address.port for address in listening}
 

@@ -1,10 +1,14 @@
 """The scene of the page, as far as it can be seen without a browser."""
 
 import dataclasses
+import io
+import math
+import time
 from collections.abc import Iterator
 
 import numpy as np
 import pytest
+import yourdfpy
 from laboratory import COARSE_PHYSICS
 
 from sarah.episode.episode import simulate
@@ -12,8 +16,12 @@ from sarah.episode.push import Push
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BalanceConfig
 from sarah.episode.trace import Trace
+from sarah.robot.description import describe_robot
+from sarah.runs.run_episodes import episode_of_parameters
+from sarah.scenery.camera import View
 from sarah.simulation.terrain import Terrain
-from sarah.viewer.scene import RobotScene
+from sarah.viewer.page import Page
+from sarah.viewer.scene import FIRST_CAMERA, WINDOW, RobotScene, arrow, first_camera, status_place
 from sarah.viewer.server import serving
 
 SPEC = EpisodeSpec((0.0,) * 4, 0, "balance", BalanceConfig(time_limit=1.5, push=Push(0.0), physics=COARSE_PHYSICS))
@@ -47,34 +55,72 @@ def test_every_push_has_its_arrow_and_words_while_it_acts(scene: RobotScene, tra
     assert shown[2] == ([(0.0, -5.0, 0.0)], "push of 5 N backward")
 
 
-def test_an_episode_of_another_robot_shows_that_robot(scene: RobotScene, trace: Trace) -> None:
+def test_robot_and_rough_ground_leave_with_their_episode(scene: RobotScene, trace: Trace) -> None:
+    rough = dataclasses.replace(SPEC, config=dataclasses.replace(SPEC.config, terrain=Terrain(roughness=(0.02, 0.02))))
+    scene.load(trace, rough)
+    bumps, low = scene.bumps, scene.floor.position[2]
+    assert bumps is not None and np.reshape(bumps.vertices, (-1, 3))[:, 2].min() == pytest.approx(low) and low < -0.01
     scene.load(trace, SPEC)
+    assert scene.bumps is None and scene.floor.position[2] == 0.0
     for spec in (SHORT_LEGS, SPEC):
         scene.load(trace, spec)
         scene.show(0)
         assert scene.robot == spec.robot
 
 
-def test_rough_ground_is_drawn_and_leaves_with_its_episode(scene: RobotScene, trace: Trace) -> None:
-    rough = dataclasses.replace(SPEC, config=dataclasses.replace(SPEC.config, terrain=Terrain(roughness=(0.02, 0.02))))
-    scene.load(trace, rough)
-    bumps = scene.bumps
-    assert bumps is not None
-    assert np.reshape(bumps.vertices, (-1, 3))[:, 2].min() == pytest.approx(scene.floor.position[2])
-    assert scene.floor.position[2] < -0.01
-    scene.load(trace, SPEC)
-    assert scene.bumps is None and scene.floor.position[2] == 0.0
-
-
-def test_what_no_scene_shows_is_written_above_the_robot(scene: RobotScene, trace: Trace) -> None:
-    scene.load(trace, SPEC)
+def test_words_are_shown_and_a_fall_while_standing_has_no_stance(scene: RobotScene, trace: Trace) -> None:
+    scene.load(dataclasses.replace(trace, phase=np.full(len(trace), "stand")), SPEC)
     scene.tell(["payload 5", "terrain.friction_left 0.2"])
     scene.show(0)
+    assert not scene.stance.visible
     assert scene.status.text.startswith("payload 5, terrain.friction_left 0.2\n1.0 s")
     scene.tell([])
 
 
-def test_a_robot_that_fell_while_it_stood_has_no_stance(scene: RobotScene, trace: Trace) -> None:
-    scene.load(dataclasses.replace(trace, phase=np.full(len(trace), "stand")), SPEC)
-    scene.show(0)
-    assert not scene.stance.visible
+ROBOTS: list[dict[str, float]] = [
+    *({}, {"thigh_length": 3.3}, {"thigh_length": 0.033, "shank_length": 0.031}, {"torso_height": 3.0}),
+    *({"torso_width": 3.59}, {"hip_offset": 1.3}, {"forefoot_contact": 1.4}),
+]
+
+
+@pytest.mark.parametrize("dimensions", ROBOTS, ids=str)
+def test_robot_words_and_pushes_are_in_the_first_view(dimensions: dict[str, float]) -> None:
+    robot = describe_robot(dimensions)
+    model = yourdfpy.URDF.load(io.StringIO(robot.urdf), load_meshes=False)
+    torso, camera = np.array((0.0, 0.0, robot.standing_height)), first_camera(robot, model)
+    nodes = [model.scene.graph.get(node) for node in model.scene.graph.nodes_geometry]
+    shapes = [
+        model.scene.geometry[mesh].vertices @ transform[:3, :3].T + transform[:3, 3] + torso
+        for transform, mesh in nodes
+    ]
+    seen = [*shapes, status_place(robot, model)[None]]
+    for turn in range(12):
+        force = 150.0 * np.array((math.cos(turn * math.pi / 6), math.sin(turn * math.pi / 6), 0.0))
+        seen.append(torso + arrow(force, robot.scale))
+    pixels = View(*WINDOW, camera).pixels(np.concatenate(seen))
+    assert (pixels > 0.0).all() and (pixels < WINDOW).all()
+    assert np.ptp(pixels, axis=0).max() > 0.3 * WINDOW[1]  # and not far away
+    if not dimensions:  # seen from about where it was
+        assert camera.distance == pytest.approx(FIRST_CAMERA.distance, rel=0.1)
+        assert camera._replace(distance=FIRST_CAMERA.distance) == FIRST_CAMERA
+
+
+def test_an_arrow_is_as_long_as_its_force_is_strong_up_to_its_limit() -> None:
+    lengths = [float(np.ptp(arrow(np.array((newtons, 0.0, 0.0)))[:, 0])) for newtons in (50.0, 100.0, 500.0, 1000.0)]
+    assert lengths[1] == pytest.approx(2 * lengths[0]) and lengths[2] == lengths[3] > lengths[1]
+
+
+def test_nothing_is_played_before_somebody_looks() -> None:
+    episode = episode_of_parameters((0.4, 1.3, 0.1, 1.0, 1.0))
+    short = dataclasses.replace(episode.spec.config, time_limit=3.0, physics=COARSE_PHYSICS)
+    episode = episode.of(dataclasses.replace(episode.spec, config=short))
+    with serving("127.0.0.1", 8080) as server:
+        page = Page(server, [episode], episode)
+        while not page.frames:
+            time.sleep(0.02)
+        time.sleep(0.5)
+        assert page.frames == 1
+        page.begin()
+        time.sleep(0.5)
+        assert page.frames > 3
+        page.close()

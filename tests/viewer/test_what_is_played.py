@@ -34,10 +34,6 @@ def test_every_episode_of_a_run_is_played_exactly(run: RunFolder) -> None:
         assert f"score {choice.score:.2f}" in choice.label
     assert choices[0].spec == EpisodeSpec(run.parameters(), 0, "balance", run.config().episode)
     assert choices[1].score == max(choice.score or 0.0 for choice in choices[2:])
-
-
-def test_an_unknown_episode_is_told_which_there_are(run: RunFolder) -> None:
-    choices = episodes_of_run(run)
     assert choose_episode(choices, "2").spec.parameters == (-2.0, 1.0, 0.0, 2.0)
     with pytest.raises(ConfigurationError, match=r"unknown episode '7' \(allowed: learned, best, 0 to 2\)"):
         choose_episode(choices, "7")
@@ -86,26 +82,19 @@ def test_ground_that_the_seed_drew_stays_when_the_sliders_stand_still() -> None:
 
 
 def test_sliders_leave_reward_and_ending_of_an_own_task() -> None:
-    own = dataclasses.replace(
-        STEPPING, reward=lambda tick, config: 2.0, best_reward=4.0, ending=lambda tick, config: "tired"
-    )
+    ends = {"reward": lambda *_: 2.0, "best_reward": 4.0, "ending": lambda *_: "tired"}
+    own = dataclasses.replace(STEPPING, **ends)  # type: ignore[arg-type]
     result = simulate(Scenario.of(EpisodeSpec(PAPER_STEPPING, 3, own)).spec())
     assert result.termination == "tired" and result.episode_return == pytest.approx(2.0 * 0.01)
     assert result.score == pytest.approx(result.episode_return / (4.0 * 29.0))
 
 
-def test_a_push_of_a_task_keeps_its_duration() -> None:
+def test_a_push_is_simulated_as_given_and_lasts_as_its_task_says() -> None:
     lasting = dataclasses.replace(BALANCE, draw_push=lambda config, seed: DrawnPush((40.0, 0.0, 0.0), 2.0, 0.6))
-    scenario = Scenario.of(EpisodeSpec(LEARNED, 0, lasting, PUSHED))
-    drawn = push_of(BALANCE, scenario.spec().config, 0)
-    assert drawn == DrawnPush((40.0, 0.0, 0.0), 2.0, 0.6)
-
-
-def test_a_given_push_is_the_push_that_is_simulated() -> None:
-    push = Push((50.0, 50.0), (90.0, 90.0), (2.5, 2.5))
-    scenario = Scenario(
-        PAPER_STEPPING, LEARNED, push, Terrain(), 1, BalanceConfig(time_limit=3.0, physics=COARSE_PHYSICS)
-    )
+    found = Scenario.of(EpisodeSpec(LEARNED, 0, lasting, PUSHED)).spec().config
+    assert push_of(BALANCE, found, 0) == DrawnPush((40.0, 0.0, 0.0), 2.0, 0.6)
+    push, config = Push((50.0, 50.0), (90.0, 90.0), (2.5, 2.5)), dataclasses.replace(PUSHED, time_limit=3.0)
+    scenario = Scenario(PAPER_STEPPING, LEARNED, push, Terrain(), 1, config)
     trace = simulate(scenario.spec(), record_trace=True).trace
     assert trace is not None
     assert trace.push[trace.tick_at(2.55)] == pytest.approx([0.0, 50.0, 0.0])
