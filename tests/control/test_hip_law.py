@@ -48,10 +48,7 @@ def test_abduction_settles_where_the_law_says() -> None:
     assert settled.abduction == pytest.approx(-0.05 * (1.5 * 2.0 + 0.4), rel=1e-3)
 
 
-@pytest.mark.parametrize(
-    ("limits", "largest", "expected"),
-    [(0.05, 0.3, -0.05), (0.5, 0.04, -0.04), (0.5, 0.3, -0.1)],
-)
+@pytest.mark.parametrize(("limits", "largest", "expected"), [(0.05, 0.3, -0.05), (0.5, 0.04, -0.04), (0.5, 0.3, -0.1)])
 def test_a_constant_abduction_is_no_sway_whatever_limits_it(limits: float, largest: float, expected: float) -> None:
     constants = ControllerConstants(largest_hip_angle=largest)
     constant = HipLaw(BalanceParameters(0.0, 2.0, 0.0, 0.0), DT, constants, [(-limits, limits)] * 6)

@@ -124,10 +124,7 @@ def test_late_and_early_ticks_count_by_their_times() -> None:
         assert elapsed == pytest.approx(1.0, abs=0.016)
 
 
-@pytest.mark.parametrize(
-    ("seconds", "ticks"),
-    [(None, 1), (0.03, 3), (60.0, 100), (math.nan, 1), (-5, 1)],
-)
+@pytest.mark.parametrize(("seconds", "ticks"), [(None, 1), (0.03, 3), (60.0, 100), (math.nan, 1), (-5, 1)])
 def test_a_gap_counts_up_to_a_second_and_no_time_as_a_tick(seconds: float | None, ticks: int) -> None:
     late, punctual = started(), started()
     late.tick(OVER_RIGHT, seconds)

@@ -175,15 +175,7 @@ def test_actions_that_rounding_puts_outside_are_the_ends() -> None:
 
 
 @pytest.mark.parametrize(
-    "action",
-    [
-        np.full(5, np.nan),
-        np.full(5, -1.0001),
-        np.zeros(4),
-        np.zeros((1, 5)),
-        ["0"] * 5,
-        None,
-    ],
+    "action", [np.full(5, np.nan), np.full(5, -1.0001), np.zeros(4), np.zeros((1, 5)), ["0"] * 5, None]
 )
 def test_impossible_actions_are_refused(action: np.ndarray) -> None:
     env = SarahEnv(config=SHORT)

@@ -70,10 +70,7 @@ def test_a_foot_that_stays_in_the_floors_give_clears_nothing(highest: list[float
 
 @pytest.mark.parametrize(
     ("phase", "own", "other"),
-    [
-        (Phase.SHIFT, "shifts_by_sensors", "lifts_by_sensors"),
-        (Phase.LIFT, "lifts_by_sensors", "shifts_by_sensors"),
-    ],
+    [(Phase.SHIFT, "shifts_by_sensors", "lifts_by_sensors"), (Phase.LIFT, "lifts_by_sensors", "shifts_by_sensors")],
 )
 def test_share_by_sensors_counts_its_own_phase_only(phase: Phase, own: str, other: str) -> None:
     gait, shares = GaitRecord(100), []

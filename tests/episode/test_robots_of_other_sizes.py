@@ -24,10 +24,7 @@ def stepping(engine: Engine, length: float, mass: float) -> EpisodeResult:
     """A robot of some size without errors of the sensors, for as many steps as any other."""
     time = math.sqrt(length)
     config = EpisodeConfig(
-        engine=engine,
-        dimensions=dimensions_alike(length, mass),
-        step_frequency=3.0 / time,
-        time_limit=1.0 + 8.0 * time,
+        engine=engine, dimensions=dimensions_alike(length, mass), step_frequency=3.0 / time, time_limit=1.0 + 8.0 * time
     )
     config = replace(config, randomisation=replace(config.randomisation, enabled=False))
     return simulate(EpisodeSpec(PARAMETERS, 0, config=config))

@@ -127,10 +127,7 @@ def with_value(kind: str, name: str, part: str, /, **values: str) -> Change:
         (lambda root: root.append(find(root, "joint", "left_hip_flexion")), "more than one joint named 'left_hip_fl"),
         (lambda root: root.append(find(root, "link", "left_hip")), "more than one link named 'left_hip'"),
         (with_value("joint", "left_hip_abduction", "parent", link="left_shank"), "loop"),
-        (
-            with_value("joint", "left_hip_flexion", "parent", link="nowhere"),
-            "flexion' names a link 'nowhere'",
-        ),
+        (with_value("joint", "left_hip_flexion", "parent", link="nowhere"), "flexion' names a link 'nowhere'"),
         (with_value("joint", "left_hip_flexion", "child", link="left_shank"), "'left_shank' has more than one parent"),
         (with_value("link", "left_hip", "mass", value="-1"), "'left_hip' must have a positive mass, not -1"),
         (with_value("link", "left_hip", "inertia", ixx="0"), "'left_hip' must have a positive definite inertia"),

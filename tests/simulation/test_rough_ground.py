@@ -112,11 +112,7 @@ def test_bumps_are_alike_for_robots_alike(length: float) -> None:
 
 
 @settings(max_examples=30)
-@given(
-    roughness=st.floats(1e-4, 0.05),
-    cell=st.floats(0.02, 0.1),
-    seed=st.integers(0, 2**32),
-)
+@given(roughness=st.floats(1e-4, 0.05), cell=st.floats(0.02, 0.1), seed=st.integers(0, 2**32))
 def test_bumps_stay_within_their_height_and_reach_far_enough(roughness: float, cell: float, seed: int) -> None:
     ground = draw_ground(Terrain(roughness=(roughness, roughness), cell=(cell, cell)), seed)
     heights = np.array(ground.heights)

@@ -60,12 +60,7 @@ def everything(folder: RunFolder) -> dict[str, Any]:
 
 @pytest.mark.parametrize(
     ("algo", "task", "cuts"),
-    [
-        ("naf", "balance", (3, 12)),
-        ("sac", "stepping", (9,)),
-        ("cma-es", "balance", (2, 14)),
-        ("gp", "stepping", (10,)),
-    ],
+    [("naf", "balance", (3, 12)), ("sac", "stepping", (9,)), ("cma-es", "balance", (2, 14)), ("gp", "stepping", (10,))],
 )
 def test_an_interrupted_training_ends_as_without(algo: str, task: str, cuts: tuple[int, ...], tmp_path: Path) -> None:
     agent = settings_of(algo)(**({"learning_starts": 6} if algo in AGENTS else {}))
@@ -150,10 +145,7 @@ def test_a_training_that_does_not_repeat_is_not_resumed(whole: RunFolder, tmp_pa
 
 def test_two_trainings_do_not_share_a_run_folder(whole: RunFolder, tmp_path: Path) -> None:
     begun = RunFolder.create(tmp_path / "begun", whole.config())
-    with (
-        begun.journal_of(whole.config()),
-        pytest.raises(RunFolderError, match=r"begun is in use by another training"),
-    ):
+    with begun.journal_of(whole.config()), pytest.raises(RunFolderError, match=r"begun is in use by another training"):
         train(whole.config(), begun)
     go_on(begun, 1)
 
