@@ -12,30 +12,21 @@ def tried(seed: int, count: int = 80, dim: int = 3) -> tuple[np.ndarray, np.ndar
 
 
 @pytest.mark.parametrize("kernel", [(0.6, 1.0), (0.3, 0.1)])
-def test_expectations_are_those_of_the_definition(kernel: tuple[float, float]) -> None:
-    """Computed by eigenvectors."""
-    actions, rewards = tried(0)
-    length, noise = kernel
-    covariances = np.exp(-0.5 * (np.linalg.norm(actions[:, None] - actions, axis=2) / length) ** 2)
-    values, vectors = np.linalg.eigh(covariances)
-    doubt = np.quantile(rewards, PRIOR_QUANTILE)
-    expected = doubt + covariances @ (vectors @ ((vectors.T @ (rewards - doubt)) / (values + noise)))
-    assert GaussianProcess(actions, rewards, kernel).expected(actions) == pytest.approx(expected)
-
-
-def test_bounds_are_those_of_the_definition() -> None:
-    """Equation 2.26, with the variance between actions of the highest likelihood."""
+def test_expectations_and_bounds_are_as_defined(kernel: tuple[float, float]) -> None:
+    """Bounds by equation 2.26, with the variance between actions of the highest likelihood."""
     (actions, rewards), places = tried(0), tried(1)[0]
-    process = GaussianProcess(actions, rewards, (0.6, 0.3))
+    length, noise = kernel
 
     def covariances(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-        return np.exp(-0.5 * (np.linalg.norm(first[:, None] - second, axis=2) / 0.6) ** 2)
+        return np.exp(-0.5 * (np.linalg.norm(first[:, None] - second, axis=2) / length) ** 2)
 
-    inverse = np.linalg.inv(covariances(actions, actions) + 0.3 * np.eye(80))
-    above = rewards - np.quantile(rewards, PRIOR_QUANTILE)
-    between = covariances(places, actions)
+    inverse = np.linalg.inv(covariances(actions, actions) + noise * np.eye(80))
+    doubt, between = np.quantile(rewards, PRIOR_QUANTILE), covariances(places, actions)
+    above, process = rewards - doubt, GaussianProcess(actions, rewards, kernel)
+    expected = doubt + between @ inverse @ above
     unknown = (above @ inverse @ above / 80) * (1 - np.einsum("ij,jk,ik->i", between, inverse, between))
-    assert process.upper_bounds(places, 2.0) == pytest.approx(process.expected(places) + 2.0 * np.sqrt(unknown))
+    assert process.expected(places) == pytest.approx(expected)
+    assert process.upper_bounds(places, 2.0) == pytest.approx(expected + 2.0 * np.sqrt(unknown))
 
 
 def test_an_optimist_leaves_a_good_place_for_a_possible_one() -> None:

@@ -36,13 +36,6 @@ class Steady(gym.Env):
         return self.observation_space.sample(), float(-np.square(action).sum()), False, truncated, {}
 
 
-def assert_learned(model: NAF) -> None:
-    """All weights moved, and all are finite."""
-    fresh = NAF(model.policy_class, model.env, policy_kwargs=model.policy_kwargs, seed=model.seed)
-    for old, new in zip(fresh.q_net.parameters(), model.q_net.parameters(), strict=True):
-        assert th.isfinite(new).all() and not th.equal(old, new)
-
-
 @pytest.mark.parametrize(("shape", "dtype"), [((1,), np.float32), ((2, 3), np.float64)])
 def test_action_shapes_and_types(shape, dtype):
     space = spaces.Box(-0.1, 0.3, shape, dtype)
@@ -80,15 +73,7 @@ def test_predict():
 
 
 def pendulums(n_envs):
-    return lambda: make_vec_env("Pendulum-v1", n_envs=n_envs, seed=0)
-
-
-def bits():
-    return DummyVecEnv([lambda: BitFlippingEnv(n_bits=3, continuous=True)] * 2)
-
-
-def images():
-    return FakeImageEnv(screen_height=40, screen_width=40, n_channels=1, discrete=False)
+    return make_vec_env("Pendulum-v1", n_envs=n_envs, seed=0)
 
 
 EXTRACTOR = dict(features_extractor_kwargs=dict(cnn_output_dim=16), net_arch=[16])
@@ -98,12 +83,16 @@ HINDSIGHT = dict(replay_buffer_class=HerReplayBuffer, replay_buffer_kwargs=dict(
 @pytest.mark.parametrize(
     ("policy", "make_env", "kwargs"),
     [
-        ("MlpPolicy", pendulums(1), {}),
-        ("MlpPolicy", pendulums(3), {"n_steps": 3}),
-        ("MlpPolicy", pendulums(3), {"gradient_steps": -1}),
-        ("CnnPolicy", images, dict(batch_size=4, learning_starts=10)),
+        ("MlpPolicy", lambda: pendulums(1), {}),
+        ("MlpPolicy", lambda: pendulums(3), {"n_steps": 3}),
+        ("MlpPolicy", lambda: VecNormalize(pendulums(3)), {"gradient_steps": -1}),
+        (
+            "CnnPolicy",
+            lambda: FakeImageEnv(40, 40, n_channels=1, discrete=False),
+            dict(batch_size=4, learning_starts=10),
+        ),
         ("MultiInputPolicy", lambda: SimpleMultiObsEnv(discrete_actions=False), dict(policy_kwargs=EXTRACTOR)),
-        ("MultiInputPolicy", bits, HINDSIGHT),
+        ("MultiInputPolicy", lambda: DummyVecEnv([lambda: BitFlippingEnv(3, continuous=True)] * 2), HINDSIGHT),
     ],
 )
 def test_run(policy, make_env, kwargs):
@@ -112,14 +101,9 @@ def test_run(policy, make_env, kwargs):
     assert model.num_timesteps == steps
     action, _ = model.predict(model.observation_space.sample())
     assert action.shape == model.action_space.shape
-    assert_learned(model)
-
-
-def test_normalised_environments():
-    env = VecNormalize(pendulums(2)())
-    model = NAF("MlpPolicy", env, **SMALL).learn(60)
-    # The buffer keeps what the environment said; samples are normalised
-    assert np.abs(model.replay_buffer.rewards).max() > 1.5 * model.replay_buffer.sample(200, env).rewards.abs().max()
+    fresh = NAF(policy, model.env, policy_kwargs=model.policy_kwargs, seed=model.seed)
+    for old, new in zip(fresh.q_net.parameters(), model.q_net.parameters(), strict=True):
+        assert th.isfinite(new).all() and not th.equal(old, new)
 
 
 def test_discrete_actions_and_the_wrong_policy_are_refused():

@@ -39,10 +39,8 @@ def test_statistics_change_in_training_only(model):
     start = running_mean(model.q_net)
     model.learn(20, reset_num_timesteps=False)
     learned = running_mean(model.q_net)
-    assert not th.equal(start, learned)
-    first, second = model.predict(OBS)[0], model.predict(OBS)[0]
-    np.testing.assert_array_equal(first, second)
-    assert th.equal(learned, running_mean(model.q_net))
+    np.testing.assert_array_equal(model.predict(OBS)[0], model.predict(OBS)[0])
+    assert not th.equal(start, learned) and th.equal(learned, running_mean(model.q_net))
 
 
 def test_a_pass_in_training_mode_an_update_none_in_the_target(model):

@@ -57,13 +57,7 @@ class Recorder(NAF):
 
 
 def trained(steps, **kwargs):
-    arguments = {
-        "seed": 0,
-        "learning_starts": 1000,
-        "exploration_std": 0.3,
-        "policy_kwargs": dict(net_arch=LAYERS),
-        **kwargs,
-    }
+    arguments = dict(seed=0, learning_starts=1000, exploration_std=0.3, policy_kwargs=dict(net_arch=LAYERS)) | kwargs
     return Recorder("MlpPolicy", Drift(), **arguments).learn(steps)
 
 
@@ -89,9 +83,8 @@ def test_a_warning_names_the_remedy_once():
         bias.data.fill_(0.0)
         model.train(1000, 16)
     bias.data.fill_(1000.0)
-    with pytest.warns(
-        UserWarning, match=r"^V of 1\.\d\de\+03 is beyond .*: it runs away\. Remedy: .* layers for W in place of V"
-    ) as seen:
+    said = r"^V of 1\.\d\de\+03 is beyond .*: it runs away\. Remedy: .* layers for W in place of V"
+    with pytest.warns(UserWarning, match=said) as seen:
         model.train(1, 16)
         model.train(1, 16)
     assert len(seen) == 1
@@ -163,20 +156,14 @@ def test_the_pull_of_mu_to_the_centre_fades_with_data(transitions, weight):
     assert slope.numpy() == pytest.approx(weight * 9 * mu.detach().numpy())
 
 
-@pytest.mark.parametrize(
-    ("n_envs", "buffer"),
-    [
-        (1, dict(buffer_size=40)),
-        (4, {}),
-        (4, dict(replay_buffer_class=RankReplayBuffer, replay_buffer_kwargs=dict(temperature=0))),
-    ],
-)
+RANKED = dict(replay_buffer_class=RankReplayBuffer, replay_buffer_kwargs=dict(temperature=0))
+
+
+@pytest.mark.parametrize(("n_envs", "buffer"), [(1, dict(buffer_size=40)), (4, RANKED)])
 def test_all_transitions_count_beside_the_prior_of_mu(n_envs, buffer, monkeypatch):
     """Those of all environments, and also those that a small replay buffer has forgotten."""
     counted = []
-    monkeypatch.setattr(
-        "sarah.agents.naf.centre_loss", lambda values, loss, n: counted.append(n) or centre_loss(values, loss, n)
-    )
+    monkeypatch.setattr("sarah.agents.naf.centre_loss", lambda *args: counted.append(args[2]) or centre_loss(*args))
     env = make_vec_env(Drift, n_envs)
     model = NAF("MlpPolicy", env, learning_starts=20, batch_size=8, device="cpu", **buffer).learn(100)
     assert counted[-1] == 100

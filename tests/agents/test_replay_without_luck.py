@@ -102,12 +102,7 @@ def test_rewards_are_corrected_before_they_are_normalised() -> None:
 
 def test_a_correction_is_made_once_after_an_addition(monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[int] = []
-
-    def counted(returns: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
-        calls.append(len(returns))
-        return corrected(returns, disturbances)
-
-    monkeypatch.setattr(buffers, "corrected", counted)
+    monkeypatch.setattr(buffers, "corrected", lambda *args: calls.append(len(args[0])) or corrected(*args))
     buffer = played(30)
     for _ in range(3):
         buffer.sample(4)
@@ -119,27 +114,26 @@ def test_a_correction_is_made_once_after_an_addition(monkeypatch: pytest.MonkeyP
     assert calls == [30, 31]
 
 
+AS_BEFORE = "a list of finite numbers as in the episodes before, 2 of them, not"
+ALWAYS = "there in every episode or in none"
+
+
 @pytest.mark.parametrize(
-    ("disturbances", "words"),
+    ("before", "info", "words"),
     [
-        ((1.0,), "a list of finite numbers as in the episodes before, 2 of them, not (1.0,)"),
-        ((1.0, "a"), "a list of finite numbers as in the episodes before, 2 of them, not (1.0, 'a')"),
-        (3.0, "a list of finite numbers as in the episodes before, 2 of them, not 3.0"),
-        (None, "there in every episode or in none"),
+        ({"episodes": 3}, {"disturbances": (1.0,)}, f"{AS_BEFORE} (1.0,)"),
+        ({"episodes": 3}, {"disturbances": (1.0, "a")}, f"{AS_BEFORE} (1.0, 'a')"),
+        ({"episodes": 3}, {"disturbances": 3.0}, f"{AS_BEFORE} 3.0"),
+        ({"episodes": 3}, {}, ALWAYS),
+        ({"episodes": 3, "tells": False}, {"disturbances": [1.0]}, ALWAYS),
+        ({"episodes": 0}, {"disturbances": [np.inf]}, "a list of finite numbers, not [inf]"),
     ],
 )
-def test_other_disturbances_than_before_are_refused(disturbances: Any, words: str) -> None:
-    buffer = played(3)
+def test_other_disturbances_than_before_are_refused(before: Any, info: dict[str, Any], words: str) -> None:
+    buffer = played(**before)
     with pytest.raises(ValueError) as refused:
-        add(buffer, 3, (0, 0), 1.0, **({} if disturbances is None else {"disturbances": disturbances}))
-    assert str(refused.value) == f'info["disturbances"] must be {words}' and buffer.size() == 3
-
-
-def test_disturbances_cannot_begin_later_or_be_infinite() -> None:
-    with pytest.raises(ValueError, match=r'^info\["disturbances"\] must be there in every episode or in none$'):
-        add(played(3, tells=False), 3, (0, 0), 1.0, disturbances=[1.0])
-    with pytest.raises(ValueError, match=r"must be a list of finite numbers, not \[inf\]$"):
-        add(played(0), 3, (0, 0), 1.0, disturbances=[np.inf])
+        add(buffer, 3, (0, 0), 1.0, **info)
+    assert str(refused.value) == f'info["disturbances"] must be {words}' and buffer.size() == before["episodes"]
 
 
 def test_after_a_reset_there_may_be_others_or_none() -> None:

@@ -16,14 +16,11 @@ def hill(actions: np.ndarray) -> np.ndarray:
     return np.exp(-2 * np.sum((actions - 0.4) ** 2, axis=-1))
 
 
-def played(
-    kind: type[RankReplayBuffer] = SmoothedReplayBuffer, count: int = 200, noise: float = 0.5
-) -> RankReplayBuffer:
+def played(kind: type[RankReplayBuffer] = SmoothedReplayBuffer, count: int = 200) -> RankReplayBuffer:
     """A buffer with noisy rewards of a hill."""
-    buffer = kind(150, BOX, BOX, "cpu")
-    rng = np.random.default_rng(0)
+    buffer, rng = kind(150, BOX, BOX, "cpu"), np.random.default_rng(0)
     for action in rng.uniform(-1, 1, (count, 2)):
-        add(buffer, action, float(hill(action)) + rng.normal(0, noise))
+        add(buffer, action, float(hill(action)) + rng.normal(0, 0.5))
     return buffer
 
 
