@@ -1,17 +1,24 @@
-"""One episode: the paper's parameters, clocks, other control rates, and a simulator without physics."""
+"""One episode: the paper's parameters, clocks, other control rates, a simulator without physics, and its trace."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from laboratory import NoPhysics
+from laboratory import CONTROL_DT, NoPhysics
 
 from sarah.control.parameters import PAPER_STEPPING
+from sarah.control.pattern_generator import PhaseChange
 from sarah.episode.episode import Episode, simulate
+from sarah.episode.push import Push
 from sarah.episode.result import EpisodeResult
+from sarah.episode.reward import highest_return, reward_rate
 from sarah.episode.robot_settings import conditions_of
+from sarah.episode.running_robot import RunningRobot
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BalanceConfig
+from sarah.robot.description import describe_robot
+from sarah.robot.reading import Vector
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import Randomisation
 
@@ -75,3 +82,95 @@ def test_an_episode_takes_given_conditions_not_those_drawn() -> None:
     episodes = {bias: Episode(SHORT, 0, build=NoPhysics, conditions=given) for bias, given in ((0, None), (5, biased))}
     rates = {bias: episode.stand().angular_rate[0] for bias, episode in episodes.items()}
     assert rates[5] - rates[0] == pytest.approx(5.0 - drawn.sensors.angular_rate_bias[0])
+
+
+PUSH = (50.0, 0.0, 0.0)
+
+
+class Pushed(NoPhysics):
+    """A simulator in which a push does nothing."""
+
+    def push(self, force: Vector) -> None:
+        pass
+
+
+class Diary:
+    """Observer that writes down time, number of commands so far, and push."""
+
+    def __init__(self) -> None:
+        self.entries: list[tuple[float, int, Vector | None]] = []
+
+    def sensed(self, robot: RunningRobot) -> None:
+        self._write(robot, None)
+
+    def decided(self, robot: RunningRobot, change: PhaseChange | None, force: Vector | None) -> None:
+        self._write(robot, force)
+
+    def _write(self, robot: RunningRobot, force: Vector | None) -> None:
+        assert isinstance(robot.simulation, Pushed)
+        self.entries.append((robot.simulation.time, len(robot.simulation.targets), force))
+
+
+def test_an_observer_sees_a_tick_before_anything_moves() -> None:
+    diary, robot = Diary(), RunningRobot(EpisodeConfig(), 0, build=Pushed)
+    robot.observers = (diary,)
+    robot.tick()
+    robot.tick(PUSH)
+    times, commands, forces = zip(*diary.entries, strict=True)
+    assert times == pytest.approx((0.0, 0.0, 0.01, 0.01))
+    assert commands == (0, 1, 1, 2)
+    assert forces == (None, None, None, PUSH)
+    robot.termination = "fell"
+    robot.tick()
+    assert robot.simulation.time == pytest.approx(0.02) and len(diary.entries) == 4
+
+
+def test_a_with_block_closes_the_world_after_an_error_too() -> None:
+    with pytest.raises(ZeroDivisionError), Episode(EpisodeConfig(), 0, build=NoPhysics) as episode:
+        raise ZeroDivisionError
+    assert isinstance(episode.robot.simulation, NoPhysics) and episode.robot.simulation.closed
+
+
+def test_return_is_equation_2_integrated_over_the_trace(paper_episode: EpisodeResult) -> None:
+    trace = paper_episode.trace
+    assert trace is not None
+    # A row has the position before its tick, and the reward is that of the one after it. The robot starts at (0, 0).
+    moved = [*trace.position[1:], paper_episode.final_position]
+    rewards = [reward_rate(*position, f) for position, f in zip(moved, trace.steps_per_second, strict=True)]
+    assert sum(rewards) * CONTROL_DT == pytest.approx(paper_episode.episode_return, rel=1e-12)
+    ceiling = highest_return(describe_robot().standing_height, 29.0)
+    assert paper_episode.score == pytest.approx(paper_episode.episode_return / ceiling)
+    assert trace.score[0] == 0.0 and (np.diff(trace.score) >= 0.0).all()
+    assert trace.score[-1] == pytest.approx(paper_episode.score, rel=0.001)
+
+
+def test_trace_has_a_row_for_every_tick(paper_episode: EpisodeResult) -> None:
+    trace = paper_episode.trace
+    assert trace is not None
+    assert len(trace) == 2900 and {len(values) for values in vars(trace).values()} == {2900}
+    assert np.allclose(np.diff(trace.time), CONTROL_DT) and not trace.push.any()
+    assert set(trace.phase) == {"shift", "lift", "land"}
+    assert trace.joints.shape == (2900, 6) and trace.ankles.shape == (2900, 4)
+    assert [trace.tick_at(time) for time in (0.0, 1.0, 1.013, 2.0, 99.0)] == [0, 0, 1, 100, 2899]
+    assert all(trace.tick_at(time) == tick for tick, time in enumerate(trace.time))
+
+
+def test_trace_shows_the_push() -> None:
+    push = Push(newtons=(60.0, 60.0), degrees=(90.0, 90.0), at_seconds=(2.0, 2.0), duration=0.15)
+    spec = EpisodeSpec((0.0,) * 4, 0, "balance", BalanceConfig(time_limit=3.0, push=push))
+    trace = simulate(spec, record_trace=True).trace
+    assert trace is not None
+    assert trace.time[trace.push.any(axis=1)] == pytest.approx(np.arange(2.0, 2.145, CONTROL_DT))
+    assert trace.push[trace.tick_at(2.1)] == pytest.approx([0.0, 60.0, 0.0])
+
+
+def test_every_push_is_shown_while_it_acts_and_a_moment(paper_episode: EpisodeResult) -> None:
+    trace = paper_episode.trace
+    assert trace is not None
+    forces = np.zeros((len(trace), 3))
+    forces[100:110], forces[300:450], forces[450:455] = (5.0, 0.0, 0.0), (0.0, 7.0, 0.0), (0.0, -7.0, 0.0)
+    pushed = replace(trace, push=forces)
+    assert pushed.pushes() == [(100, 110), (300, 450), (450, 455)]
+    shown = pushed.shown_pushes()
+    assert [shown.count(force) for force in ((5.0, 0.0, 0.0), (0.0, 7.0, 0.0), (0.0, -7.0, 0.0))] == [60, 150, 60]
+    assert len(shown) == len(trace) and shown[99] is None and shown[100] == shown[159] and shown[160] is None

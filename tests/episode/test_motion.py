@@ -22,32 +22,26 @@ def moving(*motion: tuple[float, ...]) -> Any:
     return SimpleNamespace(truth=truth, simulation=SimpleNamespace(actuator_motion=lambda: motion))
 
 
-def test_power_of_a_fast_sine_is_half_its_amplitude_squared() -> None:
-    signals = np.stack([sine(35.0, 3.0), sine(25.0, 1.0)], axis=1)
-    assert power_within(signals, RATE, (20.0, 50.0)) == pytest.approx(4.5 + 0.5, rel=0.01)
+def burst(second: int) -> np.ndarray:
+    """A second of a fast sine in eleven of rest."""
+    signal = np.zeros((1100, 1))
+    signal[100 * second : 100 * second + 100, 0] = sine(40.0, 6.0, 1.0)
+    return signal
 
 
-def test_gravity_and_slow_motion_do_not_count() -> None:
-    signals = np.stack([9.81 + sine(1.5, 5.0), sine(10.0, 2.0)], axis=1)
-    assert power_within(signals, RATE, (20.0, 50.0)) < 1e-5
-
-
-def test_chatter_at_half_the_control_rate_counts() -> None:
-    shaking = np.where(np.arange(1001) % 2, 4.0, -4.0)[:, None]
-    assert power_within(shaking, RATE, (20.0, 50.0)) == pytest.approx(16.0, rel=0.01)
-
-
-def test_a_burst_counts_alike_whenever_it_comes() -> None:
-    powers = []
-    for second in (1, 5, 9):
-        signal = np.zeros((1100, 1))
-        signal[100 * second : 100 * second + 100, 0] = sine(40.0, 6.0, 1.0)
-        powers.append(power_within(signal, RATE, (20.0, 50.0)))
-    assert powers == pytest.approx([18.0 / 11.0] * 3, rel=0.1)
-
-
-def test_too_short_for_a_spectrum_is_zero() -> None:
-    assert power_within(np.ones((10, 3)), RATE, (20.0, 50.0)) == 0.0
+@pytest.mark.parametrize(
+    ("signals", "power"),
+    [
+        (np.stack([sine(35.0, 3.0), sine(25.0, 1.0)], axis=1), 4.5 + 0.5),
+        (np.stack([9.81 + sine(1.5, 5.0), sine(10.0, 2.0)], axis=1), 0.0),  # gravity and slow motion
+        (np.where(np.arange(1001) % 2, 4.0, -4.0)[:, None], 16.0),  # chatter at half the control rate
+        *((burst(second), pytest.approx(18.0 / 11.0, rel=0.1)) for second in (1, 5, 9)),
+        (np.ones((10, 3)), 0.0),  # too short for a spectrum
+    ],
+)
+def test_power_of_fast_motion_is_half_its_amplitude_squared(signals: np.ndarray, power: Any) -> None:
+    expected = pytest.approx(power, rel=0.01, abs=1e-5) if isinstance(power, float) else power
+    assert power_within(signals, RATE, (20.0, 50.0)) == expected
 
 
 def test_actuators_work_and_peaks() -> None:

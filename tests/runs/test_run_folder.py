@@ -98,36 +98,27 @@ def test_a_run_has_no_more_rows_than_episodes(run: RunFolder) -> None:
         list(run.episodes())
 
 
-def test_a_folder_that_is_not_empty_is_refused_and_left_alone(tmp_path: Path) -> None:
-    (tmp_path / "precious.txt").write_text("data")
-    with pytest.raises(RunFolderError, match="is not empty"):
-        RunFolder.create(tmp_path, CONFIG)
-    assert [path.name for path in tmp_path.iterdir()] == ["precious.txt"]
-
-
-def test_run_folders_number_themselves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert new_path("stepping", "naf-s3") == Path("runs/stepping/naf-s3")
-    assert new_path("stepping", "naf-s3") == Path("runs/stepping/naf-s3-2")
-
-
-def test_folders_without_a_finished_training_are_refused(tmp_path: Path) -> None:
+def test_folders_without_a_finished_training_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(RunFolderError, match="does not exist"):
         RunFolder.open(tmp_path / "nowhere")
     RunFolder.create(tmp_path / "begun", CONFIG)
     with pytest.raises(RunFolderError, match=r"no parameters.json"):
         RunFolder.open(tmp_path / "begun")
     assert RunFolder.open(tmp_path / "begun", unfinished=True).config() == CONFIG
+    with pytest.raises(RunFolderError, match="is not empty"):  # and it is left alone
+        RunFolder.create(tmp_path, CONFIG)
+    assert [path.name for path in tmp_path.iterdir()] == ["begun"]
+    monkeypatch.chdir(tmp_path)
+    assert [new_path("stepping", "naf-s3").name for _ in range(2)] == ["naf-s3", "naf-s3-2"]
+    assert new_path("stepping", "naf-s3").parent == Path("runs/stepping")
 
 
-@pytest.mark.parametrize(
-    "content",
-    ["{", "[]", "{}", '{"parameters": {"P1": 1}}', '{"parameters": {"P1": "x", "P2": 1, "P3": 1, "P4": 1, "P5": 1}}'],
-)
-def test_spoilt_parameters_are_named(content: str, run: RunFolder) -> None:
-    run.result_path.write_text(content)
-    with pytest.raises(RunFolderError, match=r"parameters.json does not hold learned parameters"):
-        run.parameters()
+def test_spoilt_parameters_are_named(run: RunFolder) -> None:
+    text = '{"parameters": {"P1": "x", "P2": 1, "P3": 1, "P4": 1, "P5": 1}}'
+    for content in ("{", "[]", "{}", '{"parameters": {"P1": 1}}', text):
+        run.result_path.write_text(content)
+        with pytest.raises(RunFolderError, match=r"parameters.json does not hold learned parameters"):
+            run.parameters()
 
 
 @pytest.mark.parametrize(

@@ -62,19 +62,16 @@ def test_state_is_that_of_the_torsos_frame_wherever_its_mass_is(lab: Laboratory,
     for conditions in (NOMINAL, Conditions(mass_offset=offset)):
         simulation = build(conditions, PyBulletPhysics(rate=2000))
         lab.place(simulation, roll=0.3, pitch=-0.2)
-        hip = lab.link_position(simulation, "left_hip") - simulation.torso_state().position
-        assert rotate_to_body(simulation.torso_state().orientation, tuple(hip)) == pytest.approx(
-            (-0.13, 0.0, -0.17), abs=1e-6
-        )
+        torso = simulation.torso_state()
+        hip = rotate_to_body(torso.orientation, tuple(lab.link_position(simulation, "left_hip") - torso.position))
+        assert hip == pytest.approx((-0.13, 0.0, -0.17), abs=1e-6)
         lab.turn(simulation, (1.0, 2.0, 2.0))
         simulation.advance()
         before = simulation.torso_state()
         simulation.advance()
         after = simulation.torso_state()
-        for then, now, speeds in zip(
-            before.position, after.position, zip(before.velocity, after.velocity, strict=True), strict=True
-        ):
-            assert (now - then) * SECOND == pytest.approx(sum(speeds) / 2.0, abs=0.004)
+        moved, speeds = np.subtract(after.position, before.position), np.add(before.velocity, after.velocity)
+        assert moved * SECOND == pytest.approx(speeds / 2.0, abs=0.004)
 
 
 def test_pads_stop_the_plates(lab: Laboratory, build: BuildSimulation) -> None:
@@ -101,20 +98,14 @@ def test_ankles_are_damped_alike(lab: Laboratory, build: BuildSimulation) -> Non
     assert simulation.joint_positions(("left_hindfoot",))[0] == pytest.approx(-0.085, abs=0.0005)
 
 
-def test_leaning_right_reads_negative_x_and_back_positive_y(lab: Laboratory, build: BuildSimulation) -> None:
-    """A torso at rest, turned by a positive angle about y (to the right) or about x (backward)."""
+def test_inertial_sensors_read_in_the_torsos_frame(lab: Laboratory, build: BuildSimulation) -> None:
+    """At rest, turned by a positive angle about y (to the right) or about x (backward)."""
     simulation, angle = build(), 0.1
-    lab.place(simulation, roll=angle)
-    leaning_right = simulation.read().acceleration
-    lab.place(simulation, pitch=angle)
-    leaning_back = simulation.read().acceleration
     g_sin, g_cos = GRAVITY * math.sin(angle), GRAVITY * math.cos(angle)
-    assert leaning_right == pytest.approx((-g_sin, 0.0, g_cos), abs=1e-6)
-    assert leaning_back == pytest.approx((0.0, g_sin, g_cos), abs=1e-6)
-
-
-def test_gyroscope_reads_the_rate_in_the_torsos_frame(lab: Laboratory, build: BuildSimulation) -> None:
-    simulation = build()
+    lab.place(simulation, roll=angle)
+    assert simulation.read().acceleration == pytest.approx((-g_sin, 0.0, g_cos), abs=1e-6)
+    lab.place(simulation, pitch=angle)
+    assert simulation.read().acceleration == pytest.approx((0.0, g_sin, g_cos), abs=1e-6)
     lab.place(simulation, roll=math.pi / 2)
     lab.turn(simulation, (0.7, 0.4, -0.2))
     # Turned by 90 degrees about y, the torso's x axis points down and its z axis to the right.
@@ -138,16 +129,9 @@ def test_push_delivers_force_times_duration(
     size = np.linalg.norm(impulse)
     assert gained @ impulse / size == pytest.approx(size, rel=0.002)
     assert np.linalg.norm(gained - impulse) < 2.4 / PHYSICS[physics].rate * size
-
-
-def test_push_lasts_one_tick(lab: Laboratory, build: BuildSimulation) -> None:
-    simulation = build()
-    lab.place(simulation)
-    simulation.push((100.0, 0.0, 0.0))
-    simulation.advance()
-    after_push = momentum(lab, simulation)[0]
-    simulation.advance()
-    assert momentum(lab, simulation)[0] == pytest.approx(after_push, rel=1e-4)
+    after_push = momentum(lab, simulation)[:2]
+    simulation.advance()  # a push lasts one tick
+    assert momentum(lab, simulation)[:2] == pytest.approx(after_push, rel=1e-4, abs=1e-3)
 
 
 def test_mirrored_push_gives_mirrored_motion(build: BuildSimulation) -> None:

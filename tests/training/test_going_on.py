@@ -53,19 +53,14 @@ def test_the_agent_of_a_run_goes_on(
     algo: str, algorithm: type[OffPolicyAlgorithm], count: int, models: dict[str, Path]
 ) -> None:
     model = algorithm.load(models[algo], env=environment(count))
-    before = weights(model)
-    model.learn(6)
+    before, steps = weights(model), model.num_timesteps
+    if algorithm is LocalNAF:  # without another warm-up
+        model.learn(2, reset_num_timesteps=False)
+        assert model.num_timesteps == steps + 2 and not torch.equal(weights(model), before)
+    model = algorithm.load(models[algo], env=environment(count)).learn(6)
     assert model.replay_buffer is not None and model.num_timesteps == 6
     assert model.replay_buffer.size() * model.replay_buffer.n_envs == 6
     assert not torch.equal(weights(model), before) and torch.isfinite(weights(model)).all()
-
-
-def test_it_can_go_on_without_another_warm_up(models: dict[str, Path]) -> None:
-    model = LocalNAF.load(models["naf"], env=environment())
-    before, steps = weights(model), model.num_timesteps
-    model.learn(2, reset_num_timesteps=False)
-    assert model.num_timesteps == steps + 2
-    assert not torch.equal(weights(model), before)
 
 
 def test_what_goes_on_is_what_was_done(models: dict[str, Path]) -> None:

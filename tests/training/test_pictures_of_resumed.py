@@ -76,8 +76,7 @@ def test_pictures_that_were_lost_are_drawn_again(
     harm: Callable[[Path], None], lost: int, artist: Artist, tmp_path: Path
 ) -> None:
     run = interrupted(tmp_path / "run", CONFIG, 5)
-    (events,) = run.event_files()
-    harm(events)
+    harm(*run.event_files())
     train(CONFIG, run)
     assert [step for step, _ in pictures(run)] == [2, 4, 6, 8, 10] and artist.drawn == 5 + lost
 

@@ -39,8 +39,7 @@ def test_every_setting_edited_in_turn_is_refused(before: str, after: str, key: s
     text = run.config_text()
     run.specification_path.write_text(text.replace(before, after, 1))
     found = content(run)
-    words = rf"run cannot be resumed: (.*; )?{key} is .* here, and .* in this training"
-    with pytest.raises(ResumeError, match=words):
+    with pytest.raises(ResumeError, match=rf"run cannot be resumed: (.*; )?{key} is .* here, and .* in this training"):
         train(run.config(), run)
     assert content(run) == found and found["config.yaml"] != text.encode()
     run.specification_path.write_text(text.replace("pictures: 0", "pictures: 1"))
