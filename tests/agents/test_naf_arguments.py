@@ -115,12 +115,6 @@ def test_actions_without_a_finite_range_are_refused(low, high, said):
         NAF("MlpPolicy", env)
 
 
-def test_the_file_of_another_algorithm_is_refused(tmp_path):
-    TD3("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL).save(tmp_path / "td3")
-    with pytest.raises(ValueError, match=r"^the policy of NAF must be NAFPolicy or a subclass of it, not TD3Policy$"):
-        NAF.load(tmp_path / "td3")
-
-
 class OneReward(gym.RewardWrapper):
     """A reward in the place of every tenth one."""
 
@@ -146,3 +140,6 @@ def test_a_loaded_agent_is_judged_and_knows_no_best_action_yet(tmp_path):
         LocalNAF.load(tmp_path / "naf", elite_draws=0)
     with pytest.raises(ValueError, match=r"^the replay buffer is empty, so there is no best action"):
         LocalNAF.load(tmp_path / "naf", env=model.get_env()).replay_buffer.best_action()
+    TD3("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL).save(tmp_path / "td3")
+    with pytest.raises(ValueError, match=r"^the policy of NAF must be NAFPolicy or a subclass of it, not TD3Policy$"):
+        NAF.load(tmp_path / "td3")

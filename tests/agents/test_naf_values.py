@@ -134,12 +134,8 @@ def test_w_is_the_mean_of_what_actions_near_mu_led_to():
         (slope,) = th.autograd.grad(nearby_loss(values._replace(target=w.expand(3, 1)), targets), w)
         w = (w - 0.25 * slope).detach().requires_grad_()
     assert w.item() == pytest.approx(((weights * targets).sum() / weights.sum()).item(), rel=1e-4)
-
-
-def test_w_has_a_mean_where_all_actions_are_mu_itself():
-    targets = th.tensor([[1.0], [3.0]])
-    w = th.full((2, 1), 3.0, requires_grad=True)
-    loss = nearby_loss(Values(targets, targets, w, targets, th.zeros(2, 1)), targets)
+    targets, w = th.tensor([[1.0], [3.0]]), th.full((2, 1), 3.0, requires_grad=True)
+    loss = nearby_loss(Values(targets, targets, w, targets, th.zeros(2, 1)), targets)  # all actions are mu itself
     (slope,) = th.autograd.grad(loss, w)
     assert loss.item() == pytest.approx(2.0) and slope.flatten().tolist() == pytest.approx([2.0, 0.0])
 

@@ -64,6 +64,8 @@ def test_transitions_stay_together():
     np.testing.assert_array_equal(batch.actions, np.stack([number, -number], axis=1))
     np.testing.assert_allclose(batch.rewards[:, 0], np.linspace(-1, 1, 12)[number.astype(int)], rtol=1e-6)
     assert batch.rewards.shape == batch.dones.shape == (200, 1)
+    full = fill(list(range(12, 0, -1)), 3, buffer_size=5)  # the oldest are overwritten
+    assert full.size() == 5 and set(full.sample(1000).observations[:, 0].numpy()) == {7.0, 8.0, 9.0, 10.0, 11.0}
 
 
 def test_ranks_follow_additions_and_reset():
@@ -77,12 +79,6 @@ def test_ranks_follow_additions_and_reset():
         buffer.sample(4)
     buffer.add(*(np.zeros((1, d), np.float32) for d in (1, 1, 2)), np.array([-9.0]), np.ones(1), [{}])
     assert frequencies(buffer, 3)[0] == 1.0
-
-
-def test_oldest_are_overwritten():
-    buffer = fill(list(range(12, 0, -1)), 3, buffer_size=5)
-    assert buffer.size() == 5
-    assert set(buffer.sample(1000).observations[:, 0].numpy()) == {7.0, 8.0, 9.0, 10.0, 11.0}
 
 
 def test_time_limits_are_not_ends():

@@ -3,7 +3,6 @@
 import math
 from contextlib import suppress
 
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -53,14 +52,3 @@ def test_targets_are_slow_and_within_limits_whatever_comes(
             for now, then, (low, high), speed in zip(generator.targets, before, limits, speeds, strict=True):
                 assert low <= now <= high and abs(now - then) <= speed * longest * (1 + 1e-9)
             before = generator.targets
-
-
-@pytest.mark.parametrize("bad", [math.nan, math.inf])
-def test_a_signal_that_drops_out_keeps_its_value(bad: float) -> None:
-    disturbed, alone = (PatternGenerator(SteppingParameters(0.4, 1.3, 0.1, 1.0, 1.0)) for _ in range(2))
-    for generator in (disturbed, alone):
-        generator.tick(STANDING)
-    assert disturbed.tick(STANDING._replace(angular_rate=(0.0, bad, 0.0))) == alone.tick(STANDING)
-    for _ in range(200):
-        assert disturbed.tick(STANDING) == alone.tick(STANDING)
-        assert disturbed.targets == alone.targets and disturbed.rate == alone.rate

@@ -1,6 +1,5 @@
 """The environment of a robot in operation."""
 
-import warnings
 from typing import Any
 
 import gymnasium
@@ -33,17 +32,13 @@ def test_gymnasium_knows_it_by_name() -> None:
         SarahOperationEnv(env.unwrapped.config, changes=[Change(1.0, {"payload": 3.0})]).config == env.unwrapped.config
     )
     assert env.action_space.shape == (9,) and env.observation_space.shape == (len(FELT) + 9,)
-    env.close()
 
 
+@pytest.mark.filterwarnings("error", "ignore:.*gymnasium.make.*")
 def test_checkers_find_nothing() -> None:
     env = SarahOperationEnv(quick(minutes=0.2))
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        warnings.filterwarnings("ignore", message=".*gymnasium.make.*")
-        check_env(env, skip_render_check=True)
-        sb3_check_env(env)
-    env.close()
+    check_env(env, skip_render_check=True)
+    sb3_check_env(env)
 
 
 def test_a_step_is_a_window_whose_reward_the_robot_observes() -> None:
@@ -59,7 +54,6 @@ def test_a_step_is_a_window_whose_reward_the_robot_observes() -> None:
     for outside in (np.zeros(4), np.full(9, 1.5)):
         with pytest.raises(ConfigurationError, match="an action must be 9 numbers within -1 and 1"):
             env.step(outside)
-    env.close()
 
 
 def test_the_time_truncates_and_another_operation_begins() -> None:
@@ -70,7 +64,6 @@ def test_the_time_truncates_and_another_operation_begins() -> None:
     with pytest.raises(ConfigurationError, match="the episode is over"):
         env.step(CENTRE)
     assert env.reset()[1]["window"].index == 0
-    env.close()
 
 
 def test_a_fall_terminates_and_the_same_robot_goes_on() -> None:
@@ -83,7 +76,6 @@ def test_a_fall_terminates_and_the_same_robot_goes_on() -> None:
     _, info = env.reset()
     assert fallen.fell and info["window"].index == fallen.index + 1 and info["window"].begin == fallen.end
     assert env.reset(seed=1)[1]["window"].index == 0
-    env.close()
 
 
 def test_settings_of_another_kind_are_refused() -> None:
@@ -107,4 +99,3 @@ def test_agents_learn_on_it_with_any_discount(algorithm: type, gamma: float) -> 
     model = algorithm("MlpPolicy", env, gamma=gamma, **settings).learn(10)
     action, _ = model.predict(env.observation_space.sample(), deterministic=True)
     assert np.isfinite(action).all() and model.num_timesteps == 10
-    env.close()

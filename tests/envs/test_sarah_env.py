@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-import warnings
 from typing import Any
 
 import gymnasium
@@ -53,7 +52,6 @@ def test_a_task_of_your_own_is_an_environment() -> None:
     env.reset(seed=0)
     _, reward, *_ = env.step(PAPER_ACTION)
     assert 0.35 < reward < 0.45  # half a second of some 0.8 m
-    env.close()
 
 
 def test_settings_are_keywords() -> None:
@@ -82,20 +80,17 @@ def test_mistakes_in_keywords_are_one_line(keywords: dict[str, Any], words: str)
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize(
     ("name", "task", "config"), [("SarahStepping-v0", STEPPING, SHORT), ("SarahBalance-v0", BALANCE, SHORT_BALANCE)]
 )
 def test_checkers_pass_without_a_warning(name: str, task: Task, config: EpisodeConfig) -> None:
     usual = gymnasium.make(name)
     assert isinstance(usual.unwrapped, SarahEnv) and usual.unwrapped.config == task.episode
-    usual.close()
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        env = gymnasium.make(name, config=config, render_mode="rgb_array")
-        check_env(env.unwrapped, skip_render_check=not is_installed("pybullet"))
-        sb3_check_env(env.unwrapped)
+    env = gymnasium.make(name, config=config, render_mode="rgb_array")
+    check_env(env.unwrapped, skip_render_check=not is_installed("pybullet"))
+    sb3_check_env(env.unwrapped)
     assert env.unwrapped.task is task and env.action_space.shape == (len(task.parameter_names),)  # type: ignore[attr-defined]
-    env.close()
 
 
 @pytest.mark.parametrize(
@@ -116,7 +111,6 @@ def test_reset_stands_and_step_simulates_to_the_end(task: str, config: EpisodeCo
     assert reward == info["result"].episode_return
     with pytest.raises(ConfigurationError, match="call reset"):
         env.step(action)
-    env.close()
 
 
 def test_observation_is_of_order_one_and_upright() -> None:
@@ -126,7 +120,6 @@ def test_observation_is_of_order_one_and_upright() -> None:
     inertial, pressures, joints = np.split(observation, [6, 10])
     assert inertial == pytest.approx(np.array([0, 0, 1, 0, 0, 0]), abs=0.1) and joints == pytest.approx(0.0, abs=0.1)
     assert (pressures > 0.1).all() and (pressures < 1.5).all()
-    env.close()
 
 
 def test_a_seed_gives_a_series_of_different_episodes() -> None:
@@ -135,8 +128,6 @@ def test_a_seed_gives_a_series_of_different_episodes() -> None:
     assert [observation.tolist() for observation, _ in series] == [observation.tolist() for observation, _ in again]
     seeds = [info["seed"] for _, info in (*series, *again)]
     assert seeds[:2] == seeds[2:] and seeds[0] != seeds[1]
-    env.close()
-    other.close()
 
 
 def test_step_tells_the_disturbances_that_the_task_names() -> None:
@@ -146,7 +137,6 @@ def test_step_tells_the_disturbances_that_the_task_names() -> None:
         info = env.step(np.zeros(4, np.float32))[-1]
         spec = EpisodeSpec(info["parameters"], info["seed"], task, env.config)
         assert info.get("disturbances") == disturbances_of(spec)
-        env.close()
 
 
 def test_actions_that_rounding_puts_outside_are_the_ends() -> None:
@@ -165,7 +155,6 @@ def test_impossible_actions_are_refused() -> None:
     for action in (np.full(5, np.nan), np.full(5, -1.0001), np.zeros(4), np.zeros((1, 5)), ["0"] * 5, None):
         with pytest.raises(ConfigurationError, match="an action must be 5 numbers within -1 and 1"):
             env.step(action)  # type: ignore[arg-type]
-    env.close()
 
 
 @pytest.mark.parametrize(("low", "high"), [(-0.1, 0.2), (-1.0, -0.45), (0.0, 2.0)])
@@ -195,7 +184,6 @@ def test_a_robot_that_diverges_while_it_stands_ends_its_episode(monkeypatch: pyt
     observation, _ = env.reset(seed=0)
     _, reward, terminated, _, info = env.step(PAPER_ACTION)
     assert np.isfinite(observation).all() and terminated and reward == 0.0 and info["result"].termination == "diverged"
-    env.close()
 
 
 @NEEDS_PYBULLET
@@ -204,7 +192,6 @@ def test_render_shows_the_ground_of_the_episode(terrain: Terrain) -> None:
     env = SarahEnv(config=SHORT, terrain=terrain, render_mode="rgb_array")
     _, info = env.reset(seed=3)
     picture = env.render()
-    env.close()
     assert picture is not None and picture.shape == (480, 640, 3) and picture.std() > 10
     camera = STANDARD_CAMERA._replace(ground=draw_ground(terrain, info["seed"]))
     beside = (slice(380, 480), slice(0, 150))  # no robot and no shadow
@@ -220,7 +207,6 @@ def test_render_shows_the_push_while_a_film_does(end: float, is_shown: bool) -> 
     before = env.render()
     env.step(np.zeros(4, np.float32))
     after = env.render()
-    env.close()
     purple = [(picture == ImageColor.getrgb(PUSH)).all(axis=2).any() for picture in (before, after)]
     assert purple == [False, is_shown]
 
@@ -233,7 +219,6 @@ def test_render_shows_the_floor_alone_if_the_state_is_nan(monkeypatch: pytest.Mo
     monkeypatch.setattr(MujocoSimulator, "torso_state", lambda _: state)
     with np.errstate(all="raise"):
         picture = env.render()
-    env.close()
     assert picture is not None and (picture == floor(640, 480, STANDARD_CAMERA)).all()
 
 

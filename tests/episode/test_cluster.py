@@ -8,6 +8,7 @@ import signal
 import socket
 import sys
 from pathlib import Path
+from typing import Any
 
 import dask
 import distributed
@@ -39,9 +40,7 @@ DAEMON = (RuntimeError("it failed"), AttributeError("init"), AssertionError("dae
 
 
 @pytest.mark.parametrize(("errors", "words"), [FAILED, DAEMON])
-def test_the_first_cause_is_said_and_not_its_aftermath(
-    errors: tuple[Exception, ...], words: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_first_cause_is_said_and_not_its_aftermath(errors: Any, words: str, monkeypatch: Any) -> None:
     def fail(**_: object) -> None:
         for error, context in itertools.pairwise(errors):
             error.__context__ = context

@@ -1,18 +1,24 @@
-"""How an episode ends."""
+"""How an episode ends, also where an engine returns no numbers any more: as diverged, with a finite return."""
 
+import dataclasses
 import math
+from contextlib import nullcontext
 from typing import Any
 
 import pytest
-from laboratory import NoPhysics
+from laboratory import COARSE_PHYSICS, RESULT, NoPhysics
 
 from sarah.control.parameters import PAPER_STEPPING
-from sarah.control.pattern_generator import Phase
+from sarah.control.pattern_generator import STAND_SECONDS, Phase
+from sarah.envs.sarah_env import observation_from
 from sarah.episode.ending import TERMINATIONS, ending_words, paper_ending
 from sarah.episode.episode import Episode
+from sarah.episode.evaluation import Evaluation
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tick import Tick
+from sarah.errors import SimulationError
 from sarah.robot.reading import SensorReading, Side, Vector
+from sarah.robot.scale import Scale
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.simulator import TorsoState
 
@@ -22,7 +28,7 @@ AT_REST = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (75.0,) * 4, (0.0,) * 6)
 
 def ending(
     position: Vector = START, degrees: float = 0.0, steps: int = 9, time: float = 10.0, slope: float = 0.0
-) -> str | None:
+) -> Any:
     """How an episode ends in which a tick has brought the torso there, at rest and tilted about x."""
     half, uphill = math.radians(degrees) / 2, math.radians(slope)
     torso = TorsoState(position, (math.sin(half), 0.0, 0.0, math.cos(half)), (0.0,) * 3, (0.0,) * 3)
@@ -66,3 +72,53 @@ def test_the_time_limit_is_met_to_half_a_tick(rate: int) -> None:
 
 def test_words_of_an_own_ending_are_its_name() -> None:
     assert ending_words("far_away") == "far away" and ending_words("fell") == TERMINATIONS["fell"]
+
+
+NOT_A_NUMBER = TorsoState((math.nan, 0.0, 0.8), (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3)  # type: ignore[arg-type]
+
+
+def spoilt(seconds: float, parts: dict[str, object], monkeypatch: pytest.MonkeyPatch, trace: bool = False) -> Episode:
+    """An episode in which what the engine returns is replaced from some time on."""
+    episode = Episode(EpisodeConfig(time_limit=3.0, physics=COARSE_PHYSICS), 0, record_trace=trace)
+    simulation = episode.robot.simulation
+    for name, value in parts.items():
+        original = getattr(simulation, name)
+        monkeypatch.setattr(simulation, name, lambda o=original, v=value: v if simulation.time > seconds else o())
+    return episode
+
+
+@pytest.mark.parametrize(
+    ("seconds", "parts"),
+    [
+        (0.5, {"torso_state": NOT_A_NUMBER, "read": AT_REST._replace(acceleration=(math.nan, 0.0, 0.0))}),
+        (1.5, {"read": AT_REST._replace(pressures=(math.inf, 0.0, 0.0, 0.0))}),
+        (1.5, {"torso_state": NOT_A_NUMBER._replace(position=(1e9, 0.0, 0.8))}),
+        (1.5, {"torso_state": NOT_A_NUMBER._replace(position=(0.0, 0.0, 0.8), velocity=(0.0, -1e5, 0.0))}),
+    ],
+)
+def test_diverging_physics_ends_with_a_finite_reward(seconds: float, parts: Any, monkeypatch: Any) -> None:
+    with spoilt(seconds, parts, monkeypatch) as episode:
+        observation = observation_from(episode.stand(), Scale())
+        result = episode.run((0.4, 1.3, 0.1, 1.0, 1.0))
+        last = observation_from(episode.robot.last_reading, Scale())
+    assert result.termination == "diverged" and 0.0 <= result.episode_return < 1.0 and not result.survived
+    assert result.duration <= max(seconds, 1.0) + 0.05
+    assert all(map(math.isfinite, (*observation, *last, *result.final_position)))
+    assert Evaluation((result, RESULT)).diverged == 1
+
+
+@pytest.mark.parametrize("seconds", [0.5, 1.5])
+def test_who_diverges_while_standing_leaves_nothing_to_show(seconds: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    diverging = {"read": AT_REST._replace(joints=(1e30, 0.0, 0.0, 0.0, 0.0, 0.0))}
+    stands = pytest.raises(SimulationError, match=r"nothing to show: .* diverged while the robot stood")
+    with spoilt(seconds, diverging, monkeypatch, trace=True) as episode:
+        episode.stand()
+        with stands if seconds < STAND_SECONDS else nullcontext():
+            trace = episode.run((0.4, 1.3, 0.1, 1.0, 1.0)).trace
+            assert trace is not None and len(trace) > 1
+
+
+def test_results_that_are_no_numbers_are_named() -> None:
+    for name, value in (("vibration", math.nan), ("final_position", (0.0, math.inf, 0.8))):
+        with pytest.raises(SimulationError, match=f"{name} of an episode must be finite"):
+            dataclasses.replace(RESULT, **{name: value})

@@ -1,14 +1,16 @@
-"""Step detection and equation 2 against hand-computed values."""
+"""Step detection, equation 2, vibration and actuators' work against hand-computed values and hand-made motion."""
 
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from sarah.control.pattern_generator import Phase, PhaseChange
 from sarah.episode.gait import GaitRecord
+from sarah.episode.motion import MotionRecord, power_within
 from sarah.episode.reward import RewardSettings, highest_return, reward_rate
 from sarah.robot.reading import Side
 
@@ -76,7 +78,7 @@ def test_share_by_sensors_counts_its_own_phase_only(phase: Phase, own: str, othe
 
 
 @pytest.mark.parametrize(
-    ("place", "height", "frequency", "symmetric", "printed"),
+    ("place", "height", "steps", "symmetric", "printed"),
     [
         ((0.0, 0.0), 0.84, 3.0, 0.25 * 0.84, 0.25 * 0.84),
         ((0.1, 0.2), 0.8, 3.0, 0.4 * 0.3 * 0.8, 0.4 * 0.3 * 0.8),
@@ -86,11 +88,9 @@ def test_share_by_sensors_counts_its_own_phase_only(phase: Phase, own: str, othe
         ((0.6, 0.0), 1.0, 3.0, 0.0, -0.1 * 0.5),
     ],
 )
-def test_equation_2(
-    place: tuple[float, float], height: float, frequency: float, symmetric: float, printed: float
-) -> None:
-    assert reward_rate(*place, height, frequency) == pytest.approx(symmetric)
-    assert reward_rate(*place, height, frequency, PRINTED) == pytest.approx(printed)
+def test_equation_2(place: tuple[float, float], height: float, steps: float, symmetric: float, printed: float) -> None:
+    assert reward_rate(*place, height, steps) == pytest.approx(symmetric)
+    assert reward_rate(*place, height, steps, PRINTED) == pytest.approx(printed)
 
 
 @given(x=st.floats(-1, 1), y=st.floats(-1, 1), height=st.floats(0, 0.84), frequency=st.floats(0, 100))
@@ -98,3 +98,48 @@ def test_no_symmetric_reward_is_above_the_ceiling(x: float, y: float, height: fl
     """That of a robot 0.84 m tall that steps in place for 29 s, at 0.5 * 0.5 * 2^0 * 0.84 a second, is 6.09."""
     assert 0.0 <= reward_rate(x, y, height, frequency) <= highest_return(0.84, 1.0)
     assert highest_return(0.84, 29.0) == pytest.approx(6.09)
+
+
+RATE = 100
+
+
+def sine(hertz: float, amplitude: float, seconds: float = 10.0) -> np.ndarray:
+    time = np.arange(round(seconds * RATE)) / RATE
+    return amplitude * np.sin(2 * np.pi * hertz * time)
+
+
+def moving(*motion: tuple[float, ...]) -> Any:
+    """A robot whose actuators have these speeds and efforts."""
+    truth = SimpleNamespace(acceleration=(0.0, 0.0, 9.81))
+    return SimpleNamespace(truth=truth, simulation=SimpleNamespace(actuator_motion=lambda: motion))
+
+
+def burst(second: int) -> np.ndarray:
+    """A second of a fast sine in eleven of rest."""
+    signal = np.zeros((1100, 1))
+    signal[100 * second : 100 * second + 100, 0] = sine(40.0, 6.0, 1.0)
+    return signal
+
+
+@pytest.mark.parametrize(
+    ("signals", "power"),
+    [
+        (np.stack([sine(35.0, 3.0), sine(25.0, 1.0)], axis=1), 4.5 + 0.5),
+        (np.stack([9.81 + sine(1.5, 5.0), sine(10.0, 2.0)], axis=1), 0.0),  # gravity and slow motion
+        (np.where(np.arange(1001) % 2, 4.0, -4.0)[:, None], 16.0),  # chatter at half the control rate
+        *((burst(second), pytest.approx(18.0 / 11.0, rel=0.1)) for second in (1, 5, 9)),
+        (np.ones((10, 3)), 0.0),  # too short for a spectrum
+    ],
+)
+def test_power_of_fast_motion_is_half_its_amplitude_squared(signals: np.ndarray, power: Any) -> None:
+    expected = pytest.approx(power, rel=0.01, abs=1e-5) if isinstance(power, float) else power
+    assert power_within(signals, RATE, (20.0, 50.0)) == expected
+
+
+def test_actuators_work_and_peaks() -> None:
+    record = MotionRecord(RATE)
+    record.sensed(moving((0.5, 0.0, -2.0, 0.0, 0.3, 0.0), (10.0, 5.0, 4.0, 0.0, -100.0, 90.0)))
+    record.sensed(moving((0.0,) * 6, (0.0,) * 6))
+    motion = record.metrics()
+    assert motion.actuator_power == pytest.approx((5.0 + 8.0 + 30.0) / 2)
+    assert motion.peak_hip_rate == 2.0 and motion.peak_leg_speed == 0.3

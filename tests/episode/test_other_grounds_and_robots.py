@@ -49,12 +49,10 @@ def conditions_of(config: EpisodeConfig, seed: int = 3) -> Conditions:
 
 
 def test_slope_changes_nothing_else_that_the_seed_draws() -> None:
+    """And it is no matter of randomisation."""
     level, slope = conditions_of(EpisodeConfig()), conditions_of(EpisodeConfig(terrain=UPHILL_IN_FRONT))
     assert level.ground == LEVEL and slope.ground == draw_ground(UPHILL_IN_FRONT, 3) != LEVEL
     assert dataclasses.replace(slope, ground=LEVEL) == level
-
-
-def test_slope_is_no_matter_of_randomisation() -> None:
     config = EpisodeConfig(terrain=Terrain((0.0, 10.0)), randomisation=Randomisation(enabled=False))
     assert conditions_of(config, 1).ground != conditions_of(config, 2).ground
 

@@ -1,24 +1,28 @@
 """A specification refuses what cannot be; the same one gives the same bytes, whatever else happens."""
 
-import dataclasses
 import json
 import math
 import subprocess
 import sys
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
 import pytest
-from laboratory import COARSE_PHYSICS
+from laboratory import COARSE_PHYSICS, NEEDS_PYBULLET
 
 from sarah.control.parameters import PAPER_STEPPING
+from sarah.episode.accuracy import physics_warning
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import STEPPING, BalanceConfig
+from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
 from sarah.errors import ConfigurationError
+from sarah.robot.dimensions import default_dimensions
 from sarah.simulation.engines import Engine
-from sarah.simulation.physics import Physics
+from sarah.simulation.physics import PHYSICS, Physics
+from sarah.simulation.randomisation import Randomisation
+from sarah.simulation.terrain import Terrain
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, 2.1, -0.1, "1", True])
@@ -59,13 +63,14 @@ SHORT = EpisodeConfig(time_limit=3.0)
 SPEC = EpisodeSpec(PAPER_STEPPING, 4, config=SHORT)
 
 
-def test_what_was_simulated_before_or_meanwhile_changes_nothing() -> None:
-    expected = simulate(SPEC)
-    longer = BalanceConfig(physics=Physics(1000, 10), dimensions={"thigh_length": 0.4}, time_limit=2.0)
+def test_what_was_simulated_before_or_meanwhile_changes_nothing(engine: Engine) -> None:
+    spec = replace(SPEC, config=EpisodeConfig(engine=engine, time_limit=3.0))
+    expected = simulate(spec)
+    longer = BalanceConfig(engine=engine, physics=Physics(1000, 10), dimensions={"thigh_length": 0.4}, time_limit=2.0)
     simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.0), seed=5, task="balance", config=longer))
-    with Episode.of(SPEC, record_trace=True) as episode:
+    with Episode.of(spec, record_trace=True) as episode:
         episode.stand()
-        assert simulate(SPEC) == expected
+        assert simulate(spec) == expected
         assert episode.run(PAPER_STEPPING) == expected
 
 
@@ -81,7 +86,7 @@ def test_a_fresh_process_gives_the_same_result(engine: Engine) -> None:
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True, text=True)
     config = BalanceConfig(engine=engine, time_limit=3.0)
     here = simulate(EpisodeSpec((1.0, 0.1, 0.5, -0.2), 7, "balance", config))
-    assert run.stdout == json.dumps(dataclasses.asdict(here)) + "\n" and here.steps > 0
+    assert run.stdout == json.dumps(asdict(here)) + "\n" and here.steps > 0
 
 
 SQUARE_FEET = {"dimensions": {"forefoot_contact": 0.15, "hindfoot_contact": 0.15}}
@@ -89,6 +94,37 @@ SQUARE_FEET = {"dimensions": {"forefoot_contact": 0.15, "hindfoot_contact": 0.15
 
 @pytest.mark.parametrize(("seed", "changes"), [(3, {}), (4, {"reward_form": "printed"}), (4, SQUARE_FEET)])
 def test_another_specification_gives_another_result(seed: int, changes: dict[str, Any]) -> None:
-    coarse = dataclasses.replace(SHORT, physics=COARSE_PHYSICS)
-    other = EpisodeSpec(PAPER_STEPPING, seed, config=dataclasses.replace(coarse, **changes))
+    coarse = replace(SHORT, physics=COARSE_PHYSICS)
+    other = EpisodeSpec(PAPER_STEPPING, seed, config=replace(coarse, **changes))
     assert simulate(other) != simulate(EpisodeSpec(PAPER_STEPPING, 4, config=coarse))
+
+
+LOW, PAPER = (0.02, 0.5, 0.6, 1.0, 1.0), (0.4, 1.3, 0.1, 1.0, 1.0)
+LATE = EpisodeConfig(engine="pybullet", randomisation=Randomisation(delay_seconds=0.02))
+PUNCTUAL = BalanceConfig(engine="pybullet", stepping=LOW, randomisation=Randomisation(delay_seconds=0.01))
+BUMPS = EpisodeConfig(engine="pybullet", terrain=Terrain(roughness=(0.01, 0.01)))
+LIGHT_FEET = {name: 0.1 * default_dimensions()[name] for name in ("forefoot_mass", "hindfoot_mass")}
+
+
+@NEEDS_PYBULLET
+@pytest.mark.parametrize(
+    ("parameters", "config", "warns"),
+    [
+        (LOW, LATE, True),
+        (PAPER, LATE, False),
+        (LOW, EpisodeConfig(engine="pybullet"), False),  # 10 ms
+        (LOW, replace(LATE, physics=PHYSICS["reference"]), False),
+        (LOW, replace(LATE, randomisation=Randomisation(False, delay_seconds=0.02)), False),
+        (LOW, replace(LATE, engine="mujoco"), False),
+        ((1.0, 0.0, 1.0, 0.0), PUNCTUAL, True),  # hips that move are doubted with any delay
+        ((0.0, 0.0, 0.0, 0.0), PUNCTUAL, False),
+        (PAPER, replace(BUMPS, physics=replace(PHYSICS["standard"], rate=100)), True),
+        (PAPER, replace(BUMPS, physics=replace(PHYSICS["standard"], rate=200)), False),
+        (PAPER, EpisodeConfig(engine="pybullet", physics=replace(PHYSICS["standard"], rate=100)), False),
+        (PAPER, EpisodeConfig(engine="pybullet", dimensions=LIGHT_FEET), True),
+        (PAPER, EpisodeConfig(engine="mujoco", dimensions=LIGHT_FEET), False),
+    ],
+)
+def test_where_physics_misleads_is_said(parameters: tuple[float, ...], config: EpisodeConfig, warns: bool) -> None:
+    task = BALANCE if isinstance(config, BalanceConfig) else STEPPING
+    assert (physics_warning(task, parameters, config) is not None) == warns

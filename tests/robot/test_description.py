@@ -1,9 +1,11 @@
-"""The robot: what the xacro gives, and what is refused before any physics engine sees it."""
+"""The robot: what the xacro gives, what is refused before any engine sees it, and how its mass is distributed."""
 
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable
 
+import numpy as np
 import pytest
+from laboratory import need
 
 from sarah.errors import DescriptionError
 from sarah.robot.description import ANKLE_JOINTS, GROUPS, check_urdf, describe_robot, model_of
@@ -11,13 +13,9 @@ from sarah.robot.dimensions import default_dimensions, known_dimensions
 from sarah.robot.links_and_joints import inertia_of, links_and_joints, place_of
 from sarah.robot.reading import ACTUATED_JOINTS
 from sarah.robot.scale import POWERS
+from sarah.robot.standing import MassProperties, links_of, together
 
 Change = Callable[[ElementTree.Element], object]
-
-
-@pytest.fixture
-def urdf() -> str:
-    return describe_robot().urdf
 
 
 def find(root: ElementTree.Element, kind: str, name: str) -> ElementTree.Element:
@@ -52,7 +50,8 @@ def test_links_are_to_the_last_bit_where_yourdfpy_finds_them(dimensions: dict[st
         assert (inertia_of(links[name]) == link.inertial.inertia).all(), name
 
 
-def test_urdf_is_mirrored_between_the_legs(urdf: str) -> None:
+def test_urdf_is_mirrored_between_the_legs() -> None:
+    urdf = describe_robot().urdf
     assert "xacro" not in urdf  # where it was made
     root = ElementTree.fromstring(urdf)
     for link in ("hip", "thigh", "shank", "forefoot", "hindfoot"):
@@ -132,9 +131,42 @@ def with_value(kind: str, name: str, part: str, /, **values: str) -> Change:
         (with_value("joint", "left_leg_length", "limit", effort="0"), "must have a positive effort limit"),
     ],
 )
-def test_broken_urdfs_are_refused(urdf: str, change: Change, message: str) -> None:
-    root = ElementTree.fromstring(urdf)
+def test_broken_urdfs_are_refused(change: Change, message: str) -> None:
+    root = ElementTree.fromstring(describe_robot().urdf)
     change(root)
     with pytest.raises(DescriptionError, match=message) as caught:
         check_urdf(ElementTree.tostring(root, encoding="unicode"))
     assert "\n" not in str(caught.value)
+
+
+NOTHING = np.zeros((3, 3))
+
+
+def test_two_points_have_the_inertia_of_a_dumbbell() -> None:
+    pair = together([MassProperties(1.0, np.array((x, 0.0, 0.5)), NOTHING) for x in (-1.0, 1.0)])
+    assert pair.mass == 2.0 and pair.centre == pytest.approx((0.0, 0.0, 0.5))
+    assert np.diag(pair.inertia) == pytest.approx((0.0, 2.0, 2.0))
+
+
+def test_the_default_robot_stands_over_its_feet() -> None:
+    robot = describe_robot()
+    links = links_of(robot)
+    whole = together(links.values())
+    assert {name: link.mass for name, link in links.items()} == robot.masses
+    assert whole.mass == pytest.approx(30.0) and whole.centre[0] == pytest.approx(0.0)
+    soles = np.array(robot.standing_soles)
+    assert (soles.min(axis=0)[:2] < whole.centre[:2]).all() and (whole.centre[:2] < soles.max(axis=0)[:2]).all()
+
+
+@pytest.mark.parametrize("dimensions", [{"thigh_length": 0.2, "forefoot_contact": 0.2, "hip_offset": 0.2}])
+def test_an_engine_finds_the_same(dimensions: dict[str, float]) -> None:
+    need("mujoco")
+    import mujoco
+
+    robot = describe_robot(dimensions)
+    model = mujoco.MjModel.from_xml_string(robot.urdf)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    legs = together(link for name, link in links_of(robot).items() if name != "torso")
+    assert legs.mass == pytest.approx(model.body_subtreemass[0])
+    assert legs.centre == pytest.approx(data.subtree_com[0] + (0.0, 0.0, robot.standing_height))

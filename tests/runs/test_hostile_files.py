@@ -5,6 +5,7 @@ import shutil
 import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from terminal import run
@@ -55,8 +56,11 @@ def laughs(path: Path) -> None:
     path.write_text("\n".join(levels))
 
 
-def nested(path: Path) -> None:
-    path.write_text("[" * 60_000)
+def filled(text: str) -> Callable[[Path], object]:
+    return lambda path: path.write_text(text)
+
+
+NESTED, LONG_LINE, BLANK_LINES = map(filled, ("[" * 60_000, "x," * 1_000_000, "index,seed\n" + "\n" * 10_000))
 
 
 def digits(path: Path) -> None:
@@ -64,16 +68,7 @@ def digits(path: Path) -> None:
 
 
 def gigabytes(path: Path) -> None:
-    with path.open("wb") as file:
-        file.truncate(20 * 2**30)
-
-
-def long_line(path: Path) -> None:
-    path.write_text("x," * 1_000_000)
-
-
-def blank_lines(path: Path) -> None:
-    path.write_text("index,seed\n" + "\n" * 10_000)
+    os.truncate(path, 20 * 2**30)
 
 
 def fifo(path: Path) -> None:
@@ -86,15 +81,15 @@ def device(path: Path) -> None:
     path.symlink_to("/dev/zero")
 
 
-HARMS: dict[str, tuple[Callable[[Path], None], ...]] = {
-    "config.yaml": (laughs, nested, digits, gigabytes, fifo),
-    "parameters.json": (nested, digits, fifo),
+HARMS: dict[str, tuple[Callable[[Path], object], ...]] = {
+    "config.yaml": (laughs, NESTED, digits, gigabytes, fifo),
+    "parameters.json": (NESTED, digits, fifo),
     "versions.txt": (fifo,),
-    "journal.jsonl": (nested, gigabytes, device),
+    "journal.jsonl": (NESTED, gigabytes, device),
     "race.csv": (fifo,),
-    "race_scores.csv": (long_line,),
+    "race_scores.csv": (LONG_LINE,),
     "recommendations.csv": (gigabytes,),
-    "episodes.csv": (gigabytes, long_line, blank_lines, fifo),
+    "episodes.csv": (gigabytes, LONG_LINE, BLANK_LINES, fifo),
 }
 
 
@@ -130,9 +125,7 @@ def honest(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.usefixtures("within_seconds")
 @pytest.mark.parametrize(("name", "harm"), [(name, harm) for name, harms in HARMS.items() for harm in harms])
-def test_hostile_files_are_refused_within_seconds(
-    name: str, harm: Callable[[Path], None], honest: Path, tmp_path: Path
-) -> None:
+def test_hostile_files_are_refused_within_seconds(name: str, harm: Any, honest: Path, tmp_path: Path) -> None:
     shutil.copytree(honest, tmp_path / "race")
     harm(tmp_path / "race" / "random-s0" / name)
     if name == "journal.jsonl":

@@ -98,19 +98,16 @@ def test_no_file_of_a_run_is_unpickled(
     assert {*PLANTED, "model.zip", "episodes.csv"} < names and not sprung.exists()
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
+def test_yaml_makes_no_objects(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for text in (
         "!!python/object/apply:pathlib.Path.touch [!!python/object/apply:pathlib.Path ['sprung']]",
         "algo: !!python/object/apply:os.system ['touch sprung']",
         "episode: {dimensions: {thigh_length: !!python/object/new:os.system ['touch sprung']}}",
-    ],
-)
-def test_yaml_makes_no_objects(text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "config.yaml").write_text(text)
-    with pytest.raises(ConfigurationError):
-        RunFolder.open(tmp_path, unfinished=True).config()
+    ):
+        (tmp_path / "config.yaml").write_text(text)
+        with pytest.raises(ConfigurationError):
+            RunFolder.open(tmp_path, unfinished=True).config()
     assert not (tmp_path / "sprung").exists()
 
 

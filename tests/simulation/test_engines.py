@@ -8,7 +8,7 @@ from importlib.machinery import ModuleSpec
 from pathlib import Path
 
 import pytest
-from laboratory import NEEDS_PYBULLET
+from laboratory import NEEDS_PYBULLET, advance
 from terminal import run
 
 from sarah.control.parameters import PAPER_STEPPING
@@ -60,19 +60,9 @@ def test_soles_sink_a_few_micrometres_into_mujocos_floor() -> None:
     d is 0.99, and k is 2 / (15 ms) times the rate. a is what the sole would fall with: with its plate, 1.5 g to 1.8 g.
     """
     simulation = simulator_of("mujoco")(describe_robot(), Physics(500, solver_iterations=100), NOMINAL)
-    for _ in range(300):
-        simulation.advance()
+    advance(simulation, 300)
     low, high = (0.01 * a * GRAVITY / (2.0 / 0.015 * 500) for a in (1.5, 1.85))
     assert all(low < -simulation.sole_height(side) < high for side in Side)
-
-
-def test_episodes_side_by_side_do_not_touch_each_other() -> None:
-    expected = [simulate(EpisodeSpec(PAPER_STEPPING, seed, config=SHORT)) for seed in (1, 2)]
-    assert expected[0] != expected[1]
-    episodes = [Episode(SHORT, seed) for seed in (1, 2)]
-    for episode in episodes:
-        episode.stand()
-    assert [episode.run(PAPER_STEPPING) for episode in reversed(episodes)] == expected[::-1]
 
 
 def test_diverging_physics_ends_the_episode_and_writes_no_file(

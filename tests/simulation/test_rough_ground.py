@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from laboratory import BuildSimulation, Laboratory, laboratory, need
+from laboratory import BuildSimulation, Laboratory, advance, laboratory, need
 
 from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError
@@ -19,7 +19,6 @@ from sarah.scenery.ground import LEVEL, Ground
 from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import Conditions
-from sarah.simulation.simulator import Simulator
 from sarah.simulation.terrain import Terrain, draw_ground
 
 ROUGH = Terrain(roughness=0.01)  # type: ignore[arg-type]  # one number fixes it
@@ -150,7 +149,7 @@ def test_soles_of_a_standing_robot_rest_on_the_bumps(build: BuildSimulation, see
     assert -1e-4 < lowest < 0.001 and not any(simulation.read().pressures)
     simulation.advance()
     assert abs(simulation.torso_state().velocity[2]) < 0.15  # of a free fall, and not thrown up
-    advance(simulation, 1.5)
+    advance(simulation, 150)
     for side in Side:
         assert -0.001 < simulation.sole_height(side) < 0.0005
     assert simulation.torso_state().axis[2] > math.cos(math.radians(8.0))
@@ -177,17 +176,12 @@ def test_a_robot_on_ice_slides_alike_in_all_directions(build: BuildSimulation, u
     ice = (friction, friction)
     terrain = Terrain((12.0, 12.0), (uphill, uphill), friction_left=ice, friction_right=ice)
     simulation = build(Conditions(ground=draw_ground(terrain, 0)))
-    advance(simulation, 0.8)
+    advance(simulation, 80)
     angle = math.radians(12.0)
     expected = 0.5 * 9.81 * (math.sin(angle) - friction * math.cos(angle)) * 0.8**2
     x, y, _ = simulation.torso_state().position
     assert math.hypot(x, y) == pytest.approx(expected, rel=0.08)
     assert math.cos(math.atan2(y, x) - math.radians(uphill)) < -0.99  # downhill
-
-
-def advance(simulation: Simulator, seconds: float) -> None:
-    for _ in range(round(seconds * 100)):
-        simulation.advance()
 
 
 def test_frictions_are_drawn_for_each_foot() -> None:

@@ -1,13 +1,14 @@
-"""Physics facts about the robot standing, falling, pushed and mirrored, in each engine."""
+"""Physics facts about the robot standing, falling, pushed, mirrored and moved by its actuators, in each engine."""
 
 import math
 
 import numpy as np
 import pytest
-from laboratory import NEEDS_PYBULLET, BuildSimulation, Laboratory
+from laboratory import NEEDS_PYBULLET, BuildSimulation, Laboratory, advance
 
 from sarah.robot.description import ANKLE_JOINTS, GROUPS, PLATES, describe_robot
-from sarah.robot.reading import GRAVITY, Side
+from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, Side
+from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import PHYSICS, PyBulletPhysics
 from sarah.simulation.pybullet_simulator import PyBulletSimulator
 from sarah.simulation.pybullet_world import pybullet
@@ -93,8 +94,7 @@ def test_ankles_are_damped_alike(lab: Laboratory, build: BuildSimulation) -> Non
     simulation = build(physics=PyBulletPhysics(rate=2000, added_plate_inertia=0.0))
     lab.place(simulation)
     lab.move_joint(simulation, "left_hindfoot", -0.09, 1.0)
-    for _ in range(10):
-        simulation.advance()
+    advance(simulation, 10)
     assert simulation.joint_positions(("left_hindfoot",))[0] == pytest.approx(-0.085, abs=0.0005)
 
 
@@ -177,3 +177,65 @@ def test_plates_have_added_inertia_while_they_press_on_pads() -> None:
     assert (True,) * 4 in carried and any(not left_fore for left_fore, *_ in carried)
     plain.close()
     simulation.close()
+
+
+SECOND = PHYSICS["standard"].control_rate
+
+
+def test_servos_follow_their_targets_at_their_bandwidth(lab: Laboratory, build: BuildSimulation) -> None:
+    simulation = build()
+    lab.place(simulation)
+    simulation.set_targets((0.0, 0.0, 0.0, 0.0, 0.005, 0.0))
+    advance(simulation, 2)
+    assert simulation.joint_positions(ACTUATED_JOINTS)[4] == pytest.approx(0.005 * (1 - math.exp(-1.0)), rel=0.05)
+    advance(simulation, SECOND // 2)
+    assert simulation.joint_positions(ACTUATED_JOINTS)[4] == pytest.approx(0.005, abs=1e-5)
+
+
+def test_retracting_a_leg_lifts_its_sole(lab: Laboratory, build: BuildSimulation) -> None:
+    simulation = build()
+    assert [simulation.sole_height(side) for side in Side] == pytest.approx([0.0, 0.0], abs=1e-9)
+    lab.place(simulation, height=simulation.robot.standing_height + 1.0)
+    simulation.set_targets((0.0, 0.0, 0.0, 0.0, 0.05, 0.0))
+    advance(simulation, 20)
+    assert simulation.sole_height(Side.LEFT) - simulation.sole_height(Side.RIGHT) == pytest.approx(0.05, abs=0.005)
+
+
+@pytest.mark.parametrize(
+    ("joints", "axis", "direction"),
+    [(("left_hip_abduction", "right_hip_abduction"), 0, -1), (("left_hip_flexion",), 1, 1)],
+)
+def test_abduction_turns_feet_left_and_flexion_forward(
+    lab: Laboratory, build: BuildSimulation, joints: tuple[str, ...], axis: int, direction: int
+) -> None:
+    simulation, moved = build(), []
+    lab.place(simulation, 2.0)
+    simulation.set_targets(tuple(0.2 if name in joints else 0.0 for name in ACTUATED_JOINTS))
+    for ticks in (0, 30):
+        advance(simulation, ticks)
+        torso = simulation.torso_state()  # which turns too in the air
+        offsets = [lab.link_position(simulation, f"{name.split('_')[0]}_shank") - torso.position for name in joints]
+        moved.append([direction * rotate_to_body(torso.orientation, tuple(offset))[axis] for offset in offsets])
+    assert all(now - then > 0.03 for then, now in zip(*moved, strict=True))
+
+
+def test_standing_legs_push_with_the_weight_that_they_carry(build: BuildSimulation) -> None:
+    """Each leg's actuator carries half of torso, hips and thighs, 20 kg."""
+    simulation = build(physics=PyBulletPhysics(rate=1000, solver_iterations=50))
+    advance(simulation, 3 * SECOND // 2)
+    speeds, efforts = simulation.actuator_motion()
+    assert [-effort for effort in efforts[4:]] == pytest.approx([10.0 * GRAVITY] * 2, rel=0.05)
+    assert max(map(abs, speeds)) < 0.01
+
+
+@pytest.mark.parametrize("rate", [100, 1000])
+def test_actuators_push_no_harder_than_they_can(lab: Laboratory, rate: int) -> None:
+    weak = describe_robot({"leg_effort": 100.0})
+    simulation = simulator_of(lab.engine)(weak, PyBulletPhysics(rate=rate, solver_iterations=50), NOMINAL)
+    simulation.set_targets((0.0, 0.0, 0.0, 0.0, -0.05, -0.05))
+    efforts = []
+    for _ in range(SECOND // 5):
+        simulation.advance()
+        efforts.append(max(map(abs, simulation.actuator_motion()[1][4:])))
+    simulation.close()
+    assert max(efforts) == pytest.approx(100.0, rel=1e-3)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from laboratory import BuildSimulation, Laboratory
+from laboratory import BuildSimulation, Laboratory, advance
 
 from sarah.robot.reading import GRAVITY
 from sarah.scenery.ground import LEVEL
@@ -28,18 +28,15 @@ def build_on(build: BuildSimulation) -> BuildSimulation:
 
     def build_one(terrain: Terrain, seconds: float = 0.0) -> Simulator:
         simulation = build(Conditions(friction=0.9, ground=draw_ground(terrain, 0)))
-        for _ in range(round(seconds * SECOND)):
-            simulation.advance()
+        advance(simulation, round(seconds * SECOND))
         return simulation
 
     return build_one
 
 
-@pytest.mark.parametrize(("uphill", "x", "y"), [(RIGHT, 1.0, 0.0), (FORWARD, 0.0, 1.0)])
-def test_standing_robot_feels_gravity_as_if_it_leaned_downhill(
-    build_on: BuildSimulation, uphill: float, x: float, y: float
-) -> None:
-    angle = math.radians(5.0)
+@pytest.mark.parametrize("uphill", [RIGHT, FORWARD])
+def test_standing_robot_feels_gravity_as_if_it_leaned_downhill(build_on: BuildSimulation, uphill: float) -> None:
+    angle, (x, y) = math.radians(5.0), (1.0, 0.0) if uphill == RIGHT else (0.0, 1.0)
     simulation = build_on(slope(5.0, uphill), seconds=1.0)
     readings = []
     for _ in range(SECOND):
@@ -53,8 +50,7 @@ def test_a_falling_robot_has_gravitys_pull_and_feels_nothing(lab: Laboratory, bu
     terrain = slope(10.0, 30.0)
     simulation = build_on(terrain)
     lab.place(simulation)
-    for _ in range(SECOND // 10):
-        simulation.advance()
+    advance(simulation, SECOND // 10)
     fallen = np.array(draw_ground(terrain, 0).gravity) * 0.1
     assert simulation.torso_state().velocity == pytest.approx(tuple(fallen), abs=1e-6)
     assert simulation.read().acceleration == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)
@@ -117,8 +113,7 @@ def drift(simulation: Simulator, seconds: int) -> float:
     """How far a robot drifts along the ground, after a second in which it settles, in m."""
     places = []
     for duration in (1, seconds):
-        for _ in range(duration * SECOND):
-            simulation.advance()
+        advance(simulation, duration * SECOND)
         places.append(simulation.torso_state().position[:2])
     return math.dist(*places)
 

@@ -9,6 +9,7 @@ from interrupted import EPISODE
 from terminal import run, tree
 
 from sarah.errors import ConfigurationError, ResumeError
+from sarah.operation.settings import OperationConfig
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.training.plan import plan_of
@@ -87,11 +88,11 @@ def test_a_cut_extension_goes_on_to_the_same_end(new_rows: int, folder: Path, co
     ],
 )
 def test_a_refused_extension_changes_nothing(
-    name: str, options: str, words: str, folder: Path, copy: RunFolder, tmp_path: Path
+    name: str, options: str, words: str, folder: Path, copy: RunFolder
 ) -> None:
     path = copy.path if name == "copy" else folder / name
     before = tree(path)
-    refused = run("sarah-train", "--resume", path, *options.split(), cwd=tmp_path)
+    refused = run("sarah-train", "--resume", path, *options.split(), cwd=folder)
     assert refused.returncode == 2 and words in refused.stderr and tree(path) == before
 
 
@@ -99,6 +100,8 @@ def test_stages_rise() -> None:
     config = TrainingConfig(episodes=200, extended_from=(60, 100))
     assert [(stage.end, stage.episodes) for stage in plan_of(config).stages] == [(60, 60), (100, 40), (200, 100)]
     assert config.extended_to(300).stages == (60, 100, 200, 300)
-    for extended_from in ((200,), (100, 60), (0,)):
-        with pytest.raises(ConfigurationError, match="extended_from must be in rising order and below episodes"):
-            TrainingConfig(episodes=200, extended_from=extended_from)
+    assert OperationConfig(minutes=20, extended_from=(5, 10)).extended_to(30).stages == (5.0, 10.0, 20.0, 30.0)
+    for kind, unit in ((TrainingConfig, "episodes"), (OperationConfig, "minutes")):
+        for extended_from in ((200,), (100, 60), (0,), (60, 60)):
+            with pytest.raises(ConfigurationError, match=f"extended_from must be in rising order and below {unit}"):
+                kind(**{unit: 200, "extended_from": extended_from})

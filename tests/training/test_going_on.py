@@ -49,9 +49,7 @@ def weights(model: OffPolicyAlgorithm) -> torch.Tensor:
     ("algo", "algorithm", "count"),
     [("naf", LocalNAF, 1), ("naf", NAF, 3), ("td3", TD3, 3), ("sac", SAC, 1), ("ddpg", DDPG, 1)],
 )
-def test_the_agent_of_a_run_goes_on(
-    algo: str, algorithm: type[OffPolicyAlgorithm], count: int, models: dict[str, Path]
-) -> None:
+def test_the_agent_of_a_run_goes_on(algo: str, algorithm: Any, count: int, models: dict[str, Path]) -> None:
     model = algorithm.load(models[algo], env=environment(count))
     before, steps = weights(model), model.num_timesteps
     if algorithm is LocalNAF:  # without another warm-up
@@ -65,15 +63,10 @@ def test_the_agent_of_a_run_goes_on(
 
 def test_what_goes_on_is_what_was_done(models: dict[str, Path]) -> None:
     """Nothing of the slots is left: each reward is stored with the action that it came from."""
-    seen: list[tuple[np.ndarray, float]] = []
-
-    class Seen(gymnasium.Wrapper[np.ndarray, np.ndarray, np.ndarray, np.ndarray]):
-        def step(self, action: np.ndarray) -> Any:
-            outcome = super().step(action)
-            seen.append((action, float(outcome[1])))
-            return outcome
-
-    buffer = TD3.load(models["td3"], env=Seen(environment())).learn(5).replay_buffer  # type: ignore[arg-type]
-    assert buffer is not None
-    np.testing.assert_allclose(buffer.actions[:5, 0], [action for action, _ in seen], atol=1e-6)
-    np.testing.assert_allclose(buffer.rewards[:5, 0], [reward for _, reward in seen], rtol=1e-6)
+    actions: list[np.ndarray] = []
+    rewards: list[float] = []
+    env: Any = gymnasium.wrappers.TransformReward(environment(), lambda reward: rewards.append(reward) or reward)
+    env = gymnasium.wrappers.TransformAction(env, lambda action: actions.append(action) or action, env.action_space)
+    buffer: Any = TD3.load(models["td3"], env=env).learn(5).replay_buffer
+    np.testing.assert_allclose(buffer.actions[:5, 0], actions, atol=1e-6)
+    np.testing.assert_allclose(buffer.rewards[:5, 0], rewards, rtol=1e-6)

@@ -92,9 +92,7 @@ def begun_with(path: Path, whole: RunFolder, journal: bytes) -> RunFolder:
 
 
 @pytest.mark.parametrize("share", [0.03, 0.5, 0.999])
-def test_a_journal_cut_at_any_byte_is_enough(
-    share: float, whole: RunFolder, tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_journal_cut_at_any_byte_is_enough(share: float, whole: RunFolder, tmp_path: Path, caplog: Any) -> None:
     content = whole.journal_path.read_bytes()
     cut = content[: int(share * len(content))]
     begun = begun_with(tmp_path / "cut", whole, cut)
@@ -105,9 +103,7 @@ def test_a_journal_cut_at_any_byte_is_enough(
     assert sorted(begun.journal_path.read_bytes().splitlines()) == sorted(content.splitlines())
 
 
-def test_a_damaged_row_costs_its_simulation_only(
-    whole: RunFolder, tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_damaged_row_costs_its_simulation_only(whole: RunFolder, tmp_path: Path, caplog: Any) -> None:
     """What is finished is not simulated again."""
     lines = whole.journal_path.read_bytes().splitlines(keepends=True)
     finished, half = {line for line in lines if b'"kind":"begin"' not in line}, lines[: len(lines) // 2]
