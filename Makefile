@@ -60,7 +60,7 @@ test-slow: install  ## the slow tests: minutes of simulation
 lint: install  ## style, types and which package imports which
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/mypy -p sarah
+	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
 
 format: install  ## put the style right

@@ -38,6 +38,8 @@ class LocalNAF(NAF):
     :param kwargs: Other arguments of :class:`~sarah.agents.naf.NAF`
     """
 
+    replay_buffer: RankReplayBuffer
+
     def __init__(
         self,
         policy: str | type[NAFPolicy],
@@ -97,7 +99,6 @@ class LocalNAF(NAF):
 
     def _knows_a_best_action(self, learning_starts: int) -> bool:
         """Whether the draws around it may begin: after the warm-up, or with the outcome of the centre."""
-        assert self.replay_buffer is not None
         return self.replay_buffer.size() > 0 and (self.first_action_centre or self.num_timesteps >= learning_starts)
 
     def _draw_near_best(self, scaled_actions: np.ndarray, share: float) -> None:
@@ -107,7 +108,6 @@ class LocalNAF(NAF):
         :param scaled_actions: One of each environment; changed in place
         :param share: Share of them
         """
-        assert isinstance(self.replay_buffer, RankReplayBuffer)
         std = self.elite_std_schedule(self._current_progress_remaining)
         near_best = np.random.random(len(scaled_actions)) < share
         for i in np.flatnonzero(near_best):

@@ -91,6 +91,7 @@ class NAF(OffPolicyAlgorithm):
     q_net: QuadraticCritic
     q_net_target: QuadraticCritic
     policy: NAFPolicy
+    replay_buffer: ReplayBuffer
 
     @explains_unknown
     def __init__(
@@ -220,7 +221,6 @@ class NAF(OffPolicyAlgorithm):
         parameters, target_parameters = list(self.q_net.parameters()), list(self.q_net_target.parameters())
         average_parameters = get_ema_multi_avg_fn(1 - self.tau)
 
-        assert self.replay_buffer is not None
         # A small replay buffer has forgotten some, and a loaded one has others
         n_transitions = max(self.num_timesteps, self.replay_buffer.size() * self.replay_buffer.n_envs)
         losses, w_losses, mean_q_values, seconds = [], [], [], 0.0
@@ -284,7 +284,6 @@ class NAF(OffPolicyAlgorithm):
 
     def _check_rewards(self) -> None:
         """Warn if the rewards of the warm-up are such that ``mu`` learns badly from them."""
-        assert self.replay_buffer is not None
         rewards = getattr(self.replay_buffer, "rewards", np.empty(0))[: self.replay_buffer.size()]
         if self._vec_normalize_env is not None:
             rewards = self._vec_normalize_env.normalize_reward(rewards)

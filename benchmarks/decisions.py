@@ -85,7 +85,7 @@ def remember(
     """
     info = {"disturbances": disturbances}
     buffer.add(OBSERVATION, OBSERVATION, action[None], np.array([reward]), np.ones(1), [info])
-    tried.append(tuple(action + 1.0), reward, disturbances)
+    tried.append(tuple(action + 1.0), reward, disturbances.tolist())
 
 
 def decide(buffer: SmoothedReplayBuffer) -> None:

@@ -151,7 +151,7 @@ class Watched(Executor):
         """
         if function in (simulate, finish_episode):
             self.specs.append(subjects[0])
-        return WatchedJob(self, self._workers.submit(function, *subjects))
+        return Job(WatchedJob(self, self._workers.submit(function, *subjects)).result)
 
 
 @dataclass(frozen=True)
@@ -196,7 +196,7 @@ def commands(physics: PyBulletPhysics, limit: float) -> list[Tick]:
     :param physics: setting of the physics
     :param limit: time limit, in s
     """
-    ticks = []
+    ticks: list[Tick] = []
     with started(physics, limit) as episode:
         while episode.termination is None:
             swings = episode.robot.generator.phase in (Phase.LIFT, Phase.LAND)

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from statistics import median
-from typing import Any
+from typing import Any, TypeVar
 
 import gymnasium as gym
 import numpy as np
@@ -37,6 +37,7 @@ DIMENSIONS = ((3, 1), (16, 5))
 TRANSITIONS = 2000
 WARM_UP = 20
 """Number of updates that are not timed."""
+AgentType = TypeVar("AgentType", bound=OffPolicyAlgorithm)
 
 
 @dataclass(frozen=True)
@@ -81,8 +82,9 @@ class Updates(Timing):
     def _times(self, layers: tuple[int, ...], dimensions: tuple[int, int]) -> dict[str, list[float]]:
         """Seconds of an update in every round, by what is timed."""
         env, widths = Noise(*dimensions), list(layers)
-        models = {
-            "naf": filled(NAF, env, dict(net_arch=widths)),
+        naf = filled(NAF, env, dict(net_arch=widths))
+        models: dict[str, OffPolicyAlgorithm] = {
+            "naf": naf,
             "naf without dropout": filled(NAF, env, dict(net_arch=widths, dropout=0)),
             "naf with V": filled(NAF, env, dict(net_arch=dict(V=widths, shared=widths, mu=[], L=[]))),
             "td3": filled(TD3, env, dict(net_arch=widths)),
@@ -90,7 +92,7 @@ class Updates(Timing):
         timed: dict[str, Callable[[int], None]] = {
             name: partial(model.train, batch_size=self.batch_size) for name, model in models.items()
         }
-        timed["products"] = products(models["naf"], self.batch_size)
+        timed["products"] = products(naf, self.batch_size)
         for run in timed.values():
             run(WARM_UP)
         times: dict[str, list[float]] = {name: [] for name in timed}
@@ -123,7 +125,7 @@ def ratio(upper: list[float], lower: list[float]) -> float:
     return median(one / other for one, other in zip(upper, lower, strict=True))
 
 
-def filled(algorithm: type[OffPolicyAlgorithm], env: gym.Env, policy_kwargs: dict[str, Any]) -> OffPolicyAlgorithm:
+def filled(algorithm: Callable[..., AgentType], env: gym.Env, policy_kwargs: dict[str, Any]) -> AgentType:
     """A model with random transitions in its replay buffer.
 
     :param algorithm: its class
@@ -131,13 +133,14 @@ def filled(algorithm: type[OffPolicyAlgorithm], env: gym.Env, policy_kwargs: dic
     :param policy_kwargs: arguments of its policy
     """
     model = algorithm("MlpPolicy", env, policy_kwargs=policy_kwargs, buffer_size=5000, seed=0, device="cpu")
-    observation_dim, action_dim = model.observation_space.shape[0], model.action_space.shape[0]
+    assert model.replay_buffer is not None
+    observation_dim, action_dim = spaces.flatdim(model.observation_space), spaces.flatdim(model.action_space)
     generator = np.random.default_rng(0)
     for _ in range(TRANSITIONS):
-        observations = generator.uniform(-1, 1, (2, 1, observation_dim)).astype(np.float32)
+        observation, following = generator.uniform(-1, 1, (2, 1, observation_dim)).astype(np.float32)
         action = generator.uniform(-1, 1, (1, action_dim)).astype(np.float32)
         done = generator.random(1) < 0.01
-        model.replay_buffer.add(*observations, action, generator.normal(size=1), done, [{}])
+        model.replay_buffer.add(observation, following, action, generator.normal(size=1), done, [{}])
     model.set_logger(Logger(None, []))
     return model
 
@@ -154,13 +157,15 @@ def products(model: NAF, batch_size: int) -> Callable[[int], None]:
     inputs = {layer: torch.randn(batch_size, layer.in_features) for layer in layers}
     outputs = {layer: torch.randn(batch_size, layer.out_features) for layer in layers}
 
+    observation_dim = spaces.flatdim(model.observation_space)
+
     def run(count: int) -> None:
         with torch.no_grad():
             for _ in range(count):
                 for layer in layers:
                     torch.mm(inputs[layer], weights[layer].t())
                     torch.mm(outputs[layer].t(), inputs[layer])
-                    if layer.in_features != model.observation_space.shape[0]:  # nothing learns from its gradient
+                    if layer.in_features != observation_dim:  # nothing learns from its gradient
                         torch.mm(outputs[layer], weights[layer])
                 for layer in target:
                     torch.mm(inputs[layer], weights[layer].t())

@@ -47,7 +47,7 @@ autodoc_preserve_defaults = True
 
 def write_api(app: Sphinx) -> None:
     """Write a page for every module; by the command, as the extension needs Python 3.11."""
-    command = [Path(sys.executable).with_name("sphinx-apidoc"), "-q", "--force", "--separate", "--module-first"]
+    command = [str(Path(sys.executable).with_name("sphinx-apidoc")), "-q", "--force", "--separate", "--module-first"]
     environment = {**os.environ, "SPHINX_APIDOC_OPTIONS": "members,show-inheritance,ignore-module-all"}
     package = HERE.parent / "sarah"
     without_commands = str(package / "cli")  # commands have a page of their own

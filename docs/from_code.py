@@ -79,7 +79,7 @@ def agent_sections() -> Iterator[str]:
     for name, kind in AGENT_SETTINGS.items():
         columns: dict[str, Any] = {"default": kind()}
         if kind is NAFSettings:
-            columns = {f"preset {preset}": NAFSettings(preset=preset) for preset in agent_settings.PRESETS}
+            columns = {f"preset {preset}": NAFSettings().with_preset(preset) for preset in agent_settings.PRESETS}
         yield from section(f"`agent`: `--algo {name}`", "agent.", own_fields(kind, LearnerSettings), columns)
 
 
@@ -92,7 +92,7 @@ def groups(key: str, config: Any, leave_out: str = "") -> Iterator[str]:
 
 def section(title: str, key: str, names: Iterable[str], columns: Mapping[str, Any]) -> Iterator[str]:
     """A heading and a table of settings; nothing if there are none."""
-    kind = type(next(iter(columns.values())))
+    kind: type = type(next(iter(columns.values())))
     meanings, ranges = meanings_of(kind), ranges_of(kind)
     rows = []
     for name in names:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 import tempfile
-from dataclasses import replace
 from pathlib import Path
 
 import matplotlib
@@ -75,7 +74,7 @@ def draw_ground_picture(terrain: Terrain, path: Path) -> None:
 
 def draw_push_recovery(path: Path) -> None:
     """Draw two robots that step in place and meet the same push: with locked hips, and with what NAF learned."""
-    config = replace(SHIPPED.config, push=Push(newtons=NEWTONS), time_limit=10.0)
+    config = BALANCE.config_of(SHIPPED.config, push=Push(newtons=NEWTONS), time_limit=10.0)
     halves = []
     for parameters, caption in CAPTIONS.items():
         result = simulate(EpisodeSpec(parameters, SEED, BALANCE, config), record_trace=True)

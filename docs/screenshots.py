@@ -51,7 +51,7 @@ def opened(browser: Browser, address: str, size: tuple[int, int]) -> Page:
 
 def draw_tensorboard(browser: Browser, runs: str) -> None:
     """Draw what TensorBoard shows of some trainings."""
-    command = [Path(sys.executable).with_name("tensorboard"), "--logdir", runs, "--port", str(PORT)]
+    command = [str(Path(sys.executable).with_name("tensorboard")), "--logdir", runs, "--port", str(PORT)]
     server = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     try:
         assert server.stderr is not None

@@ -11,7 +11,7 @@ from sarah.episode.tasks import STEPPING
 
 config = sarah.EpisodeConfig(time_limit=5.0)
 generator = random.Random(0)
-best, best_score = (1.0, 1.0, 1.0, 1.0, 1.0), 0.0
+best, best_score = STEPPING.box.checked([1.0] * 5), 0.0
 for attempt in range(20):
     tried = STEPPING.box.clipped(generator.gauss(value, 0.3) for value in best)
     score = sarah.evaluate("stepping", tried, config, seeds=range(2)).median("score")

@@ -4,6 +4,7 @@ One sees a few of NAF's trials, each with its return. A reward knows everything 
 """
 
 import dataclasses
+from typing import Any
 
 import gymnasium
 import torch
@@ -12,7 +13,7 @@ import sarah
 from sarah.agents import NAF
 
 
-def reward(tick, config):
+def reward(tick: sarah.Tick, config: sarah.EpisodeConfig) -> float:
     """Reward per second at the end of a control tick: steps, and centimetres below 0.85 m."""
     return tick.steps_per_second + 100.0 * (0.85 - tick.height)
 
@@ -23,7 +24,7 @@ LOW = dataclasses.replace(sarah.STEPPING, name="low", reward=reward, best_reward
 class Printed(gymnasium.Wrapper):
     """The environment, whose steps are printed."""
 
-    def step(self, action):
+    def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
         """Simulate an episode."""
         outcome = self.env.step(action)
         print(f"return {outcome[1]:5.2f}, {outcome[4]['result'].steps} steps")

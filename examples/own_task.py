@@ -13,7 +13,7 @@ POWER_COST = 0.001
 """Loss of reward per second and watt."""
 
 
-def reward(tick, config):
+def reward(tick: sarah.Tick, config: sarah.EpisodeConfig) -> float:
     """Reward per second at the end of a control tick."""
     return sarah.equation_2(tick, config) - POWER_COST * tick.power
 

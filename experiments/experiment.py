@@ -49,7 +49,7 @@ class Experiment(ABC):
 
 def _outcome(experiment: Experiment, case: Row) -> tuple[list[Row], float]:
     start = time.perf_counter()
-    rows = [{**case, **row} for row in experiment.rows(**case)]
+    rows: list[Row] = [{**case, **row} for row in experiment.rows(**case)]
     return rows, time.perf_counter() - start
 
 

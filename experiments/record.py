@@ -78,7 +78,7 @@ def read(name: str, folder: Path = RESULTS) -> Result:
         lines = path.read_text(encoding="utf-8").splitlines()
     except FileNotFoundError as error:
         raise ResultError(f"there is no {path}") from error
-    found = [match.groups() for line in lines if (match := HEAD.match(line))]
+    found = [(match[1], match[2]) for line in lines if (match := HEAD.match(line))]
     about: dict[str, Any] = dict(found)
     about |= {key: kind(about[key]) for key, kind in (("minutes", float), ("missing", int)) if key in about}
     try:

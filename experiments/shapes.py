@@ -39,18 +39,19 @@ def lines(axis: Axes, rows: DataFrame, x: str, y: str, label: str, of_figure: Da
     axis.set(xlabel=heading(x), ylabel=heading(y))
 
 
-def line_panels(rows: DataFrame, panel: str, *columns: str, height: float = 0.35, **settings: Any) -> Figure:
+def line_panels(
+    rows: DataFrame, panel: str, x: str, y: str, label: str, height: float = 0.35, **settings: Any
+) -> Figure:
     """Panels side by side with :func:`lines`, a colour for the same label in all.
 
     :param panel: column that names the panels
-    :param columns: columns x, y and label
     """
     parts = groups(rows, panel)
     figure, axes = panels(len(parts), height, **settings)
     for axis, (name, part) in zip(axes, parts.items(), strict=True):
-        lines(axis, part, *columns, of_figure=rows)
+        lines(axis, part, x, y, label, of_figure=rows)
         axis.set_title(str(name), fontsize="small")
-        axis.set_ylabel(heading(columns[1]) if axis is axes[0] else "")
+        axis.set_ylabel(heading(y) if axis is axes[0] else "")
     legend(figure, axes[0])
     return figure
 

@@ -56,7 +56,7 @@ def turned_table(
     wide = rows.pivot(index=list(kept), columns=names, values=column)
     wide = wide.reindex(index=unique(rows, kept), columns=unique(rows, names))
     heads = [", ".join(map(str, name)) if isinstance(name, tuple) else str(name) for name in wide.columns]
-    wide.columns = heads  # type: ignore[assignment]  # the stubs know an index only
+    wide.columns = heads
     return table(wide.reset_index(), [*kept, *heads], caption, **dict.fromkeys(heads, spec or format_of(column)))
 
 

@@ -10,13 +10,27 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, is_dataclass
 from functools import cache, partial
 from types import NoneType
-from typing import Annotated, Any, Literal, NamedTuple, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, get_args, get_origin, get_type_hints
 
 from sarah.errors import ConfigurationError, check_ends, check_range, check_type, check_whole, unknown_name
 from sarah.number import plain
 
-Range = tuple[float, float]
-"""Type of a setting that is a range: its ends, for which one number may stand."""
+if TYPE_CHECKING:
+
+    class Range:
+        """Type of a setting that is a range, for type checkers: it is given as ends or as one number, and has ends."""
+
+        def __init__(self, ends: tuple[float, float]) -> None: ...
+
+        def __get__(self, settings: object, owner: type) -> tuple[float, float]:
+            """Ends of the range."""
+
+        def __set__(self, settings: object, value: float | tuple[float, float]) -> None:
+            """Make the range of its ends, or of one number."""
+else:
+    Range = tuple[float, float]
+    """Type of a setting that is a range: its ends, for which one number may stand."""
+
 Check = Callable[[str, Any], Any]
 
 

@@ -16,6 +16,7 @@ import pytest
 from sarah.episode.result import METRICS, EpisodeResult
 from sarah.robot.description import PLATES
 from sarah.robot.reading import SensorReading, Side, Vector
+from sarah.scenery.ground import LEVEL
 from sarah.simulation.engines import is_installed
 from sarah.simulation.physics import PHYSICS, Physics
 from sarah.simulation.pybullet_world import pybullet
@@ -226,6 +227,8 @@ def need(engine: str) -> None:
 
 class NoPhysics:
     """A simulator in which nothing ever moves."""
+
+    ground = LEVEL
 
     def __init__(self, *_: object) -> None:
         self.time = 0.0

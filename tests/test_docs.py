@@ -35,7 +35,7 @@ from sarah.training.search import Start
 
 ROOT = Path(__file__).parent.parent
 AS_DESIGNED = Randomisation(enabled=False)
-LEARNED = {
+LEARNED: dict[str, dict[str, Any]] = {
     "stepping": {"task": "stepping", "parameters": dict(P1=0.4, P2=1.3, P3=0.1, P4=1.0, P5=1.0), "stepping": None},
     "balance": {
         "task": "balance",

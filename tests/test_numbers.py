@@ -27,6 +27,9 @@ from sarah.runs.agent_settings import NAFSettings
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import read_config, settings_by_key, write_config
 
+SINGLE: Any = np.float32
+"""Type whose numbers stand where the package asks for floats."""
+
 EIGHTS = [
     *(kind(8) for kind in (np.float16, np.float32, np.float64, np.longdouble, np.int8, np.uint64, int)),
     *(np.array(8), np.array(8.0, np.float16), Fraction(8), Decimal("8.0")),
@@ -36,7 +39,7 @@ SETTINGS: dict[str, Callable[[Any], object]] = {
         time_limit=eight, payload=eight, dimensions={"ankle_damping": eight / 8}
     ),
     "push": lambda eight: sarah.Push(newtons=eight, degrees=(0, eight), duration=eight),
-    "terrain": lambda eight: sarah.Terrain(slope_degrees=eight, friction_left=[0, eight / 2]),
+    "terrain": lambda eight: sarah.Terrain(slope_degrees=eight, friction_left=(0, eight / 2)),
     "randomisation": lambda eight: sarah.Randomisation(imu_tilt_degrees=eight, actuator_bandwidth=eight),
     "stepping": lambda eight: sarah.BalanceConfig(stepping=(eight / 8,) * 5),
     "spec": lambda eight: sarah.EpisodeSpec([eight / 8] * 5, _whole(eight)),
@@ -77,35 +80,35 @@ def test_what_is_no_number_is_refused_in_any_type() -> None:
 
 
 def test_truth_values_and_texts_of_numpy_are_pythons() -> None:
-    config = sarah.EpisodeConfig(engine=np.str_("mujoco"), randomisation=sarah.Randomisation(enabled=np.bool_(False)))  # type: ignore[arg-type]
-    assert type(config.engine) is str and config.randomisation.enabled is False
     with pytest.raises(ConfigurationError, match="unknown engine '3'"):
         sarah.EpisodeConfig(engine=3)  # type: ignore[arg-type]
+    config = sarah.EpisodeConfig(engine=np.str_("mujoco"), randomisation=sarah.Randomisation(enabled=np.bool_(False)))  # type: ignore[arg-type]
+    assert type(config.engine) is str and config.randomisation.enabled is False
 
 
 def test_what_is_made_of_numpys_numbers_can_be_written_and_read(tmp_path: Path) -> None:
-    change = sarah.Change(np.float32(1), {"payload": np.float32(5), "terrain": {"slope_degrees": np.arange(2)}})
+    change = sarah.Change(SINGLE(1), {"payload": SINGLE(5), "terrain": {"slope_degrees": np.arange(2)}})
     spec = sarah.SessionSpec(np.ones(9, np.float32), config=sarah.OperationConfig(changes=(change,)))  # type: ignore[arg-type]
     write_config(spec, tmp_path / "session.yaml")
     assert read_config(sarah.SessionSpec, tmp_path / "session.yaml") == spec
-    json.dumps(settings_by_key(sarah.EpisodeConfig(time_limit=np.float32(8))))
+    json.dumps(settings_by_key(sarah.EpisodeConfig(time_limit=SINGLE(8))))
 
 
 def test_single_precision_ends_where_settings_and_readings_begin() -> None:
     single, double = (
-        PatternGenerator(SteppingParameters(*map(kind, (0.5, 1.25, 0.125, 1, 1))), dt=kind(0.015625))
-        for kind in (np.float32, float)
+        PatternGenerator(SteppingParameters(*map(kind, (0.5, 1.25, 0.125, 1.0, 1.0))), dt=kind(0.015625))
+        for kind in (SINGLE, float)
     )
     draw = np.random.default_rng(0)
     for _ in range(100):
         signals = [
             draw.normal(mean, 1.0, count).astype(np.float32) for mean, count in ((9, 3), (0, 3), (75, 4), (0, 6))
         ]
-        single.tick(SensorReading(*signals))
+        single.tick(SensorReading._make(signals))
         double.tick(SensorReading(*[tuple(values.tolist()) for values in signals]))
     assert single.phase is not Phase.STAND and single.targets == double.targets
     assert (single.tilt, single.rate) == (double.tilt, double.rate) and type(single.tilt) is float
-    assert describe_robot({"ankle_damping": np.float32(1)}) is describe_robot({"ankle_damping": 1})
+    assert describe_robot({"ankle_damping": SINGLE(1)}) is describe_robot({"ankle_damping": 1})
 
 
 ACCEPTED = {"8": 8.0, "+8": 8.0, "8.": 8.0, ".5": 0.5, "1e-4": 1e-4, "1E1": 10.0, "1.0e-05": 1e-5}

@@ -13,6 +13,7 @@ from typing import Any, ClassVar, NamedTuple
 import gymnasium as gym
 import numpy as np
 import torch as th
+from gymnasium import spaces
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 from pandas import DataFrame
@@ -24,7 +25,7 @@ from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
 from experiments.experiment import Experiment
 from experiments.record import Row
-from experiments.shapes import line_panels
+from experiments.shapes import groups, line_panels
 from experiments.tables import shown, table
 from sarah.agents import NAF
 
@@ -54,7 +55,7 @@ def agent(algorithm: str, env: gym.Env, seed: int) -> OffPolicyAlgorithm:
     if algorithm in EXPLORATION_STD:
         return Watched("MlpPolicy", env, exploration_std=EXPLORATION_STD[algorithm], **settings)
     if algorithm != "SAC":
-        zeros = np.zeros(env.action_space.shape)
+        zeros = np.zeros(spaces.flatdim(env.action_space))
         settings["action_noise"] = NormalActionNoise(zeros, np.full_like(zeros, DOCUMENTED_STD))
     return OTHERS[algorithm]("MlpPolicy", env, **settings)
 
@@ -63,7 +64,8 @@ def mean_return(model: OffPolicyAlgorithm, env: gym.Env, episodes: int) -> float
     """Mean return of evaluation episodes, the same for every agent."""
     judged = Monitor(env)
     judged.reset(seed=EVALUATION_SEED)
-    return float(evaluate_policy(model, judged, episodes)[0])
+    returns, _ = evaluate_policy(model, judged, episodes, return_episode_rewards=True)
+    return float(np.mean(returns))
 
 
 class Trainings(NamedTuple):
@@ -153,9 +155,9 @@ def over_seeds(rows: DataFrame, *columns: str) -> DataFrame:
 
 def answer(rows: DataFrame) -> str:
     """How NAF does next to each of the other algorithms, and how near V comes to its bound."""
-    found = over_seeds(ends(rows), "task", "algorithm").set_index(["algorithm", "task"])
-    sentences = [_compared(found.loc["NAF"], found.loc[other], other) for other in OTHERS if other in found.index]
-    ratios = found.loc["NAF"].v_over_bound
+    found = groups(over_seeds(ends(rows), "task", "algorithm").set_index("task"), "algorithm")
+    sentences = [_compared(found["NAF"], found[other], other) for other in OTHERS if other in found]
+    ratios = found["NAF"].v_over_bound
     nearest = f"V comes to {shown(ratios.max(), '.2f')} of its bound at most, on {ratios.idxmax()}."
     return " ".join([*sentences, nearest])
 

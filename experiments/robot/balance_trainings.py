@@ -7,7 +7,6 @@ sets: those that judge have chosen nothing.
 
 from __future__ import annotations
 
-import dataclasses
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -24,7 +23,7 @@ from experiments.trainings import TrainingExperiment
 from sarah.control.parameters import BALANCE_PARAMETERS, Parameters
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import NO_PUSH, Push
-from sarah.episode.tasks import BalanceConfig
+from sarah.episode.tasks import BALANCE
 from sarah.files import replace_text
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
@@ -65,8 +64,7 @@ class SecondTrainingExperiment(TrainingExperiment):
         self, name: str, engine: Engine, first_seed: int, episodes: int, push: Push = NO_PUSH, **changes: Any
     ) -> Condition:
         """Episodes like those of the trainings, with a push and other changes of the settings."""
-        config = dataclasses.replace(self.episode("balance", engine), push=push, **changes)
-        assert isinstance(config, BalanceConfig)
+        config = BALANCE.config_of(self.episode("balance", engine), push=push, **changes)
         return Condition(name, config, first_seed, episodes)
 
     def pushes(self, engine: Engine, first_seed: int, episodes: int) -> list[Condition]:
@@ -134,8 +132,10 @@ QUICK = BalanceTrainings(time_limit=2.0, budget=5, engines=("mujoco",), seeds=1)
 def settled(rows: DataFrame) -> str:
     """Where V1 to V4 settle."""
     of_engines, names = rows.groupby("engine", sort=False), {"min": "lowest", "max": "highest"}
-    found = of_engines[NAMES].agg(["min", "median", "max"]).stack(0, future_stack=True).rename(columns=names)
+    found = of_engines[NAMES].agg(["min", "median", "max"]).stack(0, future_stack=True)
+    assert isinstance(found, DataFrame)
+    found = found.rename(columns=names)
     found["median_of_mu"] = of_engines[MU_NAMES].median().to_numpy().ravel()
     found = found.rename_axis(["engine", "parameter"]).reset_index()
     caption = f"What {FULL.seeds} trainings in each engine recommend, and what their networks say (mu)."
-    return table(found, list(found), caption, **dict.fromkeys(found.columns[2:], ".2f"))
+    return table(found, list(found.columns), caption, **dict.fromkeys(found.columns[2:], ".2f"))

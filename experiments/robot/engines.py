@@ -149,4 +149,4 @@ def trainings(rows: DataFrame) -> str:
         "after a Second; what is kept with its range."
     )
     medians = found[GAIT].median().assign(**kept).reset_index()
-    return table(medians, list(medians), caption)
+    return table(medians, list(medians.columns), caption)

@@ -16,7 +16,7 @@ from experiments.record import Row
 from experiments.shapes import legend, panels, strips
 from experiments.tables import share_of, shown, span, table
 from experiments.trainings import TrainingExperiment
-from sarah.control.parameters import PAPER_STEPPING, STEPPING_PARAMETERS
+from sarah.control.parameters import PAPER_STEPPING, STEPPING_PARAMETERS, Parameters
 from sarah.episode.evaluation import evaluate
 from sarah.runs.config import TrainingConfig
 from sarah.simulation.physics import PHYSICS
@@ -45,7 +45,7 @@ class FirstTraining(TrainingExperiment):
     def rows(self, run: str) -> Iterator[Row]:
         """The parameters of a run, and what the robot does with them."""
         config = self.episode("stepping")
-        parameters = PAPER_STEPPING
+        parameters: Parameters = PAPER_STEPPING
         if run != PAPER:
             seed = int(run.split()[-1])
             training = TrainingConfig("stepping", episodes=self.budget, seed=seed, episode=config)

@@ -108,4 +108,4 @@ def pairs(rows: DataFrame) -> str:
     """The differences between these survivals."""
     caption = "Differences between these survivals in percentage points, push by push, with their 95 % intervals."
     compared = _differences(rows)
-    return table(compared, list(compared), caption)
+    return table(compared, list(compared.columns), caption)

@@ -63,7 +63,8 @@ QUICK = Landscape(points=1, time_limit=1.1)
 
 def good_values(rows: DataFrame) -> tuple[dict[str, str], dict[str, str]]:
     """Good values of each parameter, in words: first of those with few, then of those with many."""
-    few, many = {}, {}
+    few: dict[str, str] = {}
+    many: dict[str, str] = {}
     for name, group in groups(rows, "parameter").items():
         worse = group.groupby("value").score.min()  # of the engines
         good = worse >= worse.max() - COST

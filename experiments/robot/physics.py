@@ -38,14 +38,15 @@ SENSORS = {f"{1000 * delay:g} ms": Randomisation(delay_seconds=delay) for delay 
 SENSORS["as designed"] = Randomisation(enabled=False)
 LOCKED, MOVING = (0.0, 0.0, 0.0, 0.0), (1.0, 0.0, 1.0, 0.0)
 SHIPPED = PARAMETER_SETS["balance"].spec
+SHIPPED_STEPPING = BALANCE.config_of(SHIPPED.config).stepping
 LOW_P1 = (0.02, 0.05, 0.55, 1.8, 1.3)
 """P1 to P5 that NAF learned in one training, with a P1 near zero."""
 GOOD = {
     "paper, V = 0": (PAPER_STEPPING, LOCKED),
-    "shipped, V = 0": (SHIPPED.config.stepping, LOCKED),
+    "shipped, V = 0": (SHIPPED_STEPPING, LOCKED),
     "low P1, V = 0": (LOW_P1, LOCKED),
     "paper, V1 = V3 = 1": (PAPER_STEPPING, MOVING),
-    "shipped": (SHIPPED.config.stepping, SHIPPED.parameters),
+    "shipped": (SHIPPED_STEPPING, SHIPPED.parameters),
     "low P1, V1 = V3 = 1": (LOW_P1, MOVING),
 }
 """P1 to P5 and V1 to V4 that score well, by name."""
@@ -76,7 +77,7 @@ class Physics(Experiment):
                 engine,
                 randomisation=SENSORS[sensors],
                 time_limit=self.time_limit,
-                stepping=stepping,  # type: ignore[arg-type]
+                stepping=stepping,
                 push=Push(newtons=(0.0, 0.0)),
             )
             seeds = self.seeds if config.randomisation.enabled else 1  # as designed, all episodes are the same

@@ -5,10 +5,11 @@ What each would recommend along the way, in MuJoCo, is judged by episodes whose 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from statistics import mean
+from typing import Any
 
 from pandas import DataFrame
 
@@ -81,7 +82,7 @@ def ranked(rows: DataFrame, task: str) -> DataFrame:
     return found
 
 
-def curve_of(row: Row) -> RaceCurve:
+def curve_of(row: Mapping[Any, Any]) -> RaceCurve:
     """Scores of a training's recommendations."""
     scores, final = (tuple(map(float, str(row[column]).split())) for column in ("scores", "final"))
     episodes = tuple(map(int, row["episodes"].split()))

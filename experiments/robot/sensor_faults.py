@@ -126,7 +126,8 @@ class _BehindFault:
         return getattr(self._generator, name)
 
     def tick(self, reading: SensorReading) -> PhaseChange | None:
-        since, heard = self.since, reading
+        since = self.since
+        heard: Heard = reading
         self.since += 1
         if since < 0 or self._before is None:
             self._before = reading
@@ -191,7 +192,7 @@ def faults(rows: DataFrame) -> str:
     columns = ("survival", "steps_per_second", "phases_by_sensors")
     wide = rows.pivot(index="fault", columns="hips", values=list(columns)).reindex(index=list(FAULTS))
     formats = {f"{column}, {hips}": format_of(column) for column in columns for hips in HIPS}
-    wide.columns = [f"{column}, {hips}" for column, hips in wide.columns]
+    wide.columns = wide.columns.map(", ".join)
     caption = (
         f"Survival of {FULL.seeds} robots with the shipped P1 to P5 in PyBullet, steps per second, and share of phases "
         f"that sensors end, both from the fault on; with locked hips, and with V1 = 1 and V3 = 0.7."

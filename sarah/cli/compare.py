@@ -45,9 +45,9 @@ class CompareOptions:
     it over three evaluations: a multiple of five, or "not reached". It is printed, and written to the folder with a
     plot. The same command continues a race that was interrupted.
 
-    Judging takes longer than learning. With a push, {pushed_final} episodes judge the end of a training, and the first
-    {pushed_along} of them judge after every five of its episodes; without, {still_final} and {still_along}. What is
-    recommended again is judged once. The command says before it starts how many episodes there are to simulate.
+    Judging takes longer than learning. With a push, {pushed_final} episodes judge the end of a training, and the
+    first {pushed_along} of them judge after every five of its episodes; without, {still_final} and {still_along}.
+    What is recommended again is judged once. The command says before it starts how many episodes it will simulate.
 
     :param out: folder of the race, which also holds its run folders
     :param algorithms: names of different algorithms: {algorithms}
@@ -59,8 +59,8 @@ class CompareOptions:
     :param episode: settings of the episodes; by default those of ``sarah-train``, whose help also names the paper's
     :param evaluations: number of unseen episodes that judge every final recommendation; by default {pushed_final} if
         the task has a push, and {still_final} if not
-    :param evaluations_along: number of these episodes that judge every recommendation along the way; by default
-        {pushed_along} if the task has a push, and {still_along} if not
+    :param evaluations_along: number of these episodes that judge every recommendation along the way;
+        by default {pushed_along} if the task has a push, and {still_along} if not
     :param best_known: score of which a share must be reached; by default that of the best training, where different
         episodes choose and judge the best
     :param workers: number of processes on this machine that train, one training each; with 0, this process trains

@@ -47,9 +47,9 @@ class Push:
         way, instead of anywhere in the range of directions
     """
 
-    newtons: Annotated[Range, Sized(0.0, 10_000.0, "N")] = (0.0, 100.0)
-    degrees: Annotated[Range, Within(0.0, 720.0, "degrees")] = (0.0, 360.0)
-    at_seconds: Annotated[Range, Within(STAND_SECONDS, LONGEST_EPISODE, "s")] = (1.0, 4.0)
+    newtons: Annotated[Range, Sized(0.0, 10_000.0, "N")] = Range((0.0, 100.0))
+    degrees: Annotated[Range, Within(0.0, 720.0, "degrees")] = Range((0.0, 360.0))
+    at_seconds: Annotated[Range, Within(STAND_SECONDS, LONGEST_EPISODE, "s")] = Range((1.0, 4.0))
     duration: Annotated[float, Sized(0.0, 10.0, "s")] = 0.15
     sagittal_share: Annotated[float, Within(0.0, 1.0)] = 0.0
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import STEPPING, Task, task_named
@@ -35,6 +36,16 @@ class EpisodeSpec:
     seed: int
     task: Task[Any] = STEPPING
     config: EpisodeConfig = None  # type: ignore[assignment]  # the task's own
+
+    if TYPE_CHECKING:  # arguments may be what __post_init__ converts
+
+        def __init__(
+            self,
+            parameters: Sequence[float],
+            seed: int,
+            task: str | Task[Any] = ...,
+            config: EpisodeConfig | None = ...,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         """Refuse invalid specifications, and convert the parameters to floats."""

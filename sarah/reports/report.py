@@ -13,7 +13,7 @@ from jinja2 import Environment, StrictUndefined
 from tqdm import tqdm
 
 from sarah.episode.episode import simulate
-from sarah.episode.evaluation import Evaluation, evaluate
+from sarah.episode.evaluation import Evaluation
 from sarah.episode.result import METRICS, EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, Task
@@ -100,14 +100,14 @@ def _evaluations(
     learned: EpisodeSpec, episodes: int, executor: Executor
 ) -> tuple[dict[tuple[float, ...], Evaluation], EpisodeResult]:
     """Evaluations of learned, baseline and neutral parameters, and the first of the learned ones' episodes, traced."""
-    task, config = learned.task, learned.config
-    others = executor.simulate_all([replace(learned, seed=seed) for seed in range(1, episodes)])
+    task, least_clearance = learned.task, learned.config.least_clearance
+    values = list(dict.fromkeys([learned.parameters, task.baseline, task.neutral or task.baseline]))
+    specs = [replace(learned, parameters=one, seed=seed) for one in values for seed in range(episodes)]
     shown = simulate(learned, record_trace=True)
-    of = {learned.parameters: Evaluation((shown, *others), config.least_clearance)}
-    for values in (task.baseline, task.neutral or task.baseline):
-        if values not in of:
-            of[values] = evaluate(task, values, config, range(episodes), executor)
-    return of, shown
+    others = tqdm(executor.simulate_all(specs[1:]), desc="simulating", unit=" episodes", total=len(specs), initial=1)
+    results = [shown, *others]
+    parts = [tuple(results[first : first + episodes]) for first in range(0, len(specs), episodes)]
+    return {one: Evaluation(part, least_clearance) for one, part in zip(values, parts, strict=True)}, shown
 
 
 def _captions(task: Task) -> dict[str, str]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from sarah.episode.from_mapping import convert_fields
 from sarah.episode.settings import EpisodeConfig
@@ -54,6 +54,21 @@ class TrainingConfig:
     episode: EpisodeConfig = None  # type: ignore[assignment]  # the task's own
     extended_from: tuple[int, ...] = ()
     pictures: Annotated[int, Within(0, MOST_EPISODES)] = 0
+
+    if TYPE_CHECKING:  # arguments may be what __post_init__ converts
+
+        def __init__(
+            self,
+            task: str | Task[Any] = ...,
+            algo: str = ...,
+            episodes: int = ...,
+            seed: int = ...,
+            slots: int = ...,
+            agent: AgentSettings | None = ...,
+            episode: EpisodeConfig | None = ...,
+            extended_from: tuple[int, ...] = ...,
+            pictures: int = ...,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         """Refuse unknown names and impossible budgets."""

@@ -49,10 +49,10 @@ class Randomisation:
     """
 
     enabled: bool = True
-    friction: Annotated[Range, Within(0.0, 5.0)] = (0.7, 1.0)
+    friction: Annotated[Range, Within(0.0, 5.0)] = Range((0.7, 1.0))
     mass_deviation: Annotated[float, Within(0.0, 0.9)] = 0.05
     mass_offset: Annotated[float, Sized(0.0, 0.1, "m")] = 0.010
-    actuator_bandwidth: Annotated[Range, Sized(0.1, 1000.0, "per second")] = (40.0, 50.0)
+    actuator_bandwidth: Annotated[Range, Sized(0.1, 1000.0, "per second")] = Range((40.0, 50.0))
     imu_tilt_degrees: Annotated[float, Within(0.0, 45.0, "degrees")] = 2.0
     acceleration_bias: Annotated[float, Within(0.0, 100.0, "m/s^2")] = 0.1
     angular_rate_bias: Annotated[float, Within(0.0, 100.0, "rad/s")] = 0.02

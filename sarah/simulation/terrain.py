@@ -43,12 +43,12 @@ class Terrain:
         randomisation
     """
 
-    slope_degrees: Annotated[Range, Within(0.0, 45.0, "degrees")] = (0.0, 0.0)
-    direction_degrees: Annotated[Range, Within(0.0, 720.0, "degrees")] = (0.0, 360.0)
-    roughness: Annotated[Range, Sized(0.0, LARGEST_ROUGHNESS, "m")] = (0.0, 0.0)
-    cell: Annotated[Range, Sized(0.002, 1.0, "m")] = (0.05, 0.05)
-    friction_left: Annotated[Range, Within(0.0, 5.0)] | None = None
-    friction_right: Annotated[Range, Within(0.0, 5.0)] | None = None
+    slope_degrees: Annotated[Range, Within(0.0, 45.0, "degrees")] = Range((0.0, 0.0))
+    direction_degrees: Annotated[Range, Within(0.0, 720.0, "degrees")] = Range((0.0, 360.0))
+    roughness: Annotated[Range, Sized(0.0, LARGEST_ROUGHNESS, "m")] = Range((0.0, 0.0))
+    cell: Annotated[Range, Sized(0.002, 1.0, "m")] = Range((0.05, 0.05))
+    friction_left: Annotated[tuple[float, float], Within(0.0, 5.0)] | None = None
+    friction_right: Annotated[tuple[float, float], Within(0.0, 5.0)] | None = None
     reach: Annotated[float, Sized(0.05, LARGEST_REACH, "m")] = 0.7
 
     def __post_init__(self) -> None:

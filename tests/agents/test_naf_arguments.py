@@ -2,6 +2,7 @@
 
 import math
 import re
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -12,7 +13,7 @@ from stable_baselines3.common.utils import LinearSchedule
 from sarah.agents import NAF, LocalNAF
 
 SMALL = {"net_arch": [8]}
-BAD = [
+BAD: list[tuple[type[NAF], str, list[Any]]] = [
     (NAF, "gamma", [math.nan, -0.1, 2.0]),
     (NAF, "tau", [0.0, 2.0]),
     (NAF, "n_steps", [0, 1.5]),
@@ -86,12 +87,12 @@ def test_bad_arguments_of_the_policy(name, value, said):
 def test_schedules_are_judged_by_their_ends(ends):
     end, value = (1, ends[0]) if ends[0] < 0 else (0, ends[1])
     with pytest.raises(ValueError, match=refusal(f"elite_share({end})", value)):
-        LocalNAF("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL, elite_share=LinearSchedule(*ends, 0.5))
+        LocalNAF("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL, elite_share=LinearSchedule(ends[0], ends[1], 0.5))
 
 
 def test_ends_of_the_ranges_are_allowed():
-    elite = dict(elite_share=np.float32(1.0), elite_std=0.0, elite_draws=np.int64(1))
-    policy = dict(policy_kwargs={**SMALL, "min_curvature": 0}, replay_buffer_kwargs={"temperature": 0})
+    elite: Any = dict(elite_share=np.float32(1.0), elite_std=0.0, elite_draws=np.int64(1))
+    policy: Any = dict(policy_kwargs={**SMALL, "min_curvature": 0}, replay_buffer_kwargs={"temperature": 0})
     model = LocalNAF("MlpPolicy", "Pendulum-v1", max_grad_norm=math.inf, exploration_std=0, **elite, **policy)
     schedules = (model.elite_share_schedule, model.elite_std_schedule, model.exploration_schedule)
     assert [schedule(0.5) for schedule in schedules] == [1.0, 0.0, 0.0]

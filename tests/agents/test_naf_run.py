@@ -1,5 +1,7 @@
 """NAF runs wherever SB3's other off-policy algorithms run, also with its presets."""
 
+from typing import Any
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -16,7 +18,9 @@ from torch import nn
 
 from sarah.agents import NAF, PRESETS, LocalNAF, MlpPolicy
 
-SMALL = dict(policy_kwargs=dict(net_arch=[16]), learning_starts=20, batch_size=8, buffer_size=300, seed=0)
+SMALL: dict[str, Any] = dict(
+    policy_kwargs=dict(net_arch=[16]), learning_starts=20, batch_size=8, buffer_size=300, seed=0
+)
 
 
 class Steady(gym.Env):

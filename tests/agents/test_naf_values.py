@@ -4,6 +4,7 @@ The tasks are linear-quadratic: V, mu and the curvature are known in closed form
 """
 
 import warnings
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -187,5 +188,6 @@ def test_a_replay_buffer_of_ones_own_needs_no_rewards():
             obs, action, next_obs, done, reward = map(th.cat, parts)
             return ReplayBufferSamples(obs, action, next_obs, done.reshape(-1, 1), reward.reshape(-1, 1))
 
-    model = NAF("MlpPolicy", Drift(), learning_starts=20, replay_buffer_class=Own, device="cpu").learn(30)
+    kind: Any = Own  # stable-baselines3 takes it, although its types ask for a ReplayBuffer
+    model = NAF("MlpPolicy", Drift(), learning_starts=20, replay_buffer_class=kind, device="cpu").learn(30)
     assert model.logger.name_to_value["train/loss"] > 0.0

@@ -1,5 +1,7 @@
 """The rank replay buffer draws by the rank of the reward, and by nothing else."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from gymnasium import spaces
@@ -72,12 +74,12 @@ def test_ranks_follow_additions_and_reset():
     set_random_seed(0)
     buffer = fill([0.0, 1.0])
     assert frequencies(buffer, 3)[1] > 0.9
-    buffer.add(*(np.full((1, d), 2.0, np.float32) for d in (1, 1, 2)), np.array([9.0]), np.ones(1), [{}])
+    add(buffer, [2.0, 2.0], 9.0, number=2.0)
     assert np.argmax(frequencies(buffer, 3)) == 2
     buffer.reset()
     with pytest.raises(ValueError, match="the replay buffer is empty, so there is nothing to sample"):
         buffer.sample(4)
-    buffer.add(*(np.zeros((1, d), np.float32) for d in (1, 1, 2)), np.array([-9.0]), np.ones(1), [{}])
+    add(buffer, [0.0, 0.0], -9.0)
     assert frequencies(buffer, 3)[0] == 1.0
 
 
@@ -97,8 +99,9 @@ def test_what_is_not_supported_is_refused():
         RankReplayBuffer(10, space, spaces.Box(-1, 1, (1,)))
 
 
-def add(buffer: RankReplayBuffer, action, reward: float) -> None:
-    buffer.add(np.zeros((1, 1)), np.zeros((1, 1)), np.array([action]), np.array([reward]), np.ones(1), [{}])
+def add(buffer: RankReplayBuffer, action, reward: float, number: float = 0.0) -> None:
+    observation = np.full((1, 1), number)
+    buffer.add(observation, observation, np.array([action]), np.array([reward]), np.ones(1), [{}])
 
 
 def test_of_a_large_buffer_the_newest_decide():
@@ -116,8 +119,8 @@ def test_of_a_large_buffer_the_newest_decide():
 @pytest.mark.parametrize("algorithm", [NAF, LocalNAF])
 def test_ranks_say_nothing_of_what_follows(algorithm):
     """So values of next observations cannot be learned from them."""
-    arguments = dict(replay_buffer_class=RankReplayBuffer, policy_kwargs={"net_arch": [8]}, gamma=0.5)
-    plain = dict(replay_buffer_kwargs={"temperature": 0.0})
+    arguments: dict[str, Any] = dict(replay_buffer_class=RankReplayBuffer, policy_kwargs={"net_arch": [8]}, gamma=0.5)
+    plain: dict[str, Any] = dict(replay_buffer_kwargs={"temperature": 0.0})
     with pytest.raises(ValueError, match=r"^gamma must be 0 with a RankReplayBuffer of temperature 4, not 0.5: .*$"):
         algorithm("MlpPolicy", "Pendulum-v1", **arguments)
     if algorithm is LocalNAF:

@@ -95,7 +95,7 @@ def test_ranks_are_those_of_corrected_rewards() -> None:
 
 def test_rewards_are_corrected_before_they_are_normalised() -> None:
     env = VecNormalize(make_vec_env(Lottery))
-    env.ret_rms.var = 4.0
+    env.ret_rms.var = np.array(4.0)
     buffer = played(120, temperature=0.0)
     set_random_seed(0)
     plain = buffer.sample(50)
@@ -141,7 +141,8 @@ def test_other_disturbances_than_before_are_refused(before: Any, info: dict[str,
 
 def test_after_a_reset_there_may_be_others_or_none() -> None:
     buffer = played(30)
-    for number, info in enumerate(({"disturbances": np.zeros(5)}, {}, {"disturbances": []})):
+    infos: list[dict[str, Any]] = [{"disturbances": np.zeros(5)}, {}, {"disturbances": []}]
+    for number, info in enumerate(infos):
         buffer.reset()
         add(buffer, number, (0, 0), 9.0, **info)
         assert buffer.sample(3).rewards.tolist() == [[9.0]] * 3

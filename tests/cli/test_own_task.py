@@ -77,9 +77,12 @@ def test_nothing_that_opens_a_run_runs_the_file(folder: Path, command: str, monk
         need("pybullet")
         need("mujoco")
     drawn: list[object] = []
-    monkeypatch.setattr(
-        "sarah.reports.all_figures.draw_all_figures", lambda *given: drawn.extend(given) or [Path("a.png")]
-    )
+
+    def draw(*given: object) -> list[Path]:
+        drawn.extend(given)
+        return [Path("a.png")]
+
+    monkeypatch.setattr("sarah.reports.all_figures.draw_all_figures", draw)
     process = run(name, *arguments, cwd=folder)
     assert not (folder / "it_ran").exists()
     if drawn:  # which needs only tables

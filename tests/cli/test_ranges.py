@@ -47,7 +47,7 @@ def test_with_underscores_and_deep_within() -> None:
 
 def test_in_python_and_in_a_file(tmp_path: Path) -> None:
     assert sarah.Push(newtons=80, degrees=[0, 90]) == sarah.Push((80.0, 80.0), (0.0, 90.0))  # type: ignore[arg-type]
-    assert Randomisation(friction=0.8).friction == (0.8, 0.8)  # type: ignore[arg-type]
+    assert Randomisation(friction=0.8).friction == (0.8, 0.8)
     assert NAFSettings(elite_std=0.2).elite_std == (0.2, 0.2)  # type: ignore[arg-type]
     path = tmp_path / "mine.yaml"
     path.write_text(

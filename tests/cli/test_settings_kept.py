@@ -131,6 +131,10 @@ def ran(
         found.legs.append(SteppingParameters(*config.episode.stepping))  # type: ignore[attr-defined]
         raise KeyboardInterrupt
 
+    def draw(*arguments: Any) -> list[Path]:
+        found.drawn.extend(arguments)
+        return [Path("drawn.png")]
+
     monkeypatch.chdir(tmp_path)
     for name in ("first", "second", "session"):
         Path(name).symlink_to(subjects / name)
@@ -142,7 +146,7 @@ def ran(
     level = [terrain.Situation("slope", 0.0, "", newtons) for newtons in (0.0, 75.0)]
     monkeypatch.setattr(terrain, "situations", lambda scale: level)
     for module, name in DRAWN:  # which would take most of the time
-        monkeypatch.setattr(module, name, lambda *arguments: found.drawn.extend(arguments) or [Path("drawn.png")])
+        monkeypatch.setattr(module, name, draw)
 
     def run(line: str) -> Ran:
         command, *arguments = shlex.split(line)

@@ -47,7 +47,7 @@ def test_shipped_parameters_come_with_their_settings(tmp_path: Path) -> None:
     assert own["parameters"] == other["parameters"] and own["score_mean"] != other["score_mean"]
     assert own["episode"]["stepping"] == list(PARAMETER_SETS["stepping"].spec.parameters)  # type: ignore[index]
     assert shown(folder=tmp_path) == own
-    low, high = balance.config.push.newtons
+    low, high = BALANCE.config_of(balance.config).push.newtons
     text = run("sarah-eval", "--help", cwd=tmp_path).stdout
     assert f"{low} {high}" in text and "--episode.stepping" in text
 
@@ -110,7 +110,7 @@ def test_directions_that_are_asked_for_are_those_of_all_pushes(asked: str, share
 def test_it_says_what_was_evaluated_and_how_the_episodes_ended() -> None:
     spec = PARAMETER_SETS["balance"].spec
     push = Push((400.0, 400.0), (0.0, 0.0), (2.0, 3.0))
-    changed = dataclasses.replace(spec.config, push=push, payload=1.5)
+    changed = BALANCE.config_of(spec.config, push=push, payload=1.5)
     fallen = dataclasses.replace(RESULT, termination="fallen", duration=2.5, vibration=40.0)
     up = dataclasses.replace(RESULT, duration=9.0)
     seeds = range(1000, 1008)

@@ -106,7 +106,7 @@ def test_a_file_goes_before_what_was_learned_first_and_an_option_before_both(
     assert config.episode.payload == 2.0 and config.episode.reward_form == "printed"
     assert config.episode.physics == dataclasses.replace(first.physics, solver_iterations=30, control_rate=100)
     push = Push((100.0, 125.0), degrees=(90.0, 90.0), sagittal_share=0.5)
-    assert config.episode.push == first.scale.scaled(push)
+    assert BALANCE.config_of(config.episode).push == first.scale.scaled(push)
 
 
 def test_another_robot_than_the_first_has_its_own_push_and_the_settings_that_were_recorded(

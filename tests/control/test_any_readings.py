@@ -13,7 +13,7 @@ from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import LONGEST_GAP, PatternGenerator, SteppingParameters
 from sarah.robot.reading import SensorReading
 
-STANDING = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (75.0,) * 4, (0.0,) * 6)  # type: ignore[arg-type]
+STANDING = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (75.0,) * 4, (0.0,) * 6)
 NEVER_FALLEN = ControllerConstants(least_upright=-20.0, largest_blow=10.0)
 """No reading counts as a fall, so the generator goes on whatever it reads."""
 SIGNAL = st.floats() | st.floats(-30.0, 30.0) | st.floats(0.0, 500.0)

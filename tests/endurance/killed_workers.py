@@ -23,8 +23,9 @@ from sarah.episode.workers import Workers
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.training.train import train
-from tests.endurance.kills import left_behind
-from tests.endurance.worker_processes import worker_processes
+
+from .kills import left_behind
+from .worker_processes import worker_processes
 
 WORKERS = 2
 
@@ -105,4 +106,4 @@ def seconds_of_training(episodes: int, folder: Path, workers: Workers, interrupt
 def cost(rows: DataFrame) -> str:
     """Kills, and how much longer the training took."""
     formats = {"kills": ".0f", "_s": ".0f", "longer": ".0%"}
-    return table(rows, list(rows), "A First Training with two workers, which were killed in turn.", **formats)
+    return table(rows, list(rows.columns), "A First Training with two workers, which were killed in turn.", **formats)

@@ -30,7 +30,8 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
 from sarah.training.train import train
-from tests.endurance.worker_processes import worker_processes
+
+from .worker_processes import worker_processes
 
 SHORT = EpisodeConfig(time_limit=1.3, physics=Physics(rate=100, solver_iterations=5))
 LOOKS = 8
@@ -136,5 +137,5 @@ def figure(rows: DataFrame) -> Figure:
 def ends(rows: DataFrame) -> str:
     """Memory and open files at both ends."""
     found = growths(rows)
-    columns = [column for column in found if column != "growth_mib"]
+    columns = [column for column in found.columns if column != "growth_mib"]
     return table(found, columns, "Memory and open files of each process, after few episodes and after many.")

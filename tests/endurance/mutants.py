@@ -115,14 +115,15 @@ def judged(file: str, subject: Subject, tree: Path, count: int) -> Row:
     :param count: largest number of mutants
     :raises ResultError: if the tests fail without a change
     """
-    from tests.endurance.mutation import mutated, mutations  # takes long to import
+    from .mutation import mutated, mutations  # takes long to import
 
     start = time.perf_counter()
     if not passes(subject.tests, tree, None):  # leaves compiled modules for the mutants' tests
         raise ResultError(f"the tests of {file} fail without a change")
     patience = 10.0 * (time.perf_counter() - start)
     tried = mutations(tree / file, subject.definitions)[:count]
-    reasons = {line.code: line.reason for line in EXPLAINED.itertuples() if line.file == file}
+    explained_here = EXPLAINED[EXPLAINED.file == file]
+    reasons = dict(zip(explained_here.code, explained_here.reason, strict=True))
     survivors = []
     for mutation in tried:
         with mutated(mutation) as (line, code):

@@ -24,7 +24,7 @@ def made(name: str, engine: str) -> Any:
     if name == OPERATION:
         robot = {"engine": engine, "physics": COARSE}
         return gymnasium.make(name, robot=robot, settle_seconds=0.5, measure_seconds=0.5).unwrapped
-    task = {} if "task" in ENVIRONMENTS[name] else {"task": "balance"}
+    task: dict[str, Any] = {} if "task" in ENVIRONMENTS[name] else {"task": "balance"}
     return gymnasium.make(name, engine=engine, physics=COARSE, time_limit=1.5, **task).unwrapped
 
 

@@ -31,6 +31,7 @@ def played(slots: int, episodes: int = 4, seed: int = 1) -> tuple[list[np.ndarra
     for step in range(episodes + slots - 1):
         observation, reward, done, info = env.step(ACTIONS[min(step, episodes - 1)][None])
         assert done.all() == (info[0]["transition"] is not None)  # otherwise learners would count an episode of 0
+        assert isinstance(observation, np.ndarray)
         observations.append(observation)
         rewards.append(float(reward[0]))
         infos.append(info[0])
@@ -118,6 +119,7 @@ def test_a_buffer_stores_each_outcome_with_its_own_action() -> None:
     for step in range(5):
         action = ACTIONS[min(step, 3)][None]
         after, reward, done, infos = env.step(action)
+        assert isinstance(after, np.ndarray)
         buffer.add(observation, after, action, reward, done, infos)
         observation = after
     assert buffer.size() == 4 and (buffer.dones[:4] == 1.0).all()

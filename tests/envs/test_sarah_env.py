@@ -146,6 +146,7 @@ def test_actions_that_rounding_puts_outside_are_the_ends() -> None:
     seen.action_space = seen.observation_space = gymnasium.spaces.Box(-1.0, 1.0, (5,), np.float32)
     for low in np.random.default_rng(0).uniform(-10.0, 10.0, 100).astype(np.float32):  # as wrappers scale
         scaled = gymnasium.wrappers.RescaleAction(seen, low, low + np.float32(0.1))
+        assert isinstance(scaled.action_space, gymnasium.spaces.Box)
         assert parameters_from(scaled.action(scaled.action_space.high), STEPPING) == pytest.approx((2.0,) * 5, abs=1e-3)
 
 
@@ -215,7 +216,7 @@ def test_render_shows_the_push_while_a_film_does(end: float, is_shown: bool) -> 
 def test_render_shows_the_floor_alone_if_the_state_is_nan(monkeypatch: pytest.MonkeyPatch) -> None:
     env = SarahEnv(config=SHORT, engine="mujoco", render_mode="rgb_array")
     env.reset(seed=0)
-    state = TorsoState((math.nan,) * 3, (math.nan,) * 4, (0.0,) * 3, (0.0,) * 3)  # type: ignore[arg-type]
+    state = TorsoState((math.nan,) * 3, (math.nan,) * 4, (0.0,) * 3, (0.0,) * 3)
     monkeypatch.setattr(MujocoSimulator, "torso_state", lambda _: state)
     with np.errstate(all="raise"):
         picture = env.render()
@@ -223,6 +224,6 @@ def test_render_shows_the_floor_alone_if_the_state_is_nan(monkeypatch: pytest.Mo
 
 
 def test_observations_that_cannot_be_are_named() -> None:
-    reading = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (75.0,) * 4, (math.nan,) * 6)  # type: ignore[arg-type]
+    reading = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (75.0,) * 4, (math.nan,) * 6)
     with pytest.raises(SimulationError, match=r"an observation must be finite, not .*nan"):
         observation_from(reading, Scale())

@@ -38,8 +38,11 @@ def spec(seed: int = 0, task: str | sarah.Task = "balance", **settings: Any) -> 
 def test_they_are_what_the_episode_draws(settings: dict[str, Any]) -> None:
     seed = 1
     subject = spec(seed, **settings)
-    newtons, sine, cosine, begin, friction, bandwidth, right, forward, *masses_and_offset = disturbances_of(subject)
+    found = disturbances_of(subject)
+    assert found is not None
+    newtons, sine, cosine, begin, friction, bandwidth, right, forward, *masses_and_offset = found
     push = subject.task.draw_push(subject.config, seed)
+    assert push is not None
     assert (newtons * cosine, newtons * sine, begin) == pytest.approx((*push.force[:2], push.begin))
     assert math.hypot(sine, cosine) == pytest.approx(1.0)
     conditions = conditions_of(subject.config, seed)

@@ -109,7 +109,7 @@ def test_diverging_physics_ends_with_a_finite_reward(seconds: float, parts: Any,
 
 @pytest.mark.parametrize("seconds", [0.5, 1.5])
 def test_who_diverges_while_standing_leaves_nothing_to_show(seconds: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    diverging = {"read": AT_REST._replace(joints=(1e30, 0.0, 0.0, 0.0, 0.0, 0.0))}
+    diverging: dict[str, object] = {"read": AT_REST._replace(joints=(1e30, 0.0, 0.0, 0.0, 0.0, 0.0))}
     stands = pytest.raises(SimulationError, match=r"nothing to show: .* diverged while the robot stood")
     with spoilt(seconds, diverging, monkeypatch, trace=True) as episode:
         episode.stand()

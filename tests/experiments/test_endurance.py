@@ -3,15 +3,15 @@
 from pathlib import Path
 
 import pytest
+from endurance import mutants
+from endurance.mutants import EXPLAINED, SUBJECTS, Subject
+from endurance.protections import PROTECTIONS, place_of
 from pandas import DataFrame
 
 from experiments import record
 from experiments.found import ENDURANCE, find, paths_of
 from experiments.making import make
 from experiments.record import ROOT, ResultError
-from tests.endurance import mutants
-from tests.endurance.mutants import EXPLAINED, SUBJECTS, Subject
-from tests.endurance.protections import PROTECTIONS, place_of
 
 CODE = "def half(x):\n    return x / 2.5\n"
 

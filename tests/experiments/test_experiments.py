@@ -175,9 +175,9 @@ def test_an_unpacked_archive_cannot_tell_its_commit(tmp_path: Path, monkeypatch:
 
 
 def test_a_result_is_read_as_it_was_written(tmp_path: Path) -> None:
-    rows = [{"run": "a, b # c", "score": 0.123456789, "episodes_to_90": float("inf"), "note": None}]
+    row: dict[str, Any] = {"run": "a, b # c", "score": 0.123456789, "episodes_to_90": float("inf"), "note": None}
     about = Result("some", "How much: all?", "run some", "unknown", "2026-01-02", 1.5, versions="python 3, sarah 1")
-    record.write(dataclasses.replace(about, rows=rows), tmp_path)
+    record.write(dataclasses.replace(about, rows=[row]), tmp_path)
     result = record.read("some", tmp_path)
     assert result.rows == [{"run": "a, b # c", "score": "0.12346", "episodes_to_90": "inf", "note": ""}]
     assert dataclasses.replace(result, rows=()) == about

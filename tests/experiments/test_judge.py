@@ -2,12 +2,13 @@
 
 import shutil
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from laboratory import RESULT
 
 from experiments import judge as module
 from experiments import trainings
@@ -38,7 +39,8 @@ class Simulation:
         if seeds[-1] >= self.fails_from:
             raise KeyboardInterrupt
         self.seeds += seeds
-        return Evaluation(tuple(SimpleNamespace(score=float(seed), survived=seed % 2 == 0) for seed in seeds))
+        endings = {seed: "fallen" if seed % 2 else "time_limit" for seed in seeds}
+        return Evaluation(tuple(replace(RESULT, score=float(seed), termination=endings[seed]) for seed in seeds))
 
 
 @pytest.fixture

@@ -5,6 +5,7 @@ import pytest
 from pandas import DataFrame
 
 from experiments.naf.standard_tasks import EXPLORATION_STD, OTHERS, agent, answer, ends, over_seeds
+from sarah.agents import NAF
 
 
 def course(algorithm: str, seed: int, *returns: float, task: str = "Hopper-v5") -> list[dict]:
@@ -40,4 +41,4 @@ def test_an_agent_explores_with_the_noise_of_its_name(name: str) -> None:
     if name in OTHERS:
         assert type(made) is OTHERS[name] and (made.action_noise is None) == (name == "SAC")
     else:
-        assert made.exploration_std == EXPLORATION_STD[name]
+        assert isinstance(made, NAF) and made.exploration_std == EXPLORATION_STD[name]

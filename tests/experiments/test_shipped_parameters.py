@@ -71,7 +71,7 @@ def test_every_set_survives_most_pushes_of_its_kind(name: str, newtons: float) -
 def test_what_commands_show_without_arguments_comes_back_from_its_push() -> None:
     spec = PARAMETER_SETS["balance"].spec
     result = simulate(dataclasses.replace(spec, config=dataclasses.replace(spec.config, time_limit=12.0)))
-    assert spec.config.push.newtons[0] > 0.0 and result.survived
+    assert BALANCE.config_of(spec.config).push.newtons[0] > 0.0 and result.survived
 
 
 def test_importing_the_package_does_not_read_the_file() -> None:

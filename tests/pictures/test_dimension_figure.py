@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from matplotlib.transforms import Bbox
+from matplotlib.transforms import Bbox, BboxBase
 
 from sarah.pictures.dimension_figure import draw_dimensions
 from sarah.pictures.dimension_marks import CENTRE_OF_MASS, marks
@@ -38,11 +38,11 @@ def test_names_are_readable_whatever_the_proportions(
     changed: dict[str, float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     seen: list[tuple[str, str, Bbox]] = []
-    edges: list[Bbox] = []
+    edges: list[BboxBase] = []
 
     def look(figure: Figure, *_: object, **__: object) -> None:
         texts = [text for axis in figure.axes for text in axis.texts if text.get_text()]
-        seen.extend((text.get_text(), str(text.get_weight()), text.get_window_extent()) for text in texts)
+        seen.extend((text.get_text(), str(text.get_fontweight()), text.get_window_extent()) for text in texts)
         edges.append(figure.bbox)
 
     monkeypatch.setattr(Figure, "savefig", look)

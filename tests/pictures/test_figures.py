@@ -33,7 +33,7 @@ from sarah.robot.reading import SensorReading, Side
 
 @pytest.mark.parametrize("constants", [CONSTANTS, ControllerConstants(lift_retraction=0.011, time_out_seconds=0.2)])
 def test_the_state_machine_is_that_of_the_generator(constants: ControllerConstants) -> None:
-    silence = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (0.0,) * 4, (0.0,) * 6)  # type: ignore[arg-type]
+    silence = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (0.0,) * 4, (0.0,) * 6)
     generator = PatternGenerator(SteppingParameters(1.0, 1.0, 1.0, P4=0.5, P5=1.0), dt=0.001, constants=constants)
     while generator.phase is Phase.STAND:
         generator.tick(silence)
@@ -113,8 +113,13 @@ def test_robot_that_makes_no_cycle_has_none_to_draw() -> None:
 def figures(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
     """Figures that are drawn, in place of their files."""
     drawn: list[Figure] = []
+
+    def save(figure: Figure, path: Path) -> list[Path]:
+        drawn.append(figure)
+        return []
+
     for module in (gait_figure, session_figure):
-        monkeypatch.setattr(module, "save", lambda figure, path: drawn.append(figure) or [])
+        monkeypatch.setattr(module, "save", save)
     return drawn
 
 
@@ -135,7 +140,9 @@ def test_words_of_changes_do_not_overlap(figures: list[Figure]) -> None:
     (figure,) = figures
     figure.canvas.draw()
     axis = figure.axes[0]
-    boxes = [words.get_window_extent() for words in (*axis.texts, axis.get_legend())]
+    legend = axis.get_legend()
+    assert legend is not None
+    boxes = [words.get_window_extent() for words in (*axis.texts, legend)]
     assert len(boxes) == 4
     for one, other in itertools.combinations(boxes, 2):
         assert not one.overlaps(other)

@@ -9,6 +9,7 @@ import pytest
 from imageio_ffmpeg import count_frames_and_secs
 from laboratory import need
 from PIL import Image
+from PIL.GifImagePlugin import GifImageFile
 
 from sarah.episode.episode import simulate
 from sarah.episode.push import Push
@@ -43,7 +44,7 @@ def test_frames_show_robot_and_words(trace: Trace) -> None:
     first, later = film(trace, 1.0, 1.3)
     assert first.shape == later.shape == (HEIGHT, WIDTH, 3)
     assert (first != later).any(axis=-1).sum() > 1000
-    dark = (first < 60).all(axis=-1)
+    dark = np.less(first, 60).all(axis=-1)
     assert dark[:, : WIDTH // 4].sum() > 1000  # what is written on the left
 
 
@@ -95,6 +96,7 @@ def test_any_name_of_a_film_is_that_of_its_file(
         assert count_frames_and_secs(tmp_path / path) == (11, pytest.approx(0.44, abs=0.05))
     else:
         with Image.open(path) as film:
+            assert isinstance(film, GifImageFile)
             assert (film.size, film.n_frames, film.info["loop"]) == (GIF_SIZE, 11, 0)
 
 

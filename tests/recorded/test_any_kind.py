@@ -24,7 +24,10 @@ GAME = Game(3, 40)
 
 
 def begun(path: Path) -> Path:
-    Folder(path, THROWS).begin(lambda: (path / "game.json").write_text(json.dumps(dataclasses.asdict(GAME))) and None)
+    def write_game() -> None:
+        (path / "game.json").write_text(json.dumps(dataclasses.asdict(GAME)))
+
+    Folder(path, THROWS).begin(write_game)
     return path
 
 

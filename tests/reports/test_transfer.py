@@ -1,6 +1,7 @@
 """The transfer between engines: how much of a score is kept."""
 
 import dataclasses
+from typing import Any
 
 import pytest
 from laboratory import RESULT
@@ -11,6 +12,7 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING
 from sarah.reports.transfer import Transfer, as_markdown
+from sarah.simulation.engines import Engine
 
 
 def scoring(score: float) -> Evaluation:
@@ -18,7 +20,7 @@ def scoring(score: float) -> Evaluation:
 
 
 LEARNED = EpisodeSpec(PAPER_STEPPING, 0, STEPPING, EpisodeConfig(engine="mujoco"))
-SCORES = {"pybullet": scoring(0.6), "mujoco": scoring(0.8)}
+SCORES: dict[Engine, Evaluation] = {"pybullet": scoring(0.6), "mujoco": scoring(0.8)}
 
 
 def test_the_name_of_a_run_stays_in_its_cell_of_the_table() -> None:
@@ -27,6 +29,6 @@ def test_the_name_of_a_run_stays_in_its_cell_of_the_table() -> None:
 
 
 def test_kept_is_the_lowest_share_in_any_other_engine() -> None:
-    scores = {"pybullet": scoring(0.6), "mujoco": scoring(0.8), "third": scoring(0.4)}
-    assert Transfer("run", LEARNED, scores).kept == pytest.approx(0.5)  # type: ignore[arg-type]  # a third engine
-    assert Transfer("run", LEARNED, {**scores, "mujoco": scoring(0.0)}).kept == 0.0  # type: ignore[arg-type]
+    scores: dict[Any, Evaluation] = {"pybullet": scoring(0.6), "mujoco": scoring(0.8), "third": scoring(0.4)}
+    assert Transfer("run", LEARNED, scores).kept == pytest.approx(0.5)
+    assert Transfer("run", LEARNED, {**scores, "mujoco": scoring(0.0)}).kept == 0.0

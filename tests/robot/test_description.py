@@ -57,8 +57,8 @@ def test_urdf_is_mirrored_between_the_legs() -> None:
     for link in ("hip", "thigh", "shank", "forefoot", "hindfoot"):
         left, right = (find(root, "link", f"{side}_{link}") for side in ("left", "right"))
         assert ElementTree.tostring(left).strip().replace(b"left", b"right") == ElementTree.tostring(right).strip()
-    left, right = (find(root, "joint", f"{side}_hip_abduction").find("origin") for side in ("left", "right"))
-    x_left, x_right = (float(origin.get("xyz").split()[0]) for origin in (left, right))  # type: ignore[union-attr]
+    origins = (find(root, "joint", f"{side}_hip_abduction").find("origin") for side in ("left", "right"))
+    x_left, x_right = (float(origin.get("xyz").split()[0]) for origin in origins)  # type: ignore[union-attr]
     assert x_left == -x_right < 0
 
 

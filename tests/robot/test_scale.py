@@ -76,7 +76,7 @@ def test_a_dimension_changed_in_operation_leaves_the_controller() -> None:
 
 def test_another_engine_gets_the_inertia_of_the_robots_size() -> None:
     for engine in ("pybullet", "mujoco"):
-        config = EpisodeConfig(dimensions=dimensions_alike(0.25, 0.1), engine=engine)  # type: ignore[arg-type]
+        config = EpisodeConfig(dimensions=dimensions_alike(0.25, 0.1), engine=engine)
         there = dataclasses.replace(config, engine="pybullet")
         assert there.physics.added_plate_inertia == pytest.approx(0.003 * 0.00625)  # type: ignore[attr-defined]
 

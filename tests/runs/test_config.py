@@ -2,6 +2,7 @@
 
 import dataclasses
 from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -48,8 +49,8 @@ def test_files_from_before_sizes_keep_their_robot(tmp_path: Path) -> None:
     for read, usual in ((training, EpisodeConfig()), (session, OperationConfig().robot)):
         assert describe_robot(read.dimensions).efforts == describe_robot().efforts
         drawn = dataclasses.replace(usual.randomisation, mass_deviation=0.02)
-        own = {"engine": "mujoco", "randomisation": drawn, "dimensions": read.dimensions, "time_limit": 20.0}
-        assert read == dataclasses.replace(usual, **own)
+        own = dataclasses.replace(usual, engine="mujoco", randomisation=drawn, time_limit=20.0)
+        assert read == dataclasses.replace(own, dimensions=read.dimensions)
 
 
 def test_what_a_task_and_an_engine_have_of_their_own_is_read(tmp_path: Path) -> None:
@@ -125,13 +126,14 @@ def test_changes_of_one_are_made_alike_in_another() -> None:
 
 def test_settings_from_python_are_checked_as_those_of_a_file() -> None:
     """And may be numbers of numpy."""
+    training, change, session, naf = (cast(Any, k) for k in (TrainingConfig, Change, SessionSpec, NAFSettings))
     for make, words in (
-        (lambda: TrainingConfig(episodes=10.5), "episodes must be a whole number, not 10.5"),
-        (lambda: NAFSettings(mu_layers=16), "agent.mu_layers must be a list, not 16"),
-        (lambda: Change("x", {}), "change.minute must be a number, not 'x'"),
-        (lambda: SessionSpec(seed=1.5), "seed must be a whole number, not 1.5"),
+        (lambda: training(episodes=10.5), "episodes must be a whole number, not 10.5"),
+        (lambda: naf(mu_layers=16), "agent.mu_layers must be a list, not 16"),
+        (lambda: change("x", {}), "change.minute must be a number, not 'x'"),
+        (lambda: session(seed=1.5), "seed must be a whole number, not 1.5"),
     ):
         with pytest.raises(ConfigurationError, match=words):
             make()
-    config = TrainingConfig(episodes=np.int64(30), agent=NAFSettings(learning_rate=np.float32(0.5)))
+    config = training(episodes=np.int64(30), agent=naf(learning_rate=np.float32(0.5)))
     assert type(config.episodes) is int and type(config.agent.learning_rate) is float

@@ -117,7 +117,7 @@ def test_nothing_in_the_working_folder_is_imported(honest: Path, tmp_path: Path)
     folder = shutil.copytree(honest, tmp_path / "run")
     for module in ("pickle", "socket", "signal", "yaml", "numpy", "sarah", "sitecustomize", "distributed"):
         (folder / f"{module}.py").write_text(f"open({str(tmp_path / 'sprung')!r}, 'w')")
-    command = [Path(sys.executable).parent / "sarah-eval", ".", "--episodes", "1", "--workers", "1"]
+    command = [str(Path(sys.executable).parent / "sarah-eval"), ".", "--episodes", "1", "--workers", "1"]
     environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
     process = subprocess.run(command, cwd=folder, capture_output=True, text=True, env=environment, timeout=120)
     assert process.returncode == 0, process.stderr

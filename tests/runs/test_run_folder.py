@@ -180,7 +180,7 @@ DIMENSIONS, WIDER = dimensions_alike(1.1, 1.0), {"torso_width": 0.3, "sole_half_
         ({"terrain": Terrain(roughness=0.01, reach=0.9)}, ["terrain.roughness 0.01", "terrain.reach 0.9"]),
     ],
 )
-def test_settings_that_differ_are_told(settings: dict[str, object], told: list[str], still: Trace) -> None:
+def test_settings_that_differ_are_told(settings: Any, told: list[str], still: Trace) -> None:
     changed = dataclasses.replace(USUAL, config=dataclasses.replace(USUAL.config, **settings))
     assert told_of(changed, still) == told
     assert told_of(EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), 0), still) == []

@@ -21,7 +21,7 @@ from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import Conditions
 from sarah.simulation.terrain import Terrain, draw_ground
 
-ROUGH = Terrain(roughness=0.01)  # type: ignore[arg-type]  # one number fixes it
+ROUGH = Terrain(roughness=0.01)
 RADIUS = describe_robot().contact_radius
 HILL = Ground(heights=((0.0, 0.0, 0.0), (0.0, 0.01, 0.0), (0.0, 0.0, 0.0)), cell=0.1)
 
@@ -158,7 +158,7 @@ def test_soles_of_a_standing_robot_rest_on_the_bumps(build: BuildSimulation, see
 def test_clearance_of_a_foot_is_that_over_its_own_ground(lab: Laboratory, build: BuildSimulation) -> None:
     step = tuple(0.02 if column < 35 else 0.0 for column in range(71))
     simulation = build(Conditions(ground=Ground(heights=(step,) * 71, cell=0.02)))
-    lab.place(simulation, simulation.robot.standing_height + 0.05)
+    lab.place(simulation, describe_robot().standing_height + 0.05)
     assert simulation.sole_height(Side.LEFT) == pytest.approx(0.03, abs=1e-6)
     assert simulation.sole_height(Side.RIGHT) == pytest.approx(0.05, abs=1e-6)
 

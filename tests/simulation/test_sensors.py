@@ -36,14 +36,15 @@ def noisy_signals(reading: SensorReading) -> list[float]:
 def test_perfect_sensors_read_the_truth() -> None:
     perfect = sensors()
     for factor in (1.0, 1e9, 0.1):
-        truth = TRUTH._replace(acceleration=tuple(factor * a for a in TRUTH.acceleration))
+        x, y, z = TRUTH.acceleration
+        truth = TRUTH._replace(acceleration=(factor * x, factor * y, factor * z))
         assert perfect(truth) == truth
 
 
 @pytest.mark.parametrize("ticks", [0, 1, 3])
 def test_all_signals_come_late_by_the_delay(ticks: int) -> None:
     delayed = sensors(delay_seconds=ticks * DT)
-    truths = [SensorReading(*(tuple(n + signal for signal in signals) for signals in TRUTH)) for n in range(8)]
+    truths = [SensorReading._make(tuple(n + signal for signal in signals) for signals in TRUTH) for n in range(8)]
     seen = [delayed(truth) for truth in truths]
     assert seen == [truths[0]] * ticks + truths[: 8 - ticks]
 
@@ -120,12 +121,12 @@ def test_unloaded_pads_read_no_negative_load() -> None:
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
 def test_accelerometer_reads_the_speed_gained_and_gravity(axis: int) -> None:
-    before, after = [0.1, -0.2, 0.05], [0.1, -0.2, 0.05]
-    after[axis] += 0.03
-    torso = TorsoState((0.0, 0.0, 0.84), (0.0, 0.0, 0.0, 1.0), tuple(after), (0.0, 0.0, 0.0))
+    before = (0.1, -0.2, 0.05)
+    x, y, z = (speed + 0.03 * (index == axis) for index, speed in enumerate(before))
+    torso = TorsoState((0.0, 0.0, 0.84), (0.0, 0.0, 0.0, 1.0), (x, y, z), (0.0, 0.0, 0.0))
     expected = [0.0, 0.0, GRAVITY]
     expected[axis] += 3.0
-    assert specific_force(torso, tuple(before), DT) == pytest.approx(expected)
+    assert specific_force(torso, before, DT) == pytest.approx(expected)
 
 
 def test_accelerometer_reads_a_push_on_every_axis(lab: Laboratory, build: BuildSimulation) -> None:

@@ -2,6 +2,7 @@
 
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -92,7 +93,7 @@ def test_a_refused_extension_changes_nothing(
 ) -> None:
     path = copy.path if name == "copy" else folder / name
     before = tree(path)
-    refused = run("sarah-train", "--resume", path, *options.split(), cwd=folder)
+    refused = run("sarah-train", "--resume", str(path), *options.split(), cwd=folder)
     assert refused.returncode == 2 and words in refused.stderr and tree(path) == before
 
 
@@ -101,7 +102,10 @@ def test_stages_rise() -> None:
     assert [(stage.end, stage.episodes) for stage in plan_of(config).stages] == [(60, 60), (100, 40), (200, 100)]
     assert config.extended_to(300).stages == (60, 100, 200, 300)
     assert OperationConfig(minutes=20, extended_from=(5, 10)).extended_to(30).stages == (5.0, 10.0, 20.0, 30.0)
+    kind: Any
     for kind, unit in ((TrainingConfig, "episodes"), (OperationConfig, "minutes")):
-        for extended_from in ((200,), (100, 60), (0,), (60, 60)):
+        for extended_from in ((200,), (100, 60), (60, 60)):
             with pytest.raises(ConfigurationError, match=f"extended_from must be in rising order and below {unit}"):
                 kind(**{unit: 200, "extended_from": extended_from})
+    with pytest.raises(ConfigurationError, match="extended_from must be in rising order and below episodes"):
+        TrainingConfig(episodes=200, extended_from=(0,))

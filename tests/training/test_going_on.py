@@ -65,7 +65,8 @@ def test_what_goes_on_is_what_was_done(models: dict[str, Path]) -> None:
     """Nothing of the slots is left: each reward is stored with the action that it came from."""
     actions: list[np.ndarray] = []
     rewards: list[float] = []
-    env: Any = gymnasium.wrappers.TransformReward(environment(), lambda reward: rewards.append(reward) or reward)
+    env: Any = environment()
+    env = gymnasium.wrappers.TransformReward(env, lambda reward: (reward, rewards.append(float(reward)))[0])  # type: ignore[func-returns-value]
     env = gymnasium.wrappers.TransformAction(env, lambda action: actions.append(action) or action, env.action_space)
     buffer: Any = TD3.load(models["td3"], env=env).learn(5).replay_buffer
     np.testing.assert_allclose(buffer.actions[:5, 0], actions, atol=1e-6)

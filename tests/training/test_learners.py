@@ -22,7 +22,8 @@ from sarah.training.learners import check_device, make_agent
 from sarah.training.plan import plan_of
 
 
-def built(algo: str = "naf", slots: int = 1, task: str = "stepping", **settings: Any) -> OffPolicyAlgorithm:
+def built(algo: str = "naf", slots: int = 1, task: str = "stepping", **settings: Any) -> Any:
+    """An agent, of the algorithm's own class."""
     config = TrainingConfig(task=task, algo=algo, slots=slots, agent=settings_of(algo)(**settings))
     return make_agent(plan_of(config), EpisodeVecEnv(task, config.episode, 1, slots, Workers()))
 
@@ -41,6 +42,7 @@ def pair(schedule: Callable[[float], float], share: float = 0.8) -> tuple[float,
 
 
 def noise_std(model: OffPolicyAlgorithm) -> float:
+    assert model.action_noise is not None
     return round(float(np.std([model.action_noise() for _ in range(5000)])), 1)
 
 
@@ -110,7 +112,7 @@ def test_what_follows_counts_only_where_no_episode_is_preferred() -> None:
     assert built(preset="paper", gamma=0.9).gamma == 0.9
     for preferred in ({}, {"temperature": 0.0}, {"elite_share": 0.0}, {"preset": "paper", "elite_share": 0.1}):
         with pytest.raises(ConfigurationError, match=r"agent\.gamma must be 0 unless .* are 0, not 0\.5$"):
-            NAFSettings(gamma=0.5, **preferred)  # type: ignore[arg-type]
+            NAFSettings(gamma=0.5, **preferred)
 
 
 @pytest.mark.parametrize(("preset", "algorithm"), [("one-step", LocalNAF), ("paper", NAF)])
@@ -156,8 +158,8 @@ def test_no_random_stream_is_used_twice(algo: str) -> None:
     env = EpisodeVecEnv("stepping", config.episode, 3, 3, asked)
     model = make_agent(plan_of(config), env)
     # torch and numpy have the same generator, of which torch's draws the weights and numpy's the exploration.
-    weights = np.random.RandomState(torch.initial_seed()).get_state()[1]
-    assert not np.array_equal(np.random.get_state()[1], weights)  # type: ignore[call-overload]
+    weights = np.random.RandomState(torch.initial_seed()).get_state(legacy=False)["state"]["key"]
+    assert not np.array_equal(np.random.get_state(legacy=False)["state"]["key"], weights)
     warm_up = copy.deepcopy(model.action_space.np_random)
     env.reset()
     assert len(asked.seeds) == 3 and asked.seeds != [draw_seed(warm_up) for _ in range(3)]

@@ -78,7 +78,8 @@ def test_disturbances_of_another_number_are_one_line() -> None:
 
 
 def test_what_failed_is_avoided() -> None:
-    episodes, found = random_episodes(60), []
+    episodes = random_episodes(60)
+    found: list[Parameters] = []
     for _ in range(3):
         found.append(after(episodes).best_simulated(found))
     assert {*found} < {parameters for parameters, _ in episodes}

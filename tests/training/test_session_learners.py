@@ -1,6 +1,7 @@
 """The learners of a session, on robots that are formulas."""
 
 import dataclasses
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -11,6 +12,8 @@ from sarah.operation.window import Window
 from sarah.training.session_learners import LEARNERS
 
 TOP = START + 0.15 * np.array([1, -1, 1, 1, -1, 1, -1, 1, -1])
+
+Reward = Callable[[np.ndarray, float], float]
 
 
 def hill(shares: np.ndarray, minute: float = 0.0) -> float:
@@ -23,8 +26,8 @@ def cliff(shares: np.ndarray, minute: float = 0.0) -> float:
     return 0.0 if shares[0] > START[0] + 0.1 else float(0.9 - np.square(shares - START).sum())
 
 
-def operated(learner: str, reward: object, seed: int = 0, minutes: float = 10.0) -> FormulaRobot:
-    robot = FormulaRobot(reward, minutes)  # type: ignore[arg-type]
+def operated(learner: str, reward: Reward, seed: int = 0, minutes: float = 10.0) -> FormulaRobot:
+    robot = FormulaRobot(reward, minutes)
     left = LEARNERS[learner](robot, SHIPPED, seed)
     assert BOX.checked(left) == left
     assert robot.is_over

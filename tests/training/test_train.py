@@ -82,7 +82,7 @@ def test_what_would_be_recommended_is_noted_every_five_episodes(run: RunFolder) 
     assert [int(row["episodes"]) for row in recommendations] == list(range(5, 16, 5))
     first, tried = recommendations[0], Tried(STEPPING)
     for row in list(run.episodes())[: int(first["episodes"])]:
-        metrics = {name: float(row[name]) for name in METRICS if name in row}
+        metrics: Any = {name: float(row[name]) for name in METRICS if name in row}
         result = EpisodeResult(row["termination"], (0.0, 0.0, 0.0), episode_return=float(row["return"]), **metrics)
         tried.append(parameters_of(row), merit(result))
     assert parameters_of(first) == tried.best((1.0,) * 5)  # the agent's own choice until it has learned

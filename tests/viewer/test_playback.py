@@ -56,7 +56,12 @@ def test_the_newest_wish_is_simulated_and_the_one_before_it_given_up() -> None:
     simulation.request(Wish(old, done.append))
     while not shares:
         time.sleep(0.01)
-    simulation.request(Wish(new, lambda result: (done.append(result), finished.set())))  # type: ignore[func-returns-value]
+
+    def finish(result: EpisodeResult) -> None:
+        done.append(result)
+        finished.set()
+
+    simulation.request(Wish(new, finish))
     assert finished.wait(60.0)
     assert done == [simulate(new)]
 

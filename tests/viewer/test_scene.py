@@ -59,7 +59,8 @@ def test_rough_ground_is_drawn_and_leaves_with_its_episode(scene: RobotScene, tr
     rough = dataclasses.replace(SPEC, config=dataclasses.replace(SPEC.config, terrain=Terrain(roughness=(0.02, 0.02))))
     scene.load(trace, rough)
     bumps = scene.bumps
-    assert bumps is not None and np.reshape(bumps.vertices, (-1, 3))[:, 2].min() == pytest.approx(scene.floor.position[2])
+    assert bumps is not None
+    assert np.reshape(bumps.vertices, (-1, 3))[:, 2].min() == pytest.approx(scene.floor.position[2])
     assert scene.floor.position[2] < -0.01
     scene.load(trace, SPEC)
     assert scene.bumps is None and scene.floor.position[2] == 0.0
