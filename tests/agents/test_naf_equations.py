@@ -1,5 +1,7 @@
 """Q, V, mu and L against the equations, written as plain loops."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 import torch as th
@@ -145,7 +147,7 @@ def test_v_and_w_are_two_outputs_of_the_same_layers():
         th.testing.assert_close(th.cat([critic.target_value(obs), values.target]), th.cat([w, w]))
     assert not th.allclose(v, w)
     critic(obs, actions).sum().backward()
-    output = critic.value_net[-1]
+    output: Any = critic.value_net[-1]
     assert output.weight.grad[0].any() and not output.weight.grad[1].any()
     assert output.bias.grad[0] != 0 and output.bias.grad[1] == 0
 
@@ -183,7 +185,8 @@ def test_values_of_states_that_nobody_has_seen_are_bounded():
 
 def test_only_updates_leave_units_out():
     policy = make_policy(2)
-    nn.init.normal_(policy.q_net.mu_net[0].weight)
+    first: Any = policy.q_net.mu_net[0]
+    nn.init.normal_(first.weight)
     obs = draw(2)[0]
     policy.set_training_mode(True)
     assert not th.equal(policy.q_net.mu(obs), policy.q_net.mu(obs))

@@ -106,7 +106,8 @@ def test_run(policy, make_env, kwargs):
     assert model.num_timesteps == steps
     action, _ = model.predict(model.observation_space.sample())
     assert action.shape == model.action_space.shape
-    fresh = NAF(policy, model.env, policy_kwargs=model.policy_kwargs, seed=model.seed)
+    env: Any = model.env
+    fresh = NAF(policy, env, policy_kwargs=model.policy_kwargs, seed=model.seed)
     for old, new in zip(fresh.q_net.parameters(), model.q_net.parameters(), strict=True):
         assert th.isfinite(new).all() and not th.equal(old, new)
 
@@ -157,7 +158,7 @@ def test_rewards_far_from_zero_get_a_warning_once(algorithm, arguments, constant
 @pytest.mark.filterwarnings("error")
 def test_it_is_the_reward_of_a_step_that_counts():
     """A sum of three steps would be far below 0, a step is not."""
-    env = gym.wrappers.TransformReward(gym.make("MountainCarContinuous-v0"), lambda reward: reward - 3.0)
+    env = gym.wrappers.TransformReward(gym.make("MountainCarContinuous-v0"), lambda reward: float(reward) - 3.0)
     NAF("MlpPolicy", env, seed=0, learning_starts=5, n_steps=3).learn(12)
 
 

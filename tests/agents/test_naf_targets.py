@@ -54,9 +54,10 @@ def fill_target(model) -> dict[int, float]:
         return {i: model.q_net_target.target_value(th.tensor([[float(i)]])).item() for i in range(11)}
 
 
-def remembered(model) -> list:
+def remembered(model) -> Any:
     """The batches that a model will sample."""
-    batches, sample = [], model.replay_buffer.sample
+    batches: Any = []
+    sample = model.replay_buffer.sample
     model.replay_buffer.sample = lambda *args, **kwargs: batches.append(sample(*args, **kwargs)) or batches[-1]
     return batches
 
@@ -140,7 +141,7 @@ def test_fast_updates_are_the_plain_ones(monkeypatch):
     settings: Any = dict(gamma=GAMMA, max_grad_norm=0.1, learning_starts=40, gradient_steps=0, seed=0)
     model = NAF("MlpPolicy", env, policy_kwargs=dict(dropout=0), **settings).learn(50)
     q_net, target = deepcopy(model.q_net), deepcopy(model.q_net_target)
-    optimizer = th.optim.Adam(q_net.parameters(), lr=model.learning_rate, foreach=False)
+    optimizer = th.optim.Adam(q_net.parameters(), lr=1e-3, foreach=False)
     batches = remembered(model)
     model.train(3, 16)
 

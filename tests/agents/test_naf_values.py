@@ -58,7 +58,9 @@ class Recorder(NAF):
 
 
 def trained(steps, **kwargs):
-    arguments = dict(seed=0, learning_starts=1000, exploration_std=0.3, policy_kwargs=dict(net_arch=LAYERS)) | kwargs
+    arguments: Any = (
+        dict(seed=0, learning_starts=1000, exploration_std=0.3, policy_kwargs=dict(net_arch=LAYERS)) | kwargs
+    )
     return Recorder("MlpPolicy", Drift(), **arguments).learn(steps)
 
 
@@ -159,8 +161,8 @@ RANKED = dict(replay_buffer_class=RankReplayBuffer, replay_buffer_kwargs=dict(te
 @pytest.mark.parametrize(("n_envs", "buffer"), [(1, dict(buffer_size=40)), (4, RANKED)])
 def test_all_transitions_count_beside_the_prior_of_mu(n_envs, buffer, monkeypatch):
     """Those of all environments, and also those that a small replay buffer has forgotten."""
-    counted = []
-    monkeypatch.setattr("sarah.agents.naf.centre_loss", lambda *args: counted.append(args[2]) or centre_loss(*args))
+    counted: Any = []
+    monkeypatch.setattr("sarah.agents.naf.centre_loss", lambda *args: counted.extend(args[2:]) or centre_loss(*args))
     env = make_vec_env(Drift, n_envs)
     model = NAF("MlpPolicy", env, learning_starts=20, batch_size=8, device="cpu", **buffer).learn(100)
     assert counted[-1] == 100

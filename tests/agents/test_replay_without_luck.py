@@ -104,7 +104,7 @@ def test_rewards_are_corrected_before_they_are_normalised() -> None:
 
 
 def test_a_correction_is_made_once_after_an_addition(monkeypatch: pytest.MonkeyPatch) -> None:
-    calls: list[int] = []
+    calls: Any = []
     monkeypatch.setattr(buffers, "corrected", lambda *args: calls.append(len(args[0])) or corrected(*args))
     buffer = played(30)
     for _ in range(3):

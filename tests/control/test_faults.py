@@ -238,7 +238,8 @@ def test_signals_that_come_late_have_the_baselines_of_what_came(field: str) -> N
     v = BalanceParameters(1.0, 0.0, 1.0, 0.0)
     generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), v, DT)
     constant = reading(lateral=0.7, rate=0.05, left=UNLOADED)
-    lost = constant._replace(**{field: (math.nan,) * 3})
+    nothing: dict[str, Any] = {field: (math.nan,) * 3}
+    lost = constant._replace(**nothing)
     for tick in range(200):
         generator.tick(lost if tick < 50 else constant)
     assert generator.targets[:4] == pytest.approx((0.0,) * 4, abs=1e-9)

@@ -92,8 +92,10 @@ LEANS, DEAD_BAND = 0.1, 0.03
 
 
 @pytest.mark.parametrize(("loads", "flexion"), [((40.0, 250.0), (-0.2, LEANS)), ((250.0, 40.0), (LEANS, -0.2))])
-def test_fall_is_the_carrying_legs_lean_beyond_the_dead_band(loads: tuple[float, ...], flexion: Any) -> None:
-    assert after(law(), reading(0.0, 0.0, *loads, flexion), ticks=100).fall == pytest.approx(LEANS - DEAD_BAND)
+def test_fall_is_the_carrying_legs_lean_beyond_the_dead_band(loads: Any, flexion: Any) -> None:
+    assert after(law(), reading(left=loads[0], right=loads[1], flexion=flexion), ticks=100).fall == pytest.approx(
+        LEANS - DEAD_BAND
+    )
 
 
 def test_fall_counts_pitch_and_rate_and_not_v4() -> None:
@@ -156,7 +158,7 @@ TIPS = 0.2
 @pytest.mark.parametrize(("side", "loads"), [(Side.RIGHT, (0.0, 300.0)), (Side.LEFT, (300.0, 0.0))])
 def test_a_robot_that_tips_over_its_outer_edge_spreads_its_legs(side: Side, loads: Any, v1: float) -> None:
     """Both legs outward, by 2 V1 (0.25 - 0.15) rad; it tips to the right at a positive rate."""
-    tipping = reading(0.0, 0.0, *loads, rate_y=side.value * TIPS)
+    tipping = reading(left=loads[0], right=loads[1], rate_y=side.value * TIPS)
     spread = after(law(v1=v1), tipping, ticks=2000)
     assert spread.abductions == {Side.LEFT: pytest.approx(0.2 * v1), Side.RIGHT: pytest.approx(-0.2 * v1)}
     assert spread.abduction == spread.sway == 0.0

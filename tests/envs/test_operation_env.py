@@ -1,6 +1,6 @@
 """The environment of a robot in operation."""
 
-from typing import Any
+from typing import Any, cast
 
 import gymnasium
 import numpy as np
@@ -80,7 +80,7 @@ def test_a_fall_terminates_and_the_same_robot_goes_on() -> None:
 
 def test_settings_of_another_kind_are_refused() -> None:
     for make, words in (
-        (lambda: SarahOperationEnv(EpisodeConfig()), r"^config must be an OperationConfig, not .*$"),
+        (lambda: SarahOperationEnv(cast(Any, EpisodeConfig())), r"^config must be an OperationConfig, not .*$"),
         (lambda: SarahOperationEnv(render_mode="rgb_array"), r"^unknown render_mode 'rgb_array' \(allowed: None\)$"),
         (
             lambda: SarahOperationEnv(robot={"time_limit": 3.0}),

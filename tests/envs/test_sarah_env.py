@@ -51,7 +51,7 @@ def test_a_task_of_your_own_is_an_environment() -> None:
     sb3_check_env(env.unwrapped)
     env.reset(seed=0)
     _, reward, *_ = env.step(PAPER_ACTION)
-    assert 0.35 < reward < 0.45  # half a second of some 0.8 m
+    assert 0.35 < float(reward) < 0.45  # half a second of some 0.8 m
 
 
 def test_settings_are_keywords() -> None:

@@ -212,7 +212,7 @@ def test_bad_workers_are_refused() -> None:
         ((2, "tcp://127.0.0.1:1"), "give one of the two"),
     ):
         with pytest.raises(ConfigurationError, match=words):
-            Workers(*arguments)  # type: ignore[arg-type]
+            Workers(*arguments)
     for workers in (Workers(2), Workers(scheduler="tcp://127.0.0.1:1")):
         with pytest.raises(ConfigurationError, match="workers start in a with statement"):
             workers.submit(simulate, SPEC)

@@ -145,7 +145,8 @@ def test_the_journal_gives_back_every_bit(function: Callable[..., Any], seeds: l
 
 
 SPEC = EpisodeSpec((1.0, 0.0, 1.0, 0.0), 5, BALANCE, BalanceConfig(time_limit=1.5, push=Push(40.0, 90.0, 1.2)))
-USUAL = dataclasses.replace(SPEC, config=dataclasses.replace(BALANCE.episode, push=Push(0.0)))
+UNPUSHED = dataclasses.replace(BALANCE.episode, push=Push(0.0))
+USUAL = dataclasses.replace(SPEC, config=UNPUSHED)
 
 
 @pytest.fixture(scope="module")
@@ -176,19 +177,19 @@ DIMENSIONS, WIDER = dimensions_alike(1.1, 1.0), {"torso_width": 0.3, "sole_half_
         ({"dimensions": WIDER}, ["dimensions torso_width 0.3, sole_half_width 0.06"]),
         (USUAL.config.for_robot(DIMENSIONS).__dict__, [f"{len(DIMENSIONS)} dimensions of its own"]),
         ({"stepping": (0.4, 1.3, 0.1, 1.0, 1.0)}, ["P1 to P5 0.40, 1.30, 0.10, 1.00, 1.00"]),
-        ({"terrain": Terrain(friction_left=0.2)}, ["terrain.friction_left 0.2"]),
+        ({"terrain": Terrain(friction_left=(0.2, 0.2))}, ["terrain.friction_left 0.2"]),
         ({"terrain": Terrain(roughness=0.01, reach=0.9)}, ["terrain.roughness 0.01", "terrain.reach 0.9"]),
     ],
 )
 def test_settings_that_differ_are_told(settings: Any, told: list[str], still: Trace) -> None:
-    changed = dataclasses.replace(USUAL, config=dataclasses.replace(USUAL.config, **settings))
+    changed = dataclasses.replace(USUAL, config=dataclasses.replace(UNPUSHED, **settings))
     assert told_of(changed, still) == told
     assert told_of(EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), 0), still) == []
 
 
 def test_what_an_option_changes_has_both_values() -> None:
-    changed = dataclasses.replace(USUAL.config, payload=3.0, stepping=(0.5, 1.0, 0.0, 1.0, 1.0))
-    other = dataclasses.replace(USUAL.config, stepping=(0.5, 1.0, 0.0, 1.0, 0.75))
+    changed = dataclasses.replace(UNPUSHED, payload=3.0, stepping=(0.5, 1.0, 0.0, 1.0, 1.0))
+    other = dataclasses.replace(UNPUSHED, stepping=(0.5, 1.0, 0.0, 1.0, 0.75))
     stepping = "stepping 0.5, 1, 0, 1, 1 instead of 0.5, 1, 0, 1, 0.75"
     assert list(differences(changed, other)) == ["payload 3 instead of 0", stepping]
 

@@ -102,7 +102,7 @@ def test_no_robot_is_where_code_works_that_names_no_client() -> None:
     for simulator in simulators:
         simulator.close()
     for _ in range(5):  # one that is forgotten gives its client back
-        simulator = build(describe_robot(), COARSE_PHYSICS, NOMINAL)
+        simulator: Any = build(describe_robot(), COARSE_PHYSICS, NOMINAL)
         clients.add(simulator.client)
         del simulator
         gc.collect()

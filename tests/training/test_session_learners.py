@@ -108,5 +108,5 @@ def test_learners_begin_as_given_and_do_not_see_the_score(learner: str) -> None:
 
     seen, blind = FormulaRobot(hill, 1.5), Blind(hill, 1.5)
     assert LEARNERS[learner](seen, SHIPPED, 0) == LEARNERS[learner](blind, SHIPPED, 0)
-    assert seen.windows[0].parameters == SHIPPED
-    assert ({window.parameters for window in seen.windows} == {SHIPPED}) == (learner == "none")
+    assert seen.seen[0].parameters == SHIPPED
+    assert ({window.parameters for window in seen.seen} == {SHIPPED}) == (learner == "none")
