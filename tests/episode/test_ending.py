@@ -74,7 +74,7 @@ def test_words_of_an_own_ending_are_its_name() -> None:
     assert ending_words("far_away") == "far away" and ending_words("fell") == TERMINATIONS["fell"]
 
 
-NOT_A_NUMBER = TorsoState((math.nan, 0.0, 0.8), (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3)  # type: ignore[arg-type]
+NOT_A_NUMBER = TorsoState((math.nan, 0.0, 0.8), (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3)
 
 
 def spoilt(seconds: float, parts: dict[str, object], monkeypatch: pytest.MonkeyPatch, trace: bool = False) -> Episode:
@@ -121,4 +121,4 @@ def test_who_diverges_while_standing_leaves_nothing_to_show(seconds: float, monk
 def test_results_that_are_no_numbers_are_named() -> None:
     for name, value in (("vibration", math.nan), ("final_position", (0.0, math.inf, 0.8))):
         with pytest.raises(SimulationError, match=f"{name} of an episode must be finite"):
-            dataclasses.replace(RESULT, **{name: value})
+            dataclasses.replace(RESULT, **dict[str, Any]({name: value}))

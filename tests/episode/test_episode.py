@@ -150,7 +150,7 @@ def test_return_is_equation_2_integrated_over_the_trace(paper_episode: EpisodeRe
     trace: Any = paper_episode.trace
     # A row has the position before its tick, and the reward is that of the one after it. The robot starts at (0, 0).
     moved = [*trace.position[1:], paper_episode.final_position]
-    rewards = [reward_rate(*position[:3], f) for position, f in zip(moved, trace.steps_per_second, strict=True)]
+    rewards = [reward_rate(x, y, z, f) for (x, y, z), f in zip(moved, trace.steps_per_second, strict=True)]
     assert sum(rewards) * CONTROL_DT == pytest.approx(paper_episode.episode_return, rel=1e-12)
     ceiling = highest_return(describe_robot().standing_height, 29.0)
     assert paper_episode.score == pytest.approx(paper_episode.episode_return / ceiling)

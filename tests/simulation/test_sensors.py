@@ -17,7 +17,7 @@ from sarah.simulation.simulator import TorsoState, rotate_to_body, specific_forc
 DT = 0.01
 JOINTS = (0.01, 0.02, 0.03, 0.04, 0.05, 0.06)
 TRUTH = SensorReading((1.0, -2.0, 9.0), (0.1, -0.2, 0.3), (70.0, 71.0, 72.0, 73.0), JOINTS)
-STILL = SensorReading((0.0,) * 3, (0.0,) * 3, (75.0,) * 4, (0.0,) * 6)  # type: ignore[arg-type]
+STILL = SensorReading((0.0,) * 3, (0.0,) * 3, (75.0,) * 4, (0.0,) * 6)
 ROOT = math.sqrt(50.0)
 """Root of half the control rate of 100 Hz, in root Hz: a sample's deviation is the noise's density times this."""
 NOISE = {f"{name}_noise_density": x / ROOT for name, x in (("acceleration", 0.2), ("angular_rate", 0.02), ("pad", 3.0))}

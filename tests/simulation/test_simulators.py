@@ -195,7 +195,7 @@ def test_servos_follow_their_targets_at_their_bandwidth(lab: Laboratory, build: 
 def test_retracting_a_leg_lifts_its_sole(lab: Laboratory, build: BuildSimulation) -> None:
     simulation = build()
     assert [simulation.sole_height(side) for side in Side] == pytest.approx([0.0, 0.0], abs=1e-9)
-    lab.place(simulation, height=simulation.robot.standing_height + 1.0)
+    lab.place(simulation, height=describe_robot().standing_height + 1.0)
     simulation.set_targets((0.0, 0.0, 0.0, 0.0, 0.05, 0.0))
     advance(simulation, 20)
     assert simulation.sole_height(Side.LEFT) - simulation.sole_height(Side.RIGHT) == pytest.approx(0.05, abs=0.005)

@@ -96,13 +96,14 @@ def test_episodes_repeat_whatever_others_did_to_a_kept_client(disturbance: str) 
 
 @NEEDS_PYBULLET
 def test_no_robot_is_where_code_works_that_names_no_client() -> None:
-    build, clients = simulator_of("pybullet"), set()
-    simulators: list[Any] = [build(describe_robot(), COARSE_PHYSICS, NOMINAL) for _ in range(12)]  # more than are kept
+    build: Any = simulator_of("pybullet")
+    clients = set()
+    simulators = [build(describe_robot(), COARSE_PHYSICS, NOMINAL) for _ in range(12)]  # more than are kept
     assert 0 not in [simulator.client for simulator in simulators]
     for simulator in simulators:
         simulator.close()
     for _ in range(5):  # one that is forgotten gives its client back
-        simulator: Any = build(describe_robot(), COARSE_PHYSICS, NOMINAL)
+        simulator = build(describe_robot(), COARSE_PHYSICS, NOMINAL)
         clients.add(simulator.client)
         del simulator
         gc.collect()
