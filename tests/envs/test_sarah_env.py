@@ -208,7 +208,7 @@ def test_render_shows_the_push_while_a_film_does(end: float, is_shown: bool) -> 
     before = env.render()
     env.step(np.zeros(4, np.float32))
     after = env.render()
-    purple = [np.equal(picture, ImageColor.getrgb(PUSH)).all(axis=2).any() for picture in (before, after)]
+    purple = [np.equal(np.array(picture), ImageColor.getrgb(PUSH)).all(axis=2).any() for picture in (before, after)]
     assert purple == [False, is_shown]
 
 
