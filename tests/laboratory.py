@@ -219,6 +219,12 @@ def laboratory(engine: str) -> Laboratory:
     return BulletLaboratory() if engine == "pybullet" else MujocoLaboratory()
 
 
+def advance(simulation: Simulator, ticks: int) -> None:
+    """Let some control ticks pass."""
+    for _ in range(ticks):
+        simulation.advance()
+
+
 def need(engine: str) -> None:
     """Skip the test that calls it if an engine is not installed."""
     if not is_installed(engine):

@@ -22,16 +22,12 @@ def buffer_of(actions: Sequence[Action], rewards: Sequence[float]) -> RankReplay
     return buffer
 
 
-def random_buffer(seed: int) -> RankReplayBuffer:
-    """40 transitions, or a few that are far from each other; nearly all of their rewards are negative."""
+def random_buffer(seed: int) -> tuple[RankReplayBuffer, list[list[float]], list[float]]:
+    """40 transitions, or a few that are far from each other, and their actions and rewards, nearly all negative."""
     rng = np.random.default_rng(seed)
     number, dim = (40, 2) if seed % 2 else (6, 4)
-    return buffer_of(rng.uniform(-1, 1, (number, dim)).tolist(), rng.normal(-3.0, 1.0, number).tolist())
-
-
-def stored(buffer: RankReplayBuffer) -> tuple[list[list[float]], list[float]]:
-    actions, rewards = buffer.actions[: buffer.size(), 0].tolist(), buffer.rewards[: buffer.size(), 0].tolist()
-    return actions, rewards
+    buffer = buffer_of(rng.uniform(-1, 1, (number, dim)).tolist(), rng.normal(-3.0, 1.0, number).tolist())
+    return buffer, buffer.actions[:number, 0].tolist(), buffer.rewards[:number, 0].tolist()
 
 
 def ranks(rewards: list[float]) -> list[float]:
@@ -47,18 +43,13 @@ def mean_around(place: Action, actions: list[list[float]], values: list[float], 
 
 def reflected(value: float) -> float:
     """At the bounds -1 and 1, and no further than the other one."""
-    if value > 1:
-        value = 2 - value
-    elif value < -1:
-        value = -2 - value
-    return max(-1.0, min(1.0, value))
+    return math.copysign(1.0, value) * max(-1.0, min(abs(value), 2.0 - abs(value)))
 
 
 def test_best_action_has_the_highest_mean_around_it() -> None:
     """Of ranks, over a distance of 0.15, with a quarter of a transition that is as bad as the worst."""
     for seed in range(60):
-        buffer = random_buffer(seed)
-        actions, rewards = stored(buffer)
+        buffer, actions, rewards = random_buffer(seed)
         means = [mean_around(action, actions, ranks(rewards), 0.15, 0.25) for action in actions]
         assert buffer.best_action().tolist() == actions[means.index(max(means))]
 
@@ -77,8 +68,7 @@ def test_best_action_is_among_the_100_highest_rewards() -> None:
 def test_a_draw_near_the_best_has_the_highest_mean_around_it(std: float) -> None:
     """Of ranks above the mean rank, over 0.7 deviations, at least 0.15; draws are reflected at the bounds."""
     for seed in range(20):
-        buffer = random_buffer(seed)
-        actions, rewards = stored(buffer)
+        buffer, actions, rewards = random_buffer(seed)
         set_random_seed(seed)
         gaussian = np.random.normal(0.0, 1.0, (8, len(actions[0]))).tolist()
         set_random_seed(seed)
@@ -87,5 +77,4 @@ def test_a_draw_near_the_best_has_the_highest_mean_around_it(std: float) -> None
         above_average = [rank - 0.5 for rank in ranks(rewards)]
         means = [mean_around(draw, actions, above_average, max(0.15, 0.7 * std), 0.001) for draw in draws]
         drawn = buffer.draw_near_best(std, draws=8)
-        assert drawn.dtype == np.float32
-        assert drawn.tolist() == pytest.approx(draws[means.index(max(means))], abs=1e-6)
+        assert drawn.dtype == np.float32 and drawn.tolist() == pytest.approx(draws[means.index(max(means))], abs=1e-6)

@@ -1,5 +1,7 @@
 """Q, V, mu and L against the equations, written as plain loops."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 import torch as th
@@ -21,15 +23,15 @@ ARCHITECTURES = {
 for_every_architecture = pytest.mark.parametrize("net_arch", ARCHITECTURES.values(), ids=ARCHITECTURES)
 
 
+def make_policy(action_dim: int, seed: int = 0, **policy_kwargs) -> MlpPolicy:
+    th.manual_seed(seed)
+    box, actions = spaces.Box(-1, 1, (OBS_DIM,)), spaces.Box(-1, 1, (action_dim,))
+    return MlpPolicy(box, actions, ConstantSchedule(1e-3), **{"net_arch": [16], **policy_kwargs})
+
+
 def make_critic(action_dim: int, seed: int = 0, **policy_kwargs) -> QuadraticCritic:
     """A critic whose weights are all random and large, so that no term of Q is small."""
-    th.manual_seed(seed)
-    policy = MlpPolicy(
-        spaces.Box(-1, 1, (OBS_DIM,)),
-        spaces.Box(-1, 1, (action_dim,)),
-        ConstantSchedule(1e-3),
-        **{"net_arch": [16], **policy_kwargs},
-    )
+    policy = make_policy(action_dim, seed, **policy_kwargs)
     for parameter in policy.q_net.parameters():
         nn.init.normal_(parameter, std=0.5)
     policy.set_training_mode(False)
@@ -135,38 +137,31 @@ def test_what_targets_take_shares_no_layer(net_arch):
 
 
 def test_v_and_w_are_two_outputs_of_the_same_layers():
+    """Q does not reach the output of W: a parabola gets into targets only by the layers that both share."""
     critic = make_critic(3)
     obs, actions = draw(3)
     with th.no_grad():
         v, w = critic.value_net(obs).split(1, dim=1)
-        th.testing.assert_close(critic.value(obs), v)
-        th.testing.assert_close(critic.target_value(obs), w)
         values = critic.all_values(obs, actions)
-    th.testing.assert_close(values.best, v)
-    th.testing.assert_close(values.target, w)
+        th.testing.assert_close(th.cat([critic.value(obs), values.best]), th.cat([v, v]))
+        th.testing.assert_close(th.cat([critic.target_value(obs), values.target]), th.cat([w, w]))
     assert not th.allclose(v, w)
-
-
-def test_q_does_not_reach_the_output_of_w():
-    """What a parabola promises cannot get into targets, but by the layers that V and W share."""
-    critic = make_critic(3)
-    critic(*draw(3)).sum().backward()
-    weight, bias = (parameter.grad for parameter in critic.value_net[-1].parameters())
-    assert weight is not None and weight[0].any() and not weight[1].any()
-    assert bias is not None and bias[0] != 0 and bias[1] == 0
-
-
-def dropout_of(*nets: nn.Module) -> list[float]:
-    return [layer.p for net in nets for layer in net.modules() if isinstance(layer, nn.Dropout)]
+    critic(obs, actions).sum().backward()
+    output: Any = critic.value_net[-1]
+    assert output.weight.grad[0].any() and not output.weight.grad[1].any()
+    assert output.bias.grad[0] != 0 and output.bias.grad[1] == 0
 
 
 def test_hidden_layers_of_mu_and_l_have_dropout_where_there_is_w():
-    critic = make_critic(2, net_arch=[16, 16], dropout=0.3)
-    assert dropout_of(critic.shared_net) == [0.3, 0.3]
-    critic = make_critic(2, net_arch=dict(W=[16], mu=[16], L=[16]), dropout=0.3)
-    assert dropout_of(critic.mu_net, critic.lower_net) == [0.3, 0.3]
-    assert dropout_of(critic.value_net) == []
-    assert dropout_of(make_critic(2, net_arch=ARCHITECTURES["published"])) == []
+    def dropout(net_arch, *nets: str, **policy_kwargs) -> list[float]:
+        critic = make_critic(2, net_arch=net_arch, **policy_kwargs)
+        return [layer.p for net in nets for layer in getattr(critic, net).modules() if isinstance(layer, nn.Dropout)]
+
+    separate = ARCHITECTURES["separate"]
+    assert dropout([16, 16], "shared_net", dropout=0.3) == [0.3, 0.3]
+    assert dropout(separate, "mu_net", "lower_net", dropout=0.3) == [0.3, 0.3]
+    assert dropout(separate, "value_net", dropout=0.3) == []
+    assert dropout(ARCHITECTURES["published"], "shared_net", "mu_net", "lower_net", "value_net") == []
 
 
 def test_values_of_states_that_nobody_has_seen_are_bounded():
@@ -183,16 +178,15 @@ def test_values_of_states_that_nobody_has_seen_are_bounded():
         return further / near
 
     assert growth([16, 16]) == pytest.approx(1, abs=0.01)
-    assert growth(dict(W=[16], mu=[16], L=[16])) == pytest.approx(1, abs=0.01)
+    assert growth(ARCHITECTURES["separate"]) == pytest.approx(1, abs=0.01)
     assert growth(ARCHITECTURES["published"]) > 1e3
     assert make_critic(2, net_arch=dict(W=[], mu=[], L=[])).value_net[0].out_features == 2  # nothing to normalise
 
 
 def test_only_updates_leave_units_out():
-    th.manual_seed(0)
-    policy = MlpPolicy(spaces.Box(-1, 1, (OBS_DIM,)), spaces.Box(-1, 1, (2,)), ConstantSchedule(1e-3), net_arch=[16])
-    weight, _ = policy.q_net.mu_net[0].parameters()
-    nn.init.normal_(weight)
+    policy = make_policy(2)
+    first: Any = policy.q_net.mu_net[0]
+    nn.init.normal_(first.weight)
     obs = draw(2)[0]
     policy.set_training_mode(True)
     assert not th.equal(policy.q_net.mu(obs), policy.q_net.mu(obs))
@@ -201,10 +195,8 @@ def test_only_updates_leave_units_out():
 
 
 def test_heads_take_their_own_sizes():
-    spaces_ = spaces.Box(-1, 1, (OBS_DIM,)), spaces.Box(-1, 1, (2,))
-
     def sizes(net_arch):
-        q_net = MlpPolicy(*spaces_, ConstantSchedule(1e-3), net_arch=net_arch).q_net
+        q_net = make_policy(2, net_arch=net_arch).q_net
         nets = (q_net.value_net, q_net.shared_net, q_net.mu_net, q_net.lower_net)
         return [[layer.out_features for layer in net if isinstance(layer, nn.Linear)] for net in nets]
 

@@ -42,8 +42,7 @@ def explore(steps: int, n_envs: int = 1, algorithm: type[NAF] = NAF, **kwargs) -
     model.learn(steps * n_envs)
     actions = (np.stack([e.actions for e in envs], axis=1) - [1.0, -1.0]) / [1.0, 2.0]
     # What the buffer keeps is what was done
-    kept = model.replay_buffer.actions.reshape(-1, n_envs, 2)[:steps]
-    np.testing.assert_allclose(kept, actions, atol=1e-6)
+    np.testing.assert_allclose(model.replay_buffer.actions.reshape(-1, n_envs, 2)[:steps], actions, atol=1e-6)
     return actions
 
 
@@ -67,13 +66,10 @@ def test_given_action_noise_takes_precedence():
     np.testing.assert_allclose(actions, np.broadcast_to([0.5, -0.5], actions.shape), atol=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("algorithm", "noise"),
-    [
-        (NAF, {"exploration_std": 0.3}),
-        (LocalNAF, {"action_noise": NormalActionNoise(np.full(2, 0.5), np.full(2, 0.3))}),
-    ],
-)
+GIVEN = {"action_noise": NormalActionNoise(np.full(2, 0.5), np.full(2, 0.3))}
+
+
+@pytest.mark.parametrize(("algorithm", "noise"), [(NAF, {"exploration_std": 0.3}), (LocalNAF, GIVEN)])
 def test_noise_moves_no_warm_up_action(algorithm, noise):
     """Otherwise many of them would be clipped to the bounds."""
     actions = explore(1050, algorithm=algorithm, learning_starts=1000, **noise)

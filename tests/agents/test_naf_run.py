@@ -1,4 +1,4 @@
-"""NAF runs wherever SB3's other off-policy algorithms run."""
+"""NAF runs wherever SB3's other off-policy algorithms run, also with its presets."""
 
 from typing import Any
 
@@ -14,8 +14,9 @@ from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.envs import BitFlippingEnv, FakeImageEnv, SimpleMultiObsEnv
 from stable_baselines3.common.utils import ConstantSchedule
 from stable_baselines3.common.vec_env import DummyVecEnv, VecNormalize
+from torch import nn
 
-from sarah.agents import NAF, MlpPolicy
+from sarah.agents import NAF, PRESETS, LocalNAF, MlpPolicy
 
 SMALL: dict[str, Any] = dict(
     policy_kwargs=dict(net_arch=[16]), learning_starts=20, batch_size=8, buffer_size=300, seed=0
@@ -38,14 +39,6 @@ class Steady(gym.Env):
         assert self.action_space.contains(action), (action, self.action_space)
         truncated = self.np_random.random() < 0.1
         return self.observation_space.sample(), float(-np.square(action).sum()), False, truncated, {}
-
-
-def assert_learned(model: NAF) -> None:
-    """All weights moved, and all are finite."""
-    assert model.env is not None
-    fresh = NAF(type(model.policy), model.env, policy_kwargs=model.policy_kwargs, seed=model.seed)
-    for old, new in zip(fresh.q_net.parameters(), model.q_net.parameters(), strict=True):
-        assert th.isfinite(new).all() and not th.equal(old, new)
 
 
 @pytest.mark.parametrize(("shape", "dtype"), [((1,), np.float32), ((2, 3), np.float64)])
@@ -85,15 +78,7 @@ def test_predict():
 
 
 def pendulums(n_envs):
-    return lambda: make_vec_env("Pendulum-v1", n_envs=n_envs, seed=0)
-
-
-def bits():
-    return DummyVecEnv([lambda: BitFlippingEnv(n_bits=3, continuous=True)] * 2)
-
-
-def images():
-    return FakeImageEnv(screen_height=40, screen_width=40, n_channels=1, discrete=False)
+    return make_vec_env("Pendulum-v1", n_envs=n_envs, seed=0)
 
 
 EXTRACTOR = dict(features_extractor_kwargs=dict(cnn_output_dim=16), net_arch=[16])
@@ -103,12 +88,16 @@ HINDSIGHT = dict(replay_buffer_class=HerReplayBuffer, replay_buffer_kwargs=dict(
 @pytest.mark.parametrize(
     ("policy", "make_env", "kwargs"),
     [
-        ("MlpPolicy", pendulums(1), {}),
-        ("MlpPolicy", pendulums(3), {"n_steps": 3}),
-        ("MlpPolicy", pendulums(3), {"gradient_steps": -1}),
-        ("CnnPolicy", images, dict(batch_size=4, learning_starts=10)),
+        ("MlpPolicy", lambda: pendulums(1), {}),
+        ("MlpPolicy", lambda: pendulums(3), {"n_steps": 3}),
+        ("MlpPolicy", lambda: VecNormalize(pendulums(3)), {"gradient_steps": -1}),
+        (
+            "CnnPolicy",
+            lambda: FakeImageEnv(40, 40, n_channels=1, discrete=False),
+            dict(batch_size=4, learning_starts=10),
+        ),
         ("MultiInputPolicy", lambda: SimpleMultiObsEnv(discrete_actions=False), dict(policy_kwargs=EXTRACTOR)),
-        ("MultiInputPolicy", bits, HINDSIGHT),
+        ("MultiInputPolicy", lambda: DummyVecEnv([lambda: BitFlippingEnv(3, continuous=True)] * 2), HINDSIGHT),
     ],
 )
 def test_run(policy, make_env, kwargs):
@@ -117,18 +106,72 @@ def test_run(policy, make_env, kwargs):
     assert model.num_timesteps == steps
     action, _ = model.predict(model.observation_space.sample())
     assert action.shape == model.action_space.shape
-    assert_learned(model)
+    env: Any = model.env
+    fresh = NAF(policy, env, policy_kwargs=model.policy_kwargs, seed=model.seed)
+    for old, new in zip(fresh.q_net.parameters(), model.q_net.parameters(), strict=True):
+        assert th.isfinite(new).all() and not th.equal(old, new)
 
 
-def test_normalised_environments():
-    env = VecNormalize(pendulums(2)())
-    model = NAF("MlpPolicy", env, **SMALL).learn(60)
-    # The buffer keeps what the environment said; samples are normalised
-    assert np.abs(model.replay_buffer.rewards).max() > 1.5 * model.replay_buffer.sample(200, env).rewards.abs().max()
+class Cliff(gym.Env):
+    """One action of five numbers per episode; a noisy hill whose top is near a cliff."""
+
+    observation_space = spaces.Box(-1, 1, (16,))
+    action_space = spaces.Box(0, 2, (5,))
+
+    def __init__(self, seed: int):
+        self.top = np.random.default_rng(seed).uniform(-0.5, 0.5, 5)
+
+    def score(self, action) -> float:
+        difference = np.asarray(action, float) - 1 - self.top
+        return 0.0 if difference[0] > 0.15 else float(np.exp(-2 * difference @ difference))
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        return self.np_random.uniform(-0.1, 0.1, 16).astype(np.float32), {}
+
+    def step(self, action):
+        reward = self.score(action) + self.np_random.normal(scale=0.05)
+        return np.zeros(16, np.float32), reward, True, False, {}
 
 
-def test_discrete_actions_and_the_wrong_policy_are_refused():
-    with pytest.raises(AssertionError, match=r"only supports .*Box.* as action spaces but Discrete"):
-        NAF("MlpPolicy", "CartPole-v1")
-    with pytest.raises(ValueError, match="MultiInputPolicy"):
-        NAF("MlpPolicy", SimpleMultiObsEnv(discrete_actions=False))
+def test_one_step_solves_a_hill_beside_a_cliff():
+    env, before = Cliff(0), repr(PRESETS)
+    model = LocalNAF("MlpPolicy", env, seed=0, **PRESETS["one-step"]).learn(100)
+    assert env.score(model.predict(np.zeros(16, np.float32))[0]) > 0.85
+    assert repr(PRESETS) == before
+
+
+@pytest.mark.parametrize(
+    ("algorithm", "arguments", "constant", "said"),
+    [
+        (LocalNAF, PRESETS["one-step"], -100.0, r"rewards of -9\d.* are far below 0.* as reward \+ 9\d"),
+        (NAF, dict(learning_starts=5, n_steps=3), 100.0, r"rewards of 10\d on average are far above 0.* reward - 10\d"),
+    ],
+)
+def test_rewards_far_from_zero_get_a_warning_once(algorithm, arguments, constant, said):
+    env = gym.wrappers.TransformReward(Cliff(0), lambda reward: reward + constant)
+    with pytest.warns(UserWarning, match=said) as seen:
+        algorithm("MlpPolicy", env, seed=0, **arguments).learn(7).learn(7, reset_num_timesteps=False)
+    assert len(seen) == 1
+
+
+@pytest.mark.filterwarnings("error")
+def test_it_is_the_reward_of_a_step_that_counts():
+    """A sum of three steps would be far below 0, a step is not."""
+    env = gym.wrappers.TransformReward(gym.make("MountainCarContinuous-v0"), lambda reward: float(reward) - 3.0)
+    NAF("MlpPolicy", env, seed=0, learning_starts=5, n_steps=3).learn(12)
+
+
+def test_paper_networks():
+    model = NAF("MlpPolicy", Cliff(0), seed=0, learning_starts=5, **PRESETS["paper"])
+
+    def layers(net):
+        return [layer.out_features if isinstance(layer, nn.Linear) else type(layer) for layer in net]
+
+    assert layers(model.q_net.value_net) == [256, nn.Sigmoid] * 3 + [1]
+    assert layers(model.q_net.mu_net) == [16, nn.Sigmoid] * 4 + [5]
+    assert layers(model.q_net.lower_net) == [80, nn.Sigmoid] * 4 + [15]
+    # The paper's bias of 1 is the centre of Box(0, 2)
+    np.testing.assert_array_equal(model.predict(np.zeros(16, np.float32))[0], np.ones(5))
+    model.learn(10)
+    assert model.action_space.contains(model.predict(np.zeros(16, np.float32))[0])

@@ -1,4 +1,4 @@
-"""What is saved comes back, and training goes on from it."""
+"""What is saved comes back, and training goes on from it; a training is a function of its seed, to the last bit."""
 
 import numpy as np
 import pytest
@@ -34,9 +34,9 @@ def test_save_load(tmp_path):
     loaded = NAF.load(tmp_path / "model", env=make_vec_env("Pendulum-v1"))
     np.testing.assert_array_equal(model.predict(OBS)[0], loaded.predict(OBS)[0])
     assert_same_state(model.policy.state_dict(), loaded.policy.state_dict())
-    first, second = model.policy.optimizer.state_dict(), loaded.policy.optimizer.state_dict()
-    for key, state in first["state"].items():
-        assert_same_state(state, second["state"][key])
+    optimizer = loaded.policy.optimizer.state_dict()
+    for key, state in model.policy.optimizer.state_dict()["state"].items():
+        assert_same_state(state, optimizer["state"][key])
     assert (loaded.max_grad_norm, loaded.num_timesteps) == (0.3, 40)
     assert loaded.exploration_schedule(0.75) == pytest.approx(0.2)
     assert loaded.policy.q_net is loaded.q_net and loaded.policy.q_net_target is loaded.q_net_target
@@ -90,3 +90,18 @@ def test_policy_alone(tmp_path):
     loaded = MlpPolicy.load(tmp_path / "policy")
     np.testing.assert_array_equal(model.predict(OBS)[0], loaded.predict(OBS)[0])
     assert_same_state(model.policy.state_dict(), loaded.state_dict())
+
+
+def trained_weights(algorithm: type[NAF], seed: int, n_envs: int) -> np.ndarray:
+    preset = PRESETS["one-step"] if algorithm is LocalNAF else {}
+    arguments = {**preset, "learning_starts": 40, "batch_size": 16, "buffer_size": 500}
+    env = make_vec_env("Pendulum-v1", n_envs=n_envs, seed=seed)
+    model = algorithm("MlpPolicy", env, seed=seed, **arguments).learn(46)
+    return np.concatenate([model.policy.parameters_to_vector(), model.replay_buffer.actions.ravel()])
+
+
+@pytest.mark.parametrize(("algorithm", "n_envs"), [(NAF, 1), (LocalNAF, 2)])
+def test_same_seed_same_bits(algorithm, n_envs):
+    first = trained_weights(algorithm, 7, n_envs)
+    np.testing.assert_array_equal(first, trained_weights(algorithm, 7, n_envs))
+    assert (first != trained_weights(algorithm, 8, n_envs)).any()

@@ -54,21 +54,21 @@ def fill_target(model) -> dict[int, float]:
         return {i: model.q_net_target.target_value(th.tensor([[float(i)]])).item() for i in range(11)}
 
 
+def remembered(model) -> Any:
+    """The batches that a model will sample."""
+    batches: Any = []
+    sample = model.replay_buffer.sample
+    model.replay_buffer.sample = lambda *args, **kwargs: batches.append(sample(*args, **kwargs)) or batches[-1]
+    return batches
+
+
 def one_update(model, batch_size=64):
     """Run one update; returns its batch and the logged loss."""
-    batches = []
-    sample = model.replay_buffer.sample
-
-    def remember(*args, **kwargs):
-        batches.append(sample(*args, **kwargs))
-        return batches[-1]
-
-    model.replay_buffer.sample = remember
+    batches = remembered(model)
     weights = {k: v.clone() for k, v in model.q_net.state_dict().items()}
     model.train(1, batch_size)
-    logged = model.logger.name_to_value["train/loss"]
     model.q_net.load_state_dict(weights)
-    return batches[0], logged
+    return batches[0], model.logger.name_to_value["train/loss"]
 
 
 @pytest.mark.parametrize(
@@ -111,22 +111,9 @@ def test_target_network_starts_as_a_copy():
         assert th.equal(target, online) and target.data_ptr() != online.data_ptr()
 
 
-def watch_batches(model: NAF, monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """Batches that its updates sample from now on."""
-    batches: list[Any] = []
-    sample = model.replay_buffer.sample
-
-    def watched(*args, **kwargs):
-        batches.append(sample(*args, **kwargs))
-        return batches[-1]
-
-    monkeypatch.setattr(model.replay_buffer, "sample", watched)
-    return batches
-
-
-def test_an_update_samples_100_transitions_unless_told_otherwise(monkeypatch):
+def test_an_update_samples_100_transitions_unless_told_otherwise():
     model = make_model(Corridor()).learn(30)
-    batches = watch_batches(model, monkeypatch)
+    batches = remembered(model)
     model.train(1)
     model.train(2, 16)
     assert [len(batch.rewards) for batch in batches] == [100, 16, 16]
@@ -151,14 +138,11 @@ def test_fast_updates_are_the_plain_ones(monkeypatch):
     """Fused Adam, averaging in one call and L in one piece change nothing but rounding: here all of it in loops."""
     env = Corridor()
     env.action_space = spaces.Box(-1, 1, (3,))
-    settings: dict[str, Any] = dict(
-        gamma=GAMMA, max_grad_norm=0.1, learning_starts=40, gradient_steps=0, seed=0, policy_kwargs=dict(dropout=0)
-    )
-    model = NAF("MlpPolicy", env, **settings)
-    model.learn(50)
+    settings: Any = dict(gamma=GAMMA, max_grad_norm=0.1, learning_starts=40, gradient_steps=0, seed=0)
+    model = NAF("MlpPolicy", env, policy_kwargs=dict(dropout=0), **settings).learn(50)
     q_net, target = deepcopy(model.q_net), deepcopy(model.q_net_target)
-    optimizer = th.optim.Adam(q_net.parameters(), lr=model.lr_schedule(1.0), foreach=False)
-    batches = watch_batches(model, monkeypatch)
+    optimizer = th.optim.Adam(q_net.parameters(), lr=1e-3, foreach=False)
+    batches = remembered(model)
     model.train(3, 16)
 
     for batch in batches:

@@ -7,6 +7,7 @@ from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from torch import nn
 
 from sarah.agents import NAF
+from sarah.agents.dropout import ByteDropout
 
 OBS = np.random.default_rng(0).normal(size=(10, 3)).astype(np.float32)
 
@@ -39,10 +40,8 @@ def test_statistics_change_in_training_only(model):
     start = running_mean(model.q_net)
     model.learn(20, reset_num_timesteps=False)
     learned = running_mean(model.q_net)
-    assert not th.equal(start, learned)
-    first, second = model.predict(OBS)[0], model.predict(OBS)[0]
-    np.testing.assert_array_equal(first, second)
-    assert th.equal(learned, running_mean(model.q_net))
+    np.testing.assert_array_equal(model.predict(OBS)[0], model.predict(OBS)[0])
+    assert not th.equal(start, learned) and th.equal(learned, running_mean(model.q_net))
 
 
 def test_a_pass_in_training_mode_an_update_none_in_the_target(model):
@@ -51,10 +50,46 @@ def test_a_pass_in_training_mode_an_update_none_in_the_target(model):
     assert model.q_net_target.features_extractor.training_calls == 0
     assert not th.equal(running_mean(model.q_net), th.zeros(16))
     assert th.equal(running_mean(model.q_net), running_mean(model.q_net_target))
-
-
-def test_modes(model):
     model.policy.set_training_mode(True)
     assert model.policy.training and model.q_net.training and not model.q_net_target.training
     model.predict(OBS)
     assert not model.policy.training and not model.q_net.training
+
+
+@pytest.mark.parametrize("share", [0.1, 0.9])
+def test_the_share_is_left_out_and_the_mean_stays(share):
+    th.manual_seed(0)
+    units = ByteDropout(share)(th.ones(401, 999))  # 8 bytes are drawn at a time, which do not come out even
+    assert units.shape == (401, 999)
+    assert (units == 0).double().mean().item() == pytest.approx(share, abs=0.5 / 256 + 0.003)
+    assert units.mean().item() == pytest.approx(1, abs=0.02)
+    assert len(units.unique()) == 2
+
+
+def test_units_are_left_out_independently():
+    th.manual_seed(0)
+    kept = (ByteDropout(0.5)(th.ones(2000, 64)) > 0).float()
+    correlations = th.corrcoef(kept.T) - th.eye(64)
+    assert correlations.abs().max() < 0.12  # five standard deviations of 2000 draws
+    assert th.corrcoef(th.stack([kept[:-1].flatten(), kept[1:].flatten()]))[0, 1].abs() < 0.02
+
+
+def test_what_is_left_out_learns_nothing():
+    units = th.rand(64, 32, requires_grad=True)
+    kept = ByteDropout(0.25)(units)
+    kept.sum().backward()
+    th.testing.assert_close(units.grad, th.where(kept == 0, 0.0, 1 / 0.75))
+
+
+def test_a_seed_decides_what_is_left_out():
+    def draw(seed):
+        th.manual_seed(seed)
+        return ByteDropout(0.2)(th.ones(5, 7))
+
+    assert th.equal(draw(3), draw(3)) and not th.equal(draw(3), draw(4))
+
+
+def test_nothing_is_left_out_when_acting_or_with_a_share_of_0():
+    units = th.rand(9, 9)
+    assert ByteDropout(0.5).eval()(units) is units
+    assert ByteDropout(0.0)(units) is units

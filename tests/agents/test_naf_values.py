@@ -58,13 +58,9 @@ class Recorder(NAF):
 
 
 def trained(steps, **kwargs):
-    arguments = {
-        "seed": 0,
-        "learning_starts": 1000,
-        "exploration_std": 0.3,
-        "policy_kwargs": dict(net_arch=LAYERS),
-        **kwargs,
-    }
+    arguments: Any = (
+        dict(seed=0, learning_starts=1000, exploration_std=0.3, policy_kwargs=dict(net_arch=LAYERS)) | kwargs
+    )
     return Recorder("MlpPolicy", Drift(), **arguments).learn(steps)
 
 
@@ -90,9 +86,8 @@ def test_a_warning_names_the_remedy_once():
         bias.data.fill_(0.0)
         model.train(1000, 16)
     bias.data.fill_(1000.0)
-    with pytest.warns(
-        UserWarning, match=r"^V of 1\.\d\de\+03 is beyond .*: it runs away\. Remedy: .* layers for W in place of V"
-    ) as seen:
+    said = r"^V of 1\.\d\de\+03 is beyond .*: it runs away\. Remedy: .* layers for W in place of V"
+    with pytest.warns(UserWarning, match=said) as seen:
         model.train(1, 16)
         model.train(1, 16)
     assert len(seen) == 1
@@ -142,12 +137,8 @@ def test_w_is_the_mean_of_what_actions_near_mu_led_to():
         (slope,) = th.autograd.grad(nearby_loss(values._replace(target=w.expand(3, 1)), targets), w)
         w = (w - 0.25 * slope).detach().requires_grad_()
     assert w.item() == pytest.approx(((weights * targets).sum() / weights.sum()).item(), rel=1e-4)
-
-
-def test_w_has_a_mean_where_all_actions_are_mu_itself():
-    targets = th.tensor([[1.0], [3.0]])
-    w = th.full((2, 1), 3.0, requires_grad=True)
-    loss = nearby_loss(Values(targets, targets, w, targets, th.zeros(2, 1)), targets)
+    targets, w = th.tensor([[1.0], [3.0]]), th.full((2, 1), 3.0, requires_grad=True)
+    loss = nearby_loss(Values(targets, targets, w, targets, th.zeros(2, 1)), targets)  # all actions are mu itself
     (slope,) = th.autograd.grad(loss, w)
     assert loss.item() == pytest.approx(2.0) and slope.flatten().tolist() == pytest.approx([2.0, 0.0])
 
@@ -164,23 +155,14 @@ def test_the_pull_of_mu_to_the_centre_fades_with_data(transitions, weight):
     assert slope.numpy() == pytest.approx(weight * 9 * mu.detach().numpy())
 
 
-@pytest.mark.parametrize(
-    ("n_envs", "buffer"),
-    [
-        (1, dict(buffer_size=40)),
-        (4, {}),
-        (4, dict(replay_buffer_class=RankReplayBuffer, replay_buffer_kwargs=dict(temperature=0))),
-    ],
-)
+RANKED = dict(replay_buffer_class=RankReplayBuffer, replay_buffer_kwargs=dict(temperature=0))
+
+
+@pytest.mark.parametrize(("n_envs", "buffer"), [(1, dict(buffer_size=40)), (4, RANKED)])
 def test_all_transitions_count_beside_the_prior_of_mu(n_envs, buffer, monkeypatch):
     """Those of all environments, and also those that a small replay buffer has forgotten."""
-    counted = []
-
-    def watched(values, loss, n):
-        counted.append(n)
-        return centre_loss(values, loss, n)
-
-    monkeypatch.setattr("sarah.agents.naf.centre_loss", watched)
+    counted: Any = []
+    monkeypatch.setattr("sarah.agents.naf.centre_loss", lambda *args: counted.extend(args[2:]) or centre_loss(*args))
     env = make_vec_env(Drift, n_envs)
     model = NAF("MlpPolicy", env, learning_starts=20, batch_size=8, device="cpu", **buffer).learn(100)
     assert counted[-1] == 100

@@ -29,25 +29,18 @@ def test_rewards_are_far_by_their_deviation_large_by_its_size(mean, std, said):
     assert text is None if said is None else re.search(said, text or "")
 
 
+@pytest.mark.filterwarnings("error")
 def test_a_few_rewards_and_what_is_no_number_say_nothing():
     assert reward_warning(np.full(4, -100.0)) is None
     assert reward_warning(np.full(5, -100.0)) is not None
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        assert reward_warning(np.array([0.0, 0.0, 0.0, 0.0, np.inf], np.float32)) is None
+    assert reward_warning(np.array([0.0, 0.0, 0.0, 0.0, np.inf], np.float32)) is None
 
 
-@pytest.mark.parametrize(
-    ("bound", "has_w", "remedy"),
-    [
-        (100.0, True, "wider exploration_std or a lower learning_rate"),
-        (100.0, False, "layers for W in place of V"),
-        (0.5, True, "scale the rewards up"),
-    ],
-)
-def test_the_remedy_of_values_that_run_away_is_one_that_is_left(bound, has_w, remedy):
-    text = value_warning(largest=2.5 * bound, ceiling=bound, bound=bound, gamma=0.99, has_w=has_w)
-    assert remedy in text and "by 1.5 times" in text
+def test_the_remedy_of_values_that_run_away_is_one_that_is_left():
+    remedies = {(100.0, True): "wider exploration_std or a lower", (100.0, False): "for W", (0.5, True): "rewards up"}
+    for (bound, has_w), remedy in remedies.items():
+        text = value_warning(largest=2.5 * bound, ceiling=bound, bound=bound, gamma=0.99, has_w=has_w)
+        assert remedy in text and "by 1.5 times" in text
 
 
 class SlowSGD(th.optim.SGD):
@@ -70,9 +63,7 @@ def test_updates_that_threads_make_slow_are_said_once(monkeypatch, tmp_path):
     policy_kwargs = {"net_arch": [8], "optimizer_class": SlowSGD}
     model = NAF("MlpPolicy", "Pendulum-v1", policy_kwargs=policy_kwargs, learning_starts=10, batch_size=8)
     (said,) = thread_warnings(model)
-    assert re.match(
-        r"updates take 0\.\d+ s each, as the 4 threads .* Remedy: torch\.set_num_threads\(1\), or OMP", said
-    )
+    assert re.match(r"updates take 0\.\d+ s each, as the 4 threads .* Remedy: torch\.set_num_threads\(1\), or", said)
     model.save(tmp_path / "slow")
     assert len(thread_warnings(NAF.load(tmp_path / "slow", env=model.env, learning_starts=10))) == 1
 
@@ -98,7 +89,6 @@ def test_threads_are_blamed_only_where_they_wait(monkeypatch, threads, seconds, 
 
 def test_very_slow_updates_are_said_after_the_first_ones(monkeypatch):
     monkeypatch.setattr(th, "get_num_threads", lambda: 2)
-    first_updates = FirstUpdates()
-    weights = [th.zeros(SMALL_WEIGHTS)]
+    first_updates, weights = FirstUpdates(), [th.zeros(SMALL_WEIGHTS)]
     said = [first_updates.thread_warning(0.3, 1, weights, batch_size=256) is not None for _ in range(5)]
     assert said == [False, True, False, False, False]

@@ -20,14 +20,9 @@ def fill(rewards, n_envs: int = 1, buffer_size: int = 100, **kwargs) -> RankRepl
     buffer = RankReplayBuffer(buffer_size, spaces.Box(-np.inf, np.inf, (1,)), BOX, "cpu", n_envs, **kwargs)
     for start in range(0, len(rewards), n_envs):
         numbers = np.arange(start, start + n_envs, dtype=np.float32)
-        buffer.add(
-            numbers[:, None],
-            numbers[:, None] + 0.5,
-            np.stack([numbers, -numbers], axis=1),
-            np.array(rewards[start : start + n_envs]),
-            np.ones(n_envs),
-            [{}] * n_envs,
-        )
+        obs, actions = numbers[:, None], np.stack([numbers, -numbers], axis=1)
+        earned = np.array(rewards[start : start + n_envs])
+        buffer.add(obs, obs + 0.5, actions, earned, np.ones(n_envs), [{}] * n_envs)
     return buffer
 
 
@@ -45,23 +40,22 @@ def test_ranks_by_counting(values):
     assert average_ranks(np.array([1.0, np.nan, 2.0])).tolist() == [0.5, 0.0, 1.0]
 
 
-def test_frequencies_follow_the_formula():
+RANKS = np.array([4, 1, 7, 4, 2, 6, 4, 0]) / 7
+
+
+@pytest.mark.parametrize(
+    ("rewards", "kwargs", "expected"),
+    [
+        ([3.0, -1.0, 10.0, 3.0, 0.0, 7.0, 3.0, -8.0], {}, np.exp(4 * RANKS) / np.exp(4 * RANKS).sum()),
+        ([1.0] * 8, {}, [1 / 8] * 8),
+        (range(8), {"temperature": 0.0}, [1 / 8] * 8),
+        (range(8), {"temperature": 1e5}, [0.0] * 7 + [1.0]),
+    ],
+)
+def test_frequencies_follow_the_formula(rewards, kwargs, expected):
     set_random_seed(0)
-    rewards = [3.0, -1.0, 10.0, 3.0, 0.0, 7.0, 3.0, -8.0]
-    ranks = np.array([4, 1, 7, 4, 2, 6, 4, 0]) / 7
-    expected = np.exp(4 * ranks) / np.exp(4 * ranks).sum()
-    # Standard error at most 0.001
-    np.testing.assert_allclose(frequencies(fill(rewards, n_envs=4), 8), expected, atol=0.005)
-
-
-@pytest.mark.parametrize("rewards, temperature", [([1.0] * 8, 4.0), (list(range(8)), 0.0)])
-def test_uniform_when_nothing_distinguishes(rewards, temperature):
-    set_random_seed(0)
-    np.testing.assert_allclose(frequencies(fill(rewards, temperature=temperature), 8), 1 / 8, atol=0.005)
-
-
-def test_at_any_temperature_the_best_are_drawn():
-    np.testing.assert_allclose(frequencies(fill(range(8), temperature=1e5), 8), [0.0] * 7 + [1.0])
+    found = frequencies(fill(rewards, n_envs=4, **kwargs), 8)
+    np.testing.assert_allclose(found, expected, atol=0.005)  # the standard error is at most 0.001
 
 
 def test_transitions_stay_together():
@@ -72,6 +66,8 @@ def test_transitions_stay_together():
     np.testing.assert_array_equal(batch.actions, np.stack([number, -number], axis=1))
     np.testing.assert_allclose(batch.rewards[:, 0], np.linspace(-1, 1, 12)[number.astype(int)], rtol=1e-6)
     assert batch.rewards.shape == batch.dones.shape == (200, 1)
+    full = fill(list(range(12, 0, -1)), 3, buffer_size=5)  # the oldest are overwritten
+    assert full.size() == 5 and set(full.sample(1000).observations[:, 0].numpy()) == {7.0, 8.0, 9.0, 10.0, 11.0}
 
 
 def test_ranks_follow_additions_and_reset():
@@ -87,17 +83,10 @@ def test_ranks_follow_additions_and_reset():
     assert frequencies(buffer, 3)[0] == 1.0
 
 
-def test_oldest_are_overwritten():
-    buffer = fill(list(range(12, 0, -1)), 3, buffer_size=5)
-    assert buffer.size() == 5
-    assert set(buffer.sample(1000).observations[:, 0].numpy()) == {7.0, 8.0, 9.0, 10.0, 11.0}
-
-
 def test_time_limits_are_not_ends():
     buffer = RankReplayBuffer(10, BOX, BOX, "cpu", n_envs=2)
-    infos = [{"TimeLimit.truncated": True}, {}]
     obs = np.array([[0.0, 0.0], [1.0, 1.0]], np.float32)
-    buffer.add(obs, obs, obs, np.zeros(2), np.ones(2), infos)
+    buffer.add(obs, obs, obs, np.zeros(2), np.ones(2), [{"TimeLimit.truncated": True}, {}])
     batch = buffer.sample(100)
     np.testing.assert_array_equal(batch.dones[:, 0], batch.observations[:, 0])
 

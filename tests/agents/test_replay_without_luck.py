@@ -1,4 +1,4 @@
-"""Where the environment says what luck an episode had, the replay buffer judges its action by the rest."""
+"""Corrected returns lack what known disturbances explain, and the replay buffer judges actions by what is left."""
 
 import pickle
 from typing import Any
@@ -7,12 +7,15 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium import spaces
+from sklearn.linear_model import Ridge
+from sklearn.pipeline import make_pipeline
+from sklearn.preprocessing import PolynomialFeatures, StandardScaler
 from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.utils import set_random_seed
 from stable_baselines3.common.vec_env import VecNormalize
 
 from sarah.agents import LocalNAF, RankReplayBuffer, buffers
-from sarah.agents.corrections import corrected
+from sarah.agents.corrections import FEWEST_EPISODES, MOST_FITTED, PENALTY, bounded, corrected
 
 BOX = spaces.Box(-1, 1, (2,))
 
@@ -101,13 +104,8 @@ def test_rewards_are_corrected_before_they_are_normalised() -> None:
 
 
 def test_a_correction_is_made_once_after_an_addition(monkeypatch: pytest.MonkeyPatch) -> None:
-    calls: list[int] = []
-
-    def counted(returns: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
-        calls.append(len(returns))
-        return corrected(returns, disturbances)
-
-    monkeypatch.setattr(buffers, "corrected", counted)
+    calls: Any = []
+    monkeypatch.setattr(buffers, "corrected", lambda *args: calls.append(len(args[0])) or corrected(*args))
     buffer = played(30)
     for _ in range(3):
         buffer.sample(4)
@@ -119,27 +117,26 @@ def test_a_correction_is_made_once_after_an_addition(monkeypatch: pytest.MonkeyP
     assert calls == [30, 31]
 
 
+AS_BEFORE = "a list of finite numbers as in the episodes before, 2 of them, not"
+ALWAYS = "there in every episode or in none"
+
+
 @pytest.mark.parametrize(
-    ("disturbances", "words"),
+    ("before", "info", "words"),
     [
-        ((1.0,), "a list of finite numbers as in the episodes before, 2 of them, not (1.0,)"),
-        ((1.0, "a"), "a list of finite numbers as in the episodes before, 2 of them, not (1.0, 'a')"),
-        (3.0, "a list of finite numbers as in the episodes before, 2 of them, not 3.0"),
-        (None, "there in every episode or in none"),
+        ({"episodes": 3}, {"disturbances": (1.0,)}, f"{AS_BEFORE} (1.0,)"),
+        ({"episodes": 3}, {"disturbances": (1.0, "a")}, f"{AS_BEFORE} (1.0, 'a')"),
+        ({"episodes": 3}, {"disturbances": 3.0}, f"{AS_BEFORE} 3.0"),
+        ({"episodes": 3}, {}, ALWAYS),
+        ({"episodes": 3, "tells": False}, {"disturbances": [1.0]}, ALWAYS),
+        ({"episodes": 0}, {"disturbances": [np.inf]}, "a list of finite numbers, not [inf]"),
     ],
 )
-def test_other_disturbances_than_before_are_refused(disturbances: Any, words: str) -> None:
-    buffer = played(3)
+def test_other_disturbances_than_before_are_refused(before: Any, info: dict[str, Any], words: str) -> None:
+    buffer = played(**before)
     with pytest.raises(ValueError) as refused:
-        add(buffer, 3, (0, 0), 1.0, **({} if disturbances is None else {"disturbances": disturbances}))
-    assert str(refused.value) == f'info["disturbances"] must be {words}' and buffer.size() == 3
-
-
-def test_disturbances_cannot_begin_later_or_be_infinite() -> None:
-    with pytest.raises(ValueError, match=r'^info\["disturbances"\] must be there in every episode or in none$'):
-        add(played(3, tells=False), 3, (0, 0), 1.0, disturbances=[1.0])
-    with pytest.raises(ValueError, match=r"must be a list of finite numbers, not \[inf\]$"):
-        add(played(0), 3, (0, 0), 1.0, disturbances=[np.inf])
+        add(buffer, 3, (0, 0), 1.0, **info)
+    assert str(refused.value) == f'info["disturbances"] must be {words}' and buffer.size() == before["episodes"]
 
 
 def test_after_a_reset_there_may_be_others_or_none() -> None:
@@ -165,3 +162,89 @@ def test_an_agent_learns_from_several_environments_that_tell() -> None:
     assert isinstance(model.replay_buffer, RankReplayBuffer) and model.replay_buffer.disturbances is not None
     rewards, luck = model.replay_buffer.rewards[:30, 0], model.replay_buffer.disturbances[:30, 0]
     assert np.corrcoef(rewards, luck)[0, 1] > 0.95
+
+
+def drawn(seed: int, number: int = 60, width: int = 3) -> tuple[np.ndarray, np.ndarray]:
+    """Returns that disturbances decide in part, and the disturbances."""
+    rng = np.random.default_rng(seed)
+    disturbances = rng.uniform(-1.0, 3.0, (number, width))
+    first, second, third = disturbances.T[:3]
+    returns = 2.0 + (first + 1.0) * (second + 1.0) - third**2 + rng.normal(size=number)
+    return returns, disturbances
+
+
+def test_a_disturbance_of_two_values_by_hand() -> None:
+    """Its square is constant, so one weight is left: n / (n + penalty) of the true one."""
+    side = np.resize([1.0, -1.0], 40)
+    without = corrected(7.0 + 3.0 * side, 5.0 + 0.1 * side[:, None])
+    np.testing.assert_allclose(without, 7.0 + 3.0 * side * PENALTY / (40 + PENALTY), rtol=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_it_is_a_ridge_regression_on_squares_and_products(seed: int) -> None:
+    """Whatever the units are."""
+    returns, disturbances = drawn(seed)
+    features = (StandardScaler(), PolynomialFeatures(2, include_bias=False), StandardScaler())
+    explanation = make_pipeline(*features, Ridge(alpha=PENALTY)).fit(disturbances, returns)
+    without = corrected(returns, disturbances)
+    np.testing.assert_allclose(without, returns - explanation.predict(disturbances) + returns.mean(), rtol=1e-9)
+    np.testing.assert_allclose(corrected(returns, disturbances[:, ::-1] * 1e200 + 3e200), without)
+    np.testing.assert_allclose(corrected(1e200 * returns, disturbances), 1e200 * without)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_many_that_explain_nothing_hide_none_that_do(seed: int) -> None:
+    returns, disturbances = drawn(seed)
+    chance = np.random.default_rng(9).normal(size=(60, 20))
+    among = corrected(returns, np.hstack([chance, disturbances]))
+    assert np.std(among - corrected(returns, disturbances)) < 0.4 * returns.std()
+    assert np.std(corrected(chance[:, 0], disturbances) - chance[:, 0]) < 0.3
+
+
+@pytest.mark.parametrize("constant", [0.0, 1e-300, -1e9])
+def test_what_is_constant_changes_no_bit(constant: float) -> None:
+    (returns, disturbances), constants = drawn(0), np.full((60, 2), constant)
+    beside = np.hstack([disturbances, constants])
+    assert corrected(returns, constants).tobytes() == returns.tobytes()
+    assert corrected(returns, np.empty((60, 0))).tobytes() == returns.tobytes()
+    assert corrected(constants[:, 0], disturbances).tobytes() == constants[:, 0].tobytes()
+    assert corrected(returns, beside).tobytes() == corrected(returns, disturbances).tobytes()
+
+
+def test_bounded_returns_by_hand() -> None:
+    returns = np.append(np.arange(11.0), [-1000.0, -30.0])  # their outer deciles are -24 and 8.8
+    assert bounded(returns).tolist() == pytest.approx([*range(11), -24.0 - 3 * 32.8, -30.0])
+    assert bounded(np.array([1.0] * 20 + [-9.0])).tolist() == [1.0] * 20 + [-9.0]
+    assert bounded(np.empty(0)).tolist() == []
+
+
+def test_episodes_of_other_disturbances_are_not_blown_up() -> None:
+    rng = np.random.default_rng(0)
+    narrow, wide = rng.normal(0, 1e-3, (MOST_FITTED, 1)), rng.normal(0, 10, (100, 1))
+    returns = np.concatenate([rng.normal(0, 1, 100), 1e3 * narrow[:, 0]])
+    assert np.abs(corrected(returns, np.vstack([wide, narrow]))[:100]).max() < 10
+
+
+def test_a_few_episodes_stay_as_they_are() -> None:
+    returns, disturbances = drawn(0)
+    few = FEWEST_EPISODES - 1
+    assert corrected(returns[:few], disturbances[:few]).tobytes() == returns[:few].tobytes()
+    assert (corrected(returns[: few + 1], disturbances[: few + 1]) != returns[: few + 1]).all()
+
+
+@pytest.mark.parametrize("value", [np.nan, -np.inf])
+def test_a_return_that_is_no_number_spoils_no_other(value: float) -> None:
+    returns, disturbances = drawn(0)
+    spoilt, others = returns.copy(), np.delete(np.arange(60), [3, 50])
+    spoilt[[3, 50]] = value
+    without = corrected(spoilt, disturbances)
+    np.testing.assert_array_equal(without[[3, 50]], value)
+    np.testing.assert_allclose(without[others], corrected(returns[others], disturbances[others]))
+
+
+def test_the_newest_of_many_are_fitted_and_all_are_corrected() -> None:
+    returns, disturbances = drawn(0, MOST_FITTED + 500)
+    without = corrected(returns, disturbances)
+    assert without.mean() == pytest.approx(returns.mean()) and without[:500].std() < 0.5 * returns[:500].std()
+    other = np.concatenate([-returns[:500], returns[500:]])
+    np.testing.assert_array_equal(corrected(other, disturbances)[500:], without[500:])

@@ -1,6 +1,4 @@
-"""A replay buffer whose rewards are those that are expected of the actions."""
-
-import pickle
+"""What a Gaussian process expects of actions, by its definition, and a replay buffer whose rewards are that."""
 
 import numpy as np
 import pytest
@@ -8,6 +6,7 @@ from gymnasium import spaces
 from stable_baselines3.common.utils import set_random_seed
 
 from sarah.agents import RankReplayBuffer, SmoothedReplayBuffer
+from sarah.agents.gaussian_process import LENGTHS, MOST_EPISODES, NOISES, PRIOR_QUANTILE, GaussianProcess
 
 BOX = spaces.Box(-1, 1, (2,))
 
@@ -16,14 +15,11 @@ def hill(actions: np.ndarray) -> np.ndarray:
     return np.exp(-2 * np.sum((actions - 0.4) ** 2, axis=-1))
 
 
-def played(
-    kind: type[RankReplayBuffer] = SmoothedReplayBuffer, count: int = 200, noise: float = 0.5
-) -> RankReplayBuffer:
+def played(kind: type[RankReplayBuffer] = SmoothedReplayBuffer, count: int = 200) -> RankReplayBuffer:
     """A buffer with noisy rewards of a hill."""
-    buffer = kind(150, BOX, BOX, "cpu")
-    rng = np.random.default_rng(0)
+    buffer, rng = kind(150, BOX, BOX, "cpu"), np.random.default_rng(0)
     for action in rng.uniform(-1, 1, (count, 2)):
-        add(buffer, action, float(hill(action)) + rng.normal(0, noise))
+        add(buffer, action, float(hill(action)) + rng.normal(0, 0.5))
     return buffer
 
 
@@ -85,16 +81,6 @@ def test_a_reward_that_is_no_number_spoils_no_other(value: float) -> None:
     assert np.linalg.norm(buffer.best_action() - best) < 0.3
 
 
-def test_a_pickled_buffer_goes_on_as_the_first() -> None:
-    buffer = played(count=47)
-    copy = pickle.loads(pickle.dumps(buffer))
-    for one in (buffer, copy):
-        for step in range(8):
-            add(one, np.array([0.1 * step, -0.2]), 0.3 * step)
-    assert copy.best_action().tolist() == buffer.best_action().tolist()
-    assert sampled(copy)[1].tobytes() == sampled(buffer)[1].tobytes()
-
-
 def test_no_reward_is_expected_from_what_was_forgotten() -> None:
     """Old episodes beside a cliff, where the newest 500 never went, keep no place in the buffer."""
     buffer = SmoothedReplayBuffer(10_000, BOX, BOX, "cpu")
@@ -103,3 +89,98 @@ def test_no_reward_is_expected_from_what_was_forgotten() -> None:
         add(buffer, action, float(action[0] > 0))
     actions, rewards = sampled(buffer)
     assert (actions[:, 0] > 0).all() and np.abs(rewards - 1).max() < 0.1
+
+
+def tried(seed: int, count: int = 80, dim: int = 3) -> tuple[np.ndarray, np.ndarray]:
+    rng = np.random.default_rng(seed)
+    return rng.uniform(-1, 1, (count, dim)), rng.normal(5.0, 2.0, count)
+
+
+@pytest.mark.parametrize("kernel", [(0.6, 1.0), (0.3, 0.1)])
+def test_expectations_and_bounds_are_as_defined(kernel: tuple[float, float]) -> None:
+    """Bounds by equation 2.26, with the variance between actions of the highest likelihood."""
+    (actions, rewards), places = tried(0), tried(1)[0]
+    length, noise = kernel
+
+    def covariances(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+        return np.exp(-0.5 * (np.linalg.norm(first[:, None] - second, axis=2) / length) ** 2)
+
+    inverse = np.linalg.inv(covariances(actions, actions) + noise * np.eye(80))
+    doubt, between = np.quantile(rewards, PRIOR_QUANTILE), covariances(places, actions)
+    above, process = rewards - doubt, GaussianProcess(actions, rewards, kernel)
+    expected = doubt + between @ inverse @ above
+    unknown = (above @ inverse @ above / 80) * (1 - np.einsum("ij,jk,ik->i", between, inverse, between))
+    assert process.expected(places) == pytest.approx(expected)
+    assert process.upper_bounds(places, 2.0) == pytest.approx(expected + 2.0 * np.sqrt(unknown))
+
+
+def test_an_optimist_leaves_a_good_place_for_a_possible_one() -> None:
+    """Thirty fair trials on one side, one on the other that was as good."""
+    actions = np.array([[-0.6, -0.6]] * 30 + [[0.6, 0.6]])
+    rewards = np.array([0.5, 0.7] * 15 + [0.65])
+    process = GaussianProcess(actions, rewards, (0.6, 1.0))
+    assert process.best()[0] < -0.5 < process.best(deviations=1.0)[0]
+
+
+@pytest.mark.parametrize(("scale", "shift"), [(1e-3, 100.0), (1e3, -4e3)])
+def test_units_of_the_reward_make_no_difference(scale: float, shift: float) -> None:
+    actions, rewards = tried(1)
+    process, other = GaussianProcess(actions, rewards), GaussianProcess(actions, scale * rewards + shift)
+    assert other.kernel == process.kernel
+    assert other.expected(actions) == pytest.approx(scale * process.expected(actions) + shift)
+    assert other.best() == pytest.approx(process.best(), abs=1e-6)
+
+
+@pytest.mark.parametrize(("noise", "believed"), [(0.02, min(NOISES)), (0.5, max(NOISES))])
+def test_noise_is_recognised(noise: float, believed: float) -> None:
+    rng = np.random.default_rng(0)
+    actions = rng.uniform(-1, 1, (200, 2))
+    rewards = np.exp(-2 * (actions**2).sum(axis=1)) + rng.normal(0, noise, 200)
+    assert GaussianProcess(actions, rewards).kernel[1] == believed
+
+
+def test_a_fine_landscape_is_recognised() -> None:
+    actions = np.random.default_rng(0).uniform(-1, 1, (200, 2))
+    assert GaussianProcess(actions, np.sin(8 * actions[:, 0])).kernel[0] == LENGTHS[1]
+    assert GaussianProcess(actions, np.sin(2 * actions[:, 0])).kernel[0] == LENGTHS[0]
+
+
+def test_a_few_episodes_choose_no_kernel() -> None:
+    actions = np.linspace(-1, 1, 9)[:, None]
+    assert GaussianProcess(actions, np.sin(9 * actions[:, 0])).kernel == (LENGTHS[0], NOISES[0])
+    nothing = GaussianProcess(np.empty((0, 2)), np.empty(0))
+    assert nothing.best(np.array([[0.1, 0.2], [0.3, 0.4]])).tolist() == [0.1, 0.2]
+
+
+@pytest.mark.parametrize("top", [(0.3, -0.2), (1.0, 0.4)])
+def test_the_best_is_the_highest_in_the_box_tried_or_not(top: tuple[float, float]) -> None:
+    rng = np.random.default_rng(3)
+    actions = rng.uniform(-1, 1, (60, 2))
+    process = GaussianProcess(actions, -((actions - top) ** 2).sum(axis=1))
+    best = process.best()
+    assert np.linalg.norm(best - top) < 0.25 and np.linalg.norm(actions - best, axis=1).min() > 1e-3
+    grid = np.stack(np.meshgrid(*[np.linspace(-1, 1, 101)] * 2), axis=-1).reshape(-1, 2)
+    assert process.expected(best[None])[0] >= process.expected(grid).max() - 1e-3
+    assert np.abs(best).max() <= 1
+
+
+def test_how_deep_a_few_disasters_are_makes_no_difference() -> None:
+    """Bad luck of one episode in twenty."""
+    rng = np.random.default_rng(0)
+    actions = rng.uniform(-1, 1, (100, 2))
+    rewards = 1 - (actions**2).sum(axis=1) + rng.normal(0, 0.1, 100)
+    bad, worse = rewards.copy(), rewards.copy()
+    bad[::20], worse[::20] = -20.0, -1000.0
+    best, other = (GaussianProcess(actions, each).best() for each in (bad, worse))
+    assert best.tolist() == other.tolist() and np.linalg.norm(best) < 0.7
+
+
+def test_lengths_grow_with_the_distances_in_a_large_box() -> None:
+    few = [GaussianProcess(np.zeros((5, dim)), np.zeros(5)).kernel[0] for dim in (1, 4, 16)]
+    assert few == [LENGTHS[0], LENGTHS[0], 2 * LENGTHS[0]]
+
+
+def test_the_newest_episodes_decide() -> None:
+    (actions, rewards), (others, other_rewards) = tried(0, MOST_EPISODES), tried(1, 100)
+    process = GaussianProcess(np.vstack([others, actions]), np.concatenate([other_rewards, rewards]))
+    assert process.expected(others).tolist() == GaussianProcess(actions, rewards).expected(others).tolist()

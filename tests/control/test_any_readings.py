@@ -1,8 +1,8 @@
 """Any readings, any parameters: the controller never leaves its limits, sticks, or stops giving numbers."""
 
 import math
+from contextlib import suppress
 
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -17,13 +17,7 @@ STANDING = SensorReading((0.0, 0.0, 9.81), (0.0,) * 3, (75.0,) * 4, (0.0,) * 6)
 NEVER_FALLEN = ControllerConstants(least_upright=-20.0, largest_blow=10.0)
 """No reading counts as a fall, so the generator goes on whatever it reads."""
 SIGNAL = st.floats() | st.floats(-30.0, 30.0) | st.floats(0.0, 500.0)
-READING = st.builds(
-    SensorReading,
-    st.tuples(*[SIGNAL] * 3),
-    st.tuples(*[SIGNAL] * 3),
-    st.tuples(*[SIGNAL] * 4),
-    st.tuples(*[SIGNAL] * 6),
-)
+READING = st.builds(SensorReading, *(st.tuples(*[SIGNAL] * count) for count in (3, 3, 4, 6)))
 SECONDS = st.none() | st.sampled_from([0.01, 0.02, 0.013, 0.0, 0.004, -1.0, math.nan, math.inf]) | st.floats()
 CHANGE = (
     st.none() | st.builds(SteppingParameters, *[st.floats()] * 5) | st.builds(BalanceParameters, *[st.floats()] * 4)
@@ -46,13 +40,11 @@ def test_targets_are_slow_and_within_limits_whatever_comes(
     speeds = [constants.hip_speed] * 4 + [constants.leg_speed] * 2
     before = generator.targets
     for reading, seconds, change, repetitions in [*ticks, (STANDING, None, None, 150), *ticks]:
-        try:
+        with suppress(ValueError):  # not finite
             if isinstance(change, BalanceParameters):
                 generator.set_parameters(balance=change)
             else:
                 generator.set_parameters(change)
-        except ValueError:  # not finite
-            pass
         counts = seconds is not None and seconds >= 0.0
         longest = 0.01 + (min(seconds, LONGEST_GAP) if counts and seconds is not None else 0.0)
         for _ in range(repetitions):
@@ -60,14 +52,3 @@ def test_targets_are_slow_and_within_limits_whatever_comes(
             for now, then, (low, high), speed in zip(generator.targets, before, limits, speeds, strict=True):
                 assert low <= now <= high and abs(now - then) <= speed * longest * (1 + 1e-9)
             before = generator.targets
-
-
-@pytest.mark.parametrize("bad", [math.nan, math.inf])
-def test_a_signal_that_drops_out_keeps_its_value(bad: float) -> None:
-    disturbed, alone = (PatternGenerator(SteppingParameters(0.4, 1.3, 0.1, 1.0, 1.0)) for _ in range(2))
-    for generator in (disturbed, alone):
-        generator.tick(STANDING)
-    assert disturbed.tick(STANDING._replace(angular_rate=(0.0, bad, 0.0))) == alone.tick(STANDING)
-    for _ in range(200):
-        assert disturbed.tick(STANDING) == alone.tick(STANDING)
-        assert disturbed.targets == alone.targets and disturbed.rate == alone.rate

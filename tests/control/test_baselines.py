@@ -38,18 +38,15 @@ def test_a_mean_is_that_of_the_finite_readings_of_its_signal(bad: float) -> None
 
 
 def test_stepping_baselines_follow_within_eight_seconds() -> None:
+    """Other signals pass unchanged, and those of a robot that goes on as it stood are zero."""
+    baselines = Baselines(DT)
+    for stands in (True, False):
+        assert baselines.corrected(reading(5.0, 1.0, 1.0), stands) == reading()
     baselines = Baselines(DT)
     baselines.corrected(reading(), True)
     for _ in range(800):
         corrected = baselines.corrected(reading(1.0, 2.0, 3.0), False)
     assert signals(corrected) == pytest.approx((math.exp(-1.0), 2.0 * math.exp(-1.0), 3.0 * math.exp(-1.0)))
-
-
-def test_other_signals_pass_unchanged() -> None:
-    baselines = Baselines(DT)
-    baselines.corrected(reading(5.0, 1.0, 1.0), True)
-    corrected = baselines.corrected(reading(5.0, 1.0, 1.0), False)
-    assert corrected == reading()
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

@@ -1,6 +1,7 @@
 """The table of learned parameters, from which pages, help texts and figures take what they say."""
 
 import dataclasses
+import math
 from typing import Any
 
 import pytest
@@ -11,18 +12,12 @@ from sarah.control.constants import STANDARD_CONSTANTS
 from sarah.control.hip_law import BalanceParameters
 from sarah.control.parameters import BALANCE_PARAMETERS, PAPER_STEPPING, STEPPING_PARAMETERS, Box, Parameter
 from sarah.control.pattern_generator import Phase, PhaseChange, SteppingParameters
+from sarah.errors import ConfigurationError
 
 
 def test_p1_to_p5_are_positive_and_v1_to_v4_of_either_sign() -> None:
-    assert {p.name: (p.low, p.high, p.width) for p in STEPPING_PARAMETERS} == {
-        name: (0.0, 2.0, 2.0) for name in ("P1", "P2", "P3", "P4", "P5")
-    }
-    assert {v.name: (v.low, v.high, v.width) for v in BALANCE_PARAMETERS} == {
-        name: (-2.0, 2.0, 4.0) for name in ("V1", "V2", "V3", "V4")
-    }
-
-
-def test_labels_and_descriptions_name_the_unit_if_there_is_one() -> None:
+    for parameters, ends in ((STEPPING_PARAMETERS, (0.0, 2.0, 2.0)), (BALANCE_PARAMETERS, (-2.0, 2.0, 4.0))):
+        assert {(each.low, each.high, each.width) for each in parameters} == {ends}
     p1, p4 = STEPPING_PARAMETERS[0], STEPPING_PARAMETERS[3]
     assert p1.label == "P1 (rad/s)" and p1.description == f"{p1.meaning}, in rad/s"
     assert p4.label == "P4" and p4.description == p4.meaning
@@ -32,14 +27,23 @@ ODD = Box((*BALANCE_PARAMETERS, Parameter("odd", 0.1, 0.7, "", "a range", "")))
 
 
 def test_the_ends_and_the_centre_of_a_box_are_those_of_an_action() -> None:
+    """What lies outside comes to the nearer end."""
     assert ODD.unscaled([-1.0] * 5) == (-2.0, -2.0, -2.0, -2.0, 0.1)
     assert ODD.unscaled([1.0] * 5) == (2.0, 2.0, 2.0, 2.0, 0.7)
     assert ODD.centre == pytest.approx((0.0, 0.0, 0.0, 0.0, 0.4))
-
-
-def test_what_lies_outside_comes_to_the_nearer_end() -> None:
     assert ODD.unscaled([-3.0, 3.0, 0.0, -1.1, 1.1]) == ODD.unscaled([-1.0, 1.0, 0.0, -1.0, 1.0])
     assert ODD.at_shares([-1.0, 2.0, 0.5, 0.0, 1.5]) == ODD.at_shares([0.0, 1.0, 0.5, 0.0, 1.0])
+
+
+def test_parameters_out_of_their_box_are_refused() -> None:
+    for values, message in (
+        ((0.4, 1.3, 0.1, 1.0), r"parameters must be 5 numbers \(P1 to P5\), not 4"),
+        ((0.4, 1.3, 0.1, 1.0, math.nan), "P5 must be between 0 and 2, not nan"),
+        ((-0.1, 1.3, 0.1, 1.0, 1.0), "P1 must be between 0 and 2, not -0.1"),
+        ((0.4, 2.1, 0.1, 1.0, 1.0), "P2 must be between 0 and 2, not 2.1"),
+    ):
+        with pytest.raises(ConfigurationError, match=message):
+            Box(STEPPING_PARAMETERS).checked(values)
 
 
 @given(st.tuples(*[st.floats(-2.0, 2.0)] * 4, st.floats(0.1, 0.7)))
@@ -50,19 +54,14 @@ def test_values_are_their_actions_and_their_shares(values: tuple[float, ...]) ->
     assert rounded == tuple(round(value, 3) for value in rounded) == pytest.approx(values, abs=5.1e-4)
 
 
-@pytest.mark.parametrize(
-    "value",
-    [
-        STANDARD_CONSTANTS,
-        STEPPING_PARAMETERS[0],
-        SteppingParameters(*PAPER_STEPPING),
-        BalanceParameters(1.0, 0.0, 0.0, 0.0),
-        PhaseChange(Phase.LAND, by_sensors=True),
-    ],
-    ids=lambda value: type(value).__name__,
+VALUES = (
+    *(STANDARD_CONSTANTS, STEPPING_PARAMETERS[0], SteppingParameters(*PAPER_STEPPING)),
+    *(BalanceParameters(1.0, 0.0, 0.0, 0.0), PhaseChange(Phase.LAND, by_sensors=True)),
 )
+
+
+@pytest.mark.parametrize("value", VALUES, ids=lambda value: type(value).__name__)
 def test_values_of_a_controller_do_not_change(value: Any) -> None:
     """An episode is a function of its specification, so nothing may write to it."""
-    field = dataclasses.fields(value)[0].name
     with pytest.raises(dataclasses.FrozenInstanceError):
-        setattr(value, field, 0.0)
+        setattr(value, dataclasses.fields(value)[0].name, 0.0)

@@ -48,8 +48,6 @@ def test_a_copied_environment_does_what_the_other_does(name: str, engine: str, w
     assert standing.step(action)[1] == reward
     following = [one.reset()[0].tobytes() for one in (env, standing, stepped)]
     assert len(set(following)) == 1
-    for one in (env, standing, stepped):
-        one.close()
 
 
 @pytest.mark.parametrize(("engine", "way"), [("pybullet", "pickle"), ("mujoco", "copy")])
@@ -60,8 +58,6 @@ def test_a_copied_operation_goes_on_as_the_other_does(engine: str, way: str) -> 
     robot.run(SHIPPED)
     other = WAYS[way](robot)
     assert [other.run(SHIPPED), other.run(SHIPPED)] == [robot.run(SHIPPED), robot.run(SHIPPED)]
-    robot.close()
-    other.close()
 
 
 def test_episodes_in_flight_cannot_be_copied() -> None:

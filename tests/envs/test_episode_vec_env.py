@@ -38,41 +38,43 @@ def played(slots: int, episodes: int = 4, seed: int = 1) -> tuple[list[np.ndarra
     return observations, rewards, infos
 
 
-@pytest.mark.parametrize("slots", [1, 3])
-def test_outcomes_come_in_order_after_the_slots_are_full(slots: int) -> None:
-    observations, rewards, infos = played(slots)
-    assert all(info == {"transition": None} for info in infos[: slots - 1])
-    for index, (reward, info) in enumerate(zip(rewards[slots - 1 :], infos[slots - 1 :], strict=True)):
-        observation, action, _ = info["transition"]
-        assert np.array_equal(action, ACTIONS[index])
-        assert np.array_equal(observation, observations[index][0])
-        spec = info["spec"]
-        assert spec == EpisodeSpec(parameters_from(ACTIONS[index], STEPPING), spec.seed, config=SHORT)
-        assert spec.seed >= FIRST_TRAINING_SEED
-        assert info["result"] == simulate(spec) and info["disturbances"] == disturbances_of(spec)
-        assert reward == pytest.approx(info["result"].episode_return)
+def test_outcomes_come_in_order_after_the_slots_are_full() -> None:
+    """And slots change no episode."""
+    seen = []
+    for slots in (1, 3):
+        observations, rewards, infos = played(slots)
+        assert all(info == {"transition": None} for info in infos[: slots - 1])
+        for index, (reward, info) in enumerate(zip(rewards[slots - 1 :], infos[slots - 1 :], strict=True)):
+            observation, action, _ = info.pop("transition")
+            assert np.array_equal(action, ACTIONS[index])
+            assert np.array_equal(observation, observations[index][0])
+            spec = info["spec"]
+            assert spec == EpisodeSpec(parameters_from(ACTIONS[index], STEPPING), spec.seed, config=SHORT)
+            assert spec.seed >= FIRST_TRAINING_SEED
+            assert info["result"] == simulate(spec) and info["disturbances"] == disturbances_of(spec)
+            assert reward == pytest.approx(info["result"].episode_return)
+        seen.append(infos[slots - 1 :])
+    assert seen[0] == seen[1]
 
 
-def test_a_task_without_disturbances_gives_none() -> None:
+def test_what_cannot_be_asked_is_refused() -> None:
+    for episodes, slots, words in (
+        (1, 0, "slots must be between 1 and 2147483648, not 0"),
+        ("3", 1, "episodes must be between 0 and 2147483648, not '3'"),
+    ):
+        with pytest.raises(ConfigurationError, match=f"^{words}$"):
+            EpisodeVecEnv("stepping", SHORT, episodes, slots, Workers())  # type: ignore[arg-type]
     env = EpisodeVecEnv(replace(STEPPING, name="other", disturbances=None), SHORT, 1, 1, Workers())
-    env.reset()
-    assert set(env.step(ACTIONS[:1])[3][0]) & {"spec", "disturbances"} == {"spec"}
-
-
-def test_steps_without_episodes_are_refused() -> None:
-    env = EpisodeVecEnv("stepping", SHORT, 1, 1, Workers())
     with pytest.raises(ConfigurationError, match="call reset before step"):
         env.step(ACTIONS[:1])
     env.reset()
-    env.step(ACTIONS[:1])
+    assert set(env.step(ACTIONS[:1])[3][0]) & {"spec", "disturbances"} == {"spec"}  # its task names none
     with pytest.raises(ConfigurationError, match="call reset before step"):
         env.step(ACTIONS[:1])
-
-
-def test_slots_change_no_episode() -> None:
-    one, three = played(1)[2], played(3)[2][2:]
-    for here, there in zip(one, three, strict=True):
-        assert {**here, "transition": None} == {**there, "transition": None}
+    with pytest.raises(NotImplementedError):
+        env.set_attr("config", SHORT)
+    with pytest.raises(NotImplementedError):
+        env.env_method("render")
 
 
 def test_a_task_an_episode_and_one_for_each_that_stands_at_first() -> None:
@@ -120,19 +122,9 @@ def test_a_buffer_stores_each_outcome_with_its_own_action() -> None:
         assert isinstance(after, np.ndarray)
         buffer.add(observation, after, action, reward, done, infos)
         observation = after
-    assert buffer.size() == 4
+    assert buffer.size() == 4 and (buffer.dones[:4] == 1.0).all()
     assert np.array_equal(buffer.actions[:4, 0], ACTIONS[:4])
-    expected = [info["result"].episode_return for info in played(1)[2]]
-    assert buffer.rewards[:4, 0] == pytest.approx(expected)
-    assert (buffer.dones[:4] == 1.0).all()
-
-
-def test_episodes_cannot_be_reached_into() -> None:
-    env = EpisodeVecEnv("stepping", SHORT, 1, 1, Workers())
-    with pytest.raises(NotImplementedError):
-        env.set_attr("config", SHORT)
-    with pytest.raises(NotImplementedError):
-        env.env_method("render")
+    assert buffer.rewards[:4, 0] == pytest.approx([info["result"].episode_return for info in played(1)[2]])
 
 
 def test_returns_beyond_32_bits_are_named() -> None:
@@ -147,15 +139,3 @@ def test_returns_beyond_32_bits_are_named() -> None:
     env.step(ACTIONS[:1])
     with pytest.raises(LearningError, match=r"^a return of -1e\+39 is too large for an agent, .*reward$"):
         env.step(ACTIONS[:1])
-
-
-@pytest.mark.parametrize(
-    ("episodes", "slots", "words"),
-    [
-        (1, 0, "slots must be between 1 and 2147483648, not 0"),
-        ("3", 1, "episodes must be between 0 and 2147483648, not '3'"),
-    ],
-)
-def test_impossible_numbers_of_episodes_are_refused(episodes: Any, slots: Any, words: str) -> None:
-    with pytest.raises(ConfigurationError, match=f"^{words}$"):
-        EpisodeVecEnv("stepping", SHORT, episodes, slots, Workers())

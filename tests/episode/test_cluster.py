@@ -8,6 +8,7 @@ import signal
 import socket
 import sys
 from pathlib import Path
+from typing import Any
 
 import dask
 import distributed
@@ -34,19 +35,12 @@ def test_workers_that_cannot_start_say_why(capfd: pytest.CaptureFixture[str]) ->
     assert dict(os.environ) == before and capfd.readouterr().err == ""
 
 
-@pytest.mark.parametrize(
-    ("errors", "words"),
-    [
-        (
-            (RuntimeError("it failed"), AssertionError("init"), ValueError("a\n 'b'"), KeyError("b")),
-            "ValueError: a 'b'",
-        ),
-        ((RuntimeError("it failed"), AttributeError("init"), AssertionError("daemon")), "AssertionError: daemon"),
-    ],
-)
-def test_the_first_cause_is_said_and_not_its_aftermath(
-    errors: tuple[Exception, ...], words: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+FAILED = (RuntimeError("it failed"), AssertionError("init"), ValueError("a\n 'b'"), KeyError("b")), "ValueError: a 'b'"
+DAEMON = (RuntimeError("it failed"), AttributeError("init"), AssertionError("daemon")), "AssertionError: daemon"
+
+
+@pytest.mark.parametrize(("errors", "words"), [FAILED, DAEMON])
+def test_the_first_cause_is_said_and_not_its_aftermath(errors: Any, words: str, monkeypatch: Any) -> None:
     def fail(**_: object) -> None:
         for error, context in itertools.pairwise(errors):
             error.__context__ = context
@@ -58,14 +52,13 @@ def test_the_first_cause_is_said_and_not_its_aftermath(
 
 
 def test_workers_that_cannot_start_again_are_not_waited_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    environment = dict(os.environ)
+    environment, scratch = dict(os.environ), tmp_path / "scratch"
     monkeypatch.setattr(cluster_module, "WATCH_SECONDS", 0.5)
-    with dask.config.set({"temporary-directory": str(tmp_path / "scratch")}), Workers(1) as workers:
-        shutil.rmtree(tmp_path / "scratch")
-        (tmp_path / "scratch").touch()
-        with pytest.raises(
-            WorkersError, match="all worker processes of this machine have ended, and no other could start"
-        ):
+    words = "all worker processes of this machine have ended, and no other could start"
+    with dask.config.set({"temporary-directory": str(scratch)}), Workers(1) as workers:
+        shutil.rmtree(scratch)
+        scratch.touch()
+        with pytest.raises(WorkersError, match=words):
             workers.submit(os._exit, 1).result()
     assert dict(os.environ) == environment
 
@@ -87,10 +80,8 @@ def test_somebodys_settings_do_not_let_workers_go(workers: Workers) -> None:
     client = workers.client
     assert client is not None
     assert set(client.run(lambda dask_worker: dask_worker.lifetime).values()) == {None}
-    limits = client.run_on_scheduler(
-        lambda dask_scheduler: (dask_scheduler.idle_timeout, dask_scheduler.no_workers_timeout)
-    )
-    assert limits == (None, None)
+    for limit in ("idle_timeout", "no_workers_timeout"):
+        assert client.run_on_scheduler(lambda name, dask_scheduler: getattr(dask_scheduler, name), limit) is None
 
 
 def print_much() -> None:
@@ -98,16 +89,11 @@ def print_much() -> None:
         print("much", flush=True)
 
 
-def test_a_worker_may_print_what_nobody_reads(workers: Workers) -> None:
+def test_every_call_is_answered(workers: Workers, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those of workers whose output nobody reads, those that end while somebody looks, and those that fail."""
     workers.submit(print_much).result()
-
-
-def test_a_call_that_ends_while_somebody_looks_is_answered(workers: Workers, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cluster_module, "WATCH_SECONDS", 0.001)
     assert [workers.submit(abs, -number).result() for number in range(100)] == list(range(100))
-
-
-def test_an_error_on_a_worker_is_raised_here(workers: Workers) -> None:
     with pytest.raises(DescriptionError, match="unknown robot dimension 'legs'"):
         workers.submit(describe_robot, {"legs": 3.0}).result()
 
@@ -151,10 +137,6 @@ def test_a_scheduler_that_does_not_answer_is_reported(monkeypatch: pytest.Monkey
     monkeypatch.setattr(cluster_module, "SCHEDULER_SECONDS", 1)
     with pytest.raises(WorkersError, match=r"no Dask scheduler answers at 'tcp://127.0.0.1:9'"):
         Workers(scheduler="tcp://127.0.0.1:9").__enter__()
-
-
-def test_a_port_that_says_nothing_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cluster_module, "SCHEDULER_SECONDS", 1)
     with socket.create_server(("127.0.0.1", 0)) as server:
         address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
         with pytest.raises(WorkersError, match=f"{address}': the port is open, but silent"):

@@ -1,12 +1,22 @@
-"""The table of metrics: each number that an episode ends with is explained, summarised and written once."""
+"""The table of metrics: each number that an episode ends with is explained, summarised and written once.
+
+And what many episodes have in common.
+"""
 
 import dataclasses
+from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 import pytest
-from laboratory import RESULT
+from laboratory import CONTROL_DT, RESULT
 
-from sarah.episode.evaluation import STATISTICS, Evaluation
+from sarah.control.parameters import PAPER_STEPPING
+from sarah.episode.episode import Episode
+from sarah.episode.evaluation import STATISTICS, Evaluation, evaluate
 from sarah.episode.result import METRICS
+from sarah.episode.settings import EpisodeConfig
+from sarah.errors import ConfigurationError
 
 OTHER = dataclasses.replace(RESULT, score=0.4, vibration=3.0, final_position=(0.0, 0.0, 0.8), termination="fell")
 
@@ -49,3 +59,44 @@ def test_an_evaluation_holds_every_statistic_of_the_table() -> None:
 )
 def test_a_gait_is_one_by_sensors_that_lifts_its_feet(changes: dict[str, float], is_gait: bool) -> None:
     assert Evaluation((dataclasses.replace(RESULT, **changes),)).is_gait == is_gait  # type: ignore[arg-type]
+
+
+SHORT = EpisodeConfig(time_limit=4.0)
+
+
+def shaken_by(amplitude: float) -> Evaluation:
+    """The same episode, with flexions that a controller shakes at half the control rate."""
+    with Episode(SHORT, 0) as episode:
+        episode.stand()
+        simulation = episode.robot.simulation
+        send = simulation.set_targets
+
+        def shaken(targets: tuple[float, ...]) -> None:
+            flexion = amplitude if round(simulation.time / CONTROL_DT) % 2 else -amplitude
+            send((*targets[:2], flexion, flexion, *targets[4:]))
+
+        simulation.set_targets = shaken  # type: ignore[method-assign]
+        return Evaluation((episode.run(PAPER_STEPPING),))
+
+
+def test_chattering_hips_show_as_vibration() -> None:
+    calm, chattering = shaken_by(0.0), shaken_by(0.02)
+    assert chattering.chatters(calm) and not calm.chatters(calm)
+    assert chattering.mean("actuator_power") > calm.mean("actuator_power")
+    assert chattering.statistic("peak_hip_rate", "max") > 10 * calm.statistic("peak_hip_rate", "max")
+
+
+EVALUATED: Any = partial(evaluate, "stepping", PAPER_STEPPING, SHORT)
+MISTAKES: dict[str, Callable[[], object]] = {
+    "seeds must not be empty: an evaluation needs an episode": lambda: EVALUATED([]),
+    r"seeds must be several whole numbers, such as range\(10\), not 3": lambda: EVALUATED(3),
+    r"workers must be an executor, as in .*, not 4": lambda: EVALUATED([1], 4),
+    r"unknown metric 'scor', did you mean 'score'\? .*": lambda: Evaluation((RESULT,)).mean("scor"),
+    r"unknown statistic 'medain', did you mean .*": lambda: Evaluation((RESULT,)).statistic("score", "medain"),
+}
+
+
+@pytest.mark.parametrize("words", MISTAKES)
+def test_arguments_of_another_kind_are_named(words: str) -> None:
+    with pytest.raises(ConfigurationError, match=f"^{words}$"):
+        MISTAKES[words]()

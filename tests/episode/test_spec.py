@@ -1,28 +1,40 @@
-"""What a specification refuses."""
+"""A specification refuses what cannot be; the same one gives the same bytes, whatever else happens."""
 
+import json
 import math
+import subprocess
+import sys
+from dataclasses import asdict, replace
+from typing import Any
 
 import numpy as np
 import pytest
+from laboratory import COARSE_PHYSICS, NEEDS_PYBULLET
 
 from sarah.control.parameters import PAPER_STEPPING
+from sarah.episode.accuracy import physics_warning
+from sarah.episode.episode import Episode, simulate
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import STEPPING, BalanceConfig
+from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
 from sarah.errors import ConfigurationError
+from sarah.robot.dimensions import default_dimensions
+from sarah.simulation.engines import Engine
+from sarah.simulation.physics import PHYSICS, Physics
+from sarah.simulation.randomisation import Randomisation
+from sarah.simulation.terrain import Terrain
 
 
-def test_spec_refuses_unknown_tasks_and_bad_parameters() -> None:
+@pytest.mark.parametrize("value", [math.nan, math.inf, 2.1, -0.1, "1", True])
+def test_spec_refuses_what_cannot_be(value: object) -> None:
     with pytest.raises(ConfigurationError, match="unknown task 'steping', did you mean 'stepping'"):
         EpisodeSpec(PAPER_STEPPING, 0, task="steping")
-    with pytest.raises(ConfigurationError, match="P1 must be between"):
-        EpisodeSpec((3.0, 1.3, 0.1, 1.0, 1.0), 0)
-
-
-@pytest.mark.parametrize("seed", [-1, 1.5, True])
-def test_spec_refuses_seeds_that_would_not_repeat(seed: object) -> None:
-    with pytest.raises(ConfigurationError, match="seed must be a whole number from 0"):
-        EpisodeSpec(PAPER_STEPPING, seed)  # type: ignore[arg-type]
+    with pytest.raises(ConfigurationError, match=r"parameter P4 must be between 0 and 2, not"):
+        EpisodeSpec((1.0, 1.0, 1.0, value, 1.0), 0)  # type: ignore[arg-type]
+    assert STEPPING.box.checked((0, 2, 1, 1, 1)) == (0.0, 2.0, 1.0, 1.0, 1.0)
+    for seed in (-1, 1.5, True):  # they would not repeat
+        with pytest.raises(ConfigurationError, match="seed must be a whole number from 0"):
+            EpisodeSpec(PAPER_STEPPING, seed)  # type: ignore[arg-type]
 
 
 def test_a_spec_does_not_follow_what_it_was_made_of() -> None:
@@ -32,21 +44,87 @@ def test_a_spec_does_not_follow_what_it_was_made_of() -> None:
     assert spec.config.dimensions == {"hinge_height": 0.04} and type(spec.seed) is int
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf, 2.1, -0.1, "1", True])
-def test_parameters_that_cannot_be_are_named(value: object) -> None:
-    with pytest.raises(ConfigurationError, match=r"parameter P4 must be between 0 and 2, not"):
-        EpisodeSpec((1.0, 1.0, 1.0, value, 1.0), 0)  # type: ignore[arg-type]
-    assert STEPPING.box.checked((0, 2, 1, 1, 1)) == (0.0, 2.0, 1.0, 1.0, 1.0)
-
-
 @pytest.mark.parametrize(
     ("field", "value", "expected"),
     [
+        ("payload", -1.0, "payload must be between 0 and 100 kg"),
+        ("payload", 101.0, "payload must be between 0 and 100 kg"),
         ("push", 100, "push must be a Push, not 100"),
         ("dimensions", 3, "dimensions must be a Mapping, not 3"),
         ("stepping", 3, r"stepping must be 5 numbers \(P1 to P5\), not 3"),
     ],
 )
-def test_settings_of_another_type_are_named(field: str, value: object, expected: str) -> None:
+def test_settings_that_cannot_be_are_named(field: str, value: object, expected: str) -> None:
     with pytest.raises(ConfigurationError, match=expected):
         BalanceConfig(**{field: value})  # type: ignore[arg-type]
+
+
+SHORT = EpisodeConfig(time_limit=3.0)
+SPEC = EpisodeSpec(PAPER_STEPPING, 4, config=SHORT)
+
+
+def test_what_was_simulated_before_or_meanwhile_changes_nothing(engine: Engine) -> None:
+    spec = replace(SPEC, config=EpisodeConfig(engine=engine, time_limit=3.0))
+    expected = simulate(spec)
+    longer = BalanceConfig(engine=engine, physics=Physics(1000, 10), dimensions={"thigh_length": 0.4}, time_limit=2.0)
+    simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.0), seed=5, task="balance", config=longer))
+    with Episode.of(spec, record_trace=True) as episode:
+        episode.stand()
+        assert simulate(spec) == expected
+        assert episode.run(PAPER_STEPPING) == expected
+
+
+def test_a_fresh_process_gives_the_same_result(engine: Engine) -> None:
+    """Whatever it simulated before."""
+    program = (
+        "import dataclasses, json, sarah\n"
+        f"config = sarah.BalanceConfig(engine='{engine}', time_limit=3.0)\n"
+        "for seed in (8, 7):\n"
+        "    result = sarah.simulate(sarah.EpisodeSpec((1.0, 0.1, 0.5, -0.2), seed, 'balance', config))\n"
+        "print(json.dumps(dataclasses.asdict(result)))"
+    )
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True, text=True)
+    config = BalanceConfig(engine=engine, time_limit=3.0)
+    here = simulate(EpisodeSpec((1.0, 0.1, 0.5, -0.2), 7, "balance", config))
+    assert run.stdout == json.dumps(asdict(here)) + "\n" and here.steps > 0
+
+
+SQUARE_FEET = {"dimensions": {"forefoot_contact": 0.15, "hindfoot_contact": 0.15}}
+
+
+@pytest.mark.parametrize(("seed", "changes"), [(3, {}), (4, {"reward_form": "printed"}), (4, SQUARE_FEET)])
+def test_another_specification_gives_another_result(seed: int, changes: dict[str, Any]) -> None:
+    coarse = replace(SHORT, physics=COARSE_PHYSICS)
+    other = EpisodeSpec(PAPER_STEPPING, seed, config=replace(coarse, **changes))
+    assert simulate(other) != simulate(EpisodeSpec(PAPER_STEPPING, 4, config=coarse))
+
+
+LOW, PAPER = (0.02, 0.5, 0.6, 1.0, 1.0), (0.4, 1.3, 0.1, 1.0, 1.0)
+LATE = EpisodeConfig(engine="pybullet", randomisation=Randomisation(delay_seconds=0.02))
+PUNCTUAL = BalanceConfig(engine="pybullet", stepping=LOW, randomisation=Randomisation(delay_seconds=0.01))
+BUMPS = EpisodeConfig(engine="pybullet", terrain=Terrain(roughness=(0.01, 0.01)))
+LIGHT_FEET = {name: 0.1 * default_dimensions()[name] for name in ("forefoot_mass", "hindfoot_mass")}
+
+
+@NEEDS_PYBULLET
+@pytest.mark.parametrize(
+    ("parameters", "config", "warns"),
+    [
+        (LOW, LATE, True),
+        (PAPER, LATE, False),
+        (LOW, EpisodeConfig(engine="pybullet"), False),  # 10 ms
+        (LOW, replace(LATE, physics=PHYSICS["reference"]), False),
+        (LOW, replace(LATE, randomisation=Randomisation(False, delay_seconds=0.02)), False),
+        (LOW, replace(LATE, engine="mujoco"), False),
+        ((1.0, 0.0, 1.0, 0.0), PUNCTUAL, True),  # hips that move are doubted with any delay
+        ((0.0, 0.0, 0.0, 0.0), PUNCTUAL, False),
+        (PAPER, replace(BUMPS, physics=replace(PHYSICS["standard"], rate=100)), True),
+        (PAPER, replace(BUMPS, physics=replace(PHYSICS["standard"], rate=200)), False),
+        (PAPER, EpisodeConfig(engine="pybullet", physics=replace(PHYSICS["standard"], rate=100)), False),
+        (PAPER, EpisodeConfig(engine="pybullet", dimensions=LIGHT_FEET), True),
+        (PAPER, EpisodeConfig(engine="mujoco", dimensions=LIGHT_FEET), False),
+    ],
+)
+def test_where_physics_misleads_is_said(parameters: tuple[float, ...], config: EpisodeConfig, warns: bool) -> None:
+    task = BALANCE if isinstance(config, BalanceConfig) else STEPPING
+    assert (physics_warning(task, parameters, config) is not None) == warns

@@ -1,13 +1,21 @@
-"""A task of a file of the user's is the whole of what is judged, in any process, and its mistakes are one line."""
+"""What a task owns; one of the user's file is as good, in any process, and its mistakes are one line."""
 
 import dataclasses
 import pickle
 from pathlib import Path
 
+import numpy as np
 import pytest
 from laboratory import COARSE_PHYSICS
 
 import sarah
+from sarah.control.parameters import STEPPING_PARAMETERS
+from sarah.control.pattern_generator import SteppingParameters
+from sarah.envs.sarah_env import SarahEnv
+from sarah.episode import tasks
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BALANCE, STEPPING, TASKS, BalanceConfig, Task, task_named, tasks_in
 from sarah.episode.trial import try_task
 from sarah.episode.workers import Workers, begin_episode, close_waiting_episodes, finish_episode
 from sarah.errors import ConfigurationError, SarahError, TaskError
@@ -35,21 +43,15 @@ def written(folder: Path, text: str = THRIFTY) -> str:
     return str(path)
 
 
-def test_reward_is_that_of_the_file(tmp_path: Path) -> None:
-    task = sarah.load_task(f"{written(tmp_path)}:THRIFTY")
+def test_reward_and_ending_are_those_of_the_file(tmp_path: Path) -> None:
+    thrifty, narrow = (sarah.load_task(f"{written(tmp_path)}:{name}") for name in ("THRIFTY", "NARROW"))
     config = dataclasses.replace(SHORT, time_limit=6.0)
-    own = sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task, config))
-    paper = sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, config=config))
+    own, paper = (sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task, config)) for task in (thrifty, sarah.STEPPING))
     # The mean power over the ticks is the metric's, but for one tick at either end.
     assert own.episode_return == pytest.approx(paper.episode_return - 0.01 * paper.actuator_power * 5.0, rel=0.02)
     assert own.steps == paper.steps
-
-
-def test_ending_is_that_of_the_file(tmp_path: Path) -> None:
-    task = sarah.load_task(f"{written(tmp_path)}:NARROW")
-    result = sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task))
-    assert result.termination == "far_away" and not result.survived
-    assert 0.02 < abs(result.final_position[0]) < 0.03
+    result = sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, narrow))
+    assert result.termination == "far_away" and not result.survived and 0.02 < abs(result.final_position[0]) < 0.03
 
 
 def test_same_bytes_in_another_process(tmp_path: Path, workers: Workers) -> None:
@@ -58,9 +60,6 @@ def test_same_bytes_in_another_process(tmp_path: Path, workers: Workers) -> None
     here = [sarah.simulate(spec) for spec in specs]
     Path(tmp_path, "my_task.py").unlink()  # workers have the text, and need no file
     assert list(workers.simulate_all(specs)) == here
-    task = dataclasses.replace(sarah.STEPPING, name="mine", reward=lambda tick, config: 1.0)
-    with pytest.raises(ConfigurationError, match="load_task"):
-        list(workers.simulate_all([sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT)]))
 
 
 def test_workers_refuse_the_task_of_a_script(workers: Workers) -> None:
@@ -74,6 +73,11 @@ def test_a_task_of_this_package_is_the_same_after_a_journey() -> None:
     assert sarah.load_task("balance") is sarah.BALANCE
 
 
+REPLACED = "import dataclasses, sarah\nJUMP = dataclasses.replace(sarah.STEPPING, name="
+ODD = "import sarah\nP = sarah.Parameter('P', 0.0, 1.0, '$m$', 'a', 'b')\n"
+OWN = "import sarah\nclass Own(sarah.EpisodeConfig): pass\n"
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -82,26 +86,10 @@ def test_a_task_of_this_package_is_the_same_after_a_journey() -> None:
         ("def (:\n", "my_task.py, line 1: SyntaxError"),
         ("import not_installed_anywhere\n", "my_task.py, line 1: ModuleNotFoundError"),
         ("import sarah\nJUMP = sarah.STEPPING\n", "is that of a task of this package"),
-        (
-            "import dataclasses, sarah\n"
-            "P = sarah.Parameter('P', 0.0, 1.0, '$m$', 'a', 'b')\n"
-            "JUMP = dataclasses.replace(sarah.STEPPING, name='j', parameters=(P,), baseline=(0.5,))\n",
-            "unit and meaning of parameter P must be plain texts",
-        ),
-        (
-            "\ufeffimport dataclasses, sarah\nJUMP = dataclasses.replace(sarah.STEPPING, name='a b')\n",
-            "a task's name must be letters, digits, - and _, not 'a b'",
-        ),
-        (
-            "import dataclasses, sarah\nJUMP = dataclasses.replace(sarah.STEPPING, name='j', baseline=(1, 1))\n",
-            r"baseline must be 5 numbers \(P1 to P5\), not 2",
-        ),
-        (
-            "import dataclasses, sarah\n"
-            "class Own(sarah.EpisodeConfig): pass\n"
-            "JUMP = dataclasses.replace(sarah.STEPPING, name='j', episode=Own())\n",
-            "its episode must be one of EpisodeConfig, PushedConfig, BalanceConfig, not Own",
-        ),
+        (f"{ODD}{REPLACED}'j', parameters=(P,), baseline=(0.5,))\n", "unit and meaning of parameter P must be plain"),
+        (f"\ufeff{REPLACED}'a b')\n", "a task's name must be letters, digits, - and _, not 'a b'"),
+        (f"{REPLACED}'j', baseline=(1, 1))\n", r"baseline must be 5 numbers \(P1 to P5\), not 2"),
+        (f"{OWN}{REPLACED}'j', episode=Own())\n", "must be one of EpisodeConfig, PushedConfig, BalanceConfig, not Own"),
     ],
 )
 def test_mistakes_of_a_file_are_one_line(tmp_path: Path, text: str, words: str) -> None:
@@ -110,32 +98,24 @@ def test_mistakes_of_a_file_are_one_line(tmp_path: Path, text: str, words: str) 
     assert "\n" not in str(caught.value)
 
 
+NOT_STEPPING = "controller_parameters must return finite SteppingParameters"
+SILENT = "type('Odd', (Exception,), {'__str__': lambda e: 1 / 0})"
+
+
 @pytest.mark.parametrize(
     ("function", "words"),
     [
-        (
-            "reward=lambda tick, config: tick.powr",
-            r"my_task.py, line 2: AttributeError: 'Tick' object has no attribute",
-        ),
-        ("reward=lambda tick, config: float('nan')", "my_task.py:JUMP: its reward must be a finite number, not nan"),
-        ("reward=lambda tick, config: [1.0]", r"its reward must be a finite number, not \[1.0\]"),
-        ("reward=lambda tick, config: throw(ValueError('one\\ntwo'))", "^my_task.py, line 1: ValueError: one two$"),
-        ("reward=lambda tick, config: throw(SystemExit(0))", "my_task.py, line 1: SystemExit: 0"),
-        (
-            "reward=lambda *_: throw(type('Odd', (Exception,), {'__str__': lambda e: 1 / 0}))",
-            "an exception without a message",
-        ),
-        ("ending=lambda tick, config: 'it fell'", "a short name of its own such as 'jumped', not 'it fell'"),
-        ("ending=lambda tick, config: 'time_limit'", "a short name of its own such as 'jumped', not 'time_limit'"),
-        ("draw_push=lambda config, seed: 5", "draw_push must return a DrawnPush or None, not 5"),
-        (
-            "controller_parameters=lambda chosen, config: 5",
-            "controller_parameters must return finite SteppingParameters",
-        ),
-        (
-            "controller_parameters=lambda chosen, config: (sarah.SteppingParameters(*[float('nan')] * 5), None)",
-            "controller_parameters must return finite SteppingParameters",
-        ),
+        ("reward=lambda tick, _: tick.powr", "my_task.py, line 2: AttributeError: 'Tick' object has no attribute"),
+        ("reward=lambda *_: float('nan')", "my_task.py:JUMP: its reward must be a finite number, not nan"),
+        ("reward=lambda *_: [1.0]", r"its reward must be a finite number, not \[1.0\]"),
+        ("reward=lambda *_: throw(ValueError('one\\ntwo'))", "^my_task.py, line 1: ValueError: one two$"),
+        ("reward=lambda *_: throw(SystemExit(0))", "my_task.py, line 1: SystemExit: 0"),
+        (f"reward=lambda *_: throw({SILENT})", "an exception without a message"),
+        ("ending=lambda *_: 'it fell'", "a short name of its own such as 'jumped', not 'it fell'"),
+        ("ending=lambda *_: 'time_limit'", "a short name of its own such as 'jumped', not 'time_limit'"),
+        ("draw_push=lambda *_: 5", "draw_push must return a DrawnPush or None, not 5"),
+        ("controller_parameters=lambda *_: 5", NOT_STEPPING),
+        ("controller_parameters=lambda *_: (sarah.SteppingParameters(*[float('nan')] * 5), None)", NOT_STEPPING),
     ],
 )
 def test_mistakes_of_functions_are_named(tmp_path: Path, function: str, words: str) -> None:
@@ -147,9 +127,7 @@ def test_mistakes_of_functions_are_named(tmp_path: Path, function: str, words: s
 
 
 def test_a_trial_finds_a_function_that_remembers(tmp_path: Path) -> None:
-    text = "import dataclasses, sarah\nseen = []\n"
-    text += "def reward(tick, config):\n    seen.append(1)\n    return len(seen)\n"
-    text += "JUMP = dataclasses.replace(sarah.STEPPING, name='jump', reward=reward)\n"
+    text = f"seen = []\n{REPLACED}'jump', reward=lambda *_: seen.append(1) or len(seen))\n"
     task = sarah.load_task(f"{written(tmp_path, text)}:JUMP")
     with pytest.raises(TaskError, match="its functions must depend on their arguments only"):
         try_task(task, task.episode)
@@ -157,10 +135,7 @@ def test_a_trial_finds_a_function_that_remembers(tmp_path: Path) -> None:
 
 
 def test_two_tasks_of_a_script_with_one_name_do_not_mix() -> None:
-    one, two = (
-        dataclasses.replace(sarah.STEPPING, name="same", reward=reward)
-        for reward in (lambda tick, config: 1.0, lambda tick, config: 2.0)
-    )
+    one, two = (dataclasses.replace(sarah.STEPPING, name="same", reward=lambda *_, r=r: r) for r in (1.0, 2.0))
     begin_episode(sarah.EpisodeSpec(PARAMETERS, 0, one, SHORT))
     outcome = finish_episode(sarah.EpisodeSpec(PARAMETERS, 0, two, SHORT))
     close_waiting_episodes()
@@ -185,3 +160,68 @@ def test_everything_that_a_tick_knows(tmp_path: Path) -> None:
     assert seen[-1].steps == result.steps
     assert (seen[-1].x, seen[-1].y, seen[-1].height) == pytest.approx(result.final_position)
     assert all(tick.tilt < 0.3 for tick in seen)
+
+
+OTHERS = {"stepping": BalanceConfig(), "balance": EpisodeConfig()}
+"""Settings that are not the task's."""
+
+
+@pytest.mark.parametrize("task", OTHERS)
+def test_another_tasks_settings_are_refused_in_one_line(task: str) -> None:
+    own, other = type(TASKS[task].episode).__name__, type(OTHERS[task]).__name__
+    with pytest.raises(ConfigurationError) as refused:
+        EpisodeSpec(TASKS[task].baseline, 0, task, OTHERS[task])
+    assert str(refused.value) == f"task '{task}' takes settings of type {own}, not {other}"
+    with pytest.raises(ConfigurationError, match=f"takes settings of type {own}, not {other}"):
+        SarahEnv(task, OTHERS[task])
+
+
+def test_settings_go_to_another_task_with_all_that_they_share() -> None:
+    """Only the balance task has a push and given legs."""
+    assert BALANCE.has_push and not STEPPING.has_push and STEPPING.draw_push(STEPPING.episode, 1) is None
+    config = BalanceConfig(time_limit=7.0, stepping=(0.1,) * 5)
+    assert STEPPING.config_of(config) == EpisodeConfig(time_limit=7.0)
+    assert BALANCE.config_of(EpisodeConfig(time_limit=7.0), stepping=(0.1,) * 5) == config
+
+
+@dataclasses.dataclass(frozen=True)
+class HurriedConfig(EpisodeConfig):
+    """Settings of a task that gives P3 to P5."""
+
+    rest: tuple[float, float, float] = (0.1, 1.0, 1.0)
+
+
+HURRIED = Task(
+    name="hurried",
+    title="Two parameters instead of five",
+    parameters=tuple(dataclasses.replace(parameter, high=1.5) for parameter in STEPPING_PARAMETERS[:2]),
+    episode=HurriedConfig(time_limit=2.0),
+    controller_parameters=lambda chosen, config: (SteppingParameters(*chosen, *config.rest), None),
+    baseline=(0.4, 1.3),
+    baseline_label="the paper's P1 and P2",
+)
+
+
+def test_a_third_task_is_as_good_as_the_two(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(TASKS, HURRIED.name, HURRIED)
+    assert task_named("hurried") is HURRIED
+    env = SarahEnv("hurried")
+    assert env.action_space.shape == (2,)
+    for action in (np.zeros(2, np.float32), np.ones(2, np.float32)):
+        env.reset(seed=3)
+        _, reward, terminated, _, info = env.step(action)
+        assert terminated and info["parameters"] == pytest.approx(tuple(0.75 * (action + 1.0)))
+        spec = EpisodeSpec(info["parameters"], info["seed"], "hurried", HURRIED.episode)
+        assert info["result"] == sarah.simulate(spec) and reward == info["result"].episode_return
+    given = EpisodeSpec((*info["parameters"], 0.1, 1.0, 1.0), info["seed"], config=EpisodeConfig(time_limit=2.0))
+    assert sarah.simulate(given) == info["result"]  # P1 to P5 given by hand are the same episode
+
+
+def test_a_file_beside_the_others_is_a_task(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "lasting.py").write_text(
+        "import dataclasses\n"
+        "from sarah.episode.tasks.stepping import STEPPING\n"
+        "LASTING = dataclasses.replace(STEPPING, name='lasting', reward=lambda tick, config: 1.0)\n"
+    )
+    monkeypatch.setattr(tasks, "__path__", [*tasks.__path__, str(tmp_path)])
+    assert [*tasks_in(tasks.__path__)] == [*TASKS, "lasting"]

@@ -1,9 +1,11 @@
-"""The robot: what the xacro gives, and what is refused before any physics engine sees it."""
+"""The robot: what the xacro gives, what is refused before any engine sees it, and how its mass is distributed."""
 
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable
 
+import numpy as np
 import pytest
+from laboratory import need
 
 from sarah.errors import DescriptionError
 from sarah.robot.description import ANKLE_JOINTS, GROUPS, check_urdf, describe_robot, model_of
@@ -11,13 +13,9 @@ from sarah.robot.dimensions import default_dimensions, known_dimensions
 from sarah.robot.links_and_joints import inertia_of, links_and_joints, place_of
 from sarah.robot.reading import ACTUATED_JOINTS
 from sarah.robot.scale import POWERS
+from sarah.robot.standing import MassProperties, links_of, together
 
 Change = Callable[[ElementTree.Element], object]
-
-
-@pytest.fixture
-def urdf() -> str:
-    return describe_robot().urdf
 
 
 def find(root: ElementTree.Element, kind: str, name: str) -> ElementTree.Element:
@@ -26,15 +24,18 @@ def find(root: ElementTree.Element, kind: str, name: str) -> ElementTree.Element
 
 
 def test_robot_has_six_actuated_and_four_passive_joints() -> None:
-    robot = describe_robot()
+    robot, dimensions = describe_robot(), default_dimensions()
+    assert check_urdf(robot.urdf) == robot  # yourdfpy finds it valid
     assert set(robot.limits) == {*ACTUATED_JOINTS, *ANKLE_JOINTS}
-    assert len(ACTUATED_JOINTS) == 6 and len(ANKLE_JOINTS) == 4
-    assert all(robot.efforts[joint] > 0 for joint in ACTUATED_JOINTS)
-    assert all(robot.efforts[joint] == 0 for joint in ANKLE_JOINTS)
-
-
-def test_yourdfpy_finds_the_default_robot_valid(urdf: str) -> None:
-    assert check_urdf(urdf) == describe_robot()
+    assert [robot.efforts[joint] > 0 for joint in ACTUATED_JOINTS] == [True] * 6
+    assert [robot.efforts[joint] for joint in ANKLE_JOINTS] == [0.0] * 4
+    for links in GROUPS.values():
+        assert sum(robot.masses[link] for link in links) == pytest.approx(10.0)
+    assert sum(robot.masses.values()) == pytest.approx(30.0)
+    parts = ("hip_drop", "thigh_length", "shank_length", "hinge_height")
+    assert robot.standing_height == pytest.approx(sum(dimensions[part] for part in parts))
+    with pytest.raises(DescriptionError, match="not well-formed"):
+        check_urdf("<robot>")
 
 
 @pytest.mark.parametrize("dimensions", [{}, {"hip_drop": 0.163, "thigh_length": 0.327, "shank_length": 0.301}])
@@ -49,21 +50,8 @@ def test_links_are_to_the_last_bit_where_yourdfpy_finds_them(dimensions: dict[st
         assert (inertia_of(links[name]) == link.inertial.inertia).all(), name
 
 
-def test_robot_weighs_30_kg_in_three_groups_of_10(urdf: str) -> None:
-    root = ElementTree.fromstring(urdf)
-    masses = {link.get("name"): float(link.find("inertial/mass").get("value")) for link in root.findall("link")}  # type: ignore[union-attr,arg-type]
-    for links in GROUPS.values():
-        assert sum(masses[link] for link in links) == pytest.approx(10.0)
-    assert sum(masses.values()) == pytest.approx(30.0)
-
-
-def test_robot_stands_as_high_as_its_parts() -> None:
-    dimensions = default_dimensions()
-    parts = ("hip_drop", "thigh_length", "shank_length", "hinge_height")
-    assert describe_robot().standing_height == pytest.approx(sum(dimensions[part] for part in parts))
-
-
-def test_urdf_is_mirrored_between_the_legs(urdf: str) -> None:
+def test_urdf_is_mirrored_between_the_legs() -> None:
+    urdf = describe_robot().urdf
     assert "xacro" not in urdf  # where it was made
     root = ElementTree.fromstring(urdf)
     for link in ("hip", "thigh", "shank", "forefoot", "hindfoot"):
@@ -85,6 +73,9 @@ def test_every_dimension_reaches_the_urdf(name: str) -> None:
     assert describe_robot({name: default_dimensions()[name] * 1.01}).urdf != describe_robot().urdf
 
 
+WIDTH = r"sole_half_width 0\.05 \+ contact_radius 0\.01"
+
+
 @pytest.mark.parametrize(
     ("dimensions", "message"),
     [
@@ -95,7 +86,7 @@ def test_every_dimension_reaches_the_urdf(name: str) -> None:
         ({"hinge_height": 0.005}, r"'hinge_height' must be at least 0\.015 m, .* plate_thickness 0\.01, not 0\.005: "),
         (
             {"hip_offset": 0.04, "contact_radius": 0.01},
-            r"'hip_offset' must be at least 0\.06 m, .* sole_half_width 0\.05 \+ contact_radius 0\.01, not 0\.04: ",
+            rf"'hip_offset' must be at least 0\.06 m, .* {WIDTH}, not 0\.04: ",
         ),
     ],
 )
@@ -127,10 +118,7 @@ def with_value(kind: str, name: str, part: str, /, **values: str) -> Change:
         (lambda root: root.append(find(root, "joint", "left_hip_flexion")), "more than one joint named 'left_hip_fl"),
         (lambda root: root.append(find(root, "link", "left_hip")), "more than one link named 'left_hip'"),
         (with_value("joint", "left_hip_abduction", "parent", link="left_shank"), "loop"),
-        (
-            with_value("joint", "left_hip_flexion", "parent", link="nowhere"),
-            "flexion' names a link 'nowhere'",
-        ),
+        (with_value("joint", "left_hip_flexion", "parent", link="nowhere"), "flexion' names a link 'nowhere'"),
         (with_value("joint", "left_hip_flexion", "child", link="left_shank"), "'left_shank' has more than one parent"),
         (with_value("link", "left_hip", "mass", value="-1"), "'left_hip' must have a positive mass, not -1"),
         (with_value("link", "left_hip", "inertia", ixx="0"), "'left_hip' must have a positive definite inertia"),
@@ -143,14 +131,42 @@ def with_value(kind: str, name: str, part: str, /, **values: str) -> Change:
         (with_value("joint", "left_leg_length", "limit", effort="0"), "must have a positive effort limit"),
     ],
 )
-def test_broken_urdfs_are_refused(urdf: str, change: Change, message: str) -> None:
-    root = ElementTree.fromstring(urdf)
+def test_broken_urdfs_are_refused(change: Change, message: str) -> None:
+    root = ElementTree.fromstring(describe_robot().urdf)
     change(root)
     with pytest.raises(DescriptionError, match=message) as caught:
         check_urdf(ElementTree.tostring(root, encoding="unicode"))
     assert "\n" not in str(caught.value)
 
 
-def test_text_that_is_not_xml_is_refused() -> None:
-    with pytest.raises(DescriptionError, match="not well-formed"):
-        check_urdf("<robot>")
+NOTHING = np.zeros((3, 3))
+
+
+def test_two_points_have_the_inertia_of_a_dumbbell() -> None:
+    pair = together([MassProperties(1.0, np.array((x, 0.0, 0.5)), NOTHING) for x in (-1.0, 1.0)])
+    assert pair.mass == 2.0 and pair.centre == pytest.approx((0.0, 0.0, 0.5))
+    assert np.diag(pair.inertia) == pytest.approx((0.0, 2.0, 2.0))
+
+
+def test_the_default_robot_stands_over_its_feet() -> None:
+    robot = describe_robot()
+    links = links_of(robot)
+    whole = together(links.values())
+    assert {name: link.mass for name, link in links.items()} == robot.masses
+    assert whole.mass == pytest.approx(30.0) and whole.centre[0] == pytest.approx(0.0)
+    soles = np.array(robot.standing_soles)
+    assert (soles.min(axis=0)[:2] < whole.centre[:2]).all() and (whole.centre[:2] < soles.max(axis=0)[:2]).all()
+
+
+@pytest.mark.parametrize("dimensions", [{"thigh_length": 0.2, "forefoot_contact": 0.2, "hip_offset": 0.2}])
+def test_an_engine_finds_the_same(dimensions: dict[str, float]) -> None:
+    need("mujoco")
+    import mujoco
+
+    robot = describe_robot(dimensions)
+    model = mujoco.MjModel.from_xml_string(robot.urdf)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    legs = together(link for name, link in links_of(robot).items() if name != "torso")
+    assert legs.mass == pytest.approx(model.body_subtreemass[0])
+    assert legs.centre == pytest.approx(data.subtree_com[0] + (0.0, 0.0, robot.standing_height))

@@ -20,12 +20,7 @@ def test_scale_is_that_of_height_mass_and_width() -> None:
     assert scale_of({"thigh_length": 0.33 + 0.84}) == Scale(length=2.0)
     assert scale_of({"torso_mass": 23.0}) == Scale(mass=1.5)
     assert scale_of({"hip_offset": 0.26}) == Scale(width=2.0)
-
-
-@pytest.mark.parametrize(("length", "mass"), [(1.0, 1.0), (1.7, 4.1)])
-def test_the_urdf_has_the_scale_of_its_dimensions(length: float, mass: float) -> None:
-    dimensions = dimensions_alike(length, mass)
-    assert describe_robot(dimensions).scale == pytest.approx(scale_of(dimensions))
+    assert describe_robot(dimensions_alike(1.7, 4.1)).scale == pytest.approx(scale_of(dimensions_alike(1.7, 4.1)))
 
 
 def test_quantities_go_by_their_units() -> None:
@@ -63,19 +58,15 @@ def test_what_is_given_stays() -> None:
 
 
 def test_settings_go_with_the_ratio_of_both_robots() -> None:
+    """And what was set by hand stays."""
     settings = PushedConfig(payload=3.0, controller=dataclasses.replace(STANDARD_CONSTANTS, pad_threshold=60.0))
     small = settings.for_robot(dimensions_alike(0.25, 0.1))
     assert (small.payload, small.controller.pad_threshold) == pytest.approx((0.3, 6.0))
     assert small.for_robot(dimensions_alike(1.0, 1.0)).controller.pad_threshold == pytest.approx(60.0)
     assert settings.for_robot({"torso_width": 0.3}).controller == settings.controller
-
-
-def test_what_was_set_by_hand_stays_for_another_robot() -> None:
-    usual = PushedConfig()
-    by_hand = dataclasses.replace(usual, controller=dataclasses.replace(STANDARD_CONSTANTS, pad_threshold=5.0))
-    small = by_hand.for_robot(dimensions_alike(0.25, 0.1), usual)
-    assert small.controller.pad_threshold == 5.0 and small.controller.fall_rate == pytest.approx(8.0)
-    assert by_hand.for_robot({"thigh_length": 0.3}, usual).for_robot({}, usual) == by_hand
+    by_hand = settings.for_robot(dimensions_alike(0.25, 0.1), PushedConfig()).controller
+    assert by_hand.pad_threshold == 60.0 and by_hand.fall_rate == pytest.approx(8.0)
+    assert settings.for_robot({"thigh_length": 0.3}, PushedConfig()).for_robot({}, PushedConfig()) == settings
 
 
 def test_a_dimension_changed_in_operation_leaves_the_controller() -> None:

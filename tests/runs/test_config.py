@@ -2,7 +2,7 @@
 
 import dataclasses
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -56,13 +56,8 @@ def test_files_from_before_sizes_keep_their_robot(tmp_path: Path) -> None:
 def test_what_a_task_and_an_engine_have_of_their_own_is_read(tmp_path: Path) -> None:
     path = tmp_path / "config.yaml"
     path.write_text(
-        "task: balance\n"
-        "episode:\n"
-        "  stepping: [0.1, 0.2, 0.3, 0.4, 0.5]\n"
-        "  push: {newtons: [50, 60], degrees: [0, 0]}\n"
-        "  engine: pybullet\n"
-        "  physics: {added_plate_inertia: 0.001}\n"
-        "  controller: {time_out_seconds: 0.3}\n"
+        "{task: balance, episode: {stepping: [0.1, 0.2, 0.3, 0.4, 0.5], push: {newtons: [50, 60], degrees: [0, 0]}, "
+        "engine: pybullet, physics: {added_plate_inertia: 0.001}, controller: {time_out_seconds: 0.3}}}"
     )
     assert read_config(TrainingConfig, path).episode == BalanceConfig(
         stepping=(0.1, 0.2, 0.3, 0.4, 0.5),
@@ -97,23 +92,14 @@ def test_what_a_task_and_an_engine_have_of_their_own_is_read(tmp_path: Path) -> 
         ("episode: {time_limit: 1}", "time_limit must be above the 1 s of standing, not 1.0"),
         ("episode: {engine: mujco}", "engine 'mujco', did you mean 'mujoco'?"),
         ("episode: {reward_form: printd}", "unknown episode.reward_form 'printd', did you mean 'printed'"),
-        (
-            "episode: {physics: {rate: 333}}",
-            "physics.rate must be a multiple of the control rate, 100 Hz, such as 400, not 333",
-        ),
-        (
-            "episode: {randomisation: {friction: [0.9]}}",
-            "friction must be one number, or a list of 2 for a range, not [0.9]",
-        ),
+        ("episode: {physics: {rate: 333}}", "must be a multiple of the control rate, 100 Hz, such as 400, not 333"),
+        ("episode: {randomisation: {friction: [0.9]}}", "must be one number, or a list of 2 for a range, not [0.9]"),
         ("episode: {randomisation: {friction: [1.0, 0.7]}}", "friction must be between 0 and 5 and in rising order"),
         ("episode: {dimensions: [0.3]}", "dimensions must hold names and values"),
         ("episode: {dimensions: {thigh_length: long}}", "dimensions.thigh_length must be a number, not 'long'"),
         ("episode: {push: {newtons: [50, 60]}}", "episode.push is for task balance"),
         ("task: stepping\nepisode: {stepping: [1, 1, 1, 1, 1]}", "episode.stepping is for task balance"),
-        (
-            "episode: {engine: mujoco, physics: {added_plate_inertia: 0.01}}",
-            "unknown key 'episode.physics.added_plate_inertia', did you mean",
-        ),
+        ("episode: {engine: mujoco, physics: {added_plate_inertia: 1}}", "unknown key 'episode.physics.added_plate_in"),
         ("{task: balance, episode: {time_limit: 3, push: {at_seconds: [3, 4]}}}", "before the time_limit of 3 s"),
         ("a: [", "is not YAML"),
     ],
@@ -123,42 +109,31 @@ def test_mistakes_are_named_in_one_line(tmp_path: Path, text: str, message: str)
     path.write_text(text)
     with pytest.raises(ConfigurationError) as caught:
         read_config(TrainingConfig, path)
-    assert message in str(caught.value)
-    assert str(caught.value).count("mine.yaml") >= 1 and "\n" not in str(caught.value)
-
-
-def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    assert message in str(caught.value) and "mine.yaml" in str(caught.value) and "\n" not in str(caught.value)
     with pytest.raises(ConfigurationError, match=r"cannot read .*nothing.yaml: No such file"):
         read_config(TrainingConfig, tmp_path / "nothing.yaml")
 
 
 def test_changes_of_one_are_made_alike_in_another() -> None:
-    before = EpisodeConfig()
-    after = dataclasses.replace(before, payload=3.0, physics=dataclasses.replace(before.physics, rate=800))
-    other = dataclasses.replace(
-        before, time_limit=9.0, physics=dataclasses.replace(before.physics, solver_iterations=9)
-    )
+    before, replace = EpisodeConfig(), dataclasses.replace
+    after = replace(before, payload=3.0, physics=replace(before.physics, rate=800))
+    other = replace(before, time_limit=9.0, physics=replace(before.physics, solver_iterations=9))
     changed = changed_alike(other, before, after)
-    assert changed == dataclasses.replace(other, payload=3.0, physics=dataclasses.replace(other.physics, rate=800))
+    assert changed == replace(other, payload=3.0, physics=replace(other.physics, rate=800))
     with pytest.raises(dataclasses.FrozenInstanceError):
         changed.payload = 0.0  # type: ignore[misc]
 
 
-@pytest.mark.parametrize(
-    ("kind", "given", "words"),
-    [
-        (TrainingConfig, {"episodes": 10.5}, "episodes must be a whole number, not 10.5"),
-        (NAFSettings, {"mu_layers": 16}, "agent.mu_layers must be a list, not 16"),
-        (Change, {"minute": "x", "settings": {}}, "change.minute must be a number, not 'x'"),
-        (SessionSpec, {"seed": 1.5}, "seed must be a whole number, not 1.5"),
-    ],
-)
-def test_settings_from_python_are_checked_as_those_of_a_file(kind: type, given: dict[str, Any], words: str) -> None:
-    with pytest.raises(ConfigurationError, match=words):
-        kind(**given)
-
-
-def test_settings_from_python_may_be_numbers_of_numpy() -> None:
-    numbers: dict[str, Any] = {"episodes": np.int64(30), "learning_rate": np.float32(0.5)}
-    agent = NAFSettings(learning_rate=numbers["learning_rate"])
-    assert type(TrainingConfig(episodes=numbers["episodes"]).episodes) is int and type(agent.learning_rate) is float
+def test_settings_from_python_are_checked_as_those_of_a_file() -> None:
+    """And may be numbers of numpy."""
+    training, change, session, naf = (cast(Any, k) for k in (TrainingConfig, Change, SessionSpec, NAFSettings))
+    for make, words in (
+        (lambda: training(episodes=10.5), "episodes must be a whole number, not 10.5"),
+        (lambda: naf(mu_layers=16), "agent.mu_layers must be a list, not 16"),
+        (lambda: change("x", {}), "change.minute must be a number, not 'x'"),
+        (lambda: session(seed=1.5), "seed must be a whole number, not 1.5"),
+    ):
+        with pytest.raises(ConfigurationError, match=words):
+            make()
+    config = training(episodes=np.int64(30), agent=naf(learning_rate=np.float32(0.5)))
+    assert type(config.episodes) is int and type(config.agent.learning_rate) is float

@@ -4,10 +4,11 @@ import os
 import shutil
 import signal
 from collections.abc import Callable, Iterator
-from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import pytest
+from terminal import run
 
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.workers import Workers
@@ -55,8 +56,11 @@ def laughs(path: Path) -> None:
     path.write_text("\n".join(levels))
 
 
-def nested(path: Path) -> None:
-    path.write_text("[" * 60_000)
+def filled(text: str) -> Callable[[Path], object]:
+    return lambda path: path.write_text(text)
+
+
+NESTED, LONG_LINE, BLANK_LINES = map(filled, ("[" * 60_000, "x," * 1_000_000, "index,seed\n" + "\n" * 10_000))
 
 
 def digits(path: Path) -> None:
@@ -64,16 +68,7 @@ def digits(path: Path) -> None:
 
 
 def gigabytes(path: Path) -> None:
-    with path.open("wb") as file:
-        file.truncate(20 * 2**30)
-
-
-def long_line(path: Path) -> None:
-    path.write_text("x," * 1_000_000)
-
-
-def blank_lines(path: Path) -> None:
-    path.write_text("index,seed\n" + "\n" * 10_000)
+    os.truncate(path, 20 * 2**30)
 
 
 def fifo(path: Path) -> None:
@@ -86,15 +81,15 @@ def device(path: Path) -> None:
     path.symlink_to("/dev/zero")
 
 
-HARMS: dict[str, tuple[Callable[[Path], None], ...]] = {
-    "config.yaml": (laughs, nested, digits, gigabytes, fifo),
-    "parameters.json": (nested, digits, fifo),
+HARMS: dict[str, tuple[Callable[[Path], object], ...]] = {
+    "config.yaml": (laughs, NESTED, digits, gigabytes, fifo),
+    "parameters.json": (NESTED, digits, fifo),
     "versions.txt": (fifo,),
-    "journal.jsonl": (nested, gigabytes, device),
+    "journal.jsonl": (NESTED, gigabytes, device),
     "race.csv": (fifo,),
-    "race_scores.csv": (long_line,),
+    "race_scores.csv": (LONG_LINE,),
     "recommendations.csv": (gigabytes,),
-    "episodes.csv": (gigabytes, long_line, blank_lines, fifo),
+    "episodes.csv": (gigabytes, LONG_LINE, BLANK_LINES, fifo),
 }
 
 
@@ -130,19 +125,11 @@ def honest(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.usefixtures("within_seconds")
 @pytest.mark.parametrize(("name", "harm"), [(name, harm) for name, harms in HARMS.items() for harm in harms])
-def test_hostile_files_are_refused_within_seconds(
-    name: str,
-    harm: Callable[[Path], None],
-    honest: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_hostile_files_are_refused_within_seconds(name: str, harm: Any, honest: Path, tmp_path: Path) -> None:
     shutil.copytree(honest, tmp_path / "race")
     harm(tmp_path / "race" / "random-s0" / name)
     if name == "journal.jsonl":
         (tmp_path / "race" / "random-s0" / "parameters.json").unlink()  # what is finished is not resumed
-    monkeypatch.chdir(tmp_path)
     is_finished = (tmp_path / "race" / "random-s0" / "parameters.json").is_file()
     # The worst are tried on every command, the others on one: all read by the same functions.
     for line in READERS[name][: None if harm in (laughs, fifo) else 1]:
@@ -150,15 +137,13 @@ def test_hostile_files_are_refused_within_seconds(
             continue  # they take a training that is not finished as it is
         if line in (VIDEO, TRANSFER) and not is_installed("pybullet"):
             continue  # they miss it before they read
-        monkeypatch.setattr("sys.argv", line.split())
         signal.alarm(SECONDS)
         try:
-            with pytest.raises(SystemExit) as ended:
-                import_module(f"sarah.cli.{line.split()[0].removeprefix('sarah-')}").main()
+            ended = run(*line.split(), cwd=tmp_path)
         except TooSlow:
             pytest.fail(f"{line} did not end", pytrace=False)
-        message = capsys.readouterr().err.splitlines()[-1]
-        assert ended.value.code == 2 and message.startswith(f"{line.split()[0]}: error: "), line
+        message = ended.stderr.splitlines()[-1]
+        assert ended.returncode == 2 and message.startswith(f"{line.split()[0]}: error: "), line
         assert ("random-s0" in message) and len(message) < 1000, message
 
 
@@ -171,17 +156,16 @@ def test_links_are_followed(honest: Path, tmp_path: Path) -> None:
 
 def test_sizes_are_those_that_are_said(tmp_path: Path) -> None:
     path = tmp_path / "file"
-    path.write_text("ab\ncd\n")
-    assert read_text(path, most_bytes=6) == "ab\ncd\n" and list(read_lines(path, 2, 3)) == ["ab\n", "cd\n"]
-    with pytest.raises(OSError, match="it has more than 5 bytes"):
-        read_text(path, most_bytes=5)
-    with pytest.raises(OSError, match="it has more than 2 bytes in line 1"):
-        list(read_lines(path, 3, 2))
-    path.write_text("a\nb\nc\n")
-    with pytest.raises(OSError, match="it has more than 2 lines"):
-        list(read_lines(path, 2, 9))
-    with pytest.raises(OSError, match="it is not a regular file"):
-        read_text(tmp_path)
+    path.write_text("ab\ncd\ne\n")
+    assert read_text(path, most_bytes=8) == "ab\ncd\ne\n" and list(read_lines(path, 3, 3)) == ["ab\n", "cd\n", "e\n"]
+    for read, words in (
+        (lambda: read_text(path, most_bytes=7), "it has more than 7 bytes"),
+        (lambda: list(read_lines(path, 4, 2)), "it has more than 2 bytes in line 1"),
+        (lambda: list(read_lines(path, 2, 9)), "it has more than 2 lines"),
+        (lambda: read_text(tmp_path), "it is not a regular file"),
+    ):
+        with pytest.raises(OSError, match=words):
+            read()
 
 
 @pytest.mark.usefixtures("within_seconds")

@@ -6,11 +6,11 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
-from importlib import import_module
 from pathlib import Path
 from typing import get_args, get_type_hints
 
 import pytest
+from terminal import run
 
 from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
@@ -24,9 +24,8 @@ from sarah.simulation.randomisation import Randomisation
 from sarah.training import train as training
 from sarah.training.train import train
 
-CONFIG = TrainingConfig(
-    episodes=3, slots=1, episode=EpisodeConfig(time_limit=1.1, physics=Physics(50, 5, control_rate=50))
-)
+EPISODE = EpisodeConfig(time_limit=1.1, physics=Physics(50, 5, control_rate=50))
+CONFIG = TrainingConfig(episodes=3, slots=1, episode=EPISODE)
 COARSE = "--episode.time-limit 1.2 --episode.push.at-seconds 1 1 --episode.physics.solver-iterations 5"
 COMMANDS = (
     "sarah-eval {run} --episodes 1",
@@ -56,29 +55,23 @@ class Bomb:
 def honest(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as monkeypatch:
         monkeypatch.setattr(training, "SUMMARY_EPISODES", 1)
-        run = RunFolder.create(tmp_path_factory.mktemp("honest") / "run", CONFIG)
-        train(CONFIG, run)
-    return run.path
+        folder = RunFolder.create(tmp_path_factory.mktemp("honest") / "run", CONFIG)
+        train(CONFIG, folder)
+    return folder.path
 
 
 @pytest.fixture
-def opened(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> Callable[[Path], None]:
+def opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Path], None]:
     """Opens a folder with every command; each works, or fails in one line."""
     monkeypatch.setattr(training, "SUMMARY_EPISODES", 1)
-    monkeypatch.chdir(tmp_path)
 
-    def open_with_all(run: Path) -> None:
-        shutil.copytree(run, tmp_path / f"{run.name}-race" / "random-s0")
+    def open_with_all(folder: Path) -> None:
+        shutil.copytree(folder, tmp_path / f"{folder.name}-race" / "random-s0")
         for template in COMMANDS:
-            line = template.format(run=run)
-            monkeypatch.setattr("sys.argv", line.split())
-            try:
-                import_module(f"sarah.cli.{line.split()[0].removeprefix('sarah-')}").main()
-            except SystemExit as ended:
-                assert ended.code == 2, line
-                assert capsys.readouterr().err.splitlines()[-1].startswith(line.split()[0] + ": error: ")
+            command, *arguments = template.format(run=folder).split()
+            ended = run(command, *arguments, cwd=tmp_path)
+            assert ended.returncode in (0, 2), template
+            assert not ended.returncode or ended.stderr.splitlines()[-1].startswith(f"{command}: error: ")
 
     return open_with_all
 
@@ -105,49 +98,39 @@ def test_no_file_of_a_run_is_unpickled(
     assert {*PLANTED, "model.zip", "episodes.csv"} < names and not sprung.exists()
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
+def test_yaml_makes_no_objects(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for text in (
         "!!python/object/apply:pathlib.Path.touch [!!python/object/apply:pathlib.Path ['sprung']]",
         "algo: !!python/object/apply:os.system ['touch sprung']",
         "episode: {dimensions: {thigh_length: !!python/object/new:os.system ['touch sprung']}}",
-    ],
-)
-def test_yaml_makes_no_objects(text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "config.yaml").write_text(text)
-    with pytest.raises(ConfigurationError):
-        RunFolder.open(tmp_path, unfinished=True).config()
+    ):
+        (tmp_path / "config.yaml").write_text(text)
+        with pytest.raises(ConfigurationError):
+            RunFolder.open(tmp_path, unfinished=True).config()
     assert not (tmp_path / "sprung").exists()
 
 
 @pytest.mark.skipif(sys.version_info < (3, 11), reason="Python 3.10 always looks in the working folder")
 def test_nothing_in_the_working_folder_is_imported(honest: Path, tmp_path: Path) -> None:
     """Not by workers either, which are new processes."""
-    run = shutil.copytree(honest, tmp_path / "run")
+    folder = shutil.copytree(honest, tmp_path / "run")
     for module in ("pickle", "socket", "signal", "yaml", "numpy", "sarah", "sitecustomize", "distributed"):
-        (run / f"{module}.py").write_text(f"open({str(tmp_path / 'sprung')!r}, 'w')")
-    process = subprocess.run(
-        [Path(sys.executable).parent / "sarah-eval", ".", "--episodes", "1", "--workers", "1"],
-        cwd=run,
-        capture_output=True,
-        text=True,
-        env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
-        timeout=120,
-    )
+        (folder / f"{module}.py").write_text(f"open({str(tmp_path / 'sprung')!r}, 'w')")
+    command = [str(Path(sys.executable).parent / "sarah-eval"), ".", "--episodes", "1", "--workers", "1"]
+    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
+    process = subprocess.run(command, cwd=folder, capture_output=True, text=True, env=environment, timeout=120)
     assert process.returncode == 0, process.stderr
     assert not (tmp_path / "sprung").exists()
 
 
-@pytest.mark.parametrize("value", ["${open('sprung', 'w')}", "../../etc/passwd", float("nan"), "0.33'/><link name='x'"])
-def test_dimensions_are_numbers_and_nothing_else(
-    value: object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_dimensions_are_numbers_and_nothing_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(DescriptionError, match=r"'thigh_length' must be a number between"):
-        describe_robot({"thigh_length": value})  # type: ignore[dict-item]
-    with pytest.raises(DescriptionError, match="unknown robot dimension"):
-        describe_robot({f"x:={value}": 1.0})
+    for value in ("${open('sprung', 'w')}", "../../etc/passwd", float("nan"), "0.33'/><link name='x'"):
+        with pytest.raises(DescriptionError, match=r"'thigh_length' must be a number between"):
+            describe_robot({"thigh_length": value})  # type: ignore[dict-item]
+        with pytest.raises(DescriptionError, match="unknown robot dimension"):
+            describe_robot({f"x:={value}": 1.0})
     assert not list(tmp_path.iterdir())
 
 

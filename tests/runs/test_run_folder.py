@@ -1,5 +1,6 @@
-"""The folder of a training: its tables, its learned parameters, and the episodes that commands choose from."""
+"""The folder of a training: its tables, its parameters, the episodes to choose from, and what is told of an episode."""
 
+import dataclasses
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -9,17 +10,22 @@ from interrupted import EPISODE
 from laboratory import COARSE_PHYSICS
 
 from sarah.episode.episode import simulate
+from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, STEPPING
+from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
+from sarah.episode.trace import Trace
 from sarah.episode.workers import Workers, begin_episode, finish_episode
 from sarah.errors import ConfigurationError, RunFolderError
 from sarah.recorded.folder import new_path
+from sarah.robot.dimensions import dimensions_alike
 from sarah.runs.config import TrainingConfig
+from sarah.runs.episode_words import differences, told_of
 from sarah.runs.recorded_episodes import RecordedEpisodes
 from sarah.runs.run_episodes import choose_episode, episode_of_parameters, episodes_of_run
 from sarah.runs.run_folder import RunFolder
 from sarah.runs.run_record import RunRecord
+from sarah.simulation.terrain import Terrain, draw_terrain
 
 CONFIG = TrainingConfig(algo="random", episodes=3, slots=1, episode=EPISODE)
 SPECS = [EpisodeSpec((1.0, 0.5, 0.2, 1.0, share), seed, config=EPISODE) for seed, share in ((7, 0.5), (8, 1.5))]
@@ -98,41 +104,33 @@ def test_a_run_has_no_more_rows_than_episodes(run: RunFolder) -> None:
         list(run.episodes())
 
 
-def test_a_folder_that_is_not_empty_is_refused_and_left_alone(tmp_path: Path) -> None:
-    (tmp_path / "precious.txt").write_text("data")
-    with pytest.raises(RunFolderError, match="is not empty"):
-        RunFolder.create(tmp_path, CONFIG)
-    assert [path.name for path in tmp_path.iterdir()] == ["precious.txt"]
-
-
-def test_run_folders_number_themselves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert new_path("stepping", "naf-s3") == Path("runs/stepping/naf-s3")
-    assert new_path("stepping", "naf-s3") == Path("runs/stepping/naf-s3-2")
-
-
-def test_folders_without_a_finished_training_are_refused(tmp_path: Path) -> None:
+def test_folders_without_a_finished_training_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(RunFolderError, match="does not exist"):
         RunFolder.open(tmp_path / "nowhere")
     RunFolder.create(tmp_path / "begun", CONFIG)
     with pytest.raises(RunFolderError, match=r"no parameters.json"):
         RunFolder.open(tmp_path / "begun")
     assert RunFolder.open(tmp_path / "begun", unfinished=True).config() == CONFIG
+    with pytest.raises(RunFolderError, match="is not empty"):  # and it is left alone
+        RunFolder.create(tmp_path, CONFIG)
+    assert [path.name for path in tmp_path.iterdir()] == ["begun"]
+    monkeypatch.chdir(tmp_path)
+    assert [new_path("stepping", "naf-s3").name for _ in range(2)] == ["naf-s3", "naf-s3-2"]
+    assert new_path("stepping", "naf-s3").parent == Path("runs/stepping")
 
 
-@pytest.mark.parametrize(
-    "content",
-    ["{", "[]", "{}", '{"parameters": {"P1": 1}}', '{"parameters": {"P1": "x", "P2": 1, "P3": 1, "P4": 1, "P5": 1}}'],
-)
-def test_spoilt_parameters_are_named(content: str, run: RunFolder) -> None:
-    run.result_path.write_text(content)
-    with pytest.raises(RunFolderError, match=r"parameters.json does not hold learned parameters"):
-        run.parameters()
+def test_spoilt_parameters_are_named(run: RunFolder) -> None:
+    text = '{"parameters": {"P1": "x", "P2": 1, "P3": 1, "P4": 1, "P5": 1}}'
+    for content in ("{", "[]", "{}", '{"parameters": {"P1": 1}}', text):
+        run.result_path.write_text(content)
+        with pytest.raises(RunFolderError, match=r"parameters.json does not hold learned parameters"):
+            run.parameters()
 
 
-@pytest.mark.parametrize(
-    ("function", "seeds"), [(begin_episode, [3]), (finish_episode, [3]), (finish_episode, [3, 4]), (simulate, [3])]
-)
+EPISODES = [(begin_episode, [3]), (finish_episode, [3]), (finish_episode, [3, 4]), (simulate, [3])]
+
+
+@pytest.mark.parametrize(("function", "seeds"), EPISODES)
 def test_the_journal_gives_back_every_bit(function: Callable[..., Any], seeds: list[int], tmp_path: Path) -> None:
     run = RunFolder.create(tmp_path / "run", CONFIG)
     config = EpisodeConfig(time_limit=2.0, physics=COARSE_PHYSICS)
@@ -144,3 +142,61 @@ def test_the_journal_gives_back_every_bit(function: Callable[..., Any], seeds: l
         known = RecordedEpisodes(journal, Workers()).submit(function, *specs).result()
         assert not journal.replaying
     assert repr(known) == repr(simulated) and type(known) is type(simulated)
+
+
+SPEC = EpisodeSpec((1.0, 0.0, 1.0, 0.0), 5, BALANCE, BalanceConfig(time_limit=1.5, push=Push(40.0, 90.0, 1.2)))
+UNPUSHED = dataclasses.replace(BALANCE.episode, push=Push(0.0))
+USUAL = dataclasses.replace(SPEC, config=UNPUSHED)
+
+
+@pytest.fixture(scope="module")
+def trace() -> Trace:
+    found = simulate(SPEC, record_trace=True).trace
+    assert found is not None
+    return found
+
+
+@pytest.fixture(scope="module")
+def still(trace: Trace) -> Trace:
+    return dataclasses.replace(trace, push=0.0 * trace.push)
+
+
+def test_the_pushes_of_the_trace_are_told(trace: Trace, still: Trace) -> None:
+    assert told_of(SPEC, trace) == ["push of 40 N forward at 1.20 s", "time_limit 1.5"]
+    assert told_of(SPEC, still) == ["time_limit 1.5"]  # it ended before its push
+
+
+DIMENSIONS, WIDER = dimensions_alike(1.1, 1.0), {"torso_width": 0.3, "sole_half_width": 0.06}
+
+
+@pytest.mark.parametrize(
+    ("settings", "told"),
+    [
+        ({}, []),
+        ({"payload": 5.0}, ["payload 5"]),
+        ({"dimensions": WIDER}, ["dimensions torso_width 0.3, sole_half_width 0.06"]),
+        (USUAL.config.for_robot(DIMENSIONS).__dict__, [f"{len(DIMENSIONS)} dimensions of its own"]),
+        ({"stepping": (0.4, 1.3, 0.1, 1.0, 1.0)}, ["P1 to P5 0.40, 1.30, 0.10, 1.00, 1.00"]),
+        ({"terrain": Terrain(friction_left=(0.2, 0.2))}, ["terrain.friction_left 0.2"]),
+        ({"terrain": Terrain(roughness=0.01, reach=0.9)}, ["terrain.roughness 0.01", "terrain.reach 0.9"]),
+    ],
+)
+def test_settings_that_differ_are_told(settings: Any, told: list[str], still: Trace) -> None:
+    changed = dataclasses.replace(USUAL, config=dataclasses.replace(UNPUSHED, **settings))
+    assert told_of(changed, still) == told
+    assert told_of(EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), 0), still) == []
+
+
+def test_what_an_option_changes_has_both_values() -> None:
+    changed = dataclasses.replace(UNPUSHED, payload=3.0, stepping=(0.5, 1.0, 0.0, 1.0, 1.0))
+    other = dataclasses.replace(UNPUSHED, stepping=(0.5, 1.0, 0.0, 1.0, 0.75))
+    stepping = "stepping 0.5, 1, 0, 1, 1 instead of 0.5, 1, 0, 1, 0.75"
+    assert list(differences(changed, other)) == ["payload 3 instead of 0", stepping]
+
+
+def test_the_ground_is_told_as_the_seed_draws_it(still: Trace) -> None:
+    ranges = Terrain(slope_degrees=(2.0, 8.0), roughness=(0.0, 0.02))
+    spec = EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), 5, config=EpisodeConfig(terrain=ranges))
+    drawn = draw_terrain(ranges, 5)
+    names = ("slope_degrees", "direction_degrees", "roughness")
+    assert told_of(spec, still) == [f"terrain.{name} {getattr(drawn, name)[0]:.3g}" for name in names]

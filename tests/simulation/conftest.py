@@ -12,10 +12,10 @@ from sarah.simulation.randomisation import NOMINAL, Conditions
 from sarah.simulation.simulator import Simulator
 
 
-@pytest.fixture(params=["pybullet", "mujoco"])
-def lab(request: pytest.FixtureRequest) -> Laboratory:
-    """Each engine in turn."""
-    return laboratory(request.param)
+@pytest.fixture
+def lab(engine: str) -> Laboratory:
+    """That of each engine in turn."""
+    return laboratory(engine)
 
 
 @pytest.fixture

@@ -1,31 +1,26 @@
-"""Settings of the integration: what each engine takes of them."""
+"""Settings of the integration: what each engine takes of them. And what an episode's seed draws of the robot."""
 
 import dataclasses
+import math
+from typing import Any
 
 import pytest
 
 from sarah.errors import ConfigurationError
 from sarah.robot.scale import Scale
 from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics, physics_for
+from sarah.simulation.randomisation import NOMINAL, Randomisation, draw_conditions
 
 
-def test_only_pybullet_has_an_inertia_to_add() -> None:
-    assert [field.name for field in dataclasses.fields(Physics)] == ["rate", "solver_iterations", "control_rate"]
-    assert PHYSICS["standard"].added_plate_inertia > PHYSICS["reference"].added_plate_inertia == 0.0
-
-
+@pytest.mark.parametrize("rate", [100, 250])
 @pytest.mark.parametrize("name", PHYSICS)
-def test_named_settings_go_to_mujoco_and_come_back(name: str) -> None:
-    in_mujoco = physics_for("mujoco", PHYSICS[name], Scale())
-    assert type(in_mujoco) is Physics
-    assert (in_mujoco.rate, in_mujoco.solver_iterations) == (PHYSICS[name].rate, PHYSICS[name].solver_iterations)
+def test_named_settings_go_to_mujoco_and_come_back(name: str, rate: int) -> None:
+    named = PHYSICS[name].at_control_rate(rate)
+    in_mujoco = physics_for("mujoco", named, Scale())
+    assert in_mujoco == Physics(named.rate, named.solver_iterations, rate) and type(in_mujoco) is Physics
     assert physics_for("mujoco", in_mujoco, Scale()) is in_mujoco
-    assert physics_for("pybullet", in_mujoco, Scale()) == PHYSICS[name]
-
-
-def test_named_settings_come_back_at_any_control_rate() -> None:
-    reference = PHYSICS["reference"].at_control_rate(250)
-    assert physics_for("pybullet", physics_for("mujoco", reference, Scale()), Scale()) == reference
+    assert physics_for("pybullet", in_mujoco, Scale()) == named
+    assert PHYSICS["standard"].added_plate_inertia > PHYSICS["reference"].added_plate_inertia == 0.0
 
 
 def test_nameless_settings_get_the_standard_inertia_in_pybullet() -> None:
@@ -36,22 +31,24 @@ def test_nameless_settings_get_the_standard_inertia_in_pybullet() -> None:
     assert physics_for("mujoco", own, Scale()) == Physics(400, 7, 200)
 
 
-@pytest.mark.parametrize("inertia", [-0.001, 101.0])
-def test_an_inertia_that_no_plate_has_is_refused(inertia: float) -> None:
-    with pytest.raises(ConfigurationError, match=r"physics.added_plate_inertia must be between 0 and 100 kg m\^2"):
-        PyBulletPhysics(added_plate_inertia=inertia)
+INERTIA, CONTROL_RATE = (
+    r"physics.added_plate_inertia must be between 0 and 100 kg m\^2",
+    r"physics.control_rate must be",
+)
 
 
-@pytest.mark.parametrize("rate", [49, 1001, 100.5])
-def test_control_rates_that_no_robot_has_are_refused(rate: float) -> None:
-    with pytest.raises(ConfigurationError, match=rf"physics.control_rate must be .*, not {rate}"):
-        PHYSICS["standard"].at_control_rate(rate)  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize("name", ["rate", "solver_iterations", "control_rate"])
-def test_rates_and_iterations_are_whole_numbers(name: str) -> None:
-    with pytest.raises(ConfigurationError, match=f"physics.{name} must be a whole number, not 100.5"):
-        Physics(**{name: 100.5})  # type: ignore[arg-type]
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        *(({"added_plate_inertia": inertia}, INERTIA) for inertia in (-0.001, 101.0)),
+        *(({"control_rate": rate}, f"{CONTROL_RATE} .*, not {rate}") for rate in (49, 1001)),
+        *(({n: 100.5}, f"physics.{n} must be a whole number, not 100.5") for n in ("rate", "solver_iterations")),
+        ({"control_rate": 100.5}, f"{CONTROL_RATE} a whole number, not 100.5"),
+    ],
+)
+def test_physics_that_cannot_be_are_refused(settings: dict[str, Any], message: str) -> None:
+    with pytest.raises(ConfigurationError, match=message):
+        PyBulletPhysics(**settings)
 
 
 @pytest.mark.parametrize("rate", [50, 150, 1000])
@@ -60,3 +57,32 @@ def test_another_control_rate_keeps_at_least_the_rate(rate: int) -> None:
         taken = physics.at_control_rate(rate)
         assert taken.control_rate == rate and taken.control_dt == 1.0 / rate
         assert physics.rate <= taken.rate < physics.rate + rate and taken.rate % rate == 0
+
+
+def test_everything_the_seed_draws_is_within_its_range() -> None:
+    for seed in range(200):
+        drawn = draw_conditions(Randomisation(), seed)
+        assert 0.7 <= drawn.friction <= 1.0 and 40.0 <= drawn.actuator_bandwidth <= 50.0
+        assert max(map(abs, drawn.mass_offset)) <= 0.010
+        assert all(0.95 <= factor <= 1.05 for factor in drawn.mass_factors.values())
+        assert len(set(drawn.mass_factors.values())) == len(drawn.mass_factors)
+    drawn, other = (draw_conditions(ranges, 5) for ranges in (Randomisation(), Randomisation(friction=(0.2, 0.3))))
+    assert 0.2 <= other.friction <= 0.3 and dataclasses.replace(other, friction=drawn.friction) == drawn
+
+
+def test_errors_of_sensors_fill_their_ranges_to_both_sides() -> None:
+    drawn = [draw_conditions(Randomisation(), seed).sensors for seed in range(400)]
+    for errors, largest in (
+        ([error for sensors in drawn for error in sensors.acceleration_bias], 0.1),
+        ([error for sensors in drawn for error in sensors.angular_rate_bias], 0.02),
+        ([gain - 1.0 for sensors in drawn for gain in sensors.pad_gains], 0.2),
+    ):
+        assert 0.95 * largest < max(errors) <= largest and -largest <= min(errors) < -0.95 * largest
+    angles = [math.degrees(math.hypot(*sensors.imu_tilt)) for sensors in drawn]
+    assert 1.9 < max(angles) <= 2.0 and sum(angles) / len(angles) == pytest.approx(1.0, abs=0.1)
+    for side in zip(*(sensors.imu_tilt for sensors in drawn), strict=True):
+        assert 150 < sum(tilt > 0 for tilt in side) < 250
+
+
+def test_randomisation_off_leaves_the_robot_as_designed() -> None:
+    assert [draw_conditions(Randomisation(enabled=False), seed) for seed in (1, 2)] == [NOMINAL, NOMINAL]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from laboratory import BuildSimulation, Laboratory, laboratory, need
+from laboratory import BuildSimulation, Laboratory, advance, laboratory, need
 
 from sarah.episode.settings import EpisodeConfig
 from sarah.errors import ConfigurationError
@@ -19,7 +19,6 @@ from sarah.scenery.ground import LEVEL, Ground
 from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import Conditions
-from sarah.simulation.simulator import Simulator
 from sarah.simulation.terrain import Terrain, draw_ground
 
 ROUGH = Terrain(roughness=0.01)
@@ -27,22 +26,16 @@ RADIUS = describe_robot().contact_radius
 HILL = Ground(heights=((0.0, 0.0, 0.0), (0.0, 0.01, 0.0), (0.0, 0.0, 0.0)), cell=0.1)
 
 
-@pytest.mark.parametrize(
-    ("x", "y", "height"),
-    [
-        (0.0, 0.0, 0.01),
-        (0.05, 0.0, 0.005),
-        (0.02, 0.03, 0.005),
-        (-0.05, 0.05, 0.005),  # on the edge between two triangles
-        (-0.02, 0.02, 0.008),
-        (-0.05, -0.05, 0.0),  # and where an edge leads past the hill
-        (-0.02, -0.02, 0.006),
-        (0.1, 0.1, 0.0),
-        (0.2, 0.0, 0.0),  # beyond
-    ],
-)
-def test_height_between_nodes_is_that_of_their_triangle(x: float, y: float, height: float) -> None:
-    assert HILL.height(x, y) == pytest.approx(height)
+HEIGHTS = {
+    **{(0.0, 0.0): 0.01, (0.05, 0.0): 0.005, (0.02, 0.03): 0.005, (-0.02, 0.02): 0.008, (-0.02, -0.02): 0.006},
+    **{(-0.05, 0.05): 0.005, (-0.05, -0.05): 0.0},  # on the edge between two triangles, and where it passes the hill
+    **{(0.1, 0.1): 0.0, (0.2, 0.0): 0.0},  # beyond
+}
+
+
+@pytest.mark.parametrize(("place", "height"), HEIGHTS.items())
+def test_height_between_nodes_is_that_of_their_triangle(place: tuple[float, float], height: float) -> None:
+    assert HILL.height(*place) == pytest.approx(height)
 
 
 def test_distance_is_along_the_normal_of_the_triangle() -> None:
@@ -72,17 +65,11 @@ def test_nothing_in_a_rectangle_is_higher_than_its_highest_place(
     assert highest <= np.max(ground.heights)
 
 
-@pytest.mark.parametrize(
-    ("rectangle", "highest"),
-    [
-        ((-0.05, 0.03, -0.04, 0.06), 0.01),  # a node within
-        ((0.02, 0.05, 0.02, 0.05), 0.006),  # a corner
-        ((0.01, 0.04, -0.08, -0.05), 0.005),  # where an edge crosses a line of the grid
-        ((-0.08, -0.02, 0.05, 0.07), 0.005),  # and a diagonal
-    ],
-)
-def test_the_highest_place_of_a_rectangle_is_found(rectangle: tuple[float, ...], highest: float) -> None:
-    assert HILL.highest(*rectangle) == pytest.approx(highest)
+def test_the_highest_place_of_a_rectangle_is_found() -> None:
+    assert HILL.highest(-0.05, 0.03, -0.04, 0.06) == pytest.approx(0.01)  # a node within
+    assert HILL.highest(0.02, 0.05, 0.02, 0.05) == pytest.approx(0.006)  # a corner
+    assert HILL.highest(0.01, 0.04, -0.08, -0.05) == pytest.approx(0.005)  # where an edge crosses a line of the grid
+    assert HILL.highest(-0.08, -0.02, 0.05, 0.07) == pytest.approx(0.005)  # and a diagonal
 
 
 def test_plates_begin_above_high_bumps() -> None:
@@ -112,11 +99,7 @@ def test_bumps_are_alike_for_robots_alike(length: float) -> None:
 
 
 @settings(max_examples=30)
-@given(
-    roughness=st.floats(1e-4, 0.05),
-    cell=st.floats(0.02, 0.1),
-    seed=st.integers(0, 2**32),
-)
+@given(roughness=st.floats(1e-4, 0.05), cell=st.floats(0.02, 0.1), seed=st.integers(0, 2**32))
 def test_bumps_stay_within_their_height_and_reach_far_enough(roughness: float, cell: float, seed: int) -> None:
     ground = draw_ground(Terrain(roughness=(roughness, roughness), cell=(cell, cell)), seed)
     heights = np.array(ground.heights)
@@ -126,15 +109,13 @@ def test_bumps_stay_within_their_height_and_reach_far_enough(roughness: float, c
 
 
 def test_a_seed_draws_the_same_bumps_at_any_height() -> None:
-    low, high = (
-        draw_ground(Terrain(slope_degrees=(0.0, 9.0), roughness=(height, height), friction_left=(0.2, 0.4)), 7)
-        for height in (0.01, 0.02)
-    )
+    sloping = Terrain(slope_degrees=(0.0, 9.0), friction_left=(0.2, 0.4))
+    low, high = (draw_ground(dataclasses.replace(sloping, roughness=(height,) * 2), 7) for height in (0.01, 0.02))
     assert np.array(high.heights) == pytest.approx(2 * np.array(low.heights))
     assert dataclasses.replace(high, heights=low.heights) == low
     assert low.gravity == draw_ground(Terrain(slope_degrees=(0.0, 9.0)), 7).gravity
     one, other = (np.ravel(draw_ground(ROUGH, seed).heights) for seed in (1, 2))
-    assert np.corrcoef(one, other)[0, 1] == pytest.approx(0.0, abs=0.15)
+    assert abs(np.corrcoef(one, other)[0, 1]) < 0.15
 
 
 @pytest.mark.parametrize("cell", [0.02, 0.1])
@@ -168,7 +149,7 @@ def test_soles_of_a_standing_robot_rest_on_the_bumps(build: BuildSimulation, see
     assert -1e-4 < lowest < 0.001 and not any(simulation.read().pressures)
     simulation.advance()
     assert abs(simulation.torso_state().velocity[2]) < 0.15  # of a free fall, and not thrown up
-    advance(simulation, 1.5)
+    advance(simulation, 150)
     for side in Side:
         assert -0.001 < simulation.sole_height(side) < 0.0005
     assert simulation.torso_state().axis[2] > math.cos(math.radians(8.0))
@@ -195,17 +176,12 @@ def test_a_robot_on_ice_slides_alike_in_all_directions(build: BuildSimulation, u
     ice = (friction, friction)
     terrain = Terrain((12.0, 12.0), (uphill, uphill), friction_left=ice, friction_right=ice)
     simulation = build(Conditions(ground=draw_ground(terrain, 0)))
-    advance(simulation, 0.8)
+    advance(simulation, 80)
     angle = math.radians(12.0)
     expected = 0.5 * 9.81 * (math.sin(angle) - friction * math.cos(angle)) * 0.8**2
     x, y, _ = simulation.torso_state().position
     assert math.hypot(x, y) == pytest.approx(expected, rel=0.08)
     assert math.cos(math.atan2(y, x) - math.radians(uphill)) < -0.99  # downhill
-
-
-def advance(simulation: Simulator, seconds: float) -> None:
-    for _ in range(round(seconds * 100)):
-        simulation.advance()
 
 
 def test_frictions_are_drawn_for_each_foot() -> None:

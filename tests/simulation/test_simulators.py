@@ -1,13 +1,14 @@
-"""Physics facts about the robot standing, falling, pushed and mirrored, in each engine."""
+"""Physics facts about the robot standing, falling, pushed, mirrored and moved by its actuators, in each engine."""
 
 import math
 
 import numpy as np
 import pytest
-from laboratory import NEEDS_PYBULLET, BuildSimulation, Laboratory
+from laboratory import NEEDS_PYBULLET, BuildSimulation, Laboratory, advance
 
 from sarah.robot.description import ANKLE_JOINTS, GROUPS, PLATES, describe_robot
-from sarah.robot.reading import GRAVITY, Side
+from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, Side
+from sarah.simulation.build import simulator_of
 from sarah.simulation.physics import PHYSICS, PyBulletPhysics
 from sarah.simulation.pybullet_simulator import PyBulletSimulator
 from sarah.simulation.pybullet_world import pybullet
@@ -62,19 +63,16 @@ def test_state_is_that_of_the_torsos_frame_wherever_its_mass_is(lab: Laboratory,
     for conditions in (NOMINAL, Conditions(mass_offset=offset)):
         simulation = build(conditions, PyBulletPhysics(rate=2000))
         lab.place(simulation, roll=0.3, pitch=-0.2)
-        hip = lab.link_position(simulation, "left_hip") - simulation.torso_state().position
-        assert rotate_to_body(simulation.torso_state().orientation, tuple(hip)) == pytest.approx(
-            (-0.13, 0.0, -0.17), abs=1e-6
-        )
+        torso = simulation.torso_state()
+        hip = rotate_to_body(torso.orientation, tuple(lab.link_position(simulation, "left_hip") - torso.position))
+        assert hip == pytest.approx((-0.13, 0.0, -0.17), abs=1e-6)
         lab.turn(simulation, (1.0, 2.0, 2.0))
         simulation.advance()
         before = simulation.torso_state()
         simulation.advance()
         after = simulation.torso_state()
-        for then, now, speeds in zip(
-            before.position, after.position, zip(before.velocity, after.velocity, strict=True), strict=True
-        ):
-            assert (now - then) * SECOND == pytest.approx(sum(speeds) / 2.0, abs=0.004)
+        moved, speeds = np.subtract(after.position, before.position), np.add(before.velocity, after.velocity)
+        assert moved * SECOND == pytest.approx(speeds / 2.0, abs=0.004)
 
 
 def test_pads_stop_the_plates(lab: Laboratory, build: BuildSimulation) -> None:
@@ -96,25 +94,18 @@ def test_ankles_are_damped_alike(lab: Laboratory, build: BuildSimulation) -> Non
     simulation = build(physics=PyBulletPhysics(rate=2000, added_plate_inertia=0.0))
     lab.place(simulation)
     lab.move_joint(simulation, "left_hindfoot", -0.09, 1.0)
-    for _ in range(10):
-        simulation.advance()
+    advance(simulation, 10)
     assert simulation.joint_positions(("left_hindfoot",))[0] == pytest.approx(-0.085, abs=0.0005)
 
 
-def test_leaning_right_reads_negative_x_and_back_positive_y(lab: Laboratory, build: BuildSimulation) -> None:
-    """A torso at rest, turned by a positive angle about y (to the right) or about x (backward)."""
+def test_inertial_sensors_read_in_the_torsos_frame(lab: Laboratory, build: BuildSimulation) -> None:
+    """At rest, turned by a positive angle about y (to the right) or about x (backward)."""
     simulation, angle = build(), 0.1
-    lab.place(simulation, roll=angle)
-    leaning_right = simulation.read().acceleration
-    lab.place(simulation, pitch=angle)
-    leaning_back = simulation.read().acceleration
     g_sin, g_cos = GRAVITY * math.sin(angle), GRAVITY * math.cos(angle)
-    assert leaning_right == pytest.approx((-g_sin, 0.0, g_cos), abs=1e-6)
-    assert leaning_back == pytest.approx((0.0, g_sin, g_cos), abs=1e-6)
-
-
-def test_gyroscope_reads_the_rate_in_the_torsos_frame(lab: Laboratory, build: BuildSimulation) -> None:
-    simulation = build()
+    lab.place(simulation, roll=angle)
+    assert simulation.read().acceleration == pytest.approx((-g_sin, 0.0, g_cos), abs=1e-6)
+    lab.place(simulation, pitch=angle)
+    assert simulation.read().acceleration == pytest.approx((0.0, g_sin, g_cos), abs=1e-6)
     lab.place(simulation, roll=math.pi / 2)
     lab.turn(simulation, (0.7, 0.4, -0.2))
     # Turned by 90 degrees about y, the torso's x axis points down and its z axis to the right.
@@ -138,16 +129,9 @@ def test_push_delivers_force_times_duration(
     size = np.linalg.norm(impulse)
     assert gained @ impulse / size == pytest.approx(size, rel=0.002)
     assert np.linalg.norm(gained - impulse) < 2.4 / PHYSICS[physics].rate * size
-
-
-def test_push_lasts_one_tick(lab: Laboratory, build: BuildSimulation) -> None:
-    simulation = build()
-    lab.place(simulation)
-    simulation.push((100.0, 0.0, 0.0))
-    simulation.advance()
-    after_push = momentum(lab, simulation)[0]
-    simulation.advance()
-    assert momentum(lab, simulation)[0] == pytest.approx(after_push, rel=1e-4)
+    after_push = momentum(lab, simulation)[:2]
+    simulation.advance()  # a push lasts one tick
+    assert momentum(lab, simulation)[:2] == pytest.approx(after_push, rel=1e-4, abs=1e-3)
 
 
 def test_mirrored_push_gives_mirrored_motion(build: BuildSimulation) -> None:
@@ -193,3 +177,65 @@ def test_plates_have_added_inertia_while_they_press_on_pads() -> None:
     assert (True,) * 4 in carried and any(not left_fore for left_fore, *_ in carried)
     plain.close()
     simulation.close()
+
+
+SECOND = PHYSICS["standard"].control_rate
+
+
+def test_servos_follow_their_targets_at_their_bandwidth(lab: Laboratory, build: BuildSimulation) -> None:
+    simulation = build()
+    lab.place(simulation)
+    simulation.set_targets((0.0, 0.0, 0.0, 0.0, 0.005, 0.0))
+    advance(simulation, 2)
+    assert simulation.joint_positions(ACTUATED_JOINTS)[4] == pytest.approx(0.005 * (1 - math.exp(-1.0)), rel=0.05)
+    advance(simulation, SECOND // 2)
+    assert simulation.joint_positions(ACTUATED_JOINTS)[4] == pytest.approx(0.005, abs=1e-5)
+
+
+def test_retracting_a_leg_lifts_its_sole(lab: Laboratory, build: BuildSimulation) -> None:
+    simulation = build()
+    assert [simulation.sole_height(side) for side in Side] == pytest.approx([0.0, 0.0], abs=1e-9)
+    lab.place(simulation, height=describe_robot().standing_height + 1.0)
+    simulation.set_targets((0.0, 0.0, 0.0, 0.0, 0.05, 0.0))
+    advance(simulation, 20)
+    assert simulation.sole_height(Side.LEFT) - simulation.sole_height(Side.RIGHT) == pytest.approx(0.05, abs=0.005)
+
+
+@pytest.mark.parametrize(
+    ("joints", "axis", "direction"),
+    [(("left_hip_abduction", "right_hip_abduction"), 0, -1), (("left_hip_flexion",), 1, 1)],
+)
+def test_abduction_turns_feet_left_and_flexion_forward(
+    lab: Laboratory, build: BuildSimulation, joints: tuple[str, ...], axis: int, direction: int
+) -> None:
+    simulation, moved = build(), []
+    lab.place(simulation, 2.0)
+    simulation.set_targets(tuple(0.2 if name in joints else 0.0 for name in ACTUATED_JOINTS))
+    for ticks in (0, 30):
+        advance(simulation, ticks)
+        torso = simulation.torso_state()  # which turns too in the air
+        offsets = [lab.link_position(simulation, f"{name.split('_')[0]}_shank") - torso.position for name in joints]
+        moved.append([direction * rotate_to_body(torso.orientation, tuple(offset))[axis] for offset in offsets])
+    assert all(now - then > 0.03 for then, now in zip(*moved, strict=True))
+
+
+def test_standing_legs_push_with_the_weight_that_they_carry(build: BuildSimulation) -> None:
+    """Each leg's actuator carries half of torso, hips and thighs, 20 kg."""
+    simulation = build(physics=PyBulletPhysics(rate=1000, solver_iterations=50))
+    advance(simulation, 3 * SECOND // 2)
+    speeds, efforts = simulation.actuator_motion()
+    assert [-effort for effort in efforts[4:]] == pytest.approx([10.0 * GRAVITY] * 2, rel=0.05)
+    assert max(map(abs, speeds)) < 0.01
+
+
+@pytest.mark.parametrize("rate", [100, 1000])
+def test_actuators_push_no_harder_than_they_can(lab: Laboratory, rate: int) -> None:
+    weak = describe_robot({"leg_effort": 100.0})
+    simulation = simulator_of(lab.engine)(weak, PyBulletPhysics(rate=rate, solver_iterations=50), NOMINAL)
+    simulation.set_targets((0.0, 0.0, 0.0, 0.0, -0.05, -0.05))
+    efforts = []
+    for _ in range(SECOND // 5):
+        simulation.advance()
+        efforts.append(max(map(abs, simulation.actuator_motion()[1][4:])))
+    simulation.close()
+    assert max(efforts) == pytest.approx(100.0, rel=1e-3)

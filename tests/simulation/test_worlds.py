@@ -6,11 +6,12 @@ import locale
 import subprocess
 from collections.abc import Callable
 from dataclasses import replace
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
 import pytest
-from laboratory import COARSE_PHYSICS, NEEDS_PYBULLET, WAYS, need
+from laboratory import COARSE_PHYSICS, NEEDS_PYBULLET, WAYS
 
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.settings import EpisodeConfig
@@ -34,12 +35,6 @@ def short(engine: Any) -> EpisodeConfig:
 
 def spec(engine: str) -> EpisodeSpec:
     return EpisodeSpec(STEPPING.baseline, 3, STEPPING, short(engine))
-
-
-@pytest.fixture(params=["pybullet", "mujoco"])
-def engine(request: pytest.FixtureRequest) -> str:
-    need(request.param)
-    return str(request.param)
 
 
 def add_a_box(client: int) -> None:
@@ -101,13 +96,18 @@ def test_episodes_repeat_whatever_others_did_to_a_kept_client(disturbance: str) 
 
 @NEEDS_PYBULLET
 def test_no_robot_is_where_code_works_that_names_no_client() -> None:
-    simulators: list[Any] = []
-    for _ in range(12):  # more than are kept
-        simulators.append(simulator_of("pybullet")(describe_robot(), COARSE_PHYSICS, NOMINAL))
-    clients = [simulator.client for simulator in simulators]
+    build: Any = simulator_of("pybullet")
+    clients = set()
+    simulators = [build(describe_robot(), COARSE_PHYSICS, NOMINAL) for _ in range(12)]  # more than are kept
+    assert 0 not in [simulator.client for simulator in simulators]
     for simulator in simulators:
         simulator.close()
-    assert 0 not in clients
+    for _ in range(5):  # one that is forgotten gives its client back
+        simulator = build(describe_robot(), COARSE_PHYSICS, NOMINAL)
+        clients.add(simulator.client)
+        del simulator
+        gc.collect()
+    assert len(clients) == 1
 
 
 @NEEDS_PYBULLET
@@ -128,17 +128,6 @@ def test_bullets_contact_margin_is_its_own_in_other_worlds() -> None:
     pybullet.stepSimulation(physicsClientId=other)
     assert pybullet.getContactPoints(physicsClientId=other), "1 mm is near for Bullet, and far for our robot"
     pybullet.disconnect(other)
-
-
-@NEEDS_PYBULLET
-def test_a_simulator_that_is_forgotten_gives_its_client_back() -> None:
-    clients = set()
-    for _ in range(5):
-        simulator: Any = simulator_of("pybullet")(describe_robot(), COARSE_PHYSICS, NOMINAL)
-        clients.add(simulator.client)
-        del simulator
-        gc.collect()
-    assert len(clients) == 1
 
 
 @NEEDS_PYBULLET
@@ -201,20 +190,12 @@ def test_others_callbacks_of_mujoco_are_refused(when: str) -> None:
         mujoco.set_mjcb_passive(None)
 
 
-def weigh_down(model: Any, data: Any) -> None:
-    model.body_mass[1] = 50.0
-
-
-def move(model: Any, data: Any) -> None:
-    data.qpos[0] += 0.1
-
-
-@pytest.mark.parametrize("disturbance", [move, weigh_down])
-def test_what_others_do_to_a_mujoco_world_raises(disturbance: Callable[[Any, Any], None]) -> None:
+@pytest.mark.parametrize("disturbance", ["data.qpos", "model.body_mass"])
+def test_what_others_do_to_a_mujoco_world_raises(disturbance: str) -> None:
     pytest.importorskip("mujoco")
 
     def disturbing(tick: Any, config: EpisodeConfig) -> float:
-        disturbance(tick.simulator.model, tick.simulator.data)
+        attrgetter(disturbance)(tick.simulator)[:2] += 0.1
         return 1.0
 
     with pytest.raises(SimulationError, match="other code in this process has changed the robot's model in MuJoCo"):
@@ -227,9 +208,8 @@ def test_mujocos_warnings_of_other_models_still_come() -> None:
     mujoco.set_mju_user_warning(heard.append)
     try:
         simulate(spec("mujoco"))
-        model = mujoco.MjModel.from_xml_string(
-            "<mujoco><worldbody><body><freejoint/><geom size='1'/></body></worldbody></mujoco>"
-        )
+        body = "<body><freejoint/><geom size='1'/></body>"
+        model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody>{body}</worldbody></mujoco>")
         data = mujoco.MjData(model)
         data.qpos[0] = float("nan")
         mujoco.mj_step(model, data)

@@ -1,15 +1,16 @@
 """A finished training goes on: the same as if it had been meant to from the beginning, and recorded."""
 
 import shutil
-from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
 from interrupted import EPISODE
-from terminal import tree
+from terminal import run, tree
 
 from sarah.errors import ConfigurationError, ResumeError
+from sarah.operation.settings import OperationConfig
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.training.plan import plan_of
@@ -37,8 +38,10 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def unfinished(folder: Path, path: Path) -> RunFolder:
-    copy = RunFolder(shutil.copytree(folder / "run", path))
+@pytest.fixture
+def copy(folder: Path, tmp_path: Path) -> RunFolder:
+    """The extended training, as if it had not been finished."""
+    copy = RunFolder(shutil.copytree(folder / "run", tmp_path / "copy"))
     copy.result_path.unlink()
     return copy
 
@@ -60,16 +63,14 @@ def test_it_records_where_it_was_extended(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(("before", "after"), [("episodes: 22", "episodes: 23"), ("- 12", "- 11")])
-def test_it_cannot_be_extended_to_two_budgets(before: str, after: str, folder: Path, tmp_path: Path) -> None:
-    copy = unfinished(folder, tmp_path / "copy")
+def test_it_cannot_be_extended_to_two_budgets(before: str, after: str, copy: RunFolder) -> None:
     copy.specification_path.write_text(copy.specification_path.read_text().replace(before, after))
     with pytest.raises(ResumeError, match="cannot be resumed"):
         train(copy.config(), copy)
 
 
 @pytest.mark.parametrize("new_rows", [0, 4])
-def test_a_cut_extension_goes_on_to_the_same_end(new_rows: int, folder: Path, tmp_path: Path) -> None:
-    copy = unfinished(folder, tmp_path / "copy")
+def test_a_cut_extension_goes_on_to_the_same_end(new_rows: int, folder: Path, copy: RunFolder) -> None:
     rows = copy.journal_path.read_bytes().splitlines(keepends=True)
     extension = next(index for index, row in enumerate(rows) if b'"extended_to"' in row)
     copy.journal_path.write_bytes(b"".join(rows[: extension + new_rows]))
@@ -79,41 +80,32 @@ def test_a_cut_extension_goes_on_to_the_same_end(new_rows: int, folder: Path, tm
 
 
 @pytest.mark.parametrize(
-    ("options", "words"),
+    ("name", "options", "words"),
     [
-        ("--episodes 30 --agent.tau 0.5", "agent.tau is 0.02 in this training, not 0.5"),
-        ("--episodes 2", "episodes is 12 in this training, not 2"),
-        ("--episodes 30 --scheduler nowhere://127.0.0.1:1", "nowhere"),  # there are no workers
+        ("before", "--episodes 30 --agent.tau 0.5", "agent.tau is 0.02 in this training, not 0.5"),
+        ("before", "--episodes 2", "episodes is 12 in this training, not 2"),
+        ("before", "--episodes 30 --scheduler nowhere://127.0.0.1:1", "nowhere"),  # there are no workers
+        ("copy", "--episodes 30", "it can be extended once it is finished"),
     ],
 )
-def test_a_refused_extension_leaves_the_training_finished(
-    options: str, words: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+def test_a_refused_extension_changes_nothing(
+    name: str, options: str, words: str, folder: Path, copy: RunFolder
 ) -> None:
-    before = tree(folder / "before")
-    assert words in refused(f"--resume {folder / 'before'} {options}", monkeypatch, capsys)
-    assert tree(folder / "before") == before
-
-
-def test_only_a_finished_training_is_extended(
-    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    copy = unfinished(folder, tmp_path / "copy")
-    said = refused(f"--resume {copy.path} --episodes 30", monkeypatch, capsys)
-    assert "it can be extended once it is finished" in said
-
-
-def refused(options: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> str:
-    """What the command says of options that it refuses."""
-    monkeypatch.setattr("sys.argv", ["sarah-train", *options.split()])
-    with pytest.raises(SystemExit, match="2"):
-        import_module("sarah.cli.train").main()
-    return capsys.readouterr().err
+    path = copy.path if name == "copy" else folder / name
+    before = tree(path)
+    refused = run("sarah-train", "--resume", str(path), *options.split(), cwd=folder)
+    assert refused.returncode == 2 and words in refused.stderr and tree(path) == before
 
 
 def test_stages_rise() -> None:
     config = TrainingConfig(episodes=200, extended_from=(60, 100))
     assert [(stage.end, stage.episodes) for stage in plan_of(config).stages] == [(60, 60), (100, 40), (200, 100)]
     assert config.extended_to(300).stages == (60, 100, 200, 300)
-    for extended_from in ((200,), (100, 60), (0,)):
-        with pytest.raises(ConfigurationError, match="extended_from must be in rising order and below episodes"):
-            TrainingConfig(episodes=200, extended_from=extended_from)
+    assert OperationConfig(minutes=20, extended_from=(5, 10)).extended_to(30).stages == (5.0, 10.0, 20.0, 30.0)
+    kind: Any
+    for kind, unit in ((TrainingConfig, "episodes"), (OperationConfig, "minutes")):
+        for extended_from in ((200,), (100, 60), (60, 60)):
+            with pytest.raises(ConfigurationError, match=f"extended_from must be in rising order and below {unit}"):
+                kind(**{unit: 200, "extended_from": extended_from})
+    with pytest.raises(ConfigurationError, match="extended_from must be in rising order and below episodes"):
+        TrainingConfig(episodes=200, extended_from=(0,))

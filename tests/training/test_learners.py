@@ -115,30 +115,18 @@ def test_what_follows_counts_only_where_no_episode_is_preferred() -> None:
             NAFSettings(gamma=0.5, **preferred)
 
 
-@pytest.mark.parametrize("algo", [algo for algo in AGENTS if algo != "naf"])
-def test_the_others_replay_all_episodes_alike_and_without_luck(algo: str) -> None:
-    buffer = built(algo).replay_buffer
-    assert isinstance(buffer, RankReplayBuffer) and buffer.temperature == 0.0
-
-
-def test_defaults_are_the_preset() -> None:
+@pytest.mark.parametrize(("preset", "algorithm"), [("one-step", LocalNAF), ("paper", NAF)])
+def test_presets_are_those_of_the_agents(preset: str, algorithm: type[NAF]) -> None:
     env = EpisodeVecEnv("stepping", TrainingConfig().episode, 1, 1, Workers())
-    preset = LocalNAF("MlpPolicy", env, **PRESETS["one-step"])
-    model = built()
-    assert type(model) is LocalNAF and isinstance(model.replay_buffer, SmoothedReplayBuffer)
-    ours, theirs = ({name: of(agent) for name, (_, of) in SETTINGS["naf"].items()} for agent in (model, preset))
-    assert {name for name in ours if ours[name] != theirs[name]} <= {"device"}
-    assert model.gamma == preset.gamma
-
-
-def test_the_preset_paper_is_plain_naf_with_the_papers_networks() -> None:
-    env = EpisodeVecEnv("stepping", TrainingConfig().episode, 1, 1, Workers())
-    plain = NAF("MlpPolicy", env, **PRESETS["paper"])
-    model = built(preset="paper")
+    plain, model = algorithm("MlpPolicy", env, **PRESETS[preset]), built(preset=preset)
     for name in ("value_net", "shared_net", "mu_net", "lower_net"):
         assert str(getattr(model.q_net, name)) == str(getattr(plain.q_net, name))
-    assert model.q_net.min_curvature == plain.q_net.min_curvature == 0.0
-    assert (model.elite_share, model.replay_buffer.temperature) == (0.0, 0.0)  # nothing that plain NAF has not
+    assert model.q_net.min_curvature == plain.q_net.min_curvature
+    if algorithm is LocalNAF:
+        ours, theirs = ({name: of(agent) for name, (_, of) in SETTINGS["naf"].items()} for agent in (model, plain))
+        assert {name for name in ours if ours[name] != theirs[name]} <= {"device"} and model.gamma == plain.gamma
+    else:
+        assert (model.elite_share, model.replay_buffer.temperature) == (0.0, 0.0)
 
 
 def test_the_warm_up_knows_as_many_outcomes_as_are_in_flight() -> None:
@@ -147,8 +135,12 @@ def test_the_warm_up_knows_as_many_outcomes_as_are_in_flight() -> None:
 
 
 @pytest.mark.parametrize("algo", AGENTS)
-def test_the_first_action_is_neutral_where_the_task_has_one(algo: str) -> None:
-    assert [built(algo, task=task).first_action_centre for task in ("stepping", "balance")] == [False, True]
+def test_what_all_agents_have_in_common(algo: str) -> None:
+    """The others replay all episodes alike and without luck; the first action is neutral where the task has one."""
+    stepping, balance = built(algo), built(algo, task="balance")
+    assert (stepping.first_action_centre, balance.first_action_centre) == (False, True)
+    assert isinstance(stepping.replay_buffer, RankReplayBuffer)
+    assert (stepping.replay_buffer.temperature == 0.0) == (algo != "naf")
 
 
 @pytest.mark.parametrize("algo", AGENTS)
@@ -162,8 +154,7 @@ def test_no_random_stream_is_used_twice(algo: str) -> None:
             self.seeds += [subject.seed for subject in subjects]
             return super().submit(function, *subjects)
 
-    config = TrainingConfig(algo=algo, slots=3)
-    asked = Asked()
+    config, asked = TrainingConfig(algo=algo, slots=3), Asked()
     env = EpisodeVecEnv("stepping", config.episode, 3, 3, asked)
     model = make_agent(plan_of(config), env)
     # torch and numpy have the same generator, of which torch's draws the weights and numpy's the exploration.

@@ -14,38 +14,33 @@ from operated import KEPT, interrupted_after, quick
 from terminal import tree
 
 from sarah.errors import ConfigurationError, ResumeError, TrainingInterruptedError
-from sarah.operation.settings import SHIPPED, Change, OperationConfig
+from sarah.operation.settings import SHIPPED, Change
 from sarah.runs.session import SessionSpec
 from sarah.runs.session_folder import SessionFolder
 from sarah.training.operate import SessionResult, add_frozen, compare_frozen, extend, operate, run_session
 
-SPEC = SessionSpec(
-    SHIPPED, "random", 3, quick(0.1, {"push": {"newtons": 200.0}}, changes=(Change(0.05, {"payload": 2.0}),))
-)
+CONFIG = quick(0.1, {"push": {"newtons": 200.0}}, changes=(Change(0.05, {"payload": 2.0}),))
+SPEC = SessionSpec(SHIPPED, "random", 3, CONFIG)
 LONGER = 0.2
 """Duration of the longer sessions, in min."""
 
 
-@pytest.fixture(scope="module")
-def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def made(path: Path, spec: SessionSpec) -> Path:
     """The folder of a finished session that was compared with the one without learning."""
-    path = tmp_path_factory.mktemp("sessions") / "finished"
-    folder = SessionFolder.create(path, SPEC)
-    compare_frozen(folder, SPEC, operate(folder, SPEC))
-    return path
-
-
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of the longer session, in one go."""
-    path, spec = tmp_path_factory.mktemp("sessions") / "whole", SPEC.extended_to(LONGER)
     folder = SessionFolder.create(path, spec, compare_frozen=True)
     compare_frozen(folder, spec, operate(folder, spec))
     return path
 
 
-def copied(path: Path, to: Path) -> SessionFolder:
-    return SessionFolder(shutil.copytree(path, to))
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return made(tmp_path_factory.mktemp("sessions") / "finished", SPEC)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The longer session, in one go."""
+    return made(tmp_path_factory.mktemp("sessions") / "whole", SPEC.extended_to(LONGER))
 
 
 def in_pieces(run: Callable[..., SessionResult]) -> SessionResult:
@@ -57,7 +52,7 @@ def in_pieces(run: Callable[..., SessionResult]) -> SessionResult:
 
 
 def test_an_extension_cut_after_every_window_ends_the_same(finished: Path, whole: Path, tmp_path: Path) -> None:
-    folder = copied(finished, tmp_path / "cut")
+    folder = SessionFolder(shutil.copytree(finished, tmp_path / "cut"))
     spec = extend(folder, LONGER)
     assert spec == SPEC.extended_to(LONGER) == folder.spec() and not folder.is_finished
     result = in_pieces(partial(operate, folder, spec))
@@ -76,17 +71,15 @@ def test_who_does_not_look_ahead_does_as_in_a_long_session(learner: str) -> None
 @pytest.mark.parametrize(
     ("stages", "words"),
     [
-        ((0.1, 0.15, 0.2), "it was extended to 0.2 there, and would be extended to 0.15 here"),
-        ((0.1, 0.25), "it was extended to 0.2 there, and would be extended to 0.25 here"),
-        ((0.1,), "it was extended to 0.2 there, and would be not extended here"),
-        ((0.15, 0.2), "config.minutes is 0.15 here, and 0.1 in this session"),
+        ([0.1, 0.15, 0.2], "it was extended to 0.2 there, and would be extended to 0.15 here"),
+        ([0.1, 0.25], "it was extended to 0.2 there, and would be extended to 0.25 here"),
+        ([0.1], "it was extended to 0.2 there, and would be not extended here"),
+        ([0.15, 0.2], "config.minutes is 0.15 here, and 0.1 in this session"),
     ],
 )
-def test_a_session_cannot_have_been_extended_otherwise(
-    whole: Path, tmp_path: Path, stages: tuple[float, ...], words: str
-) -> None:
-    folder = copied(whole, tmp_path / "other")
-    config = dataclasses.replace(SPEC.config, minutes=stages[-1], extended_from=stages[:-1])
+def test_a_session_was_not_extended_otherwise(whole: Path, tmp_path: Path, stages: list[float], words: str) -> None:
+    folder = SessionFolder(shutil.copytree(whole, tmp_path / "other"))
+    config = dataclasses.replace(SPEC.config, minutes=stages[-1], extended_from=tuple(stages[:-1]))
     folder.extend(other := dataclasses.replace(SPEC, config=config))
     before = folder.journal_path.read_bytes()
     with pytest.raises(ResumeError, match=f"cannot be resumed: {re.escape(words)}"):
@@ -95,14 +88,13 @@ def test_a_session_cannot_have_been_extended_otherwise(
 
 
 def test_what_is_refused_changes_nothing(finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    folder = copied(finished, tmp_path / "mine")
+    folder = SessionFolder(shutil.copytree(finished, tmp_path / "mine"))
     shutil.rmtree(folder.frozen_path)
     before = tree(folder.path)
     monkeypatch.setattr("sarah.recorded.folder.versions", lambda: {"torch": "of tomorrow"})
-    with pytest.raises(ResumeError, match="torch is of tomorrow here"):
-        extend(folder, LONGER)
-    with pytest.raises(ResumeError, match="torch is of tomorrow here"):
-        add_frozen(folder)
+    for refused in (partial(extend, folder, LONGER), partial(add_frozen, folder)):
+        with pytest.raises(ResumeError, match="torch is of tomorrow here"):
+            refused()
     with pytest.raises(ConfigurationError, match="extended_from must be in rising order and below minutes"):
         extend(folder, 0.1)
     assert tree(folder.path) == before
@@ -118,11 +110,3 @@ def test_without_learning_the_same_robot_meets_the_same(finished: Path, whole: P
     for name in KEPT:
         assert (finished / name).read_bytes() == (alone.path / name).read_bytes(), name
     assert (finished / "session.png").read_bytes() != (alone.path / "session.png").read_bytes()
-
-
-def test_stages_rise() -> None:
-    config = OperationConfig(minutes=20, extended_from=(5, 10))
-    assert config.extended_to(30).stages == (5.0, 10.0, 20.0, 30.0)
-    for extended_from in ((20,), (10, 5), (10, 10)):
-        with pytest.raises(ConfigurationError, match="extended_from must be in rising order and below minutes"):
-            OperationConfig(minutes=20, extended_from=extended_from)

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -38,10 +39,6 @@ def distance(first: Parameters, second: Parameters) -> float:
     return 2.0 * math.dist(first, second) / WIDTH
 
 
-def test_without_episodes_the_choice_stays() -> None:
-    assert after([]).best(CHOICE) == pytest.approx(CHOICE)
-
-
 def test_a_good_neighbourhood_beats_one_lucky_episode() -> None:
     lucky = (around(0.2, 0.2, 0.2, 0.2, 0.2), 0.92)
     centre = around(1.6, 1.6, 1.6, 1.6, 1.6)
@@ -64,36 +61,30 @@ def test_what_known_disturbances_decide_is_no_merit() -> None:
     """Gentle pushes made one neighbourhood look good; hard ones struck the better one."""
     lucky, better = around(0.4, 0.4, 0.4, 0.4, 0.4), around(1.6, 1.6, 1.6, 1.6, 1.6)
     elsewhere = [(CHOICE, push) for push in np.linspace(-1.0, 1.0, 200).tolist()]
-    merits = [
-        (place, 0.5 + 0.1 * (place == better) - 0.4 * push, push)
-        for place, push in [(lucky, -0.5), (better, 0.5)] * 10 + elsewhere
-    ]
     knowing, ignorant = Tried(STEPPING), Tried(STEPPING)
-    for place, worth, push in merits:
+    for place, push in [(lucky, -0.5), (better, 0.5)] * 10 + elsewhere:
+        worth = 0.5 + 0.1 * (place == better) - 0.4 * push
         knowing.append(place, worth, (push,))
         ignorant.append(place, worth)
-    assert knowing.best_of([lucky, better]) == better
-    assert ignorant.best_of([lucky, better]) == lucky
+    assert knowing.best_of([lucky, better]) == better and ignorant.best_of([lucky, better]) == lucky
 
 
 def test_disturbances_of_another_number_are_one_line() -> None:
-    tried = Tried(STEPPING)
+    tried, words = Tried(STEPPING), r"^stepping: disturbances must be as many numbers in every episode, 2, not 1$"
     tried.append(CHOICE, 0.5, (1.0, 2.0))
-    with pytest.raises(
-        LearningError, match=r"^stepping: disturbances must be as many numbers in every episode, 2, not 1$"
-    ):
+    with pytest.raises(LearningError, match=words):
         tried.append(CHOICE, 0.5, (1.0,))
     assert len(tried) == 1
 
 
 def test_what_failed_is_avoided() -> None:
     episodes = random_episodes(60)
-    first = after(episodes).best_simulated([])
-    second = after(episodes).best_simulated([first])
-    third = after(episodes).best_simulated([first, second])
-    assert {first, second, third} < {parameters for parameters, _ in episodes}
-    assert min(distance(first, second), distance(first, third), distance(second, third)) >= DISTINCT
-    assert after(episodes).best_of([third, second, first]) == first
+    found: list[Parameters] = []
+    for _ in range(3):
+        found.append(after(episodes).best_simulated(found))
+    assert {*found} < {parameters for parameters, _ in episodes}
+    assert min(distance(*both) for both in combinations(found, 2)) >= DISTINCT
+    assert after(episodes).best_of(found[::-1]) == found[0]
 
 
 def test_where_the_best_expected_disappoints_another_is_tried() -> None:
@@ -113,15 +104,19 @@ def test_distances_are_shares_of_the_box() -> None:
     assert after(wider, task).best(around(*CHOICE, offset=1.0)) == pytest.approx([2.0 * value for value in best])
 
 
-@settings(max_examples=20)
-@given(st.lists(st.tuples(st.tuples(*[st.floats(0, 2)] * 5), st.floats(0, 1)), max_size=20))
-def test_whatever_was_tried_what_is_best_can_be_simulated(tried: Tries) -> None:
-    assert STEPPING.box.checked(after(tried).best(CHOICE)) == after(tried).best(CHOICE)
-
-
 def random_episodes(count: int) -> Tries:
     generator = np.random.default_rng(0)
     return [(tuple(map(float, generator.uniform(0, 2, 5))), float(generator.random())) for _ in range(count)]
+
+
+@settings(max_examples=20)
+@given(st.lists(st.tuples(st.tuples(*[st.floats(0, 2)] * 5), st.floats(0, 1)), max_size=20))
+def test_whatever_was_tried_what_is_best_can_be_simulated(tried: Tries) -> None:
+    best = after(tried).best(CHOICE)
+    assert STEPPING.box.checked(best) == best and (tried or best == pytest.approx(CHOICE))
+    for worth in (math.nan, math.inf, -math.inf, 1e308, -1e308):
+        spoilt = [(parameters, worth if index % 2 else 0.5) for index, (parameters, _) in enumerate(tried)]
+        assert all(map(math.isfinite, after(spoilt).best(CHOICE)))
 
 
 def test_a_crest_is_found_though_single_episodes_say_little() -> None:
@@ -139,12 +134,6 @@ def test_a_crest_is_found_though_single_episodes_say_little() -> None:
     assert of_best < 0.6 * of_luckiest
 
 
-@pytest.mark.parametrize("merit", [math.nan, math.inf, -math.inf, 1e308, -1e308])
-def test_merits_that_are_no_number_or_overflow_leave_a_choice(merit: float) -> None:
-    tried = [(parameters, merit if index % 2 else 0.5) for index, (parameters, _) in enumerate(random_episodes(20))]
-    assert all(map(math.isfinite, after(tried).best(CHOICE)))
-
-
 def test_a_long_training_is_judged_by_its_last_500_episodes() -> None:
     old, late = random_episodes(200), [(parameters, merit) for parameters, merit in random_episodes(700)[200:]]
     assert after([*old, *late]).best(CHOICE) == after(late).best(CHOICE)
@@ -156,11 +145,8 @@ def test_what_is_no_gait_has_less_merit() -> None:
     assert merit(dataclasses.replace(good, lifts_by_sensors=0.45)) == pytest.approx(0.45)
     assert merit(dataclasses.replace(good, sole_clearance=0.007)) == pytest.approx(0.63)
     assert merit(dataclasses.replace(good, shifts_by_sensors=0.0)) == 0.0
-
-
-def test_a_small_budget_affords_no_trial() -> None:
-    budgets = {end: Stage(0, end).trial_episodes for end in (1, 24, 25, 49, 50, 1000)}
-    assert budgets == {1: 0, 24: 0, 25: 5, 49: 5, 50: 10, 1000: 10}
+    budgets = [Stage(0, end).trial_episodes for end in (1, 24, 25, 49, 50, 1000)]
+    assert budgets == [0, 0, 5, 5, 10, 10]  # a small one affords no trial
 
 
 def scoring(*scores: float, **metrics: float) -> Evaluation:

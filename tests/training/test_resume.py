@@ -10,14 +10,13 @@ import pytest
 from interrupted import EPISODE, go_on
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
-from sarah.agents import corrections
+from sarah.agents import LocalNAF, corrections
 from sarah.episode.tasks import TASKS
 from sarah.episode.workers import Executor, Job, Workers, begin_episode
 from sarah.errors import LearningError, ResumeError, RunFolderError
 from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import AGENTS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
-from sarah.training import learners as learning
 from sarah.training import plan
 from sarah.training.plan import Stage, seeds_of
 from sarah.training.train import train
@@ -36,8 +35,7 @@ def short() -> Iterator[None]:
 class Counting(Executor):
     """Simulates in this process, and counts."""
 
-    def __init__(self) -> None:
-        self.run = 0
+    run = 0
 
     def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
         self.run += function is not begin_episode
@@ -60,12 +58,7 @@ def everything(folder: RunFolder) -> dict[str, Any]:
 
 @pytest.mark.parametrize(
     ("algo", "task", "cuts"),
-    [
-        ("naf", "balance", (3, 12)),
-        ("sac", "stepping", (9,)),
-        ("cma-es", "balance", (2, 14)),
-        ("gp", "stepping", (10,)),
-    ],
+    [("naf", "balance", (3, 12)), ("sac", "stepping", (9,)), ("cma-es", "balance", (2, 14)), ("gp", "stepping", (10,))],
 )
 def test_an_interrupted_training_ends_as_without(algo: str, task: str, cuts: tuple[int, ...], tmp_path: Path) -> None:
     agent = settings_of(algo)(**({"learning_starts": 6} if algo in AGENTS else {}))
@@ -99,9 +92,7 @@ def begun_with(path: Path, whole: RunFolder, journal: bytes) -> RunFolder:
 
 
 @pytest.mark.parametrize("share", [0.03, 0.5, 0.999])
-def test_a_journal_cut_at_any_byte_is_enough(
-    share: float, whole: RunFolder, tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_journal_cut_at_any_byte_is_enough(share: float, whole: RunFolder, tmp_path: Path, caplog: Any) -> None:
     content = whole.journal_path.read_bytes()
     cut = content[: int(share * len(content))]
     begun = begun_with(tmp_path / "cut", whole, cut)
@@ -112,19 +103,13 @@ def test_a_journal_cut_at_any_byte_is_enough(
     assert sorted(begun.journal_path.read_bytes().splitlines()) == sorted(content.splitlines())
 
 
-def test_what_is_finished_is_not_simulated_again(whole: RunFolder, tmp_path: Path) -> None:
+def test_a_damaged_row_costs_its_simulation_only(whole: RunFolder, tmp_path: Path, caplog: Any) -> None:
+    """What is finished is not simulated again."""
     lines = whole.journal_path.read_bytes().splitlines(keepends=True)
-    finished = [line for line in lines if b'"kind":"begin"' not in line]
-    half = lines[: len(lines) // 2]
+    finished, half = {line for line in lines if b'"kind":"begin"' not in line}, lines[: len(lines) // 2]
     counting = Counting()
     train(whole.config(), begun_with(tmp_path / "half", whole, b"".join(half)), counting)
-    assert counting.run == len(set(finished) - set(half)) > 5
-
-
-def test_a_damaged_row_costs_its_simulation_only(
-    whole: RunFolder, tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
-    lines = whole.journal_path.read_bytes().splitlines(keepends=True)
+    assert counting.run == len(finished - {*half}) > 5
     row = next(number for number, line in enumerate(lines) if number > 10 and b'"kind":"finish"' in line)
     lines[row] = lines[row].replace(b'"steps":0', b'"steps":9', 1)
     counting = Counting()
@@ -150,35 +135,24 @@ def test_a_training_that_does_not_repeat_is_not_resumed(whole: RunFolder, tmp_pa
 
 def test_two_trainings_do_not_share_a_run_folder(whole: RunFolder, tmp_path: Path) -> None:
     begun = RunFolder.create(tmp_path / "begun", whole.config())
-    with (
-        begun.journal_of(whole.config()),
-        pytest.raises(RunFolderError, match=r"begun is in use by another training"),
-    ):
+    with begun.journal_of(whole.config()), pytest.raises(RunFolderError, match=r"begun is in use by another training"):
         train(whole.config(), begun)
     go_on(begun, 1)
 
 
 def test_weights_that_are_not_finite_stop_the_training(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     config = TrainingConfig(episodes=16, slots=1, agent=NAFSettings(learning_starts=6), episode=EPISODE)
-    begun = RunFolder.create(tmp_path / "run", config)
-    original = learning.make_agent
+    begun, original = RunFolder.create(tmp_path / "run", config), LocalNAF.train
 
-    def poisoned(*arguments: Any) -> Any:
-        model = original(*arguments)
-        collect = model.train
+    def train_and_poison(model: LocalNAF, *args: Any, **kwargs: Any) -> None:
+        original(model, *args, **kwargs)
+        if model.num_timesteps >= 9:
+            next(model.policy.parameters()).data[0] = float("nan")
 
-        def train_and_poison(*args: Any, **kwargs: Any) -> None:
-            collect(*args, **kwargs)
-            if model.num_timesteps >= 9:
-                next(model.policy.parameters()).data[0] = float("nan")
-
-        monkeypatch.setattr(model, "train", train_and_poison)
-        return model
-
-    monkeypatch.setattr(learning, "make_agent", poisoned)
+    monkeypatch.setattr(LocalNAF, "train", train_and_poison)
     with pytest.raises(LearningError, match=r"weights are no longer finite after 9 episodes"):
         train(config, begun)
     assert len(list(begun.episodes())) == 9 and not begun.is_finished and not begun.model_path.exists()
-    monkeypatch.setattr(learning, "make_agent", original)
+    monkeypatch.setattr(LocalNAF, "train", original)
     train(config, begun)
     assert begun.is_finished and len(list(begun.episodes())) == 16

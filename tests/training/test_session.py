@@ -37,26 +37,16 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, SessionResult
     return path, result
 
 
-def test_tensorboard_opens_on_scores_and_parameters(whole: tuple[Path, SessionResult]) -> None:
-    tags = sorted(EventAccumulator(str(whole[0])).Reload().Tags()["scalars"])
-    assert list(dict.fromkeys(tag.split("/")[0] for tag in tags))[:2] == ["operation", "parameters"]
-    assert "operation/score" in tags
-
-
-def generators() -> tuple[object, ...]:
-    """States of the generators that libraries share."""
-    return random.getstate(), str(np.random.get_state()), torch.get_rng_state().tolist()
-
-
 @pytest.mark.parametrize("learner", LEARNERS)
 def test_a_session_repeats_and_goes_on_from_half_of_its_journal(learner: str, tmp_path: Path) -> None:
     """The generators of the process are afterwards as before."""
     spec = dataclasses.replace(SPEC, learner=learner, config=dataclasses.replace(CONFIG, minutes=0.2))
     folder = SessionFolder.create(tmp_path / "session", spec)
-    before = generators()
+    states = (random.getstate, lambda: str(np.random.get_state()), lambda: torch.get_rng_state().tolist())
+    before = [state() for state in states]
     with np.errstate(all="raise"):
         result = operate(folder, spec)
-    assert generators() == before
+    assert [state() for state in states] == before
     assert run_session(spec) == result
     content = folder.journal_path.read_bytes()
     folder.journal_path.write_bytes(content[: len(content) // 2])
@@ -72,15 +62,21 @@ def test_another_specification_or_a_session_in_use_is_refused(whole: tuple[Path,
         operate(folder, SPEC)
 
 
-def test_the_folder_has_a_table_a_picture_and_parameters(whole: tuple[Path, SessionResult]) -> None:
+def test_the_folder_has_a_table_a_picture_and_parameters(whole: tuple[Path, SessionResult], tmp_path: Path) -> None:
     path, result = whole
-    lines = (path / "windows.csv").read_text().splitlines()
-    assert len(lines) == 1 + len(result.windows)
+    assert len((path / "windows.csv").read_text().splitlines()) == 1 + len(result.windows)
     assert (path / "session.png").stat().st_size > 10_000
     left = json.loads((path / "parameters.json").read_text())
     assert left["control_rate"] == SPEC.config.robot.physics.control_rate
     assert tuple(left["parameters"].values()) == result.parameters == SessionFolder(path).parameters()
     assert SessionFolder.open(path).spec() == SPEC
+    tags = sorted(EventAccumulator(str(path)).Reload().Tags()["scalars"])
+    assert list(dict.fromkeys(tag.split("/")[0] for tag in tags))[:2] == ["operation", "parameters"]
+    assert "operation/score" in tags
+    with pytest.raises(RunFolderError, match="is not empty: name another with --out"):
+        SessionFolder.create(path, SPEC)
+    with pytest.raises(RunFolderError, match=r"is not the folder of a session: it has no session\.yaml"):
+        SessionFolder.open(tmp_path)
 
 
 def test_damaged_files_are_named(whole: tuple[Path, SessionResult], tmp_path: Path) -> None:
@@ -89,10 +85,8 @@ def test_damaged_files_are_named(whole: tuple[Path, SessionResult], tmp_path: Pa
     with pytest.raises(RunFolderError, match=r"parameters.json does not hold learned parameters"):
         SessionFolder(copy).parameters()
     head, _, *rows = (copy / "windows.csv").read_text().splitlines(keepends=True)
-    for table, words in (
-        ([head], "has no windows to show yet"),
-        ([head, *rows], "cannot be read: .*they are not in order"),
-    ):
+    mistakes = (([head], "has no windows to show yet"), ([head, *rows], "cannot be read: .*they are not in order"))
+    for table, words in mistakes:
         (copy / "windows.csv").write_text("".join(table))
         for look in (learned_of_session, episodes_of_session):
             with pytest.raises(RunFolderError, match=words):
@@ -108,6 +102,10 @@ def test_every_window_is_an_episode_to_look_at(whole: tuple[Path, SessionResult]
     assert last.config.payload == 2.0
     learned = learned_of_session(path).spec
     assert (*learned.config.stepping, *learned.parameters) == result.parameters  # type: ignore[attr-defined]
+    # A window names the one that goes on where it ends
+    first, second = episodes[-2:]
+    assert first.next_name == second.name and second.next_name is episodes[0].next_name is None
+    assert first.of(dataclasses.replace(first.spec, seed=first.spec.seed + 1)).next_name is None
 
 
 def test_every_window_can_be_played_as_it_was(whole: tuple[Path, SessionResult]) -> None:
@@ -139,27 +137,6 @@ def test_a_change_that_never_came_is_none_in_the_end(tmp_path: Path) -> None:
     assert learned_of_session(folder.path).spec.config.payload == 5.0
 
 
-def test_a_window_names_the_one_that_goes_on_where_it_ends(whole: tuple[Path, SessionResult]) -> None:
-    *learned, first, last = episodes_of_session(whole[0])
-    assert first.next_name == last.name and last.next_name is None
-    assert all(episode.next_name is None for episode in learned if episode.name == "learned")
-    other = dataclasses.replace(first.spec, seed=first.spec.seed + 1)
-    assert first.of(other).next_name is None
-
-
-def test_a_folder_that_is_not_empty_is_refused(whole: tuple[Path, SessionResult], tmp_path: Path) -> None:
-    with pytest.raises(RunFolderError, match="is not empty: name another with --out"):
-        SessionFolder.create(whole[0], SPEC)
-    with pytest.raises(RunFolderError, match=r"is not the folder of a session: it has no session\.yaml"):
-        SessionFolder.open(tmp_path)
-
-
-def test_the_former_name_of_the_careful_learner_is_read(tmp_path: Path) -> None:
-    path = tmp_path / "session.yaml"
-    path.write_text("learner: gp")
-    assert read_config(SessionSpec, path).learner == SessionSpec().learner == "careful"
-
-
 @pytest.mark.parametrize(
     ("content", "words"),
     [
@@ -172,6 +149,8 @@ def test_the_former_name_of_the_careful_learner_is_read(tmp_path: Path) -> None:
 )
 def test_mistakes_in_its_file_are_named(tmp_path: Path, content: str, words: str) -> None:
     path = tmp_path / "session.yaml"
+    path.write_text("learner: gp")  # the former name of the careful learner
+    assert read_config(SessionSpec, path).learner == SessionSpec().learner == "careful"
     path.write_text(content)
     with pytest.raises(ConfigurationError) as found:
         read_config(SessionSpec, path)

@@ -47,6 +47,12 @@ def test_run_folder_holds_what_it_should(run: RunFolder) -> None:
     tables = {"episodes.csv", "recommendations.csv", "progress.csv"}
     assert names >= {"config.yaml", "command.txt", "versions.txt", *tables, "model.zip", "parameters.json"}
     assert run.event_files() and run.config() == SHORT
+    content = json.loads((run.path / "parameters.json").read_text())
+    assert tuple(content["parameters"]) == STEPPING.parameter_names
+    assert content["task"] == "stepping" and content["algorithm"] == "naf" and content["episodes"] == 16
+    assert tuple(content["parameters"].values()) == RunFolder.open(run.path).parameters()
+    action, _ = LocalNAF.load(run.model_path).predict(np.zeros(16, dtype=np.float32), deterministic=True)
+    assert action.shape == (5,)
 
 
 def test_every_episode_has_its_row_and_can_be_repeated(run: RunFolder) -> None:
@@ -58,17 +64,17 @@ def test_every_episode_has_its_row_and_can_be_repeated(run: RunFolder) -> None:
     assert float(row["return"]) == result.episode_return
     assert (float(row["x"]), float(row["y"])) == result.final_position[:2]
     assert row["termination"] == result.termination
+    with (run.path / "progress.csv").open() as file:
+        progress = list(csv.DictReader(file))
+    for shown, row in zip(progress, rows, strict=True):
+        assert float(shown["train/return"]) == pytest.approx(float(row["return"]))
+        assert float(shown["parameters/P3"]) == pytest.approx(float(row["P3"]))
+    names = [name for name in progress[0] if name.startswith(("episode/", "parameters/"))]
+    assert names == sorted(names) and {"train/loss", "train/n_updates"} < progress[0].keys()
 
 
 def parameters_of(row: dict[str, str]) -> tuple[float, ...]:
     return tuple(float(row[name]) for name in STEPPING.parameter_names)
-
-
-def result_of(row: dict[str, str]) -> EpisodeResult:
-    """What a row of ``episodes.csv`` says; the height at the end is not in it."""
-    metrics: dict[str, Any] = {name: float(row[name]) for name in METRICS if name in row}
-    final_position = (float(row["x"]), float(row["y"]), 0.0)
-    return EpisodeResult(row["termination"], final_position, episode_return=float(row["return"]), **metrics)
 
 
 def test_what_would_be_recommended_is_noted_every_five_episodes(run: RunFolder) -> None:
@@ -76,7 +82,9 @@ def test_what_would_be_recommended_is_noted_every_five_episodes(run: RunFolder) 
     assert [int(row["episodes"]) for row in recommendations] == list(range(5, 16, 5))
     first, tried = recommendations[0], Tried(STEPPING)
     for row in list(run.episodes())[: int(first["episodes"])]:
-        tried.append(parameters_of(row), merit(result_of(row)))
+        metrics: Any = {name: float(row[name]) for name in METRICS if name in row}
+        result = EpisodeResult(row["termination"], (0.0, 0.0, 0.0), episode_return=float(row["return"]), **metrics)
+        tried.append(parameters_of(row), merit(result))
     assert parameters_of(first) == tried.best((1.0,) * 5)  # the agent's own choice until it has learned
 
 
@@ -91,29 +99,6 @@ def test_tensorboard_opens_on_scores_and_parameters(run: RunFolder) -> None:
     expected = {f"robot/{name}" for name in robot} | {f"recommendation/{name}" for name in STEPPING.parameter_names}
     assert {"/".join(curve) for curve in curves} >= {*expected, "train/return", "train/loss", "train/exploration_std"}
     assert [event.step for event in events.Scalars("episode/score")] == list(range(1, 17))
-
-
-def test_progress_has_the_same_figures_as_the_episodes(run: RunFolder) -> None:
-    with (run.path / "progress.csv").open() as file:
-        progress = list(csv.DictReader(file))
-    for row, episode in zip(progress, run.episodes(), strict=True):
-        assert float(row["train/return"]) == pytest.approx(float(episode["return"]))
-        assert float(row["parameters/P3"]) == pytest.approx(float(episode["P3"]))
-    shown = [name for name in progress[0] if name.startswith(("episode/", "parameters/"))]
-    assert shown == sorted(shown) and {"train/loss", "train/n_updates"} < progress[0].keys()
-
-
-def test_parameters_are_read_without_the_agent(run: RunFolder) -> None:
-    content = json.loads((run.path / "parameters.json").read_text())
-    assert tuple(content["parameters"]) == STEPPING.parameter_names
-    assert content["task"] == "stepping" and content["algorithm"] == "naf" and content["episodes"] == 16
-    assert tuple(content["parameters"].values()) == RunFolder.open(run.path).parameters()
-    assert all(0.0 <= value <= 2.0 for value in run.parameters())
-
-
-def test_model_loads_and_predicts(run: RunFolder) -> None:
-    action, _ = LocalNAF.load(run.model_path).predict(np.zeros(16, dtype=np.float32), deterministic=True)
-    assert action.shape == (5,)
 
 
 def test_training_repeats_from_its_seed_whatever_is_set(run: RunFolder, tmp_path: Path) -> None:
@@ -163,17 +148,11 @@ def test_what_fails_its_trial_is_replaced(tmp_path: Path, monkeypatch: pytest.Mo
     assert parameters == second and math.dist(first, second) >= 0.1 * 2.0
 
 
-@pytest.mark.parametrize(
-    ("error", "words"),
-    [
-        (ValueError("the loss is nan,\nalas"), "ValueError: the loss is nan, alas"),
-        (np.linalg.LinAlgError("singular"), "LinAlgError: singular"),
-        (AssertionError(), "AssertionError"),
-    ],
-)
-def test_what_an_algorithm_fails_at_is_one_line(
-    error: Exception, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+FAILURES = {"ValueError: loss is nan, alas": ValueError("loss is nan,\nalas"), "AssertionError": AssertionError()}
+
+
+@pytest.mark.parametrize(("words", "error"), FAILURES.items())
+def test_what_an_algorithm_fails_at_is_one_line(error: Exception, words: str, tmp_path: Path, monkeypatch: Any) -> None:
     def fail(*_: object) -> None:
         raise error
 
