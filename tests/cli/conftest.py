@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from terminal import SHORT, Answer, Begin, Trained, done, run, tree
 
+import sarah.reports.report  # noqa: F401  # imported while a test draws nothing, it would never draw again
 from sarah.runs.config import TrainingConfig
 
 
