@@ -36,11 +36,12 @@ train: $(or $(wildcard $(VENV)/installed),$(VENV)/ready)  ## both trainings with
 		--workers $(WORKERS) --out $(RUN)/stepping
 	$(BIN)/sarah-train --task balance --from $(RUN)/stepping $(BALANCE_EPISODES:%=--episodes %) --seed $(SEED) \
 		--workers $(WORKERS) --out $(RUN)/balance
-	@$(MAKE) --no-print-directory --jobs=$(WORKERS) figures stepping-report balance-report RUN=$(RUN)
+	@echo "figures and two reports, beside each other: about half a minute"
+	@$(MAKE) --no-print-directory --jobs=2 --output-sync=target figures stepping-report balance-report RUN=$(RUN)
 	$(BIN)/sarah-eval $(RUN)/balance --robustness --out $(RUN)/figures --episodes $(PUSHES) --workers $(WORKERS)
 	@echo "all of it is in $(RUN): open $(RUN)/balance/report.html"
 
-# Each in one process, beside each other.
+# Each in one process, beside each other; two progress bars would overwrite one another, so each output comes whole.
 figures:
 	$(BIN)/sarah-figures $(RUN)/stepping $(RUN)/balance --out $(RUN)/figures
 

@@ -34,7 +34,7 @@ class TrainingExperiment(Experiment):
 
     depends_on: ClassVar[tuple[str, ...]] = TRAINING
     runs: Path = Path("runs/experiments")  # folder that keeps the trainings; one that is there is not run again
-    time_limit: float | None = None  # of the trainings' episodes, in s; by default 30 s, and 10 s with pushes
+    time_limit: float | None = None  # time limit of their episodes, in s; by default 30 s, and 10 s with pushes
 
     def episode(self, task: str, engine: Engine = "pybullet") -> EpisodeConfig:
         """Settings of the trainings' episodes."""

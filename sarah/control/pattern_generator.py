@@ -13,9 +13,8 @@ y axis, and the sensors, not a clock, decide when each phase of a step ends::
 
 Tilt is the low-passed lateral acceleration and rate the low-passed angular rate about y, both positive towards the
 stance leg and without their slow baselines. The hip law's abduction, which the torso does not feel, is added to both.
-The time-outs are slow on purpose: with faster ones a learner uses them as an open-loop clock and ignores the sensors
-(``make results NAME=clock`` compares 0.3 s and 0.5 s). The code uses plain floats only, because it runs once per
-control tick, and on a robot.
+The time-outs are slow on purpose: with faster ones a learner uses them as an open-loop clock and ignores the sensors.
+The code uses plain floats only, because it runs once per control tick, and on a robot.
 """
 
 from __future__ import annotations
