@@ -54,6 +54,7 @@ class RobotOptions(EpisodeOptions):
     :param seconds: time for which it runs, in s; by default until Ctrl-C, or the end of the simulated episode
     :param real_time: whether a tick begins each control period by the clock; without it, ticks follow each other as
         fast as they can
+    :param stand: whether the robot only stands
     :param read_only: whether to read and compute without sending anything to the robot
     :param seed: seed of the simulated robot, its sensors and its push
     :param fault: what fails on the simulated robot, by its name in the table of docs/how_to/real_robot.md
@@ -64,6 +65,7 @@ class RobotOptions(EpisodeOptions):
     driver: Annotated[str | None, tyro.conf.arg(metavar="FILE:NAME")] = None
     seconds: Annotated[float, Within(0.1, 1e7, "s")] | None = None
     real_time: bool = False
+    stand: bool = False
     read_only: bool = False
     seed: int = 0
     fault: Annotated[str, tyro.conf.arg(metavar="NAME")] = "none"
@@ -73,7 +75,8 @@ class RobotOptions(EpisodeOptions):
         """Refuse numbers outside their ranges, and faults of a robot that is not simulated."""
         super().__post_init__()
         if self.fault not in FAULTS:
-            raise ConfigurationError(unknown_name("fault", self.fault, FAULTS))
+            message = unknown_name("fault", self.fault, FAULTS).partition(" (allowed")[0]
+            raise ConfigurationError(f"{message} docs/how_to/real_robot.md has the table of faults")
         if self.driver is not None and self.fault != "none":
             raise ConfigurationError("--fault is for the simulated robot: leave out --driver or --fault")
         if self.driver is not None and not self.real_time:
@@ -106,7 +109,7 @@ def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], 
             while loop.tick():
                 if options.seconds is not None and loop.ticks * loop.dt >= options.seconds - loop.dt / 2:
                     break
-                if is_interrupted() and not _stops(loop):
+                if is_interrupted() and not _still_moves(loop):
                     break
     finally:
         loop.driver.off()
@@ -127,36 +130,52 @@ def _loop(options: RobotOptions, spec: EpisodeSpec, progress: Progress) -> Contr
         controller = controller_for(config, driver.limits)
         loop = ControlLoop(driver, controller, stepping, balance or LOCKED_HIPS, dt, pacing or Lockstep(), [progress])
     loop.is_read_only = options.read_only
+    if options.stand and not _still_moves(loop):
+        raise ConfigurationError("--stand needs a supervisor: leave --no-supervisor out")
     return loop
 
 
-def _stops(loop: ControlLoop) -> bool:
-    """Ask the robot to stop; whether it still has to."""
+def _still_moves(loop: ControlLoop) -> bool:
+    """Ask the robot to stand; whether it does not yet."""
     controller = loop.controller
     if not isinstance(controller, Supervisor) or controller.state is State.FALLEN:
         return False
-    controller.stand("asked by a signal")
-    return controller.is_moving
+    is_moving = controller.state is not State.STANDING or loop.ticks == 0
+    controller.stand()
+    return is_moving
 
 
 @contextlib.contextmanager
 def _real_time() -> Iterator[None]:
     """Context in which this process is disturbed as little as the system grants."""
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
-        print(f"real-time scheduling: SCHED_FIFO, priority {PRIORITY}", file=sys.stderr)
-    except (OSError, AttributeError) as error:  # other systems have no such classes
-        print(f"real-time scheduling: not granted ({error}); other processes can make ticks late", file=sys.stderr)
     switch = sys.getswitchinterval()
-    sys.setswitchinterval(SWITCH_SECONDS)
-    gc.freeze()
-    gc.disable()
+    with _scheduled():
+        sys.setswitchinterval(SWITCH_SECONDS)
+        gc.freeze()
+        gc.disable()
+        try:
+            yield
+        finally:
+            gc.enable()
+            gc.unfreeze()
+            sys.setswitchinterval(switch)
+
+
+@contextlib.contextmanager
+def _scheduled() -> Iterator[None]:
+    """Context in the real-time scheduling class, where the system has one and grants it."""
+    try:
+        before = os.sched_getscheduler(0), os.sched_getparam(0)
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
+    except (OSError, AttributeError) as error:
+        print(f"real-time scheduling is not granted ({error}): other processes can make ticks late", file=sys.stderr)
+        yield
+        return
+    print(f"real-time scheduling: SCHED_FIFO, priority {PRIORITY}", file=sys.stderr)
     try:
         yield
     finally:
-        gc.enable()
-        gc.unfreeze()
-        sys.setswitchinterval(switch)
+        os.sched_setscheduler(0, *before)
 
 
 class Progress:
