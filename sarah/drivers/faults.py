@@ -49,14 +49,14 @@ class Fault:
     :param change: what it does to readings
     :param when: whether it is there, by the time and the number of ticks since it began
     :param misses: whether a tick is missed, by the same
-    :param to_zero: whether the robot's own electronics move the targets to zero meanwhile
+    :param to_zero_after: time without a tick after which the robot's own electronics move the targets to zero, in s
     :param delay_seconds: delay of all readings, in s, from the beginning on; ``None`` for the usual one
     """
 
     change: Change = lambda reading, before: reading
     when: Callable[[float, int], bool] = lambda seconds, tick: True
     misses: Callable[[float, int], bool] = _never
-    to_zero: bool = False
+    to_zero_after: float = math.inf
     delay_seconds: float | None = None
 
 
@@ -104,7 +104,8 @@ FAULTS = {
     "every second tick is missed": Fault(misses=_one_in(2)),
     "ten ticks are missed, once": Fault(misses=_for(0.1)),
     "no tick any more, targets stay": Fault(misses=_always),
-    "no tick any more, targets go to zero": Fault(misses=_always, to_zero=True),
+    "no tick any more, targets go to zero": Fault(misses=_always, to_zero_after=0.0),
+    "no tick any more, targets go to zero after 0.1 s": Fault(misses=_always, to_zero_after=0.1),
     "delay of 20 ms": Fault(delay_seconds=0.02),
     "delay of 30 ms": Fault(delay_seconds=0.03),
     "delay of 50 ms": Fault(delay_seconds=0.05),

@@ -92,11 +92,10 @@ class SimulatedRobot(Driver):
         if self._heard is None:
             return self._sensed()
         self._advance()
-        while not self.ended and (
-            self._is_missed() or (not self._is_lockstep and self.now() > self.seconds + self._dt)
-        ):
+        sent = self._ticks
+        while not self.ended and (self._is_missed() or self._has_fallen_behind()):
             self._sensed()
-            if self._plan.fault.to_zero and self._is_missed():
+            if (self._ticks - sent) * self._dt >= self._plan.fault.to_zero_after:
                 self._targets = towards_zero(self._targets, self._constants, self._dt)
             self._change = None
             self._advance()
@@ -131,6 +130,10 @@ class SimulatedRobot(Driver):
         if self._ticks == self._standing_ticks:
             self.episode.record()
         self.ended = self.episode.termination or ""
+
+    def _has_fallen_behind(self) -> bool:
+        """Whether more than a period has passed by the clock since the simulated time."""
+        return not self._is_lockstep and self.now() > self.seconds + self._dt
 
     def _is_missed(self) -> bool:
         since = self._ticks - self._first_wrong
