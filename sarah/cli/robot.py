@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
-import gc
-import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -23,7 +21,8 @@ from sarah.control.supervisor import State, Supervisor
 from sarah.drivers.driver import Driver
 from sarah.drivers.driver_file import read_driver
 from sarah.drivers.faults import FAULTS
-from sarah.drivers.loop import ControlLoop, Lockstep, LoopTick, RealTime, controller_for
+from sarah.drivers.loop import ControlLoop, Lockstep, LoopTick, controller_for
+from sarah.drivers.real_time import RealTime, undisturbed
 from sarah.drivers.simulated_robot import FaultPlan, simulated_loop
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
@@ -36,10 +35,6 @@ LATE_SECONDS = 0.002
 """Time after its deadline from which a tick counts as late, in s."""
 ANYWHERE = 100.0
 """Displacement at which the simulated robot ends, in m: it may go where it wants."""
-PRIORITY = 50
-"""Priority in the real-time scheduling class."""
-SWITCH_SECONDS = 0.0005
-"""Time for which another thread may hold the interpreter, in s."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +100,7 @@ def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], 
     progress = Progress(spec.config.physics.control_dt)
     loop = _loop(options, spec, progress)
     try:
-        with _real_time() if options.real_time else contextlib.nullcontext():
+        with undisturbed() if options.real_time else contextlib.nullcontext():
             while loop.tick():
                 if options.seconds is not None and loop.ticks * loop.dt >= options.seconds - loop.dt / 2:
                     break
@@ -143,39 +138,6 @@ def _still_moves(loop: ControlLoop) -> bool:
     is_moving = controller.state is not State.STANDING or loop.ticks == 0
     controller.stand()
     return is_moving
-
-
-@contextlib.contextmanager
-def _real_time() -> Iterator[None]:
-    """Context in which this process is disturbed as little as the system grants."""
-    switch = sys.getswitchinterval()
-    with _scheduled():
-        sys.setswitchinterval(SWITCH_SECONDS)
-        gc.freeze()
-        gc.disable()
-        try:
-            yield
-        finally:
-            gc.enable()
-            gc.unfreeze()
-            sys.setswitchinterval(switch)
-
-
-@contextlib.contextmanager
-def _scheduled() -> Iterator[None]:
-    """Context in the real-time scheduling class, where the system has one and grants it."""
-    try:
-        before = os.sched_getscheduler(0), os.sched_getparam(0)
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
-    except (OSError, AttributeError) as error:
-        print(f"real-time scheduling is not granted ({error}): other processes can make ticks late", file=sys.stderr)
-        yield
-        return
-    print(f"real-time scheduling: SCHED_FIFO, priority {PRIORITY}", file=sys.stderr)
-    try:
-        yield
-    finally:
-        os.sched_setscheduler(0, *before)
 
 
 class Progress:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
@@ -14,9 +13,6 @@ from sarah.control.supervisor import Controller, Supervisor
 from sarah.drivers.driver import Driver
 from sarah.episode.robot_settings import RobotSettings
 from sarah.robot.reading import SensorReading
-
-SPIN_SECONDS = 0.0005
-"""Time before a deadline from which the loop waits without sleeping, in s: as inexact as sleeping is."""
 
 
 class LoopTick(NamedTuple):
@@ -67,37 +63,6 @@ class Lockstep:
     def wait(self) -> float:
         """Do not wait."""
         return 0.0
-
-
-class RealTime:
-    """Absolute deadlines, one each control period from the first tick on. Those that have passed are left out.
-
-    :param dt: control period, in s
-    :param clock: clock, in s
-    :param sleep: function that sleeps for a time in s
-    """
-
-    def __init__(
-        self, dt: float, clock: Callable[[], float] = time.monotonic, sleep: Callable[[float], None] = time.sleep
-    ) -> None:
-        self._dt, self._clock, self._sleep = dt, clock, sleep
-        self._deadline: float | None = None
-
-    def wait(self) -> float:
-        """Wait for the next deadline, and return by how much the tick is late, in s."""
-        now = self._clock()
-        if self._deadline is None:
-            self._deadline = now
-            return 0.0
-        self._deadline += self._dt
-        if now < self._deadline:
-            if self._deadline - now > SPIN_SECONDS:
-                self._sleep(self._deadline - now - SPIN_SECONDS)
-            while (now := self._clock()) < self._deadline:
-                pass
-        late = now - self._deadline
-        self._deadline += self._dt * (late // self._dt)
-        return late
 
 
 @dataclass

@@ -12,7 +12,8 @@ from sarah.control.supervisor import State, Supervisor
 from sarah.drivers.driver import Driver, TimedReading
 from sarah.drivers.driver_file import read_driver
 from sarah.drivers.faults import FAULTS
-from sarah.drivers.loop import ControlLoop, Lockstep, LoopTick, RealTime, controller_for
+from sarah.drivers.loop import ControlLoop, Lockstep, LoopTick, controller_for
+from sarah.drivers.real_time import RealTime
 from sarah.drivers.simulated_robot import NO_FAULT, FaultPlan, SimulatedRobot, simulated_loop
 from sarah.episode.episode import simulate
 from sarah.episode.push import NO_PUSH, Push
