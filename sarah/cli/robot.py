@@ -100,7 +100,9 @@ def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], 
     progress = Progress(spec.config.physics.control_dt)
     loop = _loop(options, spec, progress)
     try:
-        with undisturbed() if options.real_time else contextlib.nullcontext():
+        with undisturbed() if options.real_time else contextlib.nullcontext("") as scheduled:
+            if scheduled:
+                print(scheduled, file=sys.stderr)
             while loop.tick():
                 if options.seconds is not None and loop.ticks * loop.dt >= options.seconds - loop.dt / 2:
                     break

@@ -49,15 +49,18 @@ class RealTime:
 
 
 @contextlib.contextmanager
-def undisturbed() -> Iterator[None]:
-    """Context in which this process is disturbed as little as the system grants."""
+def undisturbed() -> Iterator[str]:
+    """Context in which this process is disturbed as little as the system grants.
+
+    :return: how it is scheduled, in words
+    """
     switch = sys.getswitchinterval()
-    with _scheduled():
+    with _scheduled() as words:
         sys.setswitchinterval(SWITCH_SECONDS)
         gc.freeze()
         gc.disable()
         try:
-            yield
+            yield words
         finally:
             gc.enable()
             gc.unfreeze()
@@ -65,17 +68,15 @@ def undisturbed() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _scheduled() -> Iterator[None]:
+def _scheduled() -> Iterator[str]:
     """Context in the real-time scheduling class, where the system has one and grants it."""
     try:
         before = os.sched_getscheduler(0), os.sched_getparam(0)
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
     except (OSError, AttributeError) as error:
-        print(f"real-time scheduling is not granted ({error}): other processes can make ticks late", file=sys.stderr)
-        yield
+        yield f"real-time scheduling is not granted ({error}): other processes can make ticks late"
         return
-    print(f"real-time scheduling: SCHED_FIFO, priority {PRIORITY}", file=sys.stderr)
     try:
-        yield
+        yield f"real-time scheduling: SCHED_FIFO, priority {PRIORITY}"
     finally:
         os.sched_setscheduler(0, *before)
