@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import math
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -99,6 +100,8 @@ def _supervised(config: EpisodeConfig, subject: str | None) -> EpisodeConfig:
 def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], bool]) -> None:
     progress = Progress(spec.config.physics.control_dt)
     loop = _loop(options, spec, progress)
+    values = {**vars(loop.parameters), **vars(loop.balance)}
+    print(", ".join(f"{name} {value:.3g}" for name, value in values.items()), file=sys.stderr)
     try:
         with undisturbed() if options.real_time else contextlib.nullcontext("") as scheduled:
             if scheduled:
@@ -174,13 +177,12 @@ class Progress:
         """Print a line of progress on standard error."""
         controller, steps = tick.controller, self._steps - self._steps_before
         self._steps_before = self._steps
-        state = controller.state.value if isinstance(controller, Supervisor) else "unsupervised"
-        phase = "" if controller.phase is Phase.STAND else f", {controller.phase.value}"
-        print(
-            f"{tick.seconds:8.2f} s  {state}{phase}; {steps} steps per second; tilt {controller.tilt:+.2f} m/s²; "
-            f"{self._late} late ticks",
-            file=sys.stderr,
-        )
+        words = ["unsupervised"]
+        if isinstance(controller, Supervisor):
+            words = [controller.state.value, f"tilt {math.degrees(controller.torso_tilt):.0f}°"]
+        words[0] += "" if controller.phase is Phase.STAND else f", {controller.phase.value}"
+        words += [f"{steps} steps per second", f"{self._late} late ticks"]
+        print(f"{tick.seconds:8.2f} s  {'; '.join(words)}", file=sys.stderr)
 
     def report(self, driver: Driver) -> None:
         """Print what happened.

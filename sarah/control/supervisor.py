@@ -20,7 +20,8 @@ from typing import NamedTuple
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.hip_law import LOCKED_HIPS, NO_LIMITS, BalanceParameters
 from sarah.control.pattern_generator import PatternGenerator, Phase, PhaseChange, SteppingParameters
-from sarah.control.watches import STANDARD_SUPERVISOR, SupervisorSettings, Watches
+from sarah.control.supervisor_settings import STANDARD_SUPERVISOR, SupervisorSettings
+from sarah.control.watches import Watches
 from sarah.robot.filters import ramped
 from sarah.robot.reading import GRAVITY, SensorReading, Side, Targets
 
@@ -204,6 +205,11 @@ class Supervisor:
     def is_moving(self) -> bool:
         """Whether its targets move, or are not yet those of standing."""
         return self.state in (State.STEPPING, State.STOPPING)
+
+    @property
+    def torso_tilt(self) -> float:
+        """Tilt of the torso against standing, in rad, as it was when the watches looked last."""
+        return self._watches.torso_tilt
 
     @property
     def phase(self) -> Phase:

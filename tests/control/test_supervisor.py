@@ -10,7 +10,7 @@ from hand_made import BALANCE, DT, rocking
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import PatternGenerator, Phase, SteppingParameters
 from sarah.control.supervisor import NOTHING, State, Supervisor
-from sarah.control.watches import SupervisorSettings
+from sarah.control.supervisor_settings import SupervisorSettings
 from sarah.robot.reading import SensorReading
 
 STEPPING = SteppingParameters(*PAPER_STEPPING)
