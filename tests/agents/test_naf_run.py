@@ -145,14 +145,38 @@ def test_one_step_solves_a_hill_beside_a_cliff():
     ("algorithm", "arguments", "constant", "said"),
     [
         (LocalNAF, PRESETS["one-step"], -100.0, r"rewards of -9\d.* are far below 0.* as reward \+ 9\d"),
+        (NAF, {**SMALL, "learning_starts": 0}, -100.0, "are far below 0"),
         (NAF, dict(learning_starts=5, n_steps=3), 100.0, r"rewards of 10\d on average are far above 0.* reward - 10\d"),
     ],
 )
 def test_rewards_far_from_zero_get_a_warning_once(algorithm, arguments, constant, said):
-    env = gym.wrappers.TransformReward(Cliff(0), lambda reward: reward + constant)
+    model = algorithm("MlpPolicy", shifted_cliff(constant), **{"seed": 0, **arguments})
     with pytest.warns(UserWarning, match=said) as seen:
-        algorithm("MlpPolicy", env, seed=0, **arguments).learn(7).learn(7, reset_num_timesteps=False)
+        model.learn((arguments["learning_starts"] or 100) + 2).learn(7, reset_num_timesteps=False)
     assert len(seen) == 1
+
+
+def shifted_cliff(constant: float) -> gym.Env:
+    return gym.wrappers.TransformReward(Cliff(0), lambda reward: float(reward) + constant)
+
+
+def test_a_loaded_agent_judges_the_rewards_that_it_gets(tmp_path):
+    NAF("MlpPolicy", Cliff(0), **SMALL).learn(30).save(tmp_path / "agent")
+    loaded = NAF.load(tmp_path / "agent", env=shifted_cliff(-100.0))
+    with pytest.warns(UserWarning, match="far below 0"):
+        loaded.learn(30, reset_num_timesteps=False)
+
+
+@pytest.mark.parametrize(("device", "algorithm"), [("meta", NAF), ("meta", LocalNAF), ("cuda", NAF)])
+def test_updates_on_another_device(device, algorithm, monkeypatch):
+    """All that an update computes is there: "meta" has the shapes of tensors, and refuses those of another device."""
+    if device == "cuda" and not th.cuda.is_available():
+        pytest.skip("there is no CUDA here")
+    item = th.Tensor.item
+    monkeypatch.setattr(th.Tensor, "item", lambda number: 0.5 if number.is_meta else item(number))
+    model = algorithm("MlpPolicy", Cliff(0), gradient_steps=0, device=device, **SMALL).learn(20)
+    model.train(2, 8)
+    assert {tensor.device.type for tensor in model.policy.state_dict().values()} == {device}
 
 
 @pytest.mark.filterwarnings("error")
