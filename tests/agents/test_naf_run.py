@@ -156,6 +156,32 @@ def test_rewards_far_from_zero_get_a_warning_once(algorithm, arguments, constant
     assert len(seen) == 1
 
 
+class Hill(Steady):
+    """One action an episode; the top is at (0.5, -0.3)."""
+
+    def __init__(self, scale: float, constant: float):
+        super().__init__(spaces.Box(-1, 1, (2,)))
+        self.scale, self.constant = scale, constant
+
+    def step(self, action):
+        observation, *_ = super().step(action)
+        height = 1 - 2 * np.square(action - [0.5, -0.3]).sum()
+        return observation, float(self.scale * height + self.constant), True, False, {}
+
+
+@pytest.mark.filterwarnings("ignore:rewards of")
+def test_the_size_of_rewards_decides_how_fast_mu_learns():
+    """Low rewards push it away, high ones make the parabola flat, small ones make it steep."""
+
+    def error(scale=1.0, constant=0.0) -> float:
+        arguments: Any = {**SMALL, "gamma": 0.0, "batch_size": 32, "policy_kwargs": dict(net_arch=[32])}
+        model = NAF("MlpPolicy", Hill(scale, constant), **arguments).learn(160)
+        return float(np.linalg.norm(model.predict(np.zeros(3, np.float32))[0] - [0.5, -0.3]))
+
+    assert error() < 0.15
+    assert error(constant=-100) > 0.6 and error(constant=100) > 0.5 and error(scale=0.01) > 0.3
+
+
 def shifted_cliff(constant: float) -> gym.Env:
     return gym.wrappers.TransformReward(Cliff(0), lambda reward: float(reward) + constant)
 
