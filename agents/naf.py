@@ -46,8 +46,7 @@ class NAF(OffPolicyAlgorithm):
     :param buffer_size: size of the replay buffer
     :param learning_starts: number of steps to collect transitions for before learning starts
     :param batch_size: Minibatch size for each gradient update
-    :param tau: the soft update coefficient ("Polyak update", between 0 and 1). TD3's 0.005 is
-        slower to learn with
+    :param tau: the soft update coefficient ("Polyak update", between 0 and 1)
     :param gamma: the discount factor
     :param train_freq: Update the model every ``train_freq`` steps. Alternatively pass a tuple of frequency
         and unit like ``(5, "step")`` or ``(2, "episode")``.

@@ -9,7 +9,7 @@ import pytest
 import torch as th
 
 from sarah.agents import NAF
-from sarah.agents.naf_warnings import FirstUpdates, reward_warning, value_warning
+from sarah.agents.naf_warnings import FirstUpdates, Watch, reward_warning, value_warning
 
 
 @pytest.mark.parametrize(
@@ -27,6 +27,24 @@ from sarah.agents.naf_warnings import FirstUpdates, reward_warning, value_warnin
 def test_rewards_are_far_by_their_deviation_large_by_its_size(mean, std, said):
     text = reward_warning(mean + std * np.array([-1.0, 1.0, -1.0, 1.0, -1.0, 1.0], np.float32))
     assert text is None if said is None else re.search(said, text or "")
+
+
+@pytest.mark.parametrize(
+    ("count", "warm_up", "is_full", "are_judged"),
+    [
+        (19, 20, False, False),
+        (20, 20, False, True),
+        (99, 0, False, False),  # without a warm-up
+        (100, 0, False, True),
+        (4, 2, False, False),
+        (5, 2, False, True),
+        (6, 20, True, True),  # there will never be more
+    ],
+)
+def test_rewards_are_judged_once_when_they_are_enough(count, warm_up, is_full, are_judged):
+    watch, rewards = Watch(), np.full(count, -100.0)
+    said = [watch.judge_rewards(rewards, warm_up, is_full) is not None for _ in range(2)]
+    assert said == [are_judged, False] and watch.judged_rewards == are_judged
 
 
 @pytest.mark.filterwarnings("error")
