@@ -21,7 +21,7 @@ from sarah.agents.arguments import Deviations, check_actions, checked_number, ch
 from sarah.agents.buffers import RankReplayBuffer
 from sarah.agents.critic import QuadraticCritic
 from sarah.agents.losses import centre_loss, nearby_loss
-from sarah.agents.naf_warnings import FirstUpdates, Watch
+from sarah.agents.naf_warnings import Watch
 from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy, NAFPolicy
 from sarah.agents.unknown_arguments import explains_unknown
 
@@ -152,7 +152,6 @@ class NAF(OffPolicyAlgorithm):
         self.max_grad_norm = max_grad_norm
         self.exploration_std = exploration_std
         self.watch = Watch()
-        self.first_updates = FirstUpdates()
 
         if _init_setup_model:
             self._setup_model()
@@ -267,8 +266,7 @@ class NAF(OffPolicyAlgorithm):
 
         # Increase update counter
         self._n_updates += gradient_steps
-        self.watch.updates += gradient_steps
-        _warn(self.first_updates.thread_warning(seconds, gradient_steps, parameters, batch_size))
+        _warn(self.watch.judge_time(seconds, gradient_steps, parameters, batch_size))
 
         mean_loss = th.stack(losses).mean().item()
         if not math.isfinite(mean_loss):
@@ -329,7 +327,7 @@ class NAF(OffPolicyAlgorithm):
         )
 
     def _excluded_save_params(self) -> list[str]:
-        return [*super()._excluded_save_params(), "q_net", "q_net_target", "watch", "first_updates"]
+        return [*super()._excluded_save_params(), "q_net", "q_net_target", "watch"]
 
     def _get_torch_save_params(self) -> tuple[list[str], list[str]]:
         state_dicts = ["policy", "policy.optimizer"]

@@ -87,6 +87,7 @@ class Watch:
     What an agent has seen of an environment since it was made or loaded, and what was said of it
 
     :param updates: Number of updates
+    :param seconds: Time that the first of them took
     :param value_bound: Value of the largest reward so far, whatever its sign, if it came at every step
     :param value_ceiling: The same of the highest, or 0 where all are negative, as an episode may end
     :param warned_of_values: Whether ``V`` was said to run away
@@ -94,6 +95,7 @@ class Watch:
     """
 
     updates: int = 0
+    seconds: float = 0.0
     value_bound: float = 0.0
     value_ceiling: float = 0.0
     warned_of_values: bool = False
@@ -140,19 +142,9 @@ class Watch:
         self.warned_of_values = True
         return ratio, value_warning(largest, self.value_ceiling, self.value_bound, gamma, has_w)
 
-
-class FirstUpdates:
-    """Time that the first updates of an agent take, and the warning if threads make them slow."""
-
-    def __init__(self) -> None:
-        self.seconds = 0.0
-        self.updates = 0
-
-    def thread_warning(
-        self, seconds: float, updates: int, parameters: Sequence[th.Tensor], batch_size: int
-    ) -> str | None:
+    def judge_time(self, seconds: float, updates: int, parameters: Sequence[th.Tensor], batch_size: int) -> str | None:
         """
-        What to say once of updates that are slow because several threads share the work of small networks.
+        What to say once of first updates that are slow because several threads share the work of small networks.
 
         Where other processes keep the cores busy, an operation waits until each of its threads has had its turn. On
         idle cores small networks gain nothing by a second thread.
@@ -163,10 +155,11 @@ class FirstUpdates:
         :param batch_size: Number of transitions in a minibatch
         :return: The warning; none if there is nothing to say
         """
-        if self.updates >= FIRST_UPDATES:
+        were_first = self.updates < FIRST_UPDATES
+        self.updates += updates
+        if not were_first:
             return None
         self.seconds += seconds
-        self.updates += updates
         threads, mean = th.get_num_threads(), self.seconds / self.updates
         is_slow = self.seconds >= SLOW_UPDATE * max(self.updates, FIRST_UPDATES)
         if not is_slow or threads == 1 or not _is_small(parameters, batch_size):

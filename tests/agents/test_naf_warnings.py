@@ -9,7 +9,7 @@ import pytest
 import torch as th
 
 from sarah.agents import NAF
-from sarah.agents.naf_warnings import FirstUpdates, Watch, reward_warning, value_warning
+from sarah.agents.naf_warnings import Watch, reward_warning, value_warning
 
 
 @pytest.mark.parametrize(
@@ -101,12 +101,12 @@ SMALL_WEIGHTS = (100, 100)
 )
 def test_threads_are_blamed_only_where_they_wait(monkeypatch, threads, seconds, shape, is_said):
     monkeypatch.setattr(th, "get_num_threads", lambda: threads)
-    text = FirstUpdates().thread_warning(seconds, 10, [th.zeros(shape)], batch_size=256)
+    text = Watch().judge_time(seconds, 10, [th.zeros(shape)], batch_size=256)
     assert (text is not None) == is_said
 
 
 def test_very_slow_updates_are_said_after_the_first_ones(monkeypatch):
     monkeypatch.setattr(th, "get_num_threads", lambda: 2)
-    first_updates, weights = FirstUpdates(), [th.zeros(SMALL_WEIGHTS)]
-    said = [first_updates.thread_warning(0.3, 1, weights, batch_size=256) is not None for _ in range(5)]
+    watch, weights = Watch(), [th.zeros(SMALL_WEIGHTS)]
+    said = [watch.judge_time(0.3, 1, weights, batch_size=256) is not None for _ in range(5)]
     assert said == [False, True, False, False, False]
