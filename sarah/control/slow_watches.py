@@ -67,6 +67,11 @@ class SlowWatches:
         """Tilt of the torso against standing, in rad, at the last look."""
         return self._torso.tilt
 
+    @property
+    def lost_joints(self) -> set[int]:
+        """Indices of the hip joints that do not follow their targets, as far as their sensors tell."""
+        return self._servos.lost
+
     def tick(self, reading: SensorReading, targets: Sequence[float], phase: Phase) -> str:
         """Add a reading, and look if it is time.
 
@@ -101,6 +106,7 @@ class _Servos:
         self._largest = settings.largest_servo_error
         self._gain = low_pass_gain(settings.servo_seconds, seconds)
         self._errors = [0.0] * 4
+        self.lost: set[int] = set()
 
     def look(self, joints: Sequence[float], targets: Sequence[float]) -> None:
         """Find out which servo is far from its target."""
@@ -111,6 +117,7 @@ class _Servos:
                 self._errors[index] = mean
             if abs(mean) > self._largest:
                 joint = ACTUATED_JOINTS[index]
+                self.lost.add(index)
                 self._warnings.give(joint, f"servo: {joint} does not follow its target")
 
 

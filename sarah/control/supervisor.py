@@ -147,7 +147,12 @@ class Supervisor:
         heard = reading if self._is_new(reading) else UNHEARD
         generator = self.generator
         targets, phase = self.targets, generator.phase
-        change = generator.tick(heard, seconds)
+        if self._watches.lost_joints:  # a sensor that is wrong does more harm than one that is missing
+            lost = self._watches.lost_joints
+            joints = [targets[k] if k in lost else joint for k, joint in enumerate(heard.joints)]
+            change = generator.tick(heard._replace(joints=tuple(joints)), seconds)
+        else:
+            change = generator.tick(heard, seconds)
         passed = self._dt if seconds is None else seconds
         wrong = self._stop_asked or self._watches.tick(reading, heard, passed, targets, phase, change)
         if change is not None and change.ended is Phase.STAND:

@@ -74,6 +74,11 @@ class Watches:
         """Tilt of the torso against standing, in rad, at the last look."""
         return self._slow.torso_tilt
 
+    @property
+    def lost_joints(self) -> set[int]:
+        """Indices of the hip joints that do not follow their targets, as far as their sensors tell."""
+        return self._slow.lost_joints
+
     def forgive(self) -> None:
         """Begin to wait for a step again, as after a change of parameters."""
         self._steps.waited = 0.0
