@@ -3,7 +3,8 @@
 It has four states::
 
     STANDING   the targets are zero: before the first step, and after a stop until it is asked to step
-    STEPPING   the pattern generator moves the targets, and the watches look
+    STEPPING   the pattern generator moves the targets, and the watches look; while readings are missing, the targets
+               go to zero
     STOPPING   the targets go to zero, as fast as the controller moves them
     FALLEN     the targets stay where they are
 
@@ -29,6 +30,8 @@ NOTHING = SensorReading((math.nan,) * 3, (math.nan,) * 3, (math.nan,) * 4, (math
 """Reading of which no signal has come: all of them keep their last values."""
 UNHEARD = NOTHING._replace(acceleration=(math.nan, math.nan, GRAVITY))
 """What the controller is given then: a stuck vertical acceleration could look like a fall."""
+STANDING_TARGETS: Targets = (0.0,) * 6
+"""Targets of a standing robot."""
 PROVEN_SECONDS = 5.0
 """Time of stepping after which new parameters count as working, in s."""
 
@@ -100,6 +103,7 @@ class Supervisor:
         self._steps_when_asked, self._stop_asked = True, ""
         self._stepped_seconds = 0.0
         self._before = NOTHING
+        self._unheard, self._is_catching_up = 0.0, False
 
     def set_parameters(
         self, parameters: SteppingParameters | None = None, balance: BalanceParameters | None = None
@@ -144,16 +148,15 @@ class Supervisor:
             return None
         if reading is None or age > self._settings.stale_seconds:
             reading = NOTHING
-        heard = reading if self._is_new(reading) else UNHEARD
-        generator = self.generator
-        targets, phase = self.targets, generator.phase
-        if self._watches.lost_joints:  # a sensor that is wrong does more harm than one that is missing
-            lost = self._watches.lost_joints
-            joints = [targets[k] if k in lost else joint for k, joint in enumerate(heard.joints)]
-            change = generator.tick(heard._replace(joints=tuple(joints)), seconds)
-        else:
-            change = generator.tick(heard, seconds)
         passed = self._dt if seconds is None else seconds
+        is_new = self._is_new(reading)
+        self._unheard = 0.0 if is_new else self._unheard + passed
+        if self._unheard > self._settings.stale_seconds and self.state is State.STEPPING:
+            self._pause(reading, passed)
+            return None
+        heard = self._without_lost_joints(reading if is_new else UNHEARD)
+        generator, targets = self.generator, self.targets
+        phase, change = generator.phase, generator.tick(heard, seconds)
         wrong = self._stop_asked or self._watches.tick(reading, heard, passed, targets, phase, change)
         if change is not None and change.ended is Phase.STAND:
             self._enter(State.STEPPING, "stood for a second")
@@ -166,8 +169,32 @@ class Supervisor:
         else:
             self._approve(passed)
         if self.state in (State.STANDING, State.STEPPING):
-            self.targets = generator.targets
+            self._follow(generator.targets)
         return change
+
+    def _pause(self, reading: SensorReading, seconds: float) -> None:
+        """Stand while there is nothing to act on; the generator waits."""
+        wrong = self._stop_asked or self._watches.signals.tick(reading, seconds)
+        self._is_catching_up = True
+        self.targets = towards(STANDING_TARGETS, self.targets, self.constants, self._dt)
+        if wrong:
+            self._react(wrong)
+
+    def _follow(self, goals: Targets) -> None:
+        """Take the generator's targets, after a pause at the speeds of the controller."""
+        if self._is_catching_up:
+            self.targets = towards(goals, self.targets, self.constants, self._dt)
+            self._is_catching_up = self.targets != goals
+        else:
+            self.targets = goals
+
+    def _without_lost_joints(self, heard: SensorReading) -> SensorReading:
+        """A reading in which joints that do not follow are at their targets: a wrong sensor is worse than none."""
+        lost = self._watches.lost_joints
+        if not lost:
+            return heard
+        joints = [self.targets[index] if index in lost else joint for index, joint in enumerate(heard.joints)]
+        return heard._replace(joints=tuple(joints))  # type: ignore[arg-type]  # as long
 
     def _is_new(self, reading: SensorReading) -> bool:
         """Whether an inertial signal is another one than before; noise never repeats."""
@@ -178,7 +205,7 @@ class Supervisor:
     def _stand_still(self) -> None:
         """Move the targets on to zero; a robot that has fallen keeps them."""
         if self.state is State.STOPPING:
-            self.targets = towards_zero(self.targets, self.constants, self._dt)
+            self.targets = towards(STANDING_TARGETS, self.targets, self.constants, self._dt)
             if not any(self.targets):
                 self._enter(State.STANDING, "stopped")
 
@@ -252,18 +279,19 @@ class Supervisor:
         return self.generator.rate
 
 
-def towards_zero(targets: Targets, constants: ControllerConstants, seconds: float) -> Targets:
-    """Targets that are nearer to those of standing, by as much as the controller moves them.
+def towards(goals: Targets, targets: Targets, constants: ControllerConstants, seconds: float) -> Targets:
+    """Targets that are nearer to others, by as much as the controller moves them.
 
-    :param targets: joint targets, in rad and m
+    :param goals: joint targets to move to, in rad and m
+    :param targets: present joint targets, in rad and m
     :param constants: constants of the controller
     :param seconds: time in which they move, in s
     """
     hip, leg = constants.hip_speed * seconds, constants.leg_speed * seconds
-    a, b, c, d, e, f = targets
+    (a, b, c, d, e, f), (to_a, to_b, to_c, to_d, to_e, to_f) = targets, goals
     return (
-        ramped(a, 0.0, hip), ramped(b, 0.0, hip), ramped(c, 0.0, hip), ramped(d, 0.0, hip),
-        ramped(e, 0.0, leg), ramped(f, 0.0, leg),
+        ramped(a, to_a, hip), ramped(b, to_b, hip), ramped(c, to_c, hip), ramped(d, to_d, hip),
+        ramped(e, to_e, leg), ramped(f, to_f, leg),
     )  # fmt: skip
 
 

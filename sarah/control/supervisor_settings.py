@@ -14,9 +14,10 @@ class SupervisorSettings:
     """Settings of a supervisor: from when on something is a fault.
 
     :param enabled: whether a supervisor watches, and stops the robot when something fails
-    :param stale_seconds: age from which a reading counts as missing, in s
+    :param stale_seconds: age from which a reading counts as missing, and time without a new one after which the robot
+        stands until there is one again, in s
     :param lost_seconds: time without any inertial signal, or with all of them the same, after which the robot stops, in
-        s; the hip law bears half a second of either
+        s
     :param signal_seconds: time without one of them, or with one that stays the same, after which it stops, in s
     :param stepless_seconds: time without a step after which it stops, in s
     :param largest_tilt: tilt of the torso from which the robot counts as fallen, in rad

@@ -34,7 +34,8 @@ class Watches:
         self._settings, self._dt = settings, dt
         self.warnings = Warnings()
         """What has gone wrong that does not stop the robot."""
-        self._signals = _Signals(settings, self.warnings)
+        self.signals = Signals(settings, self.warnings)
+        """Inertial signals that do not come, or that stay the same."""
         self._steps = _Steps(settings.stepless_seconds)
         self._lateness, self._late_gain = 0.0, low_pass_gain(1.0, dt)
         self._slow = SlowWatches(settings, dt, constants, self.warnings)
@@ -64,7 +65,7 @@ class Watches:
             if self._lateness > self._settings.largest_lateness or lost > self._settings.lost_seconds:
                 return f"late: the last tick came after {1000 * seconds:.0f} ms instead of {1000 * self._dt:g}"
         return (
-            self._signals.tick(reading, seconds)
+            self.signals.tick(reading, seconds)
             or (self._steps.tick(seconds, change) if phase is not Phase.STAND else "")
             or self._slow.tick(heard, targets, phase)
         )
@@ -84,8 +85,12 @@ class Watches:
         self._steps.waited = 0.0
 
 
-class _Signals:
-    """Inertial signals that do not come, or that stay the same."""
+class Signals:
+    """Inertial signals that do not come, or that stay the same.
+
+    :param settings: from when on something is a fault
+    :param warnings: warnings, to which signals are added that the robot can do without
+    """
 
     def __init__(self, settings: SupervisorSettings, warnings: Warnings) -> None:
         self._settings, self._warnings = settings, warnings
@@ -94,7 +99,12 @@ class _Signals:
         self._is_suspicious = False
 
     def tick(self, reading: SensorReading, seconds: float) -> str:
-        """What is wrong with the signals of a reading."""
+        """Look at one control tick.
+
+        :param reading: reading of this tick; what is missing is NaN
+        :param seconds: time since the last tick, in s
+        :return: what is wrong; empty if nothing is
+        """
         (ax, ay, az), (wx, wy, wz) = reading.acceleration, reading.angular_rate
         bx, by, bz, vx, vy, vz = self._before
         total = ax + ay + az + wx + wy + wz

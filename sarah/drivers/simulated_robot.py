@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from sarah.control.hip_law import LOCKED_HIPS
 from sarah.control.pattern_generator import STAND_SECONDS, PhaseChange
-from sarah.control.supervisor import towards_zero
+from sarah.control.supervisor import STANDING_TARGETS, towards
 from sarah.drivers.driver import Driver, TimedReading
 from sarah.drivers.faults import FAULTS, Fault
 from sarah.drivers.loop import ControlLoop, Lockstep, LoopObserver, LoopTick, Pacing, controller_for
@@ -73,7 +73,7 @@ class SimulatedRobot(Driver):
         self._first_wrong = round((STAND_SECONDS + plan.begin) / self._dt)
         self._standing_ticks = round(STAND_SECONDS / self._dt)
         self._ticks = 0
-        self._targets: Targets = (0.0,) * 6
+        self._targets = STANDING_TARGETS
         self._change: PhaseChange | None = None
         self._heard: SensorReading | None = None
         self._began = time.monotonic()
@@ -96,7 +96,7 @@ class SimulatedRobot(Driver):
         while not self.ended and (self._is_missed() or self._has_fallen_behind()):
             self._sensed()
             if (self._ticks - sent) * self._dt >= self._plan.fault.to_zero_after:
-                self._targets = towards_zero(self._targets, self._constants, self._dt)
+                self._targets = towards(STANDING_TARGETS, self._targets, self._constants, self._dt)
             self._change = None
             self._advance()
         return self._sensed()
