@@ -11,7 +11,7 @@ from typing import Annotated
 import tyro
 
 from sarah.cli.next_steps import say_next
-from sarah.cli.options import as_command, parse_options
+from sarah.cli.options import as_command, parse_options, printable
 from sarah.errors import ConfigurationError
 from sarah.streams import check_output
 
@@ -88,7 +88,7 @@ def _summarise(files: Sequence[Path]) -> None:
         summary = summarise(Log(path))
         print("\n" if index else "", end="")
         for label, text in rows_of(summary):
-            print(f"{label:17}{text}")
+            print(f"{label:17}{printable(text)}")
 
 
 def _check(files: Sequence[Path]) -> None:

@@ -164,7 +164,7 @@ class Log:
                 if channel in channels:
                     content = data[begin + _MESSAGE.size : position]
                     messages.append(Message(channels[channel], sequence, nanoseconds, content))
-            else:
+            elif opcode != CHUNK:  # no chunk is within another
                 self._record(opcode, data[begin:position])
         return messages
 

@@ -13,7 +13,7 @@ from sarah.logs.topics import PARAMETER_CHANGES, PHASE_CHANGES, STATES, TICKS, T
 
 LATE_SECONDS = 0.002
 """Delay beyond which a tick counts as late, in s."""
-_LATE = re.compile(rb'"late_seconds":\s*([-+0-9.eE]+)')
+_LATE = re.compile(rb'"late_seconds":\s*(-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)')
 """The one value of a tick that a summary needs: decoding all of them would take five times as long."""
 
 

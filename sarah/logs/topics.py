@@ -10,11 +10,12 @@ import itertools
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from sarah.control.pattern_generator import Phase, PhaseChange
 from sarah.errors import ConfigurationError, shortened
-from sarah.number import is_finite, plain
+from sarah.number import is_finite, is_number, plain
 from sarah.operation.settings import PARAMETERS
 from sarah.operation.window import FELT, FELT_SIZES
 from sarah.robot.description import JOINT_TYPES
@@ -24,7 +25,7 @@ Values = dict[str, Any]
 """Values of a message by the names of its fields."""
 LONGEST_SECONDS = 1e9
 """Largest time in a log, in s: thirty years."""
-KINDS: dict[str, type | tuple[type, ...]] = {"number": (int, float), "string": str, "boolean": bool}
+TYPES = {"number": float, "string": str, "boolean": bool}
 """Types in Python of JSON's types."""
 _ENCODE = json.JSONEncoder(allow_nan=False, separators=(",", ":")).encode
 
@@ -49,14 +50,14 @@ class Field:
         """Meaning with unit."""
         return f"{self.meaning}, in {self.unit}" if self.unit else self.meaning
 
-    def check(self, value: object) -> None:
-        """Refuse a value of another type.
+    def allows(self, value: object) -> bool:
+        """Whether it can have a value: a finite number, or one of its type.
 
         :param value: value of a message
-        :raises ConfigurationError: naming the field
         """
-        if not isinstance(value, KINDS[self.kind]) or (isinstance(value, bool) and self.kind != "boolean"):
-            raise ConfigurationError(f"{self.name} must be a {self.kind}, not {shortened(value)}")
+        if self.kind == "number":
+            return is_number(value) and is_finite(value)
+        return isinstance(value, TYPES[self.kind])
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ class Topic:
     fields: tuple[Field, ...]
     values: Callable[..., Values]
 
-    @property
+    @cached_property
     def needed(self) -> tuple[str, ...]:
         """Names of the fields that every message has."""
         return tuple(field.name for field in self.fields if field.kind != "number" or field is self.fields[0])
@@ -94,10 +95,27 @@ class Topic:
         :param given: arguments of :attr:`values`
         """
         values = self.values(*given)
+        types = self.types
+        if not all(type(value) is types[name] for name, value in values.items()):
+            values = self._known(values)
         try:
             return _ENCODE(values).encode()
-        except (TypeError, ValueError):  # a number of numpy's, or none
-            return _ENCODE(dict(_known(values))).encode()
+        except ValueError:  # a number that is not finite
+            return _ENCODE(self._known(values)).encode()
+
+    @cached_property
+    def types(self) -> dict[str, type]:
+        """Types in Python of the fields, by name."""
+        return {field.name: TYPES[field.kind] for field in self.fields}
+
+    def _known(self, values: Values) -> Values:
+        """Values that their fields may have, as Python's own.
+
+        :raises KeyError: if one is missing that every message has
+        """
+        plained = {field: plain(values[field.name]) for field in self.fields if field.name in values}
+        known = {field.name: value for field, value in plained.items() if field.allows(value)}
+        return {name: known[name] for name in (*self.needed, *known)}
 
     def decoded(self, data: bytes) -> Values:
         """Values of a message.
@@ -115,15 +133,10 @@ class Topic:
             if name not in values:
                 raise ConfigurationError(f"a message of {self.name} has no {name}")
         for field in self.fields:
-            if field.name in values:
-                field.check(values[field.name])
+            if field.name in values and not field.allows(values[field.name]):
+                given = shortened(values[field.name])
+                raise ConfigurationError(f"{field.name} of {self.name} must be a {field.kind}, not {given}")
         return values
-
-
-def _known(values: Values) -> list[tuple[str, Any]]:
-    """Names and values that JSON has, as Python's own."""
-    plained = [(name, plain(value)) for name, value in values.items()]
-    return [(name, value) for name, value in plained if isinstance(value, str) or is_finite(value)]
 
 
 SECONDS = Field("seconds", "time since the run began", "s")
@@ -195,7 +208,7 @@ def _window(seconds: float, window: Mapping[str, Any]) -> Values:
     felt = zip((f"felt_{name}" for name in FELT), window.get("felt", ()), strict=False)
     times = {"begin": window.get("begin"), "duration": window.get("seconds")}
     others = {name: window[name] for name in ("index", "changes", "observed_reward", "score", "fell") if name in window}
-    return dict(_known({"seconds": seconds, **times, "fell": False, **others, **dict(parameters), **dict(felt)}))
+    return {"seconds": seconds, **times, "fell": False, **others, **dict(parameters), **dict(felt)}
 
 
 def _parameters(
