@@ -198,6 +198,15 @@ def reading_of(values: Mapping[str, Any]) -> SensorReading | None:
     return SensorReading(*(tuple(signals[begin:end]) for begin, end in itertools.pairwise((0, 3, 6, 10, 16))))  # type: ignore[arg-type]  # as long
 
 
+def targets_of(values: Mapping[str, Any]) -> tuple[float, ...] | None:
+    """Targets of a tick, in rad and m; ``None`` if one is missing.
+
+    :param values: values of a message of ``/ticks``
+    """
+    targets = tuple(values.get(f"target_{joint}") for joint in ACTUATED_JOINTS)
+    return None if None in targets else targets  # type: ignore[return-value]  # none is missing
+
+
 def _phase_change(seconds: float, change: PhaseChange, stance: Side) -> Values:
     ended = {"ended": change.ended.value, "by_sensors": change.by_sensors, "is_step": change.is_step}
     return {"seconds": seconds, **ended, "stance": str(stance)}
