@@ -167,7 +167,7 @@ def _rows(
         odometry.tick(reading)
         while coming and coming[0] <= seconds:
             recent.append(coming.popleft())
-        while recent and recent[0] < seconds - window:
+        while recent and recent[0] < seconds + dt / 2.0 - window:
             recent.popleft()
         counted = max(SHORTEST_WINDOW_SECONDS * robot.scale.time, min(window, seconds - began))
         rows.append(

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 from hand_made import rocking
-from logged import NAMED, write
+from logged import NAMED, TARGETS, write
 from terminal import COARSE, Answer, done, run
 
+from sarah.episode.trace import Trace
 from sarah.logs.reading import Log
 from sarah.logs.robot_log import RobotLog
 from sarah.logs.summary import summarise
@@ -126,3 +127,16 @@ def test_an_operation_logs_its_session(tmp_path: Path) -> None:
     assert f"in {len(summary.windows)} windows" in process.stdout and log.about["learner"] == "careful"
     again = run("sarah-operate", *line, "--out", "other", "--log", "a.mcap", cwd=tmp_path)
     assert "a.mcap is there already" in again.stderr and not (tmp_path / "other").exists()
+
+
+def test_a_log_is_filmed_as_it_was(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    filmed: list[tuple[object, ...]] = []
+    monkeypatch.setattr("sarah.pictures.video.frames", lambda *arguments: filmed.append(arguments))
+    monkeypatch.setattr("sarah.pictures.video.write_video", lambda *_: None)
+    done("sarah-video", "a.mcap", "--out", "a.gif", cwd=folder)
+    ((trace, _, _, caption, _),) = filmed
+    assert isinstance(trace, Trace) and len(trace) == 100 and list(trace.targets[0]) == list(TARGETS)
+    assert caption == "log a.mcap: V1 0.71, V2 0.41, V3 0.70, V4 -0.39\nmotion estimated from its sensors"
+    for command in ("sarah-video a.mcap --out a.gif --seed 3", "sarah-view a.mcap --episode.payload 3"):
+        process = run(*command.split(), cwd=folder)
+        assert "a log is played as it is: leave settings of episodes and --seed out" in process.stderr
