@@ -20,7 +20,7 @@ HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, METADATA = 0x01, 0x02, 0x03, 0x
 _RECORD = struct.Struct("<BQ")
 _MESSAGE = struct.Struct("<HIQQ")
 LARGEST_CHUNK = 2**26
-"""Largest size of a chunk's messages, in bytes."""
+"""Largest size of a record in the file, and of a chunk's messages, in bytes."""
 
 
 class Message(NamedTuple):
@@ -101,7 +101,7 @@ class Log:
                 self.problem = f"cut at byte {position}"
                 return
             try:
-                messages = self._record(opcode, file.read(length))
+                messages = self._record(opcode, _bounded(file, length))
             except _DamageError as damage:
                 self.problem = f"damaged at byte {position}: {damage}"
                 return
@@ -167,6 +167,12 @@ class Log:
             elif opcode != CHUNK:  # no chunk is within another
                 self._record(opcode, data[begin:position])
         return messages
+
+
+def _bounded(file: BinaryIO, length: int) -> bytes:
+    if length > LARGEST_CHUNK:
+        raise _DamageError(f"a record has more than {LARGEST_CHUNK} bytes")
+    return file.read(length)
 
 
 def _decompressed(chunk: Any) -> bytes:
