@@ -135,7 +135,8 @@ def played(path: Path, robot: RobotDescription) -> LoggedResult:
             changes.append(log.values(message))
         elif message.topic == TICKS.name:
             values = log.values(message)
-            reading = reading_of(values) or reading
+            found = reading_of(values)
+            reading = found if found is not None and found.is_finite else reading
             if reading is not None:
                 ticks.append((values, reading))
             if ticks and values["seconds"] - ticks[0][0]["seconds"] > LONGEST_SECONDS:
