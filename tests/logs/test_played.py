@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hand_made import DT
+from laboratory import turned
 from logged import TARGETS, tick, write
 
 from sarah.control.pattern_generator import Phase
@@ -12,12 +13,12 @@ from sarah.episode.episode import simulate
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE
 from sarah.errors import ConfigurationError
-from sarah.logs.played import played, spec_of_log
+from sarah.logs.played import Attitude, played, spec_of_log
 from sarah.logs.robot_log import RobotLog
 from sarah.logs.simulated import log_episode
 from sarah.operation.settings import SHIPPED
 from sarah.robot.description import describe_robot
-from sarah.robot.reading import Side
+from sarah.robot.reading import STANDING, Side
 
 
 def test_a_logged_robot_is_seen_as_it_moved(tmp_path: Path) -> None:
@@ -41,13 +42,20 @@ def test_a_logged_robot_is_seen_as_it_moved(tmp_path: Path) -> None:
     assert np.sqrt((turned**2).mean()) < 2.0
     moved = [one["position"] - (*one["position"][0, :2], 0.0) for one in (estimated, true)]
     assert np.abs(moved[0] - moved[1]).max(axis=0) == pytest.approx(0.0, abs=0.03)
+    assert not seen.trace.push.any() and seen.steps_per_second == pytest.approx(seen.steps / 5.99)
     assert seen.steps == known.steps and seen.shifts_by_sensors == known.shifts_by_sensors
     assert "score" in seen.unknown and "steps" not in seen.unknown
 
 
+def test_a_torso_is_pitched_and_then_rolled() -> None:
+    attitude = Attitude([STANDING], 0.01)
+    attitude.roll, attitude.pitch = 0.5, 0.3
+    assert attitude.orientation == pytest.approx(turned(0.5, 0.3), abs=1e-12)
+
+
 def test_a_robot_that_was_put_up_anew_begins_at_its_place(tmp_path: Path) -> None:
     with RobotLog(tmp_path / "a.mcap", {}, waits=True) as log:
-        for number in (*range(150), *range(400, 450)):
+        for number in (*range(29_900, 30_050), *range(30_300, 30_350)):
             tick(log, number)
     trace = played(tmp_path / "a.mcap", describe_robot()).trace
     assert trace is not None and np.any(trace.position[149, :2]) and not np.any(trace.position[150, :2])

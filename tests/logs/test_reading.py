@@ -9,6 +9,7 @@ from logged import write
 
 from sarah.control.pattern_generator import Phase
 from sarah.errors import ConfigurationError
+from sarah.logs.export import cut
 from sarah.logs.reading import MAGIC, Log
 from sarah.logs.summary import summarise
 from sarah.logs.topics import TICKS
@@ -54,6 +55,19 @@ def test_a_log_cut_anywhere_is_read_to_its_last_whole_chunk(whole: Path) -> None
         assert log.problem is not None and log.problem.startswith("cut at byte") and summary.missing.total() == 0
         counts.append(summary.ticks)
     assert counts == sorted(counts) and set(counts) == set(range(26))
+
+
+def test_a_summary_counts_what_was_logged_and_a_part_has_no_gap(whole: Path) -> None:
+    summary = summarise(Log(whole))
+    assert (summary.ticks, summary.begin, summary.end, summary.seconds) == (25, 0.0, 0.24, 0.24)
+    assert (summary.late, summary.worst, summary.dropped, summary.steps) == (1, 0.003, 0, 1)
+    assert summary.ended == {"land": 1} and summary.by_sensors["land"] == 0
+    assert summary.steps_per_second == 1 / 0.24 and summary.observed_reward == 0.8
+    part = whole.with_name("part.mcap")
+    assert cut(Log(whole), 0.1, 0.2, part) == 11
+    summary = summarise(Log(part))
+    assert (summary.ticks, summary.begin, summary.late, summary.missing.total()) == (11, 0.1, 0, 0)
+    assert summary.stepping_seconds == pytest.approx(0.1) and summary.observed_reward is None
 
 
 @pytest.mark.parametrize("data", [b"", b"\xff", b"[]", b"1", b"{}", b"[" * 100_000])
