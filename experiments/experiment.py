@@ -60,6 +60,11 @@ def product(**values: Iterable[Any]) -> list[Row]:
 
 def survival(found: Evaluation) -> Row:
     """Columns of the survival of some episodes with its 95 % interval (Wilson)."""
-    low, high = wilson_interval(found.survivors, found.episodes)
+    return survival_of(found.survivors, found.episodes)
+
+
+def survival_of(survivors: int, episodes: int) -> Row:
+    """The same for a number of survivors."""
+    low, high = wilson_interval(survivors, episodes)
     columns = ("episodes", "survival", "survival_low", "survival_high")
-    return dict(zip(columns, (found.episodes, found.survival_rate, low, high), strict=True))
+    return dict(zip(columns, (episodes, survivors / episodes, low, high), strict=True))

@@ -8,7 +8,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import sarah
 from experiments.experiment import TRAINING, Experiment
@@ -40,6 +40,10 @@ class TrainingExperiment(Experiment):
         """Settings of the trainings' episodes."""
         limit = self.time_limit or EPISODES[task].time_limit
         return dataclasses.replace(EPISODES[task], engine=engine, time_limit=limit)
+
+    def training(self, task: str, episode: EpisodeConfig, episodes: int, **changes: Any) -> TrainingConfig:
+        """Settings of a training, as those of ``sarah-train``."""
+        return dataclasses.replace(default_training(TASKS[task]), episode=episode, episodes=episodes, **changes)
 
     def trained(self, config: TrainingConfig) -> RunFolder:
         """The run folder of a finished training, which this process runs, or resumes, unless it is there."""

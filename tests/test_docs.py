@@ -127,7 +127,7 @@ class Clock:
 
 @pytest.fixture
 def loop() -> dict[str, Any]:
-    names = run_block("how_to/real_robot.md")
+    names = run_block("how_to/real_robot.md", 1)
     names["time"] = Clock()
     return names
 
@@ -185,10 +185,10 @@ def test_the_limits_on_the_page_are_the_robots(loop: dict[str, Any], tmp_path: P
     monkeypatch.chdir(tmp_path)
     names, driven = {**loop, "read": None, "send": None}, []
     names["drive"] = lambda generator, dt, read, send: driven.append(generator)
-    exec(blocks("how_to/real_robot.md")[1], names)
+    exec(blocks("how_to/real_robot.md")[2], names)
     assert names["LIMITS"] == [describe_robot().limits[joint] for joint in ACTUATED_JOINTS]
     assert names["DT"] == 1 / 200
-    assert driven[0].hips.parameters == BalanceParameters(0.8, 0.1, 0.2, 0.1)
+    assert driven[0].generator.hips.parameters == BalanceParameters(0.8, 0.1, 0.2, 0.1)
 
 
 def test_the_page_takes_parameters_of_any_origin(loop: dict[str, Any]) -> None:
@@ -197,9 +197,10 @@ def test_the_page_takes_parameters_of_any_origin(loop: dict[str, Any]) -> None:
     p, v = PARAMETER_SETS["stepping"].spec.parameters, PARAMETER_SETS["balance"].spec.parameters
     for name, hips in (("stepping", (0.0,) * 4), ("balance", v)):
         generator = loop["controller"](shipped[name], limits, 0.01)
+        generator = generator.generator
         assert astuple(generator.parameters) == p and astuple(generator.hips.parameters) == hips
     names = ("P1", "P2", "P3", "P4", "P5", "V1", "V2", "V3", "V4")
-    session = loop["controller"]({"parameters": dict(zip(names, range(9), strict=True))}, limits, 0.01)
+    session = loop["controller"]({"parameters": dict(zip(names, range(9), strict=True))}, limits, 0.01).generator
     assert (*astuple(session.parameters), *astuple(session.hips.parameters)) == tuple(range(9))
 
 
@@ -209,12 +210,14 @@ def test_a_robot_needs_the_standard_library_alone(tmp_path: Path) -> None:
     program = """
 from sarah.robot.reading import STANDING
 import json
-generator, sent = controller(json.load(open('parameters.json')), [(-1.0, 1.0)] * 6, 0.01), []
-lying = STANDING._replace(acceleration=(9.81, 0.0, 0.0))
-drive(generator, 0.01, lambda: lying if len(sent) > 120 else STANDING, sent.append)
-assert generator.has_fallen and 120 < len(sent) < 220 and any(sent[-1])
+supervisor, sent = controller(json.load(open('parameters.json')), [(-1.0, 1.0)] * 6, 0.01), []
+def read():  # signals without noise would be frozen ones
+    up, noise = (0.0 if len(sent) > 120 else 9.81), 0.001 * (len(sent) % 7)
+    return STANDING._replace(acceleration=(9.81 - up + noise, noise, up + noise), angular_rate=(noise,) * 3)
+drive(supervisor, 0.01, read, sent.append)
+assert supervisor.has_fallen and 120 < len(sent) < 220 and any(sent[-1])
 """
-    program = blocks("how_to/real_robot.md")[0] + program
+    program = blocks("how_to/real_robot.md")[1] + program
     (tmp_path / "robot" / "program.py").write_text(program)
     (tmp_path / "robot" / "parameters.json").write_text(json.dumps(LEARNED["balance"]))
     # -SE: nothing but the standard library can be imported

@@ -25,7 +25,6 @@ from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import NO_PUSH, Push
 from sarah.episode.tasks import BALANCE
 from sarah.files import replace_text
-from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import Engine
 
@@ -94,7 +93,7 @@ class SecondTrainingExperiment(TrainingExperiment):
     def learned(self, engine: Engine, seed: int) -> dict[str, str]:
         """Columns of what a training learns, which is run or resumed in this process unless it is there."""
         episode = self.episode("balance", engine)
-        run = self.trained(TrainingConfig("balance", episodes=self.budget, seed=seed, slots=1, episode=episode))
+        run = self.trained(self.training("balance", episode, self.budget, seed=seed, slots=1))
         values = [*run.parameters(), *_network_says(run)]
         return {name: cell(float(value)) for name, value in zip([*NAMES, *MU_NAMES], values, strict=True)}
 

@@ -25,7 +25,6 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.reports.transfer import ENGINES
-from sarah.runs.config import TrainingConfig
 from sarah.simulation.engines import Engine
 
 SETS = {
@@ -81,7 +80,7 @@ class Engines(TrainingExperiment):
             episodes, limit = self.episodes, self.time_limit or 30.0
         else:
             config, seed = self.episode(task, learned_in), int(run.split()[-1])
-            training = TrainingConfig(task, episodes=self.budget or BUDGETS[task], seed=seed, episode=config)
+            training = self.training(task, config, self.budget or BUDGETS[task], seed=seed)
             parameters = self.trained(training).parameters()
             episodes, limit = EPISODES[task], config.time_limit
         found = [evaluate(task, parameters, settings(task, one, limit), range(episodes)) for one in ENGINES]

@@ -18,7 +18,6 @@ from experiments.tables import share_of, shown, span, table
 from experiments.trainings import TrainingExperiment
 from sarah.control.parameters import PAPER_STEPPING, STEPPING_PARAMETERS, Parameters
 from sarah.episode.evaluation import evaluate
-from sarah.runs.config import TrainingConfig
 from sarah.simulation.physics import PHYSICS
 
 NAMES = [parameter.name for parameter in STEPPING_PARAMETERS]
@@ -48,7 +47,7 @@ class FirstTraining(TrainingExperiment):
         parameters: Parameters = PAPER_STEPPING
         if run != PAPER:
             seed = int(run.split()[-1])
-            training = TrainingConfig("stepping", episodes=self.budget, seed=seed, episode=config)
+            training = self.training("stepping", config, self.budget, seed=seed)
             parameters = self.trained(training).parameters()
         at_reference = dataclasses.replace(config, physics=PHYSICS["reference"])
         found = evaluate("stepping", parameters, config, range(self.episodes))

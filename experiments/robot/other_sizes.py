@@ -18,7 +18,6 @@ from sarah.episode.push import PushedConfig
 from sarah.episode.tasks import BALANCE
 from sarah.robot.dimensions import dimensions_alike
 from sarah.robot.scale import MASS
-from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import Engine
 from sarah.simulation.physics import named_physics
@@ -52,14 +51,14 @@ class OtherSizes(TrainingExperiment):
         dimensions = dimensions_alike(leg_length / LEGS, mass / MASS)
         usual = self.episode("stepping", engine).for_robot(dimensions)
         stepping = dataclasses.replace(usual, step_frequency=step_frequency)
-        stepped = self.trained(TrainingConfig("stepping", episodes=first, seed=seed, episode=stepping))
+        stepped = self.trained(self.training("stepping", stepping, first, seed=seed))
         trained_with = self.episode("balance", engine).for_robot(dimensions)
         assert isinstance(trained_with, PushedConfig)
         push = trained_with.push
         balance = BALANCE.config_of(
             stepping, stepping=stepped.parameters(), push=push, time_limit=trained_with.time_limit
         )
-        pushed = self.trained(TrainingConfig("balance", episodes=second, seed=seed, episode=balance))
+        pushed = self.trained(self.training("balance", balance, second, seed=seed))
         unpushed = self._judged(stepped, UNSEEN_SEED)
         reference = named_physics("reference", stepping.scale, stepping.physics.control_rate)
         newtons = mass * GRAVITY / 3.0

@@ -21,7 +21,7 @@ from sarah.reports.judging import evaluations_of
 from sarah.reports.race import run_entry
 from sarah.reports.race_entry import RaceCurve, entries_of, read_curve
 from sarah.reports.rankings import rankings
-from sarah.runs.config import ALGORITHMS, TrainingConfig
+from sarah.runs.config import ALGORITHMS
 from sarah.runs.run_folder import RunFolder
 
 TASKS = {"stepping": (60, 100, 5), "balance": (150, 500, 12)}
@@ -45,7 +45,7 @@ class Race(TrainingExperiment):
     def rows(self, task: str, seed: int, algorithm: str) -> Iterator[Row]:
         """How its recommendations do, along the way and in the end. Scores stand in one cell, for their number."""
         budget, _, along = TASKS[task]
-        base = TrainingConfig(task, episodes=self.budget or budget, slots=1, episode=self.episode(task, "mujoco"))
+        base = self.training(task, self.episode(task, "mujoco"), self.budget or budget, slots=1)
         evaluations = evaluations_of(base.task, self.evaluations, self.evaluations or along)
         folder = self.runs / f"race-{task}-{identity(base)}"
         (entry,) = entries_of([algorithm], [seed], base, evaluations, folder)

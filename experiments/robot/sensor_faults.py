@@ -1,200 +1,127 @@
-"""Does the robot go on stepping when its sensors or its control loop fail?
+"""What becomes of the robot when its sensors or its control loop fail, with and without a supervisor?
 
-The controller stands behind the fault, which decides what it reads and whether its tick takes place. Faults stay,
-unless their name says otherwise. The simulated robot and the judgement of the episode are not touched.
+Each robot has the shipped parameters and steps for two seconds and more before the fault begins, so faults meet it in
+any phase. It has survived if it is on its feet and in its place ten seconds later. Both robots of a pair are the same.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from statistics import mean
-from typing import Any, NamedTuple
+from statistics import median
+from typing import NamedTuple
 
 from pandas import DataFrame
 
-from experiments.experiment import Experiment, product
+from experiments.experiment import Experiment, product, survival_of
 from experiments.record import Row
 from experiments.tables import format_of, table
-from sarah.control.pattern_generator import PatternGenerator, PhaseChange
-from sarah.episode.episode import Episode
+from sarah.control.pattern_generator import STAND_SECONDS
+from sarah.control.supervisor import State, Supervisor
+from sarah.drivers.faults import FAULTS
+from sarah.drivers.loop import LoopTick
+from sarah.drivers.simulated_robot import FaultPlan, simulated_loop
+from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import NO_PUSH
-from sarah.episode.tasks import BALANCE, BalanceConfig
-from sarah.robot.filters import ramped
-from sarah.robot.reading import SensorReading
+from sarah.episode.tasks import BALANCE
+from sarah.simulation.engines import Engine
 
-FIRST_TICKS, TICKS_LATER = 200, 3
-"""Ticks of stepping before the fault begins, and how many later it does in each further episode. So faults meet the
-robot in any phase."""
-HIPS = {"locked": (0.0, 0.0, 0.0, 0.0), "V1 = 1, V3 = 0.7": (1.0, 0.0, 0.7, 0.0)}
-"""Values of V1 to V4, by name."""
-
-Heard = SensorReading | None
-Change = Callable[[SensorReading, SensorReading], Heard]
-"""What the controller hears, of the reading and of the last one before the fault; None if its tick does not take
-place."""
-NOTHING = SensorReading((math.nan,) * 3, (math.nan,) * 3, (math.nan,) * 4, (math.nan,) * 6)
-"""A reading of which no signal has come."""
+SHIPPED = PARAMETER_SETS["balance"].spec
+BEGIN, LATER = 2.0, 0.03
+"""Time of stepping before the fault begins, and how much later it does with each further seed, in s."""
+WITHOUT, WITH = "without", "with"
+"""Names of robots without and with a supervisor."""
+ENGINES = {"pybullet": "PyBullet", "mujoco": "MuJoCo"}
 
 
-def _signal(field: str, elements: tuple[int, ...], value: float | None = None, added: float = 0.0) -> Change:
-    """Some elements of a signal are stuck, at their last value unless another is given, or something is added."""
+class Outcome(NamedTuple):
+    """What became of a robot after a fault."""
 
-    def change(reading: SensorReading, before: SensorReading) -> Heard:
-        values = list(getattr(reading, field))
-        for k in elements:
-            stuck = getattr(before, field)[k] if value is None else value
-            values[k] = values[k] + added if added else stuck
-        return reading._replace(**{field: tuple(values)})
-
-    return change
-
-
-def _constant(heard: Heard) -> Change:
-    return lambda reading, before: heard
-
-
-LOST, MISSED = _constant(NOTHING), _constant(None)
-
-
-class Fault(NamedTuple):
-    """A fault."""
-
-    change: Change = lambda reading, before: reading  # what it does to readings
-    when: Callable[[int], bool] = lambda ticks: True  # whether it is there, by the ticks since it began
-    delay_seconds: float = 0.01  # delay of all readings, in s
-    to_zero: bool = False  # whether targets go to zero, as fast as the controller moves them, while it misses ticks
-    is_told: bool = False  # whether the controller is told how much time has passed since its last tick
-
-
-FAULTS = {
-    "none": Fault(),
-    "one reading in ten is not finite": Fault(LOST, lambda ticks: ticks % 10 == 0),
-    "every second reading is not finite": Fault(LOST, lambda ticks: ticks % 2 == 0),
-    "no reading is finite for 0.5 s": Fault(LOST, lambda ticks: ticks < 50),
-    "no reading is finite any more": Fault(LOST),
-    "lateral acceleration: not finite any more": Fault(_signal("acceleration", (0,), math.nan)),
-    "rate about y: not finite any more": Fault(_signal("angular_rate", (1,), math.nan)),
-    "one pad: not finite any more": Fault(_signal("pressures", (0,), math.nan)),
-    "left flexion joint: not finite any more": Fault(_signal("joints", (2,), math.nan)),
-    "all joints: not finite any more": Fault(_signal("joints", (0, 1, 2, 3, 4, 5), math.nan)),
-    "the same reading comes for 0.1 s": Fault(lambda reading, before: before, lambda ticks: ticks < 10),
-    "the same reading comes for 0.5 s": Fault(lambda reading, before: before, lambda ticks: ticks < 50),
-    "the same reading comes for ever": Fault(lambda reading, before: before),
-    "lateral acceleration: 0": Fault(_signal("acceleration", (0,), 0.0)),
-    "lateral acceleration: 0.2 m/s² too high": Fault(_signal("acceleration", (0,), added=0.2)),
-    "lateral acceleration: 0.5 m/s² too high": Fault(_signal("acceleration", (0,), added=0.5)),
-    "rate about y: 0": Fault(_signal("angular_rate", (1,), 0.0)),
-    "rate about y: stuck": Fault(_signal("angular_rate", (1,))),
-    "rate about y: 0.1 rad/s too high": Fault(_signal("angular_rate", (1,), added=0.1)),
-    "rate about x: 0": Fault(_signal("angular_rate", (0,), 0.0)),
-    "rate about x: 0.1 rad/s too high": Fault(_signal("angular_rate", (0,), added=0.1)),
-    "one pad: 0 N": Fault(_signal("pressures", (0,), 0.0)),
-    "both pads of a foot: 0 N": Fault(_signal("pressures", (0, 1), 0.0)),
-    "all pads: 0 N": Fault(_signal("pressures", (0, 1, 2, 3), 0.0)),
-    "one pad: stuck at 300 N": Fault(_signal("pressures", (0,), 300.0)),
-    "right abduction joint: stuck at 0.3 rad": Fault(_signal("joints", (1,), 0.3)),
-    "right abduction joint: 0.1 rad off": Fault(_signal("joints", (1,), added=0.1)),
-    "one tick in ten is missed": Fault(MISSED, lambda ticks: ticks % 10 == 0),
-    "every second tick is missed": Fault(MISSED, lambda ticks: ticks % 2 == 0),
-    "every second tick is missed, and time is told": Fault(MISSED, lambda ticks: ticks % 2 == 0, is_told=True),
-    "ten ticks are missed, once": Fault(MISSED, lambda ticks: ticks < 10),
-    "ten ticks are missed, once, and time is told": Fault(MISSED, lambda ticks: ticks < 10, is_told=True),
-    "no tick any more, targets stay": Fault(MISSED),
-    "no tick any more, targets go to zero": Fault(MISSED, to_zero=True),
-    "delay of 20 ms": Fault(delay_seconds=0.02),
-    "delay of 30 ms": Fault(delay_seconds=0.03),
-    "delay of 50 ms": Fault(delay_seconds=0.05),
-}
-"""Faults, by what happens; a delay is there from the beginning."""
-
-
-class _BehindFault:
-    """A pattern generator that hears its sensors through a fault, which begins after some ticks of stepping."""
-
-    def __init__(self, generator: PatternGenerator, fault: Fault, begin: int, dt: float) -> None:
-        self.since = -begin
-        self.targets: tuple[float, ...] = generator.targets
-        self.changes: list[PhaseChange] = []
-        self._generator, self._fault, self._dt, self._missed = generator, fault, dt, 0
-        constants = generator.constants
-        self._largest_moves = [constants.hip_speed * dt] * 4 + [constants.leg_speed * dt] * 2
-        self._before: SensorReading | None = None
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._generator, name)
-
-    def tick(self, reading: SensorReading) -> PhaseChange | None:
-        since = self.since
-        heard: Heard = reading
-        self.since += 1
-        if since < 0 or self._before is None:
-            self._before = reading
-        elif self._fault.when(since):
-            heard = self._fault.change(reading, self._before)
-        if heard is None:
-            self._missed += 1
-            if self._fault.to_zero:
-                moves = zip(self.targets, self._largest_moves, strict=True)
-                self.targets = tuple(ramped(target, 0.0, largest) for target, largest in moves)
-            return None
-        change = self._generator.tick(heard, (1 + self._missed) * self._dt if self._fault.is_told else None)
-        self._missed, self.targets = 0, self._generator.targets
-        if since >= 0 and change is not None:
-            self.changes.append(change)
-        return change
+    survived: bool  # whether it was on its feet and in its place
+    steps_per_second: float
+    stopped_after: float | None  # s from the fault until the supervisor stopped it; None if it did not
 
 
 @dataclass(frozen=True)
 class SensorFaults(Experiment):
-    """Faults of sensors and of the control loop, with locked hips and with the hip law, without a push."""
+    """Faults of sensors and of the control loop, without a push."""
 
-    seeds: int = 20  # number of episodes
-    time_limit: float = 15.0  # time limit of an episode, in s
+    seeds: int = 20  # number of robots
+    seconds: float = 10.0  # time after the fault, in s
 
     def cases(self) -> list[Row]:
-        """Each fault and hips."""
-        return product(fault=FAULTS, hips=HIPS)
+        """Each fault, engine and kind of robot."""
+        return product(fault=FAULTS, engine=ENGINES, supervisor=(WITHOUT, WITH))
 
-    def rows(self, fault: str, hips: str) -> Iterator[Row]:
-        """Survival, and how the robot steps from the fault on."""
-        outcomes = [self._simulated(FAULTS[fault], HIPS[hips], seed) for seed in range(self.seeds)]
-        survived, steps_per_second, by_sensors = map(mean, zip(*outcomes, strict=True))
-        yield {"survival": survived, "steps_per_second": steps_per_second, "phases_by_sensors": by_sensors}
+    def rows(self, fault: str, engine: Engine, supervisor: str) -> Iterator[Row]:
+        """Survival, steps per second from the fault on, and how many robots the supervisor stopped, and when."""
+        outcomes = [self._outcome(fault, engine, supervisor == WITH, seed) for seed in range(self.seeds)]
+        stopped = [one.stopped_after for one in outcomes if one.stopped_after is not None]
+        yield {
+            **survival_of(sum(one.survived for one in outcomes), self.seeds),
+            "steps_per_second": sum(one.steps_per_second for one in outcomes) / self.seeds,
+            "stopped": len(stopped),
+            "stopped_after_s": median(stopped) if stopped else "",
+        }
 
-    def _simulated(self, fault: Fault, hips: tuple[float, ...], seed: int) -> tuple[bool, float, float]:
-        """Whether the robot stays in its place, its steps per second, and its share of phases that sensors end."""
-        config = BalanceConfig(engine="pybullet", push=NO_PUSH, time_limit=self.time_limit)
-        config = replace(config, randomisation=replace(config.randomisation, delay_seconds=fault.delay_seconds))
-        dt = config.physics.control_dt
-        with Episode(config, seed, BALANCE) as episode:
-            episode.stand()
-            episode.start(hips)
-            generator = _BehindFault(episode.robot.generator, fault, FIRST_TICKS + TICKS_LATER * seed, dt)
-            episode.robot.generator = generator  # type: ignore[assignment]  # whatever an episode asks of it, it has
-            while episode.termination is None:
-                episode.tick()
-        changes, seconds = generator.changes, generator.since * dt
-        return (
-            episode.termination == "time_limit",
-            sum(change.is_step for change in changes) / seconds if seconds > 0 else 0.0,
-            sum(change.by_sensors for change in changes) / len(changes) if changes else 0.0,
+    def _outcome(self, fault: str, engine: Engine, is_supervised: bool, seed: int) -> Outcome:
+        plan = FaultPlan(FAULTS[fault], BEGIN + LATER * seed)
+        usual = BALANCE.config_of(SHIPPED.config, engine=engine, push=NO_PUSH)
+        config = replace(
+            usual,
+            time_limit=STAND_SECONDS + plan.begin + self.seconds,
+            supervisor=replace(usual.supervisor, enabled=is_supervised),
         )
+        after: list[LoopTick] = []
+        stops: list[float] = []
+
+        def observe(tick: LoopTick) -> None:
+            since = tick.seconds - STAND_SECONDS - plan.begin
+            if since >= 0.0 and tick.change is not None and tick.change.is_step:
+                after.append(tick)
+            controller = tick.controller
+            if isinstance(controller, Supervisor) and controller.state in (State.STOPPING, State.FALLEN):
+                stops.append(since)
+
+        robot, loop = simulated_loop(replace(SHIPPED, seed=seed, config=config), plan, observers=[observe])
+        loop.run()
+        robot.off()
+        seconds = robot.seconds - STAND_SECONDS - plan.begin
+        return Outcome(robot.ended == "time_limit", len(after) / max(seconds, 1.0), stops[0] if stops else None)
 
 
 FULL = SensorFaults()
-QUICK = SensorFaults(seeds=1, time_limit=1.1)
+QUICK = SensorFaults(seeds=1, seconds=1.0)
 
 
 def faults(rows: DataFrame) -> str:
-    """What becomes of the robot, with locked hips and with the hip law."""
-    columns = ("survival", "steps_per_second", "phases_by_sensors")
-    wide = rows.pivot(index="fault", columns="hips", values=list(columns)).reindex(index=list(FAULTS))
-    formats = {f"{column}, {hips}": format_of(column) for column in columns for hips in HIPS}
-    wide.columns = wide.columns.map(", ".join)
+    """What becomes of the robot, with and without a supervisor."""
+    wide = rows.pivot(index="fault", columns=["engine", "supervisor"], values=["survival", "steps_per_second"])
+    wide = wide.reindex(index=list(FAULTS))
+    columns = {
+        (column, engine, supervisor): f"{words}, {name}, {supervisor}"
+        for column, words in (("survival", "survival"), ("steps_per_second", "steps per second"))
+        for engine, name in ENGINES.items()
+        for supervisor in (WITHOUT, WITH)
+    }
+    wide = wide[list(columns)]
+    wide.columns = list(columns.values())
     caption = (
-        f"Survival of {FULL.seeds} robots with the shipped P1 to P5 in PyBullet, steps per second, and share of phases "
-        f"that sensors end, both from the fault on; with locked hips, and with V1 = 1 and V3 = 0.7."
+        f"Survival of {FULL.seeds} robots with the shipped parameters, and their steps per second from the fault on, "
+        f"without and with a supervisor. There are no pushes."
     )
+    formats = {name: format_of(column) for (column, _, _), name in columns.items()}
     return table(wide.reset_index(), ["fault", *formats], caption, **formats)
+
+
+def stops(rows: DataFrame) -> str:
+    """How many robots the supervisor stops, and how long that takes."""
+    supervised = rows[(rows["supervisor"] == WITH) & (rows["stopped"] > 0)]
+    wide = supervised.pivot(index="fault", columns="engine", values=["stopped", "stopped_after_s"])
+    wide = wide.reindex(index=[fault for fault in FAULTS if fault in wide.index])[
+        [(column, engine) for engine in ENGINES for column in ("stopped", "stopped_after_s")]
+    ]
+    names = [f"{words}, {name}" for name in ENGINES.values() for words in ("stopped", "median time, s")]
+    wide.columns = names
+    caption = f"Robots of {FULL.seeds} that the supervisor stops, and the median time from the fault until it does."
+    return table(wide.reset_index(), ["fault", *names], caption, **{"stopped": ".0f", "time, s": ".2f"})

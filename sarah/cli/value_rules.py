@@ -11,12 +11,19 @@ from typing import Annotated, Any, Union, get_args
 import docstring_parser
 import tyro
 
+from sarah.control.supervisor_settings import SupervisorSettings
+from sarah.episode.robot_settings import RobotSettings
 from sarah.episode.tasks import Task, load_task
 from sarah.number import number, whole_number
 from sarah.ranges import ranges_of, types_of
+from sarah.simulation.randomisation import Randomisation
 
-SHORT = {"engine": "--engine", "enabled": "--randomisation"}
-"""Short options of settings of episodes, by the settings' names."""
+SHORT = {
+    (RobotSettings, "engine"): "--engine",
+    (Randomisation, "enabled"): "--randomisation",
+    (SupervisorSettings, "enabled"): "--supervisor",
+}
+"""Short options of settings of episodes, by the settings' type and name."""
 
 
 def _task_rule(info: tyro.constructors.PrimitiveTypeInfo) -> tyro.constructors.PrimitiveConstructorSpec[Any] | None:
@@ -93,8 +100,9 @@ def _settings_rule(info: tyro.constructors.StructTypeInfo) -> tyro.constructors.
     for name, kind in types.items():
         if name == "dimensions":
             kind = Annotated[kind, _dimensions(info.default.dimensions)]
-        if name in SHORT:
-            kind = Annotated[kind, tyro.conf.arg(aliases=[SHORT[name]])]
+        for (owner, setting), short in SHORT.items():
+            if name == setting and issubclass(info.type, owner):
+                kind = Annotated[kind, tyro.conf.arg(aliases=[short])]
         meaning = functools.partial(_meaning, info.type, name)
         fields.append(tyro.constructors.StructFieldSpec(name, kind, getattr(info.default, name), meaning))
     return tyro.constructors.StructConstructorSpec(info.type, tuple(fields))

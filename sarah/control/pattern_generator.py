@@ -31,7 +31,7 @@ from sarah.control.hip_law import LOCKED_HIPS, NO_LIMITS, BalanceParameters, Hip
 from sarah.errors import ConfigurationError, check_range, check_type, shortened
 from sarah.number import is_finite, plain, to_floats
 from sarah.robot.filters import LowPass, clipped, low_pass_gain, ramped
-from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, SensorReading, Side
+from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, SensorReading, Side, Targets
 
 STAND_SECONDS = 1.0
 """Duration of standing before the robot begins to step, in s; it is the paper's."""
@@ -234,7 +234,7 @@ class PatternGenerator:
         return change
 
     @property
-    def targets(self) -> tuple[float, float, float, float, float, float]:
+    def targets(self) -> Targets:
         """Joint targets in the order of ``ACTUATED_JOINTS``, in rad and m."""
         abductions, flexion, lengths = self.hips.abductions, self.hips.flexion, self._lengths
         left, right = Side.LEFT, Side.RIGHT

@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import AbstractContextManager
 
 from sarah.control.hip_law import LOCKED_HIPS
-from sarah.control.pattern_generator import STAND_SECONDS
+from sarah.control.pattern_generator import STAND_SECONDS, PhaseChange
 from sarah.episode.push import PUSH_SHOWN_SECONDS
 from sarah.episode.recording import Recording, Return
 from sarah.episode.result import EpisodeResult
@@ -17,7 +17,7 @@ from sarah.episode.task_answers import controller_of, ending_of, push_of, reward
 from sarah.episode.tasks import STEPPING, Task
 from sarah.episode.tick import Tick
 from sarah.errors import check_type
-from sarah.robot.reading import SensorReading, Vector
+from sarah.robot.reading import SensorReading, Targets, Vector
 from sarah.simulation.build import BuildSimulator
 from sarah.simulation.randomisation import Conditions
 from sarah.simulation.world import HoldsWorld
@@ -88,8 +88,12 @@ class Episode(HoldsWorld, AbstractContextManager["Episode"]):
         :return: the last reading of that second, which an agent acts on
         """
         reading = self.robot.stand()
-        self.robot.observers = self._recording.observers
+        self.record()
         return reading
+
+    def record(self) -> None:
+        """Record from the next tick on, which :meth:`stand` does at its end."""
+        self.robot.observers = self._recording.observers
 
     def run(self, parameters: tuple[float, ...]) -> EpisodeResult:
         """Let the pattern generator run until the episode ends.
@@ -112,7 +116,17 @@ class Episode(HoldsWorld, AbstractContextManager["Episode"]):
 
     def tick(self) -> None:
         """Advance by one control tick, with the push if it is its time, and judge."""
-        self.robot.tick(self._push_within(0.0))
+        if self.robot.sense():
+            change = self.robot.generator.tick(self.robot.last_reading)
+            self.act(self.robot.generator.targets, change)
+
+    def act(self, targets: Targets, change: PhaseChange | None) -> None:
+        """Advance by one control tick of which the robot has already sensed and decided.
+
+        :param targets: joint targets in the order of ``ACTUATED_JOINTS``, in rad and m
+        :param change: end of a phase that the controller reported
+        """
+        self.robot.act(targets, change, self._push_within(0.0))
         if self.robot.termination is None:
             self._judge()
 

@@ -8,6 +8,7 @@ from typing import Annotated, Any, TypeVar
 
 from sarah.control.constants import ControllerConstants
 from sarah.control.pattern_generator import STAND_SECONDS
+from sarah.control.supervisor_settings import SupervisorSettings
 from sarah.errors import ConfigurationError, check_type
 from sarah.number import is_number, plain
 from sarah.ranges import Within, check_ranges, ranges_of, types_of
@@ -42,6 +43,7 @@ class RobotSettings:
     :param randomisation: ranges that each episode's seed draws from
     :param terrain: ground, drawn from each episode's seed as well
     :param controller: constants of the pattern generator and the hip law
+    :param supervisor: from when on the robot stops by itself because something fails
     :param payload: extra mass in the torso, in kg, distributed like the torso's own mass
     :param dimensions: dimensions of the robot that differ from their defaults: values by name in SI units, such as
         hinge_height 0.04
@@ -53,6 +55,7 @@ class RobotSettings:
     randomisation: Randomisation = None  # type: ignore[assignment]
     terrain: Terrain = None  # type: ignore[assignment]
     controller: ControllerConstants = None  # type: ignore[assignment]
+    supervisor: SupervisorSettings = None  # type: ignore[assignment]
     payload: Annotated[float, Sized(0.0, 100.0, "kg")] = 0.0
     dimensions: Mapping[str, float] = field(default_factory=dict)
     time_limit: Annotated[float, Within(STAND_SECONDS, LONGEST_EPISODE, "s")] = 30.0

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, PhaseChange, SteppingParameters
+from sarah.control.supervisor import Controller, Supervisor
 from sarah.episode.robot_settings import RobotSettings, conditions_of
 from sarah.robot.description import describe_robot
-from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, SensorReading, Vector
+from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, SensorReading, Targets, Vector
 from sarah.simulation.build import BuildSimulator, simulator_of
 from sarah.simulation.randomisation import Conditions
 from sarah.simulation.sensors import ImperfectSensors
@@ -45,8 +46,8 @@ class RunningRobot(HoldsWorld):
     :param conditions: properties of robot and world; by default those that the seed draws
     """
 
-    generator: PatternGenerator
-    """Source of the joint targets. It has the paper's parameters until it is given others."""
+    generator: Controller
+    """Source of the joint targets, supervised or not. It has the paper's parameters until it is given others."""
     observers: Sequence[Observer]
     """Records of what it does from the next tick on."""
     termination: str | None
@@ -76,7 +77,11 @@ class RunningRobot(HoldsWorld):
         dt = config.physics.control_dt
         limits = [self.description.limits[joint] for joint in ACTUATED_JOINTS]
         stepping = SteppingParameters(*PAPER_STEPPING)
-        self.generator = PatternGenerator(stepping, dt=dt, limits=limits, constants=config.controller)
+        self.generator: Controller = (
+            Supervisor(stepping, dt=dt, limits=limits, constants=config.controller, settings=config.supervisor)
+            if config.supervisor.enabled
+            else PatternGenerator(stepping, dt=dt, limits=limits, constants=config.controller)
+        )
         self._sensors = ImperfectSensors(conditions.sensors, dt)
 
     def stand(self) -> SensorReading:
@@ -95,17 +100,34 @@ class RunningRobot(HoldsWorld):
 
         :param force: force of a push in this tick, in N
         """
-        generator, simulation = self.generator, self.simulation
-        truth = simulation.read()
+        if self.sense():
+            change = self.generator.tick(self.last_reading)
+            self.act(self.generator.targets, change, force)
+
+    def sense(self) -> bool:
+        """Read the sensors.
+
+        :return: whether there is a new :attr:`last_reading`; there is none once the robot has ended
+        """
+        truth = self.simulation.read()
         if not truth.is_finite:
             self.termination = "diverged"
         if self.termination is not None:
-            return
+            return False
         self.truth, self.last_reading = truth, self._sensors(truth)
         for observer in self.observers:
             observer.sensed(self)
-        change = generator.tick(self.last_reading)
-        simulation.set_targets(generator.targets)
+        return True
+
+    def act(self, targets: Targets, change: PhaseChange | None, force: Vector | None = None) -> None:
+        """Move to targets, until the next tick.
+
+        :param targets: joint targets in the order of ``ACTUATED_JOINTS``, in rad and m
+        :param change: end of a phase that the controller reported in this tick
+        :param force: force of a push in this tick, in N
+        """
+        simulation = self.simulation
+        simulation.set_targets(targets)
         if force is not None:
             simulation.push(force)
         for observer in self.observers:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from sarah.control.pattern_generator import STAND_SECONDS
+from sarah.control.supervisor import Supervisor
 from sarah.episode.ending import is_fallen
 from sarah.episode.push import Push, draw_push
 from sarah.episode.recording import Recording
@@ -185,6 +186,8 @@ class RobotInOperation:
         recording = Recording(robot, first * dt, record.true) if record_trace else None
         robot.observers = (record, *(() if recording is None else recording.observers), *observers)
         robot.generator.set_parameters(*controller_parameters(parameters))
+        if isinstance(robot.generator, Supervisor):  # if it has stopped, each window asks it to step again
+            robot.generator.step()
         ticks = 0
         while ticks < settle + measure and robot.termination is None:
             robot.tick(self._force(config.push, first + ticks, dt))

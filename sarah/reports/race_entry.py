@@ -69,7 +69,9 @@ def entries_of(
     """
     return [
         Entry(
-            dataclasses.replace(base, algo=algo, agent=settings_of(algo)(), seed=seed),
+            dataclasses.replace(
+                base, algo=algo, agent=base.agent if algo == base.algo else settings_of(algo)(), seed=seed
+            ),
             folder / f"{algo}-s{seed}",
             evaluations,
         )

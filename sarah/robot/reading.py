@@ -8,6 +8,8 @@ from enum import Enum
 from typing import Any, NamedTuple
 
 Vector = tuple[float, float, float]
+Targets = tuple[float, float, float, float, float, float]
+"""Targets of the actuated joints in the order of :data:`ACTUATED_JOINTS`, in rad and m."""
 GRAVITY = 9.81
 """Acceleration of gravity, in m/s^2."""
 LARGEST_SIGNAL = 1e6

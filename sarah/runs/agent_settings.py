@@ -13,25 +13,31 @@ from sarah.episode.from_mapping import convert_fields
 from sarah.errors import ConfigurationError, shortened, unknown_name
 from sarah.ranges import Within, check_ranges
 
-Preset = Literal["one-step", "paper"]
+Preset = Literal["one-step", "noisy", "paper"]
 Activation = Literal["tanh", "relu", "sigmoid"]
 
+ONE_STEP: dict[str, Any] = dict(
+    temperature=4.0,
+    smoothed=True,
+    elite_share=0.8,
+    elite_std=(0.4, 0.15),
+    elite_end=0.8,
+    v_layers=(32, 32),
+    mu_layers=(32, 32),
+    l_layers=(32, 32),
+    activation="tanh",
+    squash_mu=True,
+    min_curvature=1.0,
+)
 PRESETS: dict[str, dict[str, Any]] = {
-    "one-step": dict(
-        temperature=8.0,
-        smoothed=True,
-        elite_share=0.8,
-        v_layers=(32, 32),
-        mu_layers=(32, 32),
-        l_layers=(32, 32),
-        activation="tanh",
-        squash_mu=True,
-        min_curvature=1.0,
-    ),
+    "one-step": ONE_STEP,
+    "noisy": ONE_STEP | dict(temperature=8.0, elite_std=(1.2, 0.15), elite_end=0.5),
     "paper": dict(
         temperature=0.0,
         smoothed=False,
         elite_share=0.0,
+        elite_std=(0.4, 0.15),
+        elite_end=0.8,
         v_layers=(256, 256, 256),
         mu_layers=(16, 16, 16, 16),
         l_layers=(80, 80, 80, 80),
@@ -40,7 +46,8 @@ PRESETS: dict[str, dict[str, Any]] = {
         min_curvature=0.0,
     ),
 }
-"""Defaults of NAF that a preset decides: local NAF, or plain NAF with the paper's networks."""
+"""Defaults of NAF that a preset decides: local NAF, for returns without much noise or with much, or plain NAF with
+the paper's networks."""
 
 WARM_UP = 5
 """Default number of episodes before an algorithm uses what it knows: the same for all, which makes races fair."""
@@ -102,13 +109,15 @@ def _by_preset() -> Any:
 class NAFSettings(LearnerSettings):
     """Settings of NAF. Standard deviations are of actions scaled to [-1, 1].
 
-    :param preset: source of defaults: one-step for local NAF, paper for the paper's networks and plain NAF
+    :param preset: source of defaults: one-step for local NAF, noisy for local NAF where chance decides more of a return
+        than the parameters do, paper for the paper's networks and plain NAF
     :param max_grad_norm: largest norm of an update's gradient
     :param exploration_std: standard deviation of the noise around mu: at first, and after 80 % of the training
     :param temperature: logarithm of how much more often the best episode is replayed than the worst
     :param smoothed: smoothing of the returns over similar actions, by a Gaussian process of the newest 500 episodes
     :param elite_share: share of the actions that are drawn around the best one so far instead of around mu
-    :param elite_std: standard deviation of these draws: at first, and after half of the training
+    :param elite_std: standard deviation of these draws: at first, and when they are narrowest
+    :param elite_end: share of the training after which they are
     :param elite_draws: number of draws, of which the most promising is tried
     :param v_layers: widths of the hidden layers of V
     :param mu_layers: widths of the hidden layers of mu
@@ -127,7 +136,8 @@ class NAFSettings(LearnerSettings):
     temperature: Annotated[float, Within(0.0, 100.0)] = _by_preset()
     smoothed: bool = _by_preset()
     elite_share: Share = _by_preset()
-    elite_std: tuple[Deviation, Deviation] = (1.2, 0.15)
+    elite_std: tuple[Deviation, Deviation] = _by_preset()
+    elite_end: Annotated[float, Within(0.01, 1.0)] = _by_preset()
     elite_draws: Annotated[int, Within(1, 10_000)] = 1
     v_layers: Layers = _by_preset()
     mu_layers: Layers = _by_preset()

@@ -51,8 +51,8 @@ from sarah.training.plan import Plan
 from sarah.training.recorder import EpisodeRecorder
 from sarah.training.replay import LateRankReplayBuffer, LateSmoothedReplayBuffer
 
-SCHEDULED_SHARE, WIDE_SHARE = 0.8, 0.5
-"""Shares of a training after which NAF's noise around mu, and its draws around the best action, are narrowest."""
+SCHEDULED_SHARE = 0.8
+"""Share of a training after which NAF's noise around mu is narrowest."""
 ALL_ALIKE = {"temperature": 0.0}
 """Arguments of the replay buffer with which it prefers no episode."""
 ACTIVATIONS = {"tanh": nn.Tanh, "relu": nn.ReLU, "sigmoid": nn.Sigmoid}
@@ -166,7 +166,7 @@ def _naf_arguments(settings: NAFSettings, task: Task) -> dict[str, Any]:
         max_grad_norm=settings.max_grad_norm,
         exploration_std=LinearSchedule(*settings.exploration_std, end_fraction=SCHEDULED_SHARE),
         elite_share=settings.elite_share,
-        elite_std=LinearSchedule(*settings.elite_std, end_fraction=WIDE_SHARE),
+        elite_std=LinearSchedule(*settings.elite_std, end_fraction=settings.elite_end),
         elite_draws=settings.elite_draws,
         policy_kwargs=dict(
             net_arch={name: list(widths) for name, widths in layers.items()},

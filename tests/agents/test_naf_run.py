@@ -137,7 +137,7 @@ class Cliff(gym.Env):
 def test_one_step_solves_a_hill_beside_a_cliff():
     env, before = Cliff(0), repr(PRESETS)
     model = LocalNAF("MlpPolicy", env, seed=0, **PRESETS["one-step"]).learn(100)
-    assert env.score(model.predict(np.zeros(16, np.float32))[0]) > 0.85
+    assert env.score(model.predict(np.zeros(16, np.float32))[0]) > 0.9
     assert repr(PRESETS) == before
 
 

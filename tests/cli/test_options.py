@@ -37,7 +37,7 @@ def test_the_command_line_changes_the_file(begun: Begin) -> None:
 
 
 HELP = {
-    "--help": (("--agent.elite-share", "(0 to 1; default: ", "{one-step,paper}"), "--agent.layers"),
+    "--help": (("--agent.elite-share", "(0 to 1; default: ", "{one-step,noisy,paper}"), "--agent.layers"),
     "--algo td3 --help": (("--agent.layers", "--agent.policy-delay"), "--agent.elite-share"),
     "--algo=cma-es --help": (("--agent.population",), "--agent.learning-rate"),
     "--algo random --help": (("--episode.time-limit",), "--agent."),

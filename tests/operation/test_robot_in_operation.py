@@ -154,3 +154,13 @@ def test_parameters_out_of_their_box_are_refused(parameters: tuple[float, ...]) 
     robot = RobotInOperation(quick(), 0)
     with pytest.raises(ConfigurationError, match=r"parameter"):
         robot.run(parameters)
+
+
+def test_a_supervised_robot_that_has_stopped_steps_in_the_next_window() -> None:
+    robot = RobotInOperation(quick(robot={"supervisor": {"enabled": True, "stepless_seconds": 0.8}}), 0)
+    never = (2.0,) * 5 + (0.0,) * 4
+    found = [
+        robot.run(parameters).felt[FELT.index("steps_per_second")] for parameters in (never, never, *[SHIPPED] * 2)
+    ]
+    robot.close()
+    assert found == [0.0, 0.0, 2.0, 3.0]

@@ -39,7 +39,7 @@ def test_a_preset_is_a_source_of_defaults() -> None:
     assert (paper.temperature, paper.elite_share, paper.min_curvature) == (0.0, 0.0, 0.0)
     rest = {item.name for item in dataclasses.fields(NAFSettings)} - set(PRESETS["paper"]) - {"preset"}
     assert all(getattr(paper, name) == getattr(NAFSettings(), name) for name in rest)
-    assert set(PRESETS["paper"]) == set(PRESETS["one-step"])
+    assert set(PRESETS["paper"]) == set(PRESETS["one-step"]) == set(PRESETS["noisy"])
     # Another one leaves what it does not decide
     changed = NAFSettings(learning_rate=1e-4, mu_layers=(8,)).with_preset("paper")
     assert changed == NAFSettings(preset="paper", learning_rate=1e-4)
@@ -56,7 +56,7 @@ def test_settings_of_another_algorithm_are_refused() -> None:
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        ({"preset": "papr"}, "unknown agent.preset 'papr', did you mean 'paper'? (allowed: one-step, paper)"),
+        ({"preset": "papr"}, "unknown agent.preset 'papr', did you mean 'paper'? (allowed: noisy, one-step, paper)"),
         ({"activation": "tan"}, "unknown agent.activation 'tan', did you mean 'tanh'?"),
         ({"device": "gpu"}, "agent.device must be 'cpu', 'cuda', 'cuda:' and a number, or 'auto', not 'gpu'"),
     ],

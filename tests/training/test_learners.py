@@ -34,11 +34,16 @@ def widths(net: nn.Module, outputs: int = 1) -> tuple[int, ...]:
     return tuple(layers[: len(layers) - outputs])
 
 
-def pair(schedule: Callable[[float], float], share: float = 0.8) -> tuple[float, float]:
-    """What a schedule begins with and ends with, which it reaches after a share of the training."""
-    assert schedule(1.01 - share) != schedule(0.99 - share) == schedule(0.0)
-    assert schedule(1.0 - share / 2) == pytest.approx((schedule(1.0) + schedule(0.0)) / 2)
+def pair(schedule: Callable[[float], float]) -> tuple[float, float]:
+    """What a schedule begins with and ends with, in a straight line."""
+    assert schedule(1.0 - end_of(schedule) / 2) == pytest.approx((schedule(1.0) + schedule(0.0)) / 2)
     return schedule(1.0), schedule(0.0)
+
+
+def end_of(schedule: Callable[[float], float]) -> float:
+    """Share of the training after which a schedule changes no more."""
+    shares = [percent / 100 for percent in range(1, 101)]
+    return next(share for share in shares if schedule(1.0 - share) == pytest.approx(schedule(0.0)))
 
 
 def noise_std(model: OffPolicyAlgorithm) -> float:
@@ -70,7 +75,8 @@ SETTINGS: dict[str, dict[str, tuple[Any, Callable[[Any], Any]]]] = {
         "temperature": (1.5, lambda model: model.replay_buffer.temperature),
         "smoothed": (False, lambda model: isinstance(model.replay_buffer, SmoothedReplayBuffer)),
         "elite_share": (0.25, lambda model: model.elite_share_schedule(0.5)),
-        "elite_std": ((0.1, 0.6), lambda model: pair(model.elite_std_schedule, 0.5)),
+        "elite_std": ((0.1, 0.6), lambda model: pair(model.elite_std_schedule)),
+        "elite_end": (0.33, lambda model: end_of(model.elite_std_schedule)),
         "elite_draws": (5, lambda model: model.elite_draws),
         "v_layers": ((7, 6), lambda model: widths(model.q_net.value_net)),
         "mu_layers": ((7, 6), lambda model: widths(model.q_net.mu_net)),
@@ -115,7 +121,7 @@ def test_what_follows_counts_only_where_no_episode_is_preferred() -> None:
             NAFSettings(gamma=0.5, **preferred)
 
 
-@pytest.mark.parametrize(("preset", "algorithm"), [("one-step", LocalNAF), ("paper", NAF)])
+@pytest.mark.parametrize(("preset", "algorithm"), [("one-step", LocalNAF), ("noisy", LocalNAF), ("paper", NAF)])
 def test_presets_are_those_of_the_agents(preset: str, algorithm: type[NAF]) -> None:
     env = EpisodeVecEnv("stepping", TrainingConfig().episode, 1, 1, Workers())
     plain, model = algorithm("MlpPolicy", env, **PRESETS[preset]), built(preset=preset)

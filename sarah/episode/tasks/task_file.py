@@ -65,7 +65,9 @@ def _module(file: TaskFile) -> ModuleType:
     try:
         exec(compile(file.text, file.name, "exec"), vars(module))
     except (Exception, SystemExit) as error:
-        raise TaskError(mistake(file.name, error)) from error
+        is_missing = isinstance(error, ModuleNotFoundError)
+        hint = "; a task's file can import installed packages only" if is_missing else ""
+        raise TaskError(mistake(file.name, error) + hint) from error
     return module
 
 
@@ -78,8 +80,6 @@ def mistake(name: str, error: BaseException) -> str:
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == name]
     line = getattr(error, "lineno", None) if isinstance(error, SyntaxError) else lines[-1] if lines else None
     words = error.msg if isinstance(error, SyntaxError) else _text_of(error)
-    if isinstance(error, ModuleNotFoundError):
-        words += "; a task's file can import installed packages only"
     kind = "" if isinstance(error, SarahError) else f"{type(error).__name__}: "
     return f"{name}{f', line {line}' if line else ''}: {kind}{words}"
 

@@ -1,0 +1,266 @@
+"""The supervisor: a pattern generator that stops by itself when something fails.
+
+It has four states::
+
+    STANDING   the targets are zero: before the first step, and after a stop until it is asked to step
+    STEPPING   the pattern generator moves the targets, and the watches look
+    STOPPING   the targets go to zero, as fast as the controller moves them
+    FALLEN     the targets stay where they are
+
+It is plain Python of the standard library, and knows no clock: readings and times go in, targets and state come out.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from enum import Enum
+from typing import NamedTuple
+
+from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
+from sarah.control.hip_law import LOCKED_HIPS, NO_LIMITS, BalanceParameters
+from sarah.control.pattern_generator import PatternGenerator, Phase, PhaseChange, SteppingParameters
+from sarah.control.supervisor_settings import STANDARD_SUPERVISOR, SupervisorSettings
+from sarah.control.watches import Watches
+from sarah.robot.filters import ramped
+from sarah.robot.reading import GRAVITY, SensorReading, Side, Targets
+
+NOTHING = SensorReading((math.nan,) * 3, (math.nan,) * 3, (math.nan,) * 4, (math.nan,) * 6)
+"""Reading of which no signal has come: all of them keep their last values."""
+UNHEARD = NOTHING._replace(acceleration=(math.nan, math.nan, GRAVITY))
+"""What the controller is given then: a stuck vertical acceleration could look like a fall."""
+PROVEN_SECONDS = 5.0
+"""Time of stepping after which new parameters count as working, in s."""
+
+
+class State(Enum):
+    """State of a supervised robot."""
+
+    STANDING = "standing"
+    STEPPING = "stepping"
+    STOPPING = "stopping"
+    FALLEN = "fallen"
+
+
+class StateChange(NamedTuple):
+    """What a supervisor did in a tick.
+
+    :param state: state that it is in now
+    :param before: state that it was in
+    :param reason: reason for it
+    """
+
+    state: State
+    before: State
+    reason: str
+
+
+class Supervisor:
+    """A pattern generator with its watches. It takes the place of a generator: call :meth:`tick` once per period.
+
+    :param parameters: values of P1 to P5
+    :param balance: values of V1 to V4
+    :param dt: control period, in s
+    :param limits: lowest and highest position of the joints, in rad and m
+    :param constants: constants of the controller
+    :param settings: from when on something is a fault
+    :raises ConfigurationError: as :class:`~sarah.control.pattern_generator.PatternGenerator` does
+    """
+
+    state: State
+    """State that it is in."""
+    state_change: StateChange | None
+    """What it did in the last tick; most of the time, nothing."""
+    targets: Targets
+    """Joint targets in the order of ``ACTUATED_JOINTS``, in rad and m."""
+    generator: PatternGenerator
+    """Pattern generator, which is a new one each time that the robot begins to step."""
+
+    def __init__(
+        self,
+        parameters: SteppingParameters,
+        balance: BalanceParameters = LOCKED_HIPS,
+        dt: float = 0.01,
+        limits: Sequence[tuple[float, float]] = NO_LIMITS,
+        constants: ControllerConstants = STANDARD_CONSTANTS,
+        settings: SupervisorSettings = STANDARD_SUPERVISOR,
+    ) -> None:
+        self._dt, self._limits, self._settings = dt, limits, settings
+        self._asked, self.constants = (parameters, balance), constants
+        self._proven: tuple[SteppingParameters, BalanceParameters] | None = None
+        self.state_change = None
+        self._begin()
+
+    def _begin(self) -> None:
+        """Stand, with a new generator that steps after its second of standing."""
+        self.generator = PatternGenerator(*self._asked, self._dt, self._limits, self.constants)
+        self.targets = self.generator.targets
+        self.state = State.STANDING
+        self._watches = Watches(self._settings, self._dt, self.constants)
+        self._steps_when_asked, self._stop_asked = True, ""
+        self._stepped_seconds = 0.0
+        self._before = NOTHING
+
+    def set_parameters(
+        self, parameters: SteppingParameters | None = None, balance: BalanceParameters | None = None
+    ) -> None:
+        """Take new parameters, at any time, as :meth:`PatternGenerator.set_parameters` does.
+
+        If the robot then does not step, those that it stepped with before come back.
+
+        :param parameters: values of P1 to P5; without them the present ones stay
+        :param balance: values of V1 to V4; without them the present ones stay
+        :raises ConfigurationError: if a value is not finite or of another type; all values stay as they were
+        """
+        self.generator.set_parameters(parameters, balance)
+        asked = parameters or self._asked[0], balance or self._asked[1]
+        if asked != self._asked:
+            self._asked, self._stepped_seconds = asked, 0.0
+            self._watches.forgive()
+
+    def stand(self, reason: str = "asked to stand") -> None:
+        """Stop from the next tick on.
+
+        :param reason: reason for it
+        """
+        self._stop_asked = reason
+
+    def step(self) -> None:
+        """Step again, after a second of standing with a new generator; without effect while it steps."""
+        if self.state in (State.STANDING, State.FALLEN) and not self._steps_when_asked:
+            self._begin()
+
+    def tick(self, reading: SensorReading | None, seconds: float | None = None, age: float = 0.0) -> PhaseChange | None:
+        """Advance by one control tick.
+
+        :param reading: newest sensor reading; ``None`` if there is none
+        :param seconds: measured time since the last tick, in s; by default a control period
+        :param age: age of the reading, in s
+        :return: the phase change that this tick made, if it made one
+        """
+        self.state_change = None
+        if self.state is State.STOPPING or not self._steps_when_asked:
+            self._stand_still()
+            return None
+        if reading is None or age > self._settings.stale_seconds:
+            reading = NOTHING
+        heard = reading if self._is_new(reading) else UNHEARD
+        generator = self.generator
+        targets, phase = self.targets, generator.phase
+        change = generator.tick(heard, seconds)
+        passed = self._dt if seconds is None else seconds
+        wrong = self._stop_asked or self._watches.tick(reading, heard, passed, targets, phase, change)
+        if change is not None and change.ended is Phase.STAND:
+            self._enter(State.STEPPING, "stood for a second")
+        if generator.has_fallen:
+            self._enter(State.FALLEN, "fallen: the torso lies")
+        elif wrong:
+            self._react(wrong)
+        elif self._watches.warnings.new:
+            self._enter(self.state, f"warning: {self._watches.warnings.take()}")
+        else:
+            self._approve(passed)
+        if self.state in (State.STANDING, State.STEPPING):
+            self.targets = generator.targets
+        return change
+
+    def _is_new(self, reading: SensorReading) -> bool:
+        """Whether an inertial signal is another one than before; noise never repeats."""
+        before, self._before = self._before, reading
+        is_same = reading.acceleration == before.acceleration and reading.angular_rate == before.angular_rate
+        return not is_same and reading.acceleration[2] == reading.acceleration[2]  # and it is a number
+
+    def _stand_still(self) -> None:
+        """Move the targets on to zero; a robot that has fallen keeps them."""
+        if self.state is State.STOPPING:
+            self.targets = towards_zero(self.targets, self.constants, self._dt)
+            if not any(self.targets):
+                self._enter(State.STANDING, "stopped")
+
+    def _react(self, wrong: str) -> None:
+        """Do what a fault asks for."""
+        proven = self._proven
+        if wrong.startswith("tilt"):
+            self._enter(State.FALLEN, wrong)
+        elif wrong.startswith("no step") and proven is not None and proven != self._asked:
+            self.set_parameters(*proven)
+            self._enter(State.STEPPING, f"the parameters before are back: {wrong}")
+        else:
+            self._enter(State.STOPPING, wrong)
+
+    def _approve(self, seconds: float) -> None:
+        """Count the time for which the present parameters have worked."""
+        if self.state is State.STEPPING:
+            self._stepped_seconds += seconds
+            if self._stepped_seconds > PROVEN_SECONDS:
+                self._proven = self._asked
+
+    def _enter(self, state: State, reason: str) -> None:
+        self.state_change = StateChange(state, self.state, reason)
+        self.state = state
+        if state in (State.STOPPING, State.FALLEN):
+            self._steps_when_asked = False
+
+    @property
+    def is_moving(self) -> bool:
+        """Whether its targets move, or are not yet those of standing."""
+        return self.state in (State.STEPPING, State.STOPPING)
+
+    @property
+    def torso_tilt(self) -> float:
+        """Tilt of the torso against standing, in rad, as it was when the watches looked last."""
+        return self._watches.torso_tilt
+
+    @property
+    def phase(self) -> Phase:
+        """Phase of the generator; STAND while the robot stops, stands or has fallen."""
+        return self.generator.phase if self.state is State.STEPPING else Phase.STAND
+
+    @property
+    def stance(self) -> Side:
+        """Leg that carries the robot, if it steps."""
+        return self.generator.stance
+
+    @property
+    def swing(self) -> Side:
+        """Other leg."""
+        return self.generator.swing
+
+    @property
+    def has_fallen(self) -> bool:
+        """Whether the robot has fallen."""
+        return self.state is State.FALLEN
+
+    @property
+    def stable_x(self) -> float:
+        """Low-passed lateral acceleration of the generator, in m/s^2."""
+        return self.generator.stable_x
+
+    @property
+    def tilt(self) -> float:
+        """Lateral acceleration towards the stance leg, in m/s^2."""
+        return self.generator.tilt
+
+    @property
+    def rate(self) -> float:
+        """Angular rate about y towards the stance leg, in rad/s."""
+        return self.generator.rate
+
+
+def towards_zero(targets: Targets, constants: ControllerConstants, seconds: float) -> Targets:
+    """Targets that are nearer to those of standing, by as much as the controller moves them.
+
+    :param targets: joint targets, in rad and m
+    :param constants: constants of the controller
+    :param seconds: time in which they move, in s
+    """
+    hip, leg = constants.hip_speed * seconds, constants.leg_speed * seconds
+    a, b, c, d, e, f = targets
+    return (
+        ramped(a, 0.0, hip), ramped(b, 0.0, hip), ramped(c, 0.0, hip), ramped(d, 0.0, hip),
+        ramped(e, 0.0, leg), ramped(f, 0.0, leg),
+    )  # fmt: skip
+
+
+Controller = PatternGenerator | Supervisor
+"""What turns readings into targets, tick by tick."""

@@ -1,0 +1,1 @@
+"""Robots that the controller runs on: the protocol of a driver, the simulated robot, and the control loop."""

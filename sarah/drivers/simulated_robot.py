@@ -1,0 +1,182 @@
+"""The simulated robot as a driver: an episode whose controller is outside of it."""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from sarah.control.hip_law import LOCKED_HIPS
+from sarah.control.pattern_generator import STAND_SECONDS, PhaseChange
+from sarah.control.supervisor import towards_zero
+from sarah.drivers.driver import Driver, TimedReading
+from sarah.drivers.faults import FAULTS, Fault
+from sarah.drivers.loop import ControlLoop, Lockstep, LoopObserver, LoopTick, Pacing, controller_for
+from sarah.episode.episode import Episode
+from sarah.episode.result import EpisodeResult
+from sarah.episode.settings import EpisodeConfig
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.task_answers import controller_of
+from sarah.episode.tasks import Task
+from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Targets
+
+
+@dataclass(frozen=True)
+class FaultPlan:
+    """A fault and when it begins.
+
+    :param fault: fault
+    :param begin: time after standing at which it begins, in s
+    """
+
+    fault: Fault = FAULTS["none"]
+    begin: float = 3.0
+
+
+NO_FAULT = FaultPlan()
+"""A robot of which nothing fails."""
+
+
+class SimulatedRobot(Driver):
+    """A robot in an episode. A control period passes each time that it is read again, with the targets sent last.
+
+    In lockstep its clock is that of the simulation, so the period passes however long the controller takes. Otherwise
+    its clock is the computer's, and whoever reads late finds that several periods have passed.
+
+    :param config: settings of robot, world and episode
+    :param seed: seed of the episode
+    :param task: task whose episode it is
+    :param plan: fault, and when it begins
+    :param is_lockstep: whether time passes with the readings alone
+    :param record_trace: whether to record every control tick after standing in a trace
+    """
+
+    def __init__(
+        self,
+        config: EpisodeConfig,
+        seed: int,
+        task: Task,
+        plan: FaultPlan = NO_FAULT,
+        is_lockstep: bool = True,
+        record_trace: bool = False,
+    ) -> None:
+        if plan.fault.delay_seconds is not None:
+            randomisation = dataclasses.replace(config.randomisation, delay_seconds=plan.fault.delay_seconds)
+            config = dataclasses.replace(config, randomisation=randomisation)
+        self.episode = Episode(config, seed, task, record_trace)
+        """Episode of the robot, which knows what is true of it."""
+        self.limits = [self.episode.robot.description.limits[joint] for joint in ACTUATED_JOINTS]
+        self._dt, self._is_lockstep = config.physics.control_dt, is_lockstep
+        self._constants = config.controller
+        self._plan = plan
+        self._first_wrong = round((STAND_SECONDS + plan.begin) / self._dt)
+        self._standing_ticks = round(STAND_SECONDS / self._dt)
+        self._ticks = 0
+        self._targets: Targets = (0.0,) * 6
+        self._change: PhaseChange | None = None
+        self._heard: SensorReading | None = None
+        self._began = time.monotonic()
+
+    @property
+    def seconds(self) -> float:
+        """Simulated time, in s."""
+        return self._ticks * self._dt
+
+    def now(self) -> float:
+        """Simulated time in lockstep, or time since it was made, in s."""
+        return self.seconds if self._is_lockstep else time.monotonic() - self._began
+
+    def read(self) -> TimedReading | None:
+        """Let time pass, and read the sensors; ``None`` once the episode has ended."""
+        if self._heard is None:
+            return self._sensed()
+        self._advance()
+        sent = self._ticks
+        while not self.ended and (self._is_missed() or self._has_fallen_behind()):
+            self._sensed()
+            if (self._ticks - sent) * self._dt >= self._plan.fault.to_zero_after:
+                self._targets = towards_zero(self._targets, self._constants, self._dt)
+            self._change = None
+            self._advance()
+        return self._sensed()
+
+    def send(self, targets: Targets) -> None:
+        """Set the targets of the period that begins."""
+        self._targets = targets
+
+    def decided(self, tick: LoopTick) -> None:
+        """Learn what the controller decided, which rewards and recordings need.
+
+        :param tick: what happened in a tick of the loop
+        """
+        self.episode.robot.generator, self._change = tick.controller, tick.change
+
+    def result(self) -> EpisodeResult:
+        """Result of the episode so far."""
+        return self.episode.result()
+
+    def off(self) -> None:
+        """Give the physics engine's resources back."""
+        self.episode.close()
+
+    def _advance(self) -> None:
+        """Let a control period pass."""
+        if self._ticks < self._standing_ticks:
+            self.episode.robot.act(self._targets, self._change)
+        else:
+            self.episode.act(self._targets, self._change)
+        self._ticks += 1
+        if self._ticks == self._standing_ticks:
+            self.episode.record()
+        self.ended = self.episode.termination or ""
+
+    def _has_fallen_behind(self) -> bool:
+        """Whether more than a period has passed by the clock since the simulated time."""
+        return not self._is_lockstep and self.now() > self.seconds + self._dt
+
+    def _is_missed(self) -> bool:
+        since = self._ticks - self._first_wrong
+        return since >= 0 and self._plan.fault.misses(since * self._dt, since)
+
+    def _sensed(self) -> TimedReading | None:
+        """Reading that the controller hears."""
+        if self.ended or not self.episode.robot.sense():
+            self.ended = self.episode.termination or ""
+            return None
+        reading, since = self.episode.robot.last_reading, self._ticks - self._first_wrong
+        if self._heard is None or since < 0:
+            self._heard = reading
+        elif self._plan.fault.when(since * self._dt, since):
+            reading = self._plan.fault.change(reading, self._heard)
+        return TimedReading(reading, self.seconds)
+
+
+def simulated_loop(
+    spec: EpisodeSpec,
+    plan: FaultPlan = NO_FAULT,
+    pacing: Pacing | None = None,
+    observers: Sequence[LoopObserver] = (),
+    record_trace: bool = False,
+) -> tuple[SimulatedRobot, ControlLoop]:
+    """Make the control loop of an episode's robot. In lockstep it has the bytes of the episode as it is simulated.
+
+    :param spec: specification of the episode
+    :param plan: fault, and when it begins
+    :param pacing: what waits for the next tick; by default ticks follow each other in lockstep
+    :param observers: functions that are called in each tick
+    :param record_trace: whether to record every control tick after standing in a trace
+    :return: the robot, and its loop
+    """
+    robot = SimulatedRobot(spec.config, spec.seed, spec.task, plan, pacing is None, record_trace)
+    stepping, balance = controller_of(spec.task, spec.parameters, spec.config)
+    loop = ControlLoop(
+        robot,
+        controller_for(spec.config, robot.limits),
+        stepping,
+        balance or LOCKED_HIPS,
+        spec.config.physics.control_dt,
+        pacing or Lockstep(),
+        (robot.decided, *observers),
+    )
+    return robot, loop
