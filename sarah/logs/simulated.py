@@ -9,6 +9,7 @@ from pathlib import Path
 
 from sarah.control.hip_law import LOCKED_HIPS
 from sarah.control.pattern_generator import Phase, PhaseChange
+from sarah.control.supervisor import State, Supervisor
 from sarah.episode.ending import ending_words
 from sarah.episode.episode import Episode
 from sarah.episode.result import EpisodeResult
@@ -65,7 +66,10 @@ class SimulationLog(Observer):
         state = "standing" if generator.phase is Phase.STAND else "stepping"
         if generator.phase is Phase.STAND:
             self._stood = seconds + self._dt
-        self._enter("fallen" if generator.has_fallen else state)
+        if isinstance(generator, Supervisor):
+            self._follow(generator, seconds)
+        else:
+            self._enter("fallen" if generator.has_fallen else state)
         if change is not None:
             self._log.phase_change(seconds, change, generator.stance)
         self._log.tick(
@@ -110,6 +114,15 @@ class SimulationLog(Observer):
         :param termination: way in which it ended
         """
         self._enter("ended", ending_words(termination))
+
+    def _follow(self, supervisor: Supervisor, seconds: float) -> None:
+        """Log what a supervisor did."""
+        if not self._state:
+            self._enter(State.STANDING.value)
+        if supervisor.state_change is not None:
+            state, before, reason = supervisor.state_change
+            self._log.state(seconds, state.value, before.value, reason)
+        self._state = supervisor.state.value
 
     def _enter(self, state: str, reason: str = "") -> None:
         if state != self._state:

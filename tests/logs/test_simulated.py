@@ -1,7 +1,9 @@
 """The log of a simulated robot says what its record says, and changes nothing."""
 
+import dataclasses
 import errno
 from io import FileIO
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +11,7 @@ import pytest
 from laboratory import COARSE_PHYSICS
 from operated import quick
 
+from sarah.control.supervisor_settings import SupervisorSettings
 from sarah.episode.episode import simulate
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE
@@ -17,7 +20,7 @@ from sarah.logs.reading import Log
 from sarah.logs.robot_log import RobotLog
 from sarah.logs.simulated import SimulationLog, log_episode
 from sarah.logs.summary import summarise
-from sarah.logs.topics import TICKS, reading_of
+from sarah.logs.topics import TICKS, reading_of, targets_of
 from sarah.operation.settings import PARAMETERS, SHIPPED
 from sarah.runs.session import SessionSpec
 from sarah.training.operate import run_session
@@ -46,6 +49,18 @@ def test_an_episodes_log_agrees_with_its_trace_and_leaves_its_result(tmp_path: P
     states = [(one["seconds"], one["state"], one["reason"]) for one in summary.states]
     assert states[:2] == [(0.0, "standing", "put up"), (1.0, "stepping", "stood for a second")]
     assert states[2] == (2.5, "ended", "ran to the end")
+
+
+def test_the_states_of_a_supervised_robot_are_its_supervisors(tmp_path: Path) -> None:
+    config = dataclasses.replace(SPEC.config, supervisor=SupervisorSettings(enabled=True, stepless_seconds=0.2))
+    log_episode(dataclasses.replace(SPEC, config=config), tmp_path / "a.mcap", "test")
+    summary = summarise(log := Log(tmp_path / "a.mcap"))
+    states = [(one["before"], one["state"]) for one in summary.states]
+    assert states == list(pairwise(("", "standing", "stepping", "stopping", "standing", "ended")))
+    assert [one["reason"] for one in summary.states[1:4]] == ["stood for a second", "no step for 0.2 s", "stopped"]
+    ticks = [log.values(message) for message in log.messages() if message.topic == TICKS.name]
+    stopped = [one for one in ticks if one["seconds"] > summary.states[3]["seconds"]]
+    assert {one["state"] for one in stopped} == {"standing"} and not any(targets_of(stopped[-1]) or (1.0,))
 
 
 def test_a_sessions_log_has_its_windows_and_leaves_them(tmp_path: Path) -> None:
