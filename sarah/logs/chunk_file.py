@@ -12,10 +12,12 @@ from typing import Any
 
 from sarah.errors import ConfigurationError, one_line
 from sarah.files import check_file
-from sarah.logs.topics import LONGEST_SECONDS, TOPICS
+from sarah.logs.topics import TOPICS
 
 ABOUT, END = "sarah", "sarah-end"
 """Names of the metadata: what is known at the beginning, and at the end."""
+LONGEST_SECONDS = 1e9
+"""Largest time in a log, in s: thirty years."""
 CHUNK_SECONDS = 0.9
 """Time after which a chunk is finished, in s: what a log can lose is a little more."""
 
@@ -149,6 +151,8 @@ class ChunkFile:
 
         :param end: facts that are known at the end, by name
         """
+        if self._output.file.closed:
+            return
         self.finish_chunk()
         self._guarded(self._writer.add_metadata, END, dict(end))
         self._guarded(self._writer.finish)

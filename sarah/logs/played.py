@@ -24,7 +24,8 @@ from sarah.episode.trace import Trace
 from sarah.errors import ConfigurationError
 from sarah.formats import read_yaml
 from sarah.logs.reading import Log
-from sarah.logs.topics import PARAMETER_CHANGES, PHASE_CHANGES, TICKS, Values, reading_of, targets_of
+from sarah.logs.topic import Values
+from sarah.logs.topics import PARAMETER_CHANGES, PHASE_CHANGES, TICKS, reading_of, targets_of
 from sarah.operation.odometry import DRIFT_SECONDS, LegOdometry
 from sarah.operation.settings import PARAMETERS
 from sarah.robot.description import ANKLE_JOINTS, RobotDescription

@@ -12,7 +12,8 @@ from typing import Any, BinaryIO, NamedTuple
 from sarah.errors import ConfigurationError
 from sarah.files import open_regular
 from sarah.logs.chunk_file import ABOUT, END
-from sarah.logs.topics import TOPICS, Values
+from sarah.logs.topic import Values
+from sarah.logs.topics import TOPICS
 
 MAGIC = b"\x89MCAP0\r\n"
 """Bytes with which an MCAP file begins and ends."""

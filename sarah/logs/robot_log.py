@@ -11,7 +11,8 @@ from typing import Any
 
 from sarah.control.pattern_generator import Phase, PhaseChange
 from sarah.logs.chunk_file import ChunkFile
-from sarah.logs.topics import PARAMETER_CHANGES, PHASE_CHANGES, STATES, TICKS, TOPICS, WINDOWS, Topic
+from sarah.logs.topic import Topic
+from sarah.logs.topics import PARAMETER_CHANGES, PHASE_CHANGES, STATES, TICKS, TOPICS, WINDOWS
 from sarah.robot.reading import SensorReading, Side
 
 MOST_WAITING = 1000

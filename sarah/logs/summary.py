@@ -9,7 +9,8 @@ from itertools import pairwise
 from statistics import fmean
 
 from sarah.logs.reading import Log, Message
-from sarah.logs.topics import PARAMETER_CHANGES, PHASE_CHANGES, STATES, TICKS, TOPICS, WINDOWS, Values
+from sarah.logs.topic import Values
+from sarah.logs.topics import PARAMETER_CHANGES, PHASE_CHANGES, STATES, TICKS, TOPICS, WINDOWS
 
 LATE_SECONDS = 0.002
 """Delay beyond which a tick counts as late, in s."""

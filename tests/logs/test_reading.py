@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from logged import write
+from logged import TARGETS, write
 
 from sarah.control.pattern_generator import Phase
 from sarah.errors import ConfigurationError
@@ -105,7 +105,7 @@ def test_another_programs_file_is_refused(tmp_path: Path, arguments: tuple[str, 
 
 
 def test_a_value_of_another_type_is_named() -> None:
-    message = TICKS.encoded(0.0, None, 0.0, (), "stepping", Phase.LIFT, Side.LEFT, 0.0, 0.0, 0.0)
+    message = TICKS.encoded(0.0, None, 0.0, TARGETS, "stepping", Phase.LIFT, Side.LEFT, 0.0, 0.0, 0.0)
     for wrong in (b'"0"', b"true", b"1e999", b"NaN", b"null"):
         with pytest.raises(ConfigurationError, match="tilt of /ticks must be a number, not"):
             TICKS.decoded(message.replace(b'"tilt":0.0', b'"tilt":' + wrong))

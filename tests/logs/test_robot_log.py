@@ -18,7 +18,8 @@ from sarah.logs.chunk_file import ChunkFile
 from sarah.logs.reading import Log
 from sarah.logs.robot_log import RobotLog
 from sarah.logs.summary import summarise
-from sarah.logs.topics import PARAMETER_CHANGES, PHASE_CHANGES, TICKS, WINDOWS, Values, reading_of
+from sarah.logs.topic import Values
+from sarah.logs.topics import PARAMETER_CHANGES, PHASE_CHANGES, TICKS, WINDOWS, reading_of
 from sarah.operation.window import FELT
 from sarah.robot.reading import Side
 
@@ -56,12 +57,14 @@ def test_numbers_of_any_type_are_logged_and_what_is_none_is_left_out(tmp_path: P
         tick(log, 1, rocking(1)._replace(acceleration=(None, 1e400, "soon")))  # type: ignore[arg-type]
         log.tick(0.02, None, 0.0, TARGETS, "stopping", Phase.LIFT, Side.LEFT, 0.0, 0.0, 0.0)
         log.tick(0.03, None, 0.0, TARGETS, "stopping", None, Side.LEFT, 0.0, 0.0, 0.0)  # type: ignore[arg-type]
+        log.tick(0.04, rocking(4), 0.0, TARGETS[1:], "stepping", Phase.LIFT, Side.LEFT, 0.0, 0.0, 0.0)
         log.tick(float("nan"), None, 0.0, TARGETS, "stopping", Phase.LIFT, Side.LEFT, 0.0, 0.0, 0.0)
     first, second, last = values(path)
     assert first["acceleration_x"] == 0.5 and first["acceleration_z"] == 9.0 and "acceleration_y" not in first
     assert not {f"acceleration_{axis}" for axis in "xyz"} & set(second) and reading_of(second) is None
     assert last["tilt"] == 0.0 and "load_left_forefoot" not in last
-    assert log.dropped == 2 and log.failure is None  # the one without a phase, and the one without a time
+    log.close()  # a second time
+    assert log.dropped == 3 and log.failure is None  # without a phase, a target and a time
 
 
 def test_no_log_is_replaced(tmp_path: Path) -> None:
