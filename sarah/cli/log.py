@@ -24,8 +24,8 @@ NOT_WHOLE = 1
 class LogOptions:
     """Summarise logs of robots, check that they are whole, cut them, or make tables of them.
 
-    A log is an MCAP file that sarah-eval, sarah-operate or your own loop has written with --log. One that was cut,
-    by a full disk or because its process was killed, is read up to its last whole chunk.
+    A log is an MCAP file that sarah-eval or sarah-operate has written with --log, or your own loop with RobotLog. One
+    that was cut, by a full disk or because its process was killed, is read up to its last whole chunk.
 
     :param files: logs to read
     :param check: whether to say only if each log is whole, cut, or has gaps, where the disk was too slow; every message
