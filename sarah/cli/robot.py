@@ -8,7 +8,8 @@ import math
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
@@ -31,6 +32,9 @@ from sarah.episode.task_answers import controller_of
 from sarah.errors import ConfigurationError, unknown_name
 from sarah.ranges import Within
 
+if TYPE_CHECKING:
+    from sarah.logs.robot_log import RobotLog
+
 COMMAND = "sarah-robot"
 LATE_SECONDS = 0.002
 """Time after its deadline from which a tick counts as late, in s."""
@@ -51,6 +55,7 @@ class RobotOptions(EpisodeOptions):
     :param real_time: whether a tick begins each control period by the clock; without it, ticks follow each other as
         fast as they can
     :param stand: whether the robot only stands
+    :param log: file to log to, such as run.mcap; sarah-log reads it
     :param read_only: whether to read and compute without sending anything to the robot
     :param seed: seed of the simulated robot, its sensors and its push
     :param fault: what fails on the simulated robot, by its name in the table of docs/how_to/real_robot.md
@@ -62,6 +67,7 @@ class RobotOptions(EpisodeOptions):
     seconds: Annotated[float, Within(0.1, 1e7, "s")] | None = None
     real_time: bool = False
     stand: bool = False
+    log: Annotated[Path | None, tyro.conf.arg(metavar="FILE.mcap")] = None
     read_only: bool = False
     seed: int = 0
     fault: Annotated[str, tyro.conf.arg(metavar="NAME")] = "none"
@@ -102,18 +108,33 @@ def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], 
     loop = _loop(options, spec, progress)
     values = {**vars(loop.parameters), **vars(loop.balance)}
     print(", ".join(f"{name} {value:.3g}" for name, value in values.items()), file=sys.stderr)
-    try:
-        with undisturbed() if options.real_time else contextlib.nullcontext("") as scheduled:
-            if scheduled:
-                print(scheduled, file=sys.stderr)
-            while loop.tick():
-                if options.seconds is not None and loop.ticks * loop.dt >= options.seconds - loop.dt / 2:
-                    break
-                if is_interrupted() and not _still_moves(loop):
-                    break
-    finally:
-        loop.driver.off()
+    with contextlib.ExitStack() as stack:
+        stack.callback(loop.driver.off)
+        log = None if options.log is None else stack.enter_context(_logged(options, spec, loop))
+        if options.real_time:
+            print(stack.enter_context(undisturbed()), file=sys.stderr)
+        while loop.tick():
+            if options.seconds is not None and loop.ticks * loop.dt >= options.seconds - loop.dt / 2:
+                break
+            if is_interrupted() and not _still_moves(loop):
+                break
     progress.report(loop.driver)
+    if log is not None and (log.dropped or log.failure):
+        print(f"{log.dropped} messages are not in {options.log}: {log.failure or 'the disk was slow'}", file=sys.stderr)
+
+
+def _logged(options: RobotOptions, spec: EpisodeSpec, loop: ControlLoop) -> RobotLog:
+    """The log of a loop. It never holds a robot up; a simulation in lockstep waits for it."""
+    from sarah.logs.controller_log import log_loop
+    from sarah.logs.robot_log import RobotLog
+    from sarah.logs.simulated import about_robot
+
+    assert options.log is not None
+    facts = {"driver": options.driver} if options.driver else {"seed": str(options.seed), "fault": options.fault}
+    about = about_robot(spec.config, COMMAND, task=spec.task.reference, subject=options.subject, **facts)
+    log = RobotLog(options.log, about, waits=not options.real_time)
+    log_loop(loop, log, COMMAND)
+    return log
 
 
 def _loop(options: RobotOptions, spec: EpisodeSpec, progress: Progress) -> ControlLoop:

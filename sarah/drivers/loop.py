@@ -92,7 +92,8 @@ class ControlLoop:
         """Begin before the first tick."""
         self.ticks = 0
         """Number of ticks so far."""
-        self._standing_ticks = round(STAND_SECONDS / self.dt)
+        self.standing_ticks = round(STAND_SECONDS / self.dt)
+        """Number of ticks before the controller is given its parameters."""
         self._began = self._last = 0.0
 
     def tick(self) -> bool:
@@ -108,7 +109,7 @@ class ControlLoop:
         now = driver.now()
         if self.ticks == 0:
             self._began, self._last = now, now - self.dt
-        if self.ticks == self._standing_ticks:
+        if self.ticks == self.standing_ticks:
             controller.set_parameters(self.parameters, self.balance)
         passed, self._last = now - self._last, now
         reading, age = (None, 0.0) if taken is None else (taken.reading, now - taken.taken)

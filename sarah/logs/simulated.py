@@ -9,7 +9,6 @@ from pathlib import Path
 
 from sarah.control.hip_law import LOCKED_HIPS
 from sarah.control.pattern_generator import Phase, PhaseChange
-from sarah.control.supervisor import State, Supervisor
 from sarah.episode.ending import ending_words
 from sarah.episode.episode import Episode
 from sarah.episode.result import EpisodeResult
@@ -18,14 +17,12 @@ from sarah.episode.running_robot import Observer, RunningRobot
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import controller_of
 from sarah.errors import ConfigurationError
+from sarah.logs.controller_log import ControllerLog
 from sarah.logs.robot_log import RobotLog
 from sarah.operation.settings import PARAMETERS
 from sarah.operation.window import Window
 from sarah.robot.reading import Vector
 from sarah.versions import SIMULATING, versions
-
-REASONS = {"standing": "put up", "stepping": "stood for a second", "fallen": "lay down"}
-"""Reasons for the states of a simulated robot, which has no supervisor."""
 
 
 def about_robot(config: RobotSettings, program: str, **facts: str) -> dict[str, str]:
@@ -51,7 +48,8 @@ class SimulationLog(Observer):
     def __init__(self, log: RobotLog, by: str) -> None:
         self._log, self._by = log, by
         self._begin, self._ticks, self._dt = 0.0, 0, 0.0
-        self._state, self._stood = "", 0.0
+        self._stood = 0.0
+        self._controller_log = ControllerLog(log)
         self._parameters: Mapping[str, float] = {}
 
     @property
@@ -61,29 +59,10 @@ class SimulationLog(Observer):
 
     def decided(self, robot: RunningRobot, change: PhaseChange | None, force: Vector | None) -> None:
         """Log the tick, and the changes of phase and state in it."""
-        generator, self._dt = robot.generator, robot.config.physics.control_dt
-        seconds = self.seconds
-        state = "standing" if generator.phase is Phase.STAND else "stepping"
-        if generator.phase is Phase.STAND:
+        self._dt, seconds = robot.config.physics.control_dt, self.seconds
+        if robot.generator.phase is Phase.STAND:
             self._stood = seconds + self._dt
-        if isinstance(generator, Supervisor):
-            self._follow(generator, seconds)
-        else:
-            self._enter("fallen" if generator.has_fallen else state)
-        if change is not None:
-            self._log.phase_change(seconds, change, generator.stance)
-        self._log.tick(
-            seconds=seconds,
-            reading=robot.last_reading,
-            reading_seconds=seconds,
-            targets=generator.targets,
-            state=self._state,
-            phase=generator.phase,
-            stance=generator.stance,
-            tilt=generator.tilt,
-            rate=generator.rate,
-            late_seconds=0.0,
-        )
+        self._controller_log.tick(seconds, robot.generator, change, robot.last_reading, seconds)
         self._ticks += 1
 
     def asked(self, seconds: float, values: Mapping[str, float]) -> None:
@@ -104,7 +83,7 @@ class SimulationLog(Observer):
         named = zip(PARAMETERS, window.parameters, strict=True)
         self.asked(window.begin, {parameter.name: value for parameter, value in named})
         if window.fell:
-            self._enter("fallen", "fell")
+            self._controller_log.enter(self.seconds, "fallen", "fell")
         self._log.window(window.end, window.plain())
         self._begin, self._ticks = window.end, 0
 
@@ -113,21 +92,7 @@ class SimulationLog(Observer):
 
         :param termination: way in which it ended
         """
-        self._enter("ended", ending_words(termination))
-
-    def _follow(self, supervisor: Supervisor, seconds: float) -> None:
-        """Log what a supervisor did."""
-        if not self._state:
-            self._enter(State.STANDING.value)
-        if supervisor.state_change is not None:
-            state, before, reason = supervisor.state_change
-            self._log.state(seconds, state.value, before.value, reason)
-        self._state = supervisor.state.value
-
-    def _enter(self, state: str, reason: str = "") -> None:
-        if state != self._state:
-            self._log.state(self.seconds, state, self._state, reason or REASONS[state])
-            self._state = state
+        self._controller_log.enter(self.seconds, "ended", ending_words(termination))
 
 
 def log_episode(spec: EpisodeSpec, path: Path, program: str) -> EpisodeResult:

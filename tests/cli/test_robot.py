@@ -16,11 +16,13 @@ def quick() -> None:
 
 def test_a_fault_stops_the_robot_which_says_why(tmp_path: Path) -> None:
     words = ("--engine", "mujoco", "--seconds", "5", "--fault", "rate about y: stuck", "--fault-after", "2")
-    process = done("sarah-robot", "balance", *words, cwd=tmp_path)
+    process = done("sarah-robot", "balance", *words, "--log", "run.mcap", cwd=tmp_path)
     said = [line.split(" s  ")[1] for line in process.stdout.splitlines()[:3]]
     assert said[0] == "stepping: stood for a second" and said[2] == "standing: stopped"
     assert said[1].startswith("stopping: frozen: angular rate y repeats for 0.1")
     assert "500 ticks in 5.00 s" in process.stdout and "ended" not in process.stdout
+    told = done("sarah-log", "run.mcap", cwd=tmp_path).stdout
+    assert "500; 0 messages dropped" in told and f"{process.stdout.split(' s  ')[2].splitlines()[0]}" in told
     assert re.search(r" 4\.00 s  standing; tilt \d°; 1 steps per second; 0 late ticks\n", process.stderr)
 
 
