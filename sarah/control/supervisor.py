@@ -92,18 +92,18 @@ class Supervisor:
         self._asked, self.constants = (parameters, balance), constants
         self._proven: tuple[SteppingParameters, BalanceParameters] | None = None
         self.state_change = None
+        self.targets = STANDING_TARGETS
         self._begin()
 
     def _begin(self) -> None:
         """Stand, with a new generator that steps after its second of standing."""
         self.generator = PatternGenerator(*self._asked, self._dt, self._limits, self.constants)
-        self.targets = self.generator.targets
         self.state = State.STANDING
         self._watches = Watches(self._settings, self._dt, self.constants)
         self._steps_when_asked, self._stop_asked = True, ""
         self._stepped_seconds = 0.0
         self._before = NOTHING
-        self._unheard, self._is_catching_up = 0.0, False
+        self._unheard, self._is_catching_up = 0.0, self.targets != STANDING_TARGETS
 
     def set_parameters(
         self, parameters: SteppingParameters | None = None, balance: BalanceParameters | None = None

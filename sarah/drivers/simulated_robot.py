@@ -76,7 +76,7 @@ class SimulatedRobot(Driver):
         self._targets = STANDING_TARGETS
         self._change: PhaseChange | None = None
         self._heard: SensorReading | None = None
-        self._began = time.monotonic()
+        self._began: float | None = None
 
     @property
     def seconds(self) -> float:
@@ -84,12 +84,16 @@ class SimulatedRobot(Driver):
         return self._ticks * self._dt
 
     def now(self) -> float:
-        """Simulated time in lockstep, or time since it was made, in s."""
-        return self.seconds if self._is_lockstep else time.monotonic() - self._began
+        """Simulated time in lockstep, or time since somebody asked for it first, in s."""
+        if self._is_lockstep:
+            return self.seconds
+        self._began = time.monotonic() if self._began is None else self._began
+        return time.monotonic() - self._began
 
     def read(self) -> TimedReading | None:
         """Let time pass, and read the sensors; ``None`` once the episode has ended."""
         if self._heard is None:
+            self.now()  # from here on time passes
             return self._sensed()
         self._advance()
         sent = self._ticks

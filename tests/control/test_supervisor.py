@@ -157,6 +157,13 @@ def test_beyond_20_degrees_it_has_fallen_and_the_targets_stay() -> None:
     for _ in range(50):
         supervisor.tick(NOTHING)
     assert supervisor.has_fallen and supervisor.targets == held
+    supervisor.step()
+    largest = 0.0
+    for tick in range(100):
+        before = supervisor.targets
+        supervisor.tick(noisy(STANDING, tick))
+        largest = max(largest, *(abs(now - last) for now, last in zip(supervisor.targets, before, strict=True)))
+    assert not any(supervisor.targets) and largest <= 0.06 + 1e-9  # 6 rad/s
 
 
 def test_it_stands_while_readings_are_missing_and_then_goes_on() -> None:
