@@ -106,7 +106,7 @@ def _robot(name: str, seconds: float, seed: int) -> Lateness:
             loop.run()
         if log is not None:
             log.close()
-    robot.off()
+    robot.close()
     return _lateness(late)
 
 

@@ -103,7 +103,7 @@ class Supervisor:
         self._steps_when_asked, self._stop_asked = True, ""
         self._stepped_seconds = 0.0
         self._before = NOTHING
-        self._unheard, self._is_catching_up = 0.0, self.targets != STANDING_TARGETS
+        self._unheard, self._is_paused, self._is_catching_up = 0.0, False, self.targets != STANDING_TARGETS
 
     def set_parameters(
         self, parameters: SteppingParameters | None = None, balance: BalanceParameters | None = None
@@ -154,6 +154,7 @@ class Supervisor:
         if self._unheard > self._settings.stale_seconds and self.state is State.STEPPING:
             self._pause(reading, passed)
             return None
+        self._is_paused = False
         heard = self._without_lost_joints(reading if is_new else UNHEARD)
         generator, targets = self.generator, self.targets
         phase, change = generator.phase, generator.tick(heard, seconds)
@@ -175,7 +176,9 @@ class Supervisor:
     def _pause(self, reading: SensorReading, seconds: float) -> None:
         """Stand while there is nothing to act on; the generator waits."""
         wrong = self._stop_asked or self._watches.signals.tick(reading, seconds)
-        self._is_catching_up = True
+        if not self._is_paused:
+            self._is_paused = self._is_catching_up = True
+            self._enter(self.state, "no new reading: the targets go to zero until there is one")
         self.targets = towards(STANDING_TARGETS, self.targets, self.constants, self._dt)
         if wrong:
             self._react(wrong)

@@ -29,7 +29,7 @@ class SupervisorSettings:
         shows, over twice that time, from which one of them is wrong, in rad/s
     :param least_rocking: rate about y, as a root mean square over that time, below which the gyroscope does not feel
         the rocking that the pads show, in rad/s
-    :param largest_lateness: share of the last second that late ticks may lose
+    :param largest_lateness: time that ticks may come late, in control periods, as a mean over the last hundred or so
     """
 
     enabled: bool = False
@@ -43,7 +43,7 @@ class SupervisorSettings:
     lean_seconds: Annotated[float, Sized(0.1, 100.0, "s")] = 1.0
     largest_contradiction: Annotated[float, Sized(0.001, 10.0, "rad/s")] = 0.065
     least_rocking: Annotated[float, Sized(0.0, 10.0, "rad/s")] = 0.04
-    largest_lateness: Annotated[float, Within(0.0, 1.0)] = 0.4
+    largest_lateness: Annotated[float, Within(0.0, 100.0)] = 0.4
 
     def __post_init__(self) -> None:
         """Refuse settings with which nothing can be watched."""

@@ -62,8 +62,10 @@ class Watches:
         lost = seconds - self._dt
         if lost > 0.5 * self._dt or self._lateness > 0.001:
             self._lateness += self._late_gain * (max(0.0, lost) / self._dt - self._lateness)
-            if self._lateness > self._settings.largest_lateness or lost > self._settings.lost_seconds:
-                return f"late: the last tick came after {1000 * seconds:.0f} ms instead of {1000 * self._dt:g}"
+            if lost > self._settings.lost_seconds:
+                return f"late: a tick came after {seconds:.2f} s"
+            if self._lateness > self._settings.largest_lateness:
+                return f"late: ticks come {100.0 * self._lateness:.0f} % of a period late on average"
         return (
             self.signals.tick(reading, seconds)
             or (self._steps.tick(seconds, change) if phase is not Phase.STAND else "")

@@ -10,7 +10,7 @@ from sarah.control.hip_law import LOCKED_HIPS, BalanceParameters
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, PhaseChange, SteppingParameters
 from sarah.control.supervisor import Controller, Supervisor
-from sarah.drivers.driver import Driver
+from sarah.drivers.driver import Driver, check_first
 from sarah.episode.robot_settings import RobotSettings
 from sarah.robot.reading import SensorReading
 
@@ -95,6 +95,7 @@ class ControlLoop:
         self.standing_ticks = round(STAND_SECONDS / self.dt)
         """Number of ticks before the controller is given its parameters."""
         self._began = self._last = 0.0
+        self._is_checked = False
 
     def tick(self) -> bool:
         """Wait for the next tick, and make it.
@@ -107,12 +108,17 @@ class ControlLoop:
         if driver.ended:
             return False
         now = driver.now()
+        if taken is not None and not self._is_checked:
+            check_first(taken, now, self.dt)
+            self._is_checked = True
         if self.ticks == 0:
             self._began, self._last = now, now - self.dt
         if self.ticks == self.standing_ticks:
             controller.set_parameters(self.parameters, self.balance)
         passed, self._last = now - self._last, now
         reading, age = (None, 0.0) if taken is None else (taken.reading, now - taken.taken)
+        if not age >= -self.dt:  # of a clock that has jumped: nobody knows how old it is
+            reading, age = None, 0.0
         change = _decide(controller, reading, passed, age)
         tick = LoopTick(now - self._began, reading, age, controller, change, late)
         for observer in self.observers:

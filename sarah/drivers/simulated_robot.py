@@ -120,7 +120,7 @@ class SimulatedRobot(Driver):
         """Result of the episode so far."""
         return self.episode.result()
 
-    def off(self) -> None:
+    def close(self) -> None:
         """Give the physics engine's resources back."""
         self.episode.close()
 
