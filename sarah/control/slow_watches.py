@@ -12,11 +12,14 @@ from collections.abc import Sequence
 from sarah.control.constants import ControllerConstants
 from sarah.control.pattern_generator import Phase
 from sarah.control.supervisor_settings import SupervisorSettings
-from sarah.robot.filters import low_pass_gain
+from sarah.robot.filters import clipped, low_pass_gain
 from sarah.robot.reading import ACTUATED_JOINTS, GRAVITY, SensorReading
 
 LOOKS = 10
 """Number of times at which these watches look in :attr:`SupervisorSettings.lean_seconds`."""
+
+LARGEST_RATE = 0.3
+"""Limit to which rates are clipped, as a share of the controller's: a single outlier is no fall."""
 
 
 class Warnings:
@@ -61,6 +64,8 @@ class SlowWatches:
         self._torso = _Tilt(settings, seconds)
         self._rocking = _Rocking(settings, constants)
         self._readings: list[SensorReading] = []
+        self._largest_acceleration = constants.largest_acceleration
+        self._largest_rate = LARGEST_RATE * constants.largest_rate
 
     @property
     def torso_tilt(self) -> float:
@@ -75,7 +80,7 @@ class SlowWatches:
     def tick(self, reading: SensorReading, targets: Sequence[float], phase: Phase) -> str:
         """Add a reading, and look if it is time.
 
-        :param reading: reading that the controller was given; what is missing is NaN
+        :param reading: reading of this tick, with the last value of each signal that is missing
         :param targets: joint targets, in rad and m
         :param phase: phase of the pattern generator
         :return: what is wrong; empty if nothing is
@@ -85,16 +90,16 @@ class SlowWatches:
         if len(readings) < self._ticks:
             return ""
         self._readings = []
-        number = len(readings)
-        acceleration = [sum(signal) / number for signal in zip(*[one.acceleration for one in readings], strict=True)]
-        rate = [sum(signal) / number for signal in zip(*[one.angular_rate for one in readings], strict=True)]
+        number, largest_acceleration, largest_rate = len(readings), self._largest_acceleration, self._largest_rate
+        acceleration_x = sum([clipped(one.acceleration[0], largest_acceleration) for one in readings]) / number
+        acceleration_y = sum([clipped(one.acceleration[1], largest_acceleration) for one in readings]) / number
+        rate_x = sum([clipped(one.angular_rate[0], largest_rate) for one in readings]) / number
+        rates_y = [clipped(one.angular_rate[1], largest_rate) for one in readings]
+        leans, rates = (acceleration_y / GRAVITY, -acceleration_x / GRAVITY), (rate_x, sum(rates_y) / number)
         self._servos.look(reading.joints, targets)
-        if not math.isfinite(sum(acceleration) + sum(rate)):  # what does not come is watched elsewhere
-            return ""
-        squared = sum([one.angular_rate[1] ** 2 for one in readings]) / number
         is_standing = phase is Phase.STAND
-        return self._torso.look(acceleration, rate, is_standing) or self._rocking.look(
-            squared, reading.pressures, is_standing
+        return self._torso.look(leans, rates, is_standing) or self._rocking.look(
+            sum([rate * rate for rate in rates_y]) / number, reading.pressures, is_standing
         )
 
 
@@ -137,22 +142,21 @@ class _Tilt:
         self._rate = self._lean = self._turned = 0.0
         self._differences: deque[float] = deque(maxlen=2 * LOOKS + 1)
 
-    def look(self, acceleration: Sequence[float], rate: Sequence[float], is_standing: bool) -> str:
-        """Whether the torso tilts, or one of both sensors is wrong."""
-        leans = [acceleration[1] / GRAVITY, -acceleration[0] / GRAVITY]  # about x and y, as rates turn
-        if is_standing:
-            self._stood += 1
+    def look(self, leans: Sequence[float], rates: Sequence[float], is_standing: bool) -> str:
+        """Whether the torso tilts, or one of both sensors is wrong: by leans and rates about x and y."""
+        self._stood += is_standing
         for axis in (0, 1):
-            self._rates[axis] += (1.0 / self._stood if is_standing else self._baseline_gain) * (
-                rate[axis] - self._rates[axis]
-            )
+            gain = 1.0 / self._stood if is_standing else self._baseline_gain
+            self._rates[axis] += gain * (rates[axis] - self._rates[axis])
             if is_standing:
-                self._leans[axis] += (leans[axis] - self._leans[axis]) / self._stood
-            moved = self._turned_since_standing[axis] + (rate[axis] - self._rates[axis]) * self._seconds
+                self._leans[axis] += gain * (leans[axis] - self._leans[axis])
+            moved = self._turned_since_standing[axis] + (rates[axis] - self._rates[axis]) * self._seconds
             self._turned_since_standing[axis] = moved + self._gain * (leans[axis] - self._leans[axis] - moved)
+        if is_standing and math.hypot(*self._leans) > self._settings.largest_tilt:
+            return f"tilt: the torso stands at {math.degrees(math.hypot(*self._leans)):.0f} degrees"
         if self.tilt > self._settings.largest_tilt:
             return f"tilt: the torso tilts by {math.degrees(self.tilt):.0f} degrees"
-        return self._contradiction(rate[0] - self._rates[0], leans[0] - self._leans[0])
+        return self._contradiction(rates[0] - self._rates[0], leans[0] - self._leans[0])
 
     @property
     def tilt(self) -> float:

@@ -22,14 +22,12 @@ from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.hip_law import LOCKED_HIPS, NO_LIMITS, BalanceParameters
 from sarah.control.pattern_generator import PatternGenerator, Phase, PhaseChange, SteppingParameters
 from sarah.control.supervisor_settings import STANDARD_SUPERVISOR, SupervisorSettings
-from sarah.control.watches import Watches
+from sarah.control.watches import NOTHING, Watches
 from sarah.robot.filters import ramped
 from sarah.robot.reading import GRAVITY, SensorReading, Side, Targets
 
-NOTHING = SensorReading((math.nan,) * 3, (math.nan,) * 3, (math.nan,) * 4, (math.nan,) * 6)
-"""Reading of which no signal has come: all of them keep their last values."""
 UNHEARD = NOTHING._replace(acceleration=(math.nan, math.nan, GRAVITY))
-"""What the controller is given then: a stuck vertical acceleration could look like a fall."""
+"""What the controller is given without a new reading: a stuck vertical acceleration could look like a fall."""
 STANDING_TARGETS: Targets = (0.0,) * 6
 """Targets of a standing robot."""
 PROVEN_SECONDS = 5.0
@@ -93,6 +91,8 @@ class Supervisor:
         self._proven: tuple[SteppingParameters, BalanceParameters] | None = None
         self.state_change = None
         self.targets = STANDING_TARGETS
+        self._before: tuple[float, ...] = ()
+        self._unheard = math.inf
         self._begin()
 
     def _begin(self) -> None:
@@ -100,10 +100,9 @@ class Supervisor:
         self.generator = PatternGenerator(*self._asked, self._dt, self._limits, self.constants)
         self.state = State.STANDING
         self._watches = Watches(self._settings, self._dt, self.constants)
-        self._steps_when_asked, self._stop_asked = True, ""
+        self._is_to_step, self._stop_reason = True, ""
         self._stepped_seconds = 0.0
-        self._before = NOTHING
-        self._unheard, self._is_paused, self._is_catching_up = 0.0, False, self.targets != STANDING_TARGETS
+        self._is_paused, self._is_catching_up = False, self.targets != STANDING_TARGETS
 
     def set_parameters(
         self, parameters: SteppingParameters | None = None, balance: BalanceParameters | None = None
@@ -127,60 +126,70 @@ class Supervisor:
 
         :param reason: reason for it
         """
-        self._stop_asked = reason
+        self._is_to_step, self._stop_reason = False, reason
 
     def step(self) -> None:
         """Step again, after a second of standing with a new generator; without effect while it steps."""
-        if self.state in (State.STANDING, State.FALLEN) and not self._steps_when_asked:
+        if self.state is State.STOPPING:
+            self._is_to_step = True
+        elif not self._is_to_step:
             self._begin()
 
     def tick(self, reading: SensorReading | None, seconds: float | None = None, age: float = 0.0) -> PhaseChange | None:
         """Advance by one control tick.
 
         :param reading: newest sensor reading; ``None`` if there is none
-        :param seconds: measured time since the last tick, in s; by default a control period
+        :param seconds: measured time since the last tick, in s; by default, and if it is negative or no number, a
+            control period
         :param age: age of the reading, in s
         :return: the phase change that this tick made, if it made one
         """
         self.state_change = None
-        if self.state is State.STOPPING or not self._steps_when_asked:
-            self._stand_still()
-            return None
-        if reading is None or age > self._settings.stale_seconds:
+        passed = self._dt if seconds is None or not 0.0 <= seconds < math.inf else seconds
+        if reading is None or not age <= self._settings.stale_seconds:
             reading = NOTHING
-        passed = self._dt if seconds is None else seconds
         is_new = self._is_new(reading)
         self._unheard = 0.0 if is_new else self._unheard + passed
-        if self._unheard > self._settings.stale_seconds and self.state is State.STEPPING:
-            self._pause(reading, passed)
-            return None
+        heard = reading if is_new else UNHEARD
+        if self.state in (State.STANDING, State.STEPPING) and self._is_to_step:
+            if self._unheard > self._settings.stale_seconds:
+                self._wait(passed)
+                return None
+            return self._control(reading, heard, seconds, passed)
+        self._stand_still(reading, heard, passed)
+        return None
+
+    def _control(
+        self, reading: SensorReading, heard: SensorReading, seconds: float | None, passed: float
+    ) -> PhaseChange | None:
+        """A tick of the generator, which the watches look at."""
         self._is_paused = False
-        heard = self._without_lost_joints(reading if is_new else UNHEARD)
-        generator, targets = self.generator, self.targets
-        phase, change = generator.phase, generator.tick(heard, seconds)
-        wrong = self._stop_asked or self._watches.tick(reading, heard, passed, targets, phase, change)
+        targets, phase = self.targets, self.generator.phase
+        change = self.generator.tick(self._without_lost_joints(heard), seconds)
+        wrong = self._watches.tick(reading, heard, passed, targets, phase, change)
         if change is not None and change.ended is Phase.STAND:
             self._enter(State.STEPPING, "stood for a second")
-        if generator.has_fallen:
+        if self.generator.has_fallen:
             self._enter(State.FALLEN, "fallen: the torso lies")
         elif wrong:
             self._react(wrong)
-        elif self._watches.warnings.new:
+        elif self._watches.warnings.new and self.state_change is None:
             self._enter(self.state, f"warning: {self._watches.warnings.take()}")
         else:
             self._approve(passed)
         if self.state in (State.STANDING, State.STEPPING):
-            self._follow(generator.targets)
+            self._follow(self.generator.targets)
         return change
 
-    def _pause(self, reading: SensorReading, seconds: float) -> None:
-        """Stand while there is nothing to act on; the generator waits."""
-        wrong = self._stop_asked or self._watches.signals.tick(reading, seconds)
-        if not self._is_paused:
+    def _wait(self, seconds: float) -> None:
+        """Stand while there is nothing to act on; the generator waits, or stands for a whole second afterwards."""
+        if self.state is State.STANDING:
+            self._begin()
+        elif not self._is_paused:
             self._is_paused = self._is_catching_up = True
             self._enter(self.state, "no new reading: the targets go to zero until there is one")
         self.targets = towards(STANDING_TARGETS, self.targets, self.constants, self._dt)
-        if wrong:
+        if self.state is State.STEPPING and (wrong := self._watches.nothing_heard(self._unheard, seconds)):
             self._react(wrong)
 
     def _follow(self, goals: Targets) -> None:
@@ -201,21 +210,33 @@ class Supervisor:
 
     def _is_new(self, reading: SensorReading) -> bool:
         """Whether an inertial signal is another one than before; noise never repeats."""
-        before, self._before = self._before, reading
-        is_same = reading.acceleration == before.acceleration and reading.angular_rate == before.angular_rate
-        return not is_same and reading.acceleration[2] == reading.acceleration[2]  # and it is a number
+        signals, before = (*reading.acceleration, *reading.angular_rate), self._before
+        self._before = signals
+        return signals != before and (signals[2] == signals[2] or signals[4] == signals[4])  # not all NaN
 
-    def _stand_still(self) -> None:
-        """Move the targets on to zero; a robot that has fallen keeps them."""
+    def _stand_still(self, reading: SensorReading, heard: SensorReading, seconds: float) -> None:
+        """Stop if it steps, and stand; a robot that has fallen keeps its targets."""
         if self.state is State.STOPPING:
             self.targets = towards(STANDING_TARGETS, self.targets, self.constants, self._dt)
             if not any(self.targets):
                 self._enter(State.STANDING, "stopped")
+                if self._is_to_step:
+                    self._begin()
+            return
+        wrong = self._watches.tick_standing(reading, heard, seconds, self.targets)
+        if self._stop_reason:
+            self._enter(State.STOPPING if self.is_moving else self.state, self._stop_reason)
+            self._stop_reason = ""
+        elif wrong.startswith("tilt") and self.state is State.STANDING:
+            self._enter(State.FALLEN, wrong)
 
     def _react(self, wrong: str) -> None:
-        """Do what a fault asks for."""
+        """Do what a fault asks for; before the first step, stand for another second."""
         proven = self._proven
-        if wrong.startswith("tilt"):
+        if self.state is State.STANDING:
+            self._enter(State.STANDING, f"stands for another second: {wrong}")
+            self._begin()
+        elif wrong.startswith("tilt"):
             self._enter(State.FALLEN, wrong)
         elif wrong.startswith("no step") and proven is not None and proven != self._asked:
             self.set_parameters(*proven)
@@ -234,7 +255,7 @@ class Supervisor:
         self.state_change = StateChange(state, self.state, reason)
         self.state = state
         if state in (State.STOPPING, State.FALLEN):
-            self._steps_when_asked = False
+            self._is_to_step = False
 
     @property
     def is_moving(self) -> bool:

@@ -20,7 +20,7 @@ class SupervisorSettings:
         s
     :param signal_seconds: time without one of them, or with one that stays the same, after which it stops, in s
     :param stepless_seconds: time without a step after which it stops, in s
-    :param largest_tilt: tilt of the torso from which the robot counts as fallen, in rad
+    :param largest_tilt: tilt of the torso from which the robot counts as fallen, in rad; robots come back from less
     :param largest_servo_error: mean distance of a hip joint from its target beyond which its servo does not follow, in
         rad
     :param servo_seconds: time constant of that mean, in s
@@ -37,7 +37,7 @@ class SupervisorSettings:
     lost_seconds: Annotated[float, Sized(0.001, 10.0, "s")] = 0.55
     signal_seconds: Annotated[float, Sized(0.001, 10.0, "s")] = 0.1
     stepless_seconds: Annotated[float, Sized(0.1, 100.0, "s")] = 2.0
-    largest_tilt: Annotated[float, Within(0.01, 1.5, "rad")] = 0.35
+    largest_tilt: Annotated[float, Within(0.01, 1.5, "rad")] = 0.5
     largest_servo_error: Annotated[float, Within(0.001, 1.5, "rad")] = 0.15
     servo_seconds: Annotated[float, Sized(0.01, 10.0, "s")] = 0.3
     lean_seconds: Annotated[float, Sized(0.1, 100.0, "s")] = 1.0

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from sarah.control.supervisor import NOTHING
+from sarah.control.watches import NOTHING
 from sarah.robot.reading import SensorReading
 
 Change = Callable[[SensorReading, SensorReading], SensorReading]
