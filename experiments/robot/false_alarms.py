@@ -34,6 +34,7 @@ TIME_LIMIT = 10.0
 PUSHES = Push((0.0, 100.0))
 SITUATIONS: Mapping[str, dict[str, Any]] = {
     "pushes to 100 N": {"push": PUSHES},
+    "pushes of 125 N": {"push": Push(125.0)},
     "slope of 6°": {"terrain": Terrain((6.0, 6.0))},
     "bumps of 10 mm": {"terrain": Terrain(roughness=(0.01, 0.01))},
     "servos of 12 per second": {"randomisation": Randomisation(actuator_bandwidth=(12.0, 12.0))},

@@ -95,7 +95,7 @@ def test_a_robot_that_steps_is_moved_as_without_a_supervisor() -> None:
         (stuck("acceleration", 0), 0.1, "frozen: acceleration x"),
         (added("acceleration", 2, math.nan), 0.1, "stale: no new acceleration z"),
         (added("angular_rate", 0, 0.1), 2.2, "contradiction: angular rate x says"),
-        (lambda since, reading, before: NOTHING if since % 55 < 50 else reading, 2.0, "in 1"),
+        (lambda since, reading, before: NOTHING if since % 55 < 50 else reading, 2.0, "stale: acceleration x comes in"),
         (mostly_gone, 2.2, "stale: angular rate y comes in"),
     ],
 )
