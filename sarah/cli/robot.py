@@ -9,10 +9,12 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Annotated
 
 import tyro
 
+from sarah.cli.endpoints import endpoint_of, with_endpoint
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.interruption import interruptible
 from sarah.cli.options import as_command, named_task, say_engine
@@ -23,17 +25,17 @@ from sarah.control.supervisor import State, Supervisor
 from sarah.drivers.driver import Driver
 from sarah.drivers.driver_file import read_driver
 from sarah.drivers.faults import FAULTS
-from sarah.drivers.loop import ControlLoop, Lockstep, LoopTick, RealTime, controller_for
+from sarah.drivers.loop import LATE_SECONDS, ControlLoop, Lockstep, LoopObserver, LoopTick, RealTime, controller_for
 from sarah.drivers.simulated_robot import FaultPlan, simulated_loop
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import controller_of
 from sarah.errors import ConfigurationError, unknown_name
 from sarah.ranges import Within
+from sarah.remote.requests import LARGEST_CHANGE, LearnedWith
+from sarah.remote.server import Server
 
 COMMAND = "sarah-robot"
-LATE_SECONDS = 0.002
-"""Time after its deadline from which a tick counts as late, in s."""
 ANYWHERE = 100.0
 """Displacement at which the simulated robot ends, in m: it may go where it wants."""
 PRIORITY = 50
@@ -56,6 +58,12 @@ class RobotOptions(EpisodeOptions):
         fast as they can
     :param stand: whether the robot only stands
     :param read_only: whether to read and compute without sending anything to the robot
+    :param listen: address at which ``sarah-push`` reaches the robot; without an address tcp/127.0.0.1:7447, which is
+        open to every user of this machine. Other machines need an address tls/… and certificates
+    :param largest_change: largest change of a parameter by a push, as a share of its range
+    :param authority: for TLS: certificate of the authority that has signed those of robot and pushers, a PEM file
+    :param certificate: for TLS: certificate of the robot, a PEM file
+    :param key: for TLS: private key of that certificate, a PEM file
     :param seed: seed of the simulated robot, its sensors and its push
     :param fault: what fails on the simulated robot, by its name in the table of docs/how_to/real_robot.md
     :param fault_after: time after standing at which it fails, in s
@@ -67,6 +75,11 @@ class RobotOptions(EpisodeOptions):
     real_time: bool = False
     stand: bool = False
     read_only: bool = False
+    listen: Annotated[str | None, tyro.conf.arg(metavar="[ENDPOINT]")] = None
+    largest_change: Annotated[float, Within(0.0, 1.0)] = LARGEST_CHANGE
+    authority: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    certificate: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    key: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     seed: int = 0
     fault: Annotated[str, tyro.conf.arg(metavar="NAME")] = "none"
     fault_after: Annotated[float, Within(0.0, 3600.0, "s")] = 3.0
@@ -86,7 +99,8 @@ class RobotOptions(EpisodeOptions):
 @as_command(COMMAND)
 def main() -> None:
     """Run the command with the arguments of the process."""
-    options = parse_episode_options(COMMAND, sys.argv[1:], RobotOptions(), adapted=_supervised)
+    arguments = with_endpoint(sys.argv[1:])
+    options = parse_episode_options(COMMAND, arguments, RobotOptions(), adapted=_supervised)
     own, _ = learned_of(options.subject, named_task(options.task))
     spec = options.applied_to(own)
     if options.seconds is not None and options.driver is None:
@@ -103,32 +117,48 @@ def _supervised(config: EpisodeConfig, subject: str | None) -> EpisodeConfig:
 
 def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], bool]) -> None:
     progress = Progress(spec.config.physics.control_dt)
-    loop = _loop(options, spec, progress)
-    try:
-        with _real_time() if options.real_time else contextlib.nullcontext():
-            while loop.tick():
-                if options.seconds is not None and loop.ticks * loop.dt >= options.seconds - loop.dt / 2:
-                    break
-                if is_interrupted() and not _still_moves(loop):
-                    break
-    finally:
-        loop.driver.off()
+    with _listening(options, spec) as others:
+        loop = _loop(options, spec, [progress, *others])
+        try:
+            with _real_time() if options.real_time else contextlib.nullcontext():
+                while loop.tick():
+                    if options.seconds is not None and loop.ticks * loop.dt >= options.seconds - loop.dt / 2:
+                        break
+                    if is_interrupted() and not _still_moves(loop):
+                        break
+        finally:
+            loop.driver.off()
     progress.report(loop.driver)
 
 
-def _loop(options: RobotOptions, spec: EpisodeSpec, progress: Progress) -> ControlLoop:
+@contextlib.contextmanager
+def _listening(options: RobotOptions, spec: EpisodeSpec) -> Iterator[list[LoopObserver]]:
+    """Context in which others can reach the robot, if the options say so; its threads have the usual scheduling."""
+    if options.listen is None:
+        yield []
+        return
+    if not spec.config.supervisor.enabled:
+        raise ConfigurationError("--listen needs a supervisor: leave --no-supervisor out")
+    endpoint = endpoint_of(options.listen, options.authority, options.certificate, options.key)
+    robot, dt = LearnedWith.of(spec.config), spec.config.physics.control_dt
+    with contextlib.closing(Server(endpoint, robot, dt, options.largest_change)) as server:
+        print(f"listening at {endpoint.address}", file=sys.stderr)
+        yield [server]
+
+
+def _loop(options: RobotOptions, spec: EpisodeSpec, observers: list[LoopObserver]) -> ControlLoop:
     """The control loop of the robot that the options name."""
     config, dt = spec.config, spec.config.physics.control_dt
     pacing = RealTime(dt) if options.real_time else None
     if options.driver is None:
         say_engine(config)
         plan = FaultPlan(FAULTS[options.fault], options.fault_after)
-        _, loop = simulated_loop(dataclasses.replace(spec, seed=options.seed), plan, pacing, [progress])
+        _, loop = simulated_loop(dataclasses.replace(spec, seed=options.seed), plan, pacing, observers)
     else:
         driver = read_driver(options.driver)
         stepping, balance = controller_of(spec.task, spec.parameters, config)
         controller = controller_for(config, driver.limits)
-        loop = ControlLoop(driver, controller, stepping, balance or LOCKED_HIPS, dt, pacing or Lockstep(), [progress])
+        loop = ControlLoop(driver, controller, stepping, balance or LOCKED_HIPS, dt, pacing or Lockstep(), observers)
     loop.is_read_only = options.read_only
     if options.stand and not _still_moves(loop):
         raise ConfigurationError("--stand needs a supervisor: leave --no-supervisor out")

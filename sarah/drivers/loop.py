@@ -18,6 +18,9 @@ from sarah.robot.reading import SensorReading
 SPIN_SECONDS = 0.0005
 """Time before a deadline from which the loop waits without sleeping, in s: as inexact as sleeping is."""
 
+LATE_SECONDS = 0.002
+"""Time after its deadline from which a tick counts as late, in s."""
+
 
 class LoopTick(NamedTuple):
     """What happened in a tick of the loop.

@@ -1,0 +1,66 @@
+"""Telemetry of a control loop, twenty times a second."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable
+
+from sarah.control.supervisor import Supervisor
+from sarah.drivers.loop import LATE_SECONDS, LoopTick
+from sarah.operation.settings import PARAMETERS
+from sarah.remote.answers import Telemetry
+from sarah.remote.slot import present
+
+RATE = 20.0
+"""Telemetry per second."""
+STEP_SECONDS = 2.0
+"""Time over which steps are counted, in s."""
+
+
+class Reporter:
+    """Makes telemetry of the ticks of a control loop.
+
+    :param clock: clock, in s
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock, self._next = clock, -1.0
+        self._ticks = self._late = 0
+        self._steps: deque[float] = deque()
+        self._reason = ""
+
+    def tick(self, tick: LoopTick, supervisor: Supervisor) -> Telemetry | None:
+        """Count a tick.
+
+        :param tick: what happened in it
+        :param supervisor: controller of the loop
+        :return: telemetry, if it is time for it
+        """
+        number, self._ticks = self._ticks, self._ticks + 1
+        self._late += tick.late_seconds > LATE_SECONDS
+        if tick.change is not None and tick.change.is_step:
+            self._steps.append(tick.seconds)
+        while self._steps and self._steps[0] <= tick.seconds - STEP_SECONDS:
+            self._steps.popleft()
+        if supervisor.state_change is not None:
+            self._reason = supervisor.state_change.reason
+        now = self._clock()
+        if now < self._next:
+            return None
+        self._next = max(self._next + 1.0 / RATE, now)
+        return self._telemetry(number, tick, supervisor)
+
+    def _telemetry(self, number: int, tick: LoopTick, supervisor: Supervisor) -> Telemetry:
+        names = [parameter.name for parameter in PARAMETERS]
+        return Telemetry(
+            number,
+            round(tick.seconds, 4),
+            supervisor.state.value,
+            self._reason,
+            supervisor.phase.value,
+            len(self._steps) / STEP_SECONDS,
+            round(supervisor.tilt, 4),
+            dict(zip(names, present(supervisor), strict=True)),
+            self._late,
+        )
