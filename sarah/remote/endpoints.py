@@ -93,7 +93,7 @@ class Endpoint:
         """
         scheme = self.address.partition("/")[0]
         address = self.address.replace("tcp/localhost:", "tcp/127.0.0.1:")
-        ends = {"endpoints": [address], "timeout_ms": round(1000 * OPEN_SECONDS), "exit_on_failure": True}
+        ends = {"endpoints": [address], "timeout_ms": 0, "exit_on_failure": True}  # one attempt
         none: dict[str, Any] = {"endpoints": []}
         link: dict[str, Any] = {
             "protocols": [scheme],
@@ -110,7 +110,7 @@ class Endpoint:
             "adminspace": {"enabled": False},
             "transport": {
                 "link": link,
-                "unicast": {"max_sessions": MOST_SESSIONS},
+                "unicast": {"max_sessions": MOST_SESSIONS, "open_timeout": round(1000 * OPEN_SECONDS)},
                 "shared_memory": {"enabled": False},
             },
         }

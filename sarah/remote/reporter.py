@@ -30,14 +30,14 @@ class Reporter:
         self._steps: deque[float] = deque()
         self._reason = ""
 
-    def tick(self, tick: LoopTick, supervisor: Supervisor) -> Telemetry | None:
+    def tick(self, tick: LoopTick, supervisor: Supervisor) -> bool:
         """Count a tick.
 
         :param tick: what happened in it
         :param supervisor: controller of the loop
-        :return: telemetry, if it is time for it
+        :return: whether it is time for telemetry
         """
-        number, self._ticks = self._ticks, self._ticks + 1
+        self._ticks += 1
         self._late += tick.late_seconds > LATE_SECONDS
         if tick.change is not None and tick.change.is_step:
             self._steps.append(tick.seconds)
@@ -46,15 +46,20 @@ class Reporter:
         if supervisor.state_change is not None:
             self._reason = supervisor.state_change.reason
         now = self._clock()
-        if now < self._next:
-            return None
-        self._next = max(self._next + 1.0 / RATE, now)
-        return self._telemetry(number, tick, supervisor)
+        is_due = now >= self._next
+        if is_due:
+            self._next = max(self._next + 1.0 / RATE, now)
+        return is_due
 
-    def _telemetry(self, number: int, tick: LoopTick, supervisor: Supervisor) -> Telemetry:
+    def telemetry(self, tick: LoopTick, supervisor: Supervisor) -> Telemetry:
+        """Telemetry of the tick that was counted last.
+
+        :param tick: what happened in it
+        :param supervisor: controller of the loop
+        """
         names = [parameter.name for parameter in PARAMETERS]
         return Telemetry(
-            number,
+            self._ticks - 1,
             round(tick.seconds, 4),
             supervisor.state.value,
             self._reason,

@@ -48,7 +48,6 @@ class Server:
         self._slot, self._reporter, self._robot = Slot(dt, largest_change), Reporter(), robot
         self._arrived: deque[Asked] = deque()
         self._leaving: SimpleQueue[Callable[[], None]] = SimpleQueue()
-        self._newest: Telemetry | None = None
         self._is_closed = False
         self._session = endpoint.opened(listens=True)
         try:
@@ -72,10 +71,16 @@ class Server:
         """
         supervisor = tick.controller
         assert isinstance(supervisor, Supervisor), "a robot that listens has a supervisor"
-        self._slot.tick(tick, supervisor, [self._arrived.popleft() for _ in range(len(self._arrived))])
-        telemetry = self._reporter.tick(tick, supervisor)
-        if telemetry is not None and self._leaving.qsize() < MOST_LEAVING:
-            self._leaving.put(lambda: self._publish(telemetry))
+        arrived = [self._arrived.popleft() for _ in range(len(self._arrived))]
+        self._slot.tick(tick, supervisor, [asked for asked in arrived if asked.request.kind != "state"])
+        is_due = self._reporter.tick(tick, supervisor) and self._leaving.qsize() < MOST_LEAVING
+        readers = [asked for asked in arrived if asked.request.kind == "state"]
+        if is_due or readers:
+            telemetry = self._reporter.telemetry(tick, supervisor)
+            for asked in readers:
+                asked.reply(telemetry)
+            if is_due:
+                self._leaving.put(lambda: self._publish(telemetry))
 
     def close(self, reason: str = "the robot's program has ended") -> None:
         """Answer those that wait, and let go of the address.
@@ -100,18 +105,13 @@ class Server:
                 self._receive(query)
 
     def _receive(self, query: Any) -> None:
-        """Read and check a request, and hand it over; the state is answered at once."""
+        """Read and check a request, and hand it over."""
         try:
             request = self._checked(query.payload)
         except SarahError as error:
             _reply(query, Answer(Outcome.REFUSED, " ".join(str(error).split())))
-            return
-        if request.kind != "state":
-            self._arrived.append(Asked(request, lambda answer: self._leaving.put(lambda: _reply(query, answer))))
-        elif self._newest is None:
-            _reply(query, Answer(Outcome.REFUSED, "the robot has not begun"))
         else:
-            _send(query, to_json(self._newest), True)
+            self._arrived.append(Asked(request, lambda message: self._leaving.put(lambda: _reply(query, message))))
 
     def _checked(self, payload: Any) -> Request:
         """Request of a message, which must be for this robot."""
@@ -127,20 +127,15 @@ class Server:
     def _publish(self, telemetry: Telemetry) -> None:
         from zenoh import ZError
 
-        self._newest = telemetry
         with contextlib.suppress(ZError):
             self._topic.put(to_json(telemetry))
 
 
-def _reply(query: Any, answer: Answer) -> None:
-    _send(query, to_json(answer), answer.is_final)
-
-
-def _send(query: Any, message: bytes, is_final: bool) -> None:
+def _reply(query: Any, message: Answer | Telemetry) -> None:
     """Send an answer; whoever asked may have gone."""
     from zenoh import ZError
 
     with contextlib.suppress(ZError):
-        query.reply(REQUESTS, message)
-    if is_final:
+        query.reply(REQUESTS, to_json(message))
+    if isinstance(message, Telemetry) or message.is_final:
         query.drop()

@@ -15,7 +15,7 @@ from sarah.control.pattern_generator import STAND_SECONDS, Phase, SteppingParame
 from sarah.control.supervisor import State, Supervisor
 from sarah.drivers.loop import LoopTick
 from sarah.operation.settings import controller_parameters
-from sarah.remote.answers import Answer, Outcome
+from sarah.remote.answers import Answer, Outcome, Telemetry
 from sarah.remote.requests import LARGEST_CHANGE, Request, merged, too_large
 
 
@@ -23,11 +23,11 @@ class Asked(NamedTuple):
     """A request and the way back.
 
     :param request: what the robot is asked
-    :param reply: function that takes the answers to it
+    :param reply: function that takes the answers to it, or the telemetry
     """
 
     request: Request
-    reply: Callable[[Answer], None]
+    reply: Callable[[Answer | Telemetry], None]
 
 
 @dataclass(frozen=True)
@@ -45,8 +45,8 @@ class Trial:
 class Slot:
     """One place for new parameters. Call :meth:`tick` once per tick of the control loop, after the controller's tick.
 
-    A push is applied in the tick in which the legs swap, or at once while the robot stands or has fallen. In the first
-    second it waits, because the loop then gives the robot its own parameters.
+    A push is applied in the tick in which a step begins, or at once while the robot stands or has fallen. In the first
+    second it waits, because the loop gives the robot its own parameters at the end of it.
 
     :param dt: control period, in s
     :param largest_change: largest change of a parameter, as a share of its range
@@ -158,9 +158,9 @@ class Moment(NamedTuple):
 
     @property
     def is_swap(self) -> bool:
-        """Whether new parameters can be applied: the legs swap, or the robot stands or has fallen."""
+        """Whether new parameters can be applied: a step begins, or the robot stands or has fallen."""
         if self.supervisor.state is State.STEPPING:
-            return self.tick.change is not None and self.tick.change.ended is Phase.LAND
+            return self.tick.change is not None and self.tick.change.ended in (Phase.STAND, Phase.LAND)
         return self.supervisor.state is not State.STOPPING
 
     def answer(self, outcome: Outcome, reason: str = "", is_final: bool = True) -> Answer:
