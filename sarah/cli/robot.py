@@ -7,7 +7,8 @@ import dataclasses
 import gc
 import os
 import sys
-from collections.abc import Callable, Iterator
+import threading
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -105,8 +106,11 @@ def main() -> None:
     spec = options.applied_to(own)
     if options.seconds is not None and options.driver is None:
         spec = dataclasses.replace(spec, config=dataclasses.replace(spec.config, time_limit=options.seconds))
-    with interruptible(COMMAND, "step", "the robot was left as it was") as is_interrupted:
-        _run(options, spec, is_interrupted)
+    with (
+        _listening(options, spec) as others,
+        interruptible(COMMAND, "step", "the robot was left as it was") as is_interrupted,
+    ):
+        _run(options, spec, others, is_interrupted)
 
 
 def _supervised(config: EpisodeConfig, subject: str | None) -> EpisodeConfig:
@@ -115,25 +119,26 @@ def _supervised(config: EpisodeConfig, subject: str | None) -> EpisodeConfig:
     return dataclasses.replace(config, supervisor=supervisor, box_half_width=ANYWHERE)
 
 
-def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], bool]) -> None:
+def _run(
+    options: RobotOptions, spec: EpisodeSpec, others: Sequence[LoopObserver], is_interrupted: Callable[[], bool]
+) -> None:
     progress = Progress(spec.config.physics.control_dt)
-    with _listening(options, spec) as others:
-        loop = _loop(options, spec, [progress, *others])
-        try:
-            with _real_time() if options.real_time else contextlib.nullcontext():
-                while loop.tick():
-                    if options.seconds is not None and loop.ticks * loop.dt >= options.seconds - loop.dt / 2:
-                        break
-                    if is_interrupted() and not _still_moves(loop):
-                        break
-        finally:
-            loop.driver.off()
+    loop = _loop(options, spec, [progress, *others])
+    try:
+        with _real_time() if options.real_time else contextlib.nullcontext():
+            while loop.tick():
+                if options.seconds is not None and loop.ticks * loop.dt >= options.seconds - loop.dt / 2:
+                    break
+                if is_interrupted() and not _still_moves(loop):
+                    break
+    finally:
+        loop.driver.off()
     progress.report(loop.driver)
 
 
 @contextlib.contextmanager
 def _listening(options: RobotOptions, spec: EpisodeSpec) -> Iterator[list[LoopObserver]]:
-    """Context in which others can reach the robot, if the options say so; its threads have the usual scheduling."""
+    """Context in which others can reach the robot, if the options say so."""
     if options.listen is None:
         yield []
         return
@@ -193,10 +198,16 @@ def _real_time() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _scheduled() -> Iterator[None]:
-    """Context in the real-time scheduling class, where the system has one and grants it."""
+    """Context in the real-time scheduling class, where the system has one and grants it.
+
+    Other Python threads come right behind this one: the loop may wait for one of them to give the interpreter back.
+    """
+    threads = [thread.native_id or 0 for thread in threading.enumerate()]
     try:
-        before = os.sched_getscheduler(0), os.sched_getparam(0)
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
+        before = {thread: (os.sched_getscheduler(thread), os.sched_getparam(thread)) for thread in threads}
+        for thread in threads:
+            behind = thread != threading.get_native_id()
+            os.sched_setscheduler(thread, os.SCHED_FIFO, os.sched_param(PRIORITY - behind))
     except (OSError, AttributeError) as error:
         print(f"real-time scheduling is not granted ({error}): other processes can make ticks late", file=sys.stderr)
         yield
@@ -205,7 +216,9 @@ def _scheduled() -> Iterator[None]:
     try:
         yield
     finally:
-        os.sched_setscheduler(0, *before)
+        for thread, (policy, parameter) in before.items():
+            with contextlib.suppress(ProcessLookupError):  # it may have ended
+                os.sched_setscheduler(thread, policy, parameter)
 
 
 class Progress:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,6 +13,8 @@ from sarah.remote.requests import Request
 
 WAIT_SECONDS = 30.0
 """Time to wait for all answers, in s: a swap of legs may take some, and new parameters are proven after five more."""
+ATTEMPTS, PAUSE_SECONDS = 20, 0.05
+"""Number of times that a request is sent which the robot drops unread, as in a flood, and time between them, in s."""
 
 
 class Client:
@@ -46,9 +49,7 @@ class Client:
             yield answer
             if answer.is_final:
                 return
-        raise RobotError(
-            f"no answer from {self._endpoint.address}: it is no sarah-robot, or more requests come than it reads"
-        )
+        raise RobotError(f"the robot at {self._endpoint.address} has gone before its last answer")
 
     def state(self, seconds: float = WAIT_SECONDS) -> Telemetry:
         """Ask what the robot does.
@@ -60,9 +61,23 @@ class Client:
             if b'"outcome"' in reply:
                 raise RobotError(from_json(Answer, reply).reason)
             return from_json(Telemetry, reply)
-        raise RobotError(f"no answer from {self._endpoint.address}: it is no sarah-robot")
+        raise RobotError(f"the robot at {self._endpoint.address} has gone")
 
     def _replies(self, request: Request, seconds: float) -> Iterator[bytes]:
+        """What the robot answers to a request, which is sent again if it was dropped unread."""
+        for _ in range(ATTEMPTS):
+            replies = self._replies_once(request, seconds)
+            first = next(replies, None)
+            if first is not None:
+                yield first
+                yield from replies
+                return
+            time.sleep(PAUSE_SECONDS)
+        raise RobotError(
+            f"no answer from {self._endpoint.address}: it is no sarah-robot, or more requests come than it reads"
+        )
+
+    def _replies_once(self, request: Request, seconds: float) -> Iterator[bytes]:
         import zenoh
 
         replies: Any = self._session.get(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
+import time
 from collections import deque
 from collections.abc import Callable
 from queue import Empty, SimpleQueue
@@ -24,10 +25,8 @@ from sarah.remote.slot import Asked, Slot
 
 RING = 64
 """Number of requests that wait to be read; of more, the oldest get no answer."""
-POLL_SECONDS = 0.005
-"""Time from one look at new requests to the next, in s."""
-MOST_AT_ONCE = 8
-"""Number of requests that are read between two looks."""
+READ_SECONDS = 0.005
+"""Time from one request that is read to the next, in s: reading holds the interpreter, which the loop needs."""
 MOST_LEAVING = 256
 """Number of messages that wait to be sent, beyond which telemetry is left out."""
 
@@ -97,12 +96,15 @@ class Server:
     def _serve(self) -> None:
         """Receive and send until the server is closed, and then send what is left."""
         while not (self._is_closed and self._leaving.empty()):
-            with contextlib.suppress(Empty):
-                self._leaving.get(timeout=POLL_SECONDS)()
-            for _ in range(MOST_AT_ONCE):
-                if self._is_closed or (query := self._queries.try_recv()) is None:
-                    break
+            self._send(time.monotonic() + READ_SECONDS)
+            if not self._is_closed and (query := self._queries.try_recv()) is not None:
                 self._receive(query)
+
+    def _send(self, end: float) -> None:
+        """Send what there is, and wait for more until a time."""
+        with contextlib.suppress(Empty):
+            while True:
+                self._leaving.get(timeout=max(0.0, end - time.monotonic()))()
 
     def _receive(self, query: Any) -> None:
         """Read and check a request, and hand it over."""

@@ -294,10 +294,11 @@ def _check(sent: str, before: Telemetry, after: Telemetry) -> None:
 def answer(rows: DataFrame) -> str:
     """What the robot did."""
     apart = rows[rows.sent != ONE]
+    late, grown = int(apart.late_ticks.sum()), shown(apart.grown_mib.max(), ".0f")
     return (
         f"Only what it was asked to do. {int(rows.messages.sum())} messages changed parameters only where they were "
         "valid pushes, and each single push was applied at the first swap of legs after it had come. In all, "
-        f"{int(apart.late_ticks.sum())} ticks were late, and memory grew by at most {shown(apart.grown_mib.max(), '.0f')} MiB."
+        f"{late} ticks of {round(100 * apart.time_s.sum())} were late, and memory grew by at most {grown} MiB."
     )
 
 
