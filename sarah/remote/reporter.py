@@ -48,7 +48,8 @@ class Reporter:
         now = self._clock()
         is_due = now >= self._next
         if is_due:
-            self._next = max(self._next + 1.0 / RATE, now)
+            following = self._next + 1.0 / RATE
+            self._next = following if following > now else now + 1.0 / RATE
         return is_due
 
     def telemetry(self, tick: LoopTick, supervisor: Supervisor) -> Telemetry:

@@ -10,6 +10,7 @@ from laboratory import need
 from listening import free_port, robot
 from terminal import Answer, done, run
 
+from sarah.cli.endpoints import with_endpoint
 from sarah.errors import RobotError
 from sarah.remote.client import Client
 from sarah.remote.endpoints import Endpoint
@@ -57,6 +58,21 @@ def test_a_robot_that_runs_takes_a_push(tmp_path: Path) -> None:
     process = done("sarah-robot", "balance", *words, cwd=tmp_path)
     pusher.join()
     assert answers == ["applied", "ended"] and f"listening at {endpoint.address}" in process.stderr
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ("--listen", "--listen tcp/127.0.0.1:7447"),
+        ("--listen balance", "--listen tcp/127.0.0.1:7447 balance"),
+        ("--listen --stand", "--listen tcp/127.0.0.1:7447 --stand"),
+        ("--listen tls/robot:1 balance", "--listen tls/robot:1 balance"),
+        ("--listen=tls/robot:1", "--listen=tls/robot:1"),
+        ("--listen udp/robot:1", "--listen udp/robot:1"),
+    ],
+)
+def test_an_address_may_be_left_out(given: str, words: str) -> None:
+    assert " ".join(with_endpoint(given.split())) == words
 
 
 def test_mistakes_are_one_line(answer: Answer) -> None:

@@ -102,6 +102,8 @@ def test_a_robot_that_stands_takes_them_at_once_and_tries_them_when_it_steps() -
     rig.step(20, rig.ask("stand"))
     assert rig.outcomes(0) == ["applied", "stopped"] and rig.answers[0][1].reason == "asked to stand"
     assert rig.supervisor.is_waiting
+    rig.step(1, rig.ask("stand"))
+    assert rig.outcomes() == ["applied"] and rig.supervisor.is_waiting
     rig.step(1, rig.ask(V1=0.3))
     assert rig.outcomes() == ["applied"] and rig.answers[-1][0].is_final and rig.answers[-1][0].reason
     rig.step(1, rig.ask("step"))
@@ -187,6 +189,16 @@ def test_a_robot_that_has_fallen_takes_them_and_does_not_stand() -> None:
     rig = scripted(State.FALLEN)
     rig.tick(rig.ask("stand"), rig.ask(V1=0.4))
     assert rig.outcomes(0) == ["refused"] and rig.outcomes(1) == ["applied"] and rig.answers[1][0].state == "fallen"
+
+
+def test_a_robot_that_stops_takes_nothing_before_it_stands() -> None:
+    rig = scripted(State.STOPPING)
+    rig.tick(rig.ask("step"), rig.ask(V1=0.4), change=SWAP)
+    assert rig.outcomes(0) == ["refused"] and "ask again when it stands" in rig.answers[0][0].reason
+    assert rig.outcomes(1) == []
+    rig.supervisor.happens("stopped")
+    rig.tick()
+    assert rig.outcomes(1) == ["applied"]
 
 
 EVENTS = ("nothing", "nothing", "swap", "push", "push", "prove", "put back", "stop", "stopped", "step")
