@@ -86,18 +86,19 @@ class Server:
 
         :param reason: what they are told
         """
-        self._slot.close(reason)
-        while self._arrived:
-            self._arrived.popleft().reply(Answer(Outcome.ENDED, reason))
         self._is_closed = True
-        self._thread.join()
+        self._thread.join()  # from here on nothing arrives
+        self._slot.close(reason)
+        for asked in self._arrived:
+            asked.reply(Answer(Outcome.ENDED, reason))
+        self._send(time.monotonic())
         self._session.close()
 
     def _serve(self) -> None:
-        """Receive and send until the server is closed, and then send what is left."""
-        while not (self._is_closed and self._leaving.empty()):
+        """Receive and send until the server is closed."""
+        while not self._is_closed:
             self._send(time.monotonic() + READ_SECONDS)
-            if not self._is_closed and (query := self._queries.try_recv()) is not None:
+            if (query := self._queries.try_recv()) is not None:
                 self._receive(query)
 
     def _send(self, end: float) -> None:
