@@ -108,6 +108,9 @@ class Slot:
             self._waiting = asked
 
     def _refusal(self, asked: Asked, supervisor: Supervisor) -> str:
+        """Reason to refuse a push, once the robot has parameters of its own to compare it with."""
+        if self._ticks <= self._standing_ticks:
+            return ""
         return too_large(asked.request.values, present(supervisor), self._largest_change)
 
     def _judge(self, moment: Moment) -> None:

@@ -47,7 +47,8 @@ def test_a_robot_that_runs_takes_a_push(tmp_path: Path) -> None:
         while True:
             try:
                 with Client(endpoint) as client:
-                    answers.extend(answer.outcome.value for answer in client.ask(Request("push", {"V1": 0.6})))
+                    for v1 in (-1.0, 0.6):  # from 0.71
+                        answers.extend(answer.outcome.value for answer in client.ask(Request("push", {"V1": v1})))
                     return
             except RobotError:
                 time.sleep(0.05)
@@ -55,9 +56,9 @@ def test_a_robot_that_runs_takes_a_push(tmp_path: Path) -> None:
     pusher = threading.Thread(target=push)
     pusher.start()
     words = ("--engine", "mujoco", "--real-time", "--seconds", "2.5", "--listen", endpoint.address)
-    process = done("sarah-robot", "balance", *words, cwd=tmp_path)
+    process = done("sarah-robot", "balance", *words, "--largest-change", "0.1", cwd=tmp_path)
     pusher.join()
-    assert answers == ["applied", "ended"] and f"listening at {endpoint.address}" in process.stderr
+    assert answers == ["refused", "applied", "ended"] and f"listening at {endpoint.address}" in process.stderr
 
 
 @pytest.mark.parametrize(

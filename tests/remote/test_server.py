@@ -6,6 +6,7 @@ import itertools
 from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
+from typing import Any
 
 import pytest
 from cryptography import x509
@@ -15,7 +16,7 @@ from hand_made import DT
 from listening import free_port, robot
 
 from sarah.errors import RobotError
-from sarah.remote.answers import Outcome
+from sarah.remote.answers import Answer, Outcome, to_json
 from sarah.remote.client import Client
 from sarah.remote.endpoints import REQUESTS, TELEMETRY, Certificates, Endpoint
 from sarah.remote.requests import LearnedWith, Request
@@ -56,6 +57,23 @@ def test_what_is_no_request_changes_nothing_and_no_answer_is_late() -> None:
         assert len(came) >= 2 and loop.ticks > 10
     with pytest.raises(RobotError, match=f"no robot listens at {endpoint.address}"):
         Client(endpoint)
+
+
+def test_a_request_that_is_dropped_unread_is_sent_again() -> None:
+    endpoint, came = Endpoint(f"tcp/127.0.0.1:{free_port()}"), list[bytes]()
+
+    def drop_or_answer(query: Any) -> None:
+        came.append(query.payload.to_bytes())
+        if len(came) == 3:
+            query.reply(REQUESTS, to_json(Answer(Outcome.APPLIED, tick=7)))
+        query.drop()
+
+    with closing(endpoint.opened(listens=True)) as session:
+        queryable = session.declare_queryable(REQUESTS, drop_or_answer)
+        with Client(endpoint) as client:
+            assert [answer.tick for answer in client.ask(Request("stand"))] == [7]
+        queryable.undeclare()
+    assert came == [Request("stand").to_json()] * 3
 
 
 def test_an_address_that_is_taken_is_one_line() -> None:

@@ -185,6 +185,14 @@ def scripted(state: State = State.STEPPING) -> Rig:
     return rig
 
 
+def test_a_push_of_the_first_second_is_compared_with_the_robots_own_parameters() -> None:
+    rig = Rig()
+    rig.step(50, rig.ask(V1=-1.9))
+    rig.supervisor.set_parameters(balance=replace(BALANCE, V1=1.9))  # the loop's
+    rig.step(100)
+    assert rig.outcomes() == ["refused"]
+
+
 def test_a_robot_that_has_fallen_takes_them_and_does_not_stand() -> None:
     rig = scripted(State.FALLEN)
     rig.tick(rig.ask("stand"), rig.ask(V1=0.4))
