@@ -64,7 +64,7 @@ class Telemetry:
     :param phase: phase of the step
     :param steps_per_second: steps per second in the last two seconds
     :param tilt: lateral acceleration towards the stance leg, in m/s^2
-    :param parameters: values of P1 to P5 and V1 to V4 that it was given; in its first second, those of the paper
+    :param parameters: values of P1 to P5 and V1 to V4 that it was given; in its first second those of the paper
     :param late_ticks: number of late ticks so far
     """
 

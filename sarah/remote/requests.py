@@ -26,7 +26,7 @@ KINDS = ("push", "stand", "step", "state")
 LARGEST_BYTES = 8192
 """Length of a message in bytes beyond which nobody reads it."""
 LARGEST_CHANGE = 0.9
-"""Default of the largest change of a parameter, as a share of its range: trainings find V4 from -1.8 to 1.7 of 4."""
+"""Default of the largest change of a parameter, as a share of its range: more than any two learned sets differ by."""
 BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
 
 
